@@ -1,0 +1,78 @@
+# Needs make, Python 3.11 to 3.13 and its venv module; everything else goes into .venv.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PYTEST_ARGS ?=
+STUDY_ARGS ?=
+STUDY_OUTPUT ?= studies/output
+PIP := $(BIN)/python -m pip --disable-pip-version-check --no-input
+
+.PHONY: help demo test slow lint types imports docs studies benchmarks ci clean
+.DEFAULT_GOAL := help
+
+help:  ## list these targets
+	@grep -E '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
+
+# One stamp for each set of extras: installed again only when pyproject.toml changes.
+$(BIN)/python:
+	@echo "== Creating the virtual environment $(VENV) with $$($(PYTHON) --version)"
+	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' || \
+		{ echo "teleopdesign needs Python 3.11 to 3.13; choose one with: make PYTHON=python3.12 ..."; exit 1; }
+	@$(PYTHON) -m venv $(VENV)
+
+$(VENV)/installed-core: EXTRAS =
+$(VENV)/installed-test: EXTRAS = [test]
+$(VENV)/installed-docs: EXTRAS = [docs]
+$(VENV)/installed-%: pyproject.toml | $(BIN)/python
+	@echo "== Installing teleopdesign$(EXTRAS) and what it needs into $(VENV) (once; some minutes)"
+	@$(PIP) install --editable ".$(EXTRAS)"
+	@touch $@
+
+demo: $(VENV)/installed-core  ## diagnose a recording that comes with the package
+	@echo "== Demo: find the physical effect that a model lacks"
+	@$(BIN)/teleopdesign demo
+
+test: $(VENV)/installed-test  ## plain tests, under a minute (PYTEST_ARGS adds or overrides)
+	@echo "== Tests without those marked slow"
+	@$(BIN)/pytest -n 2 $(PYTEST_ARGS)
+
+slow: $(VENV)/installed-test  ## tests marked slow
+	@echo "== Slow tests"
+	@$(BIN)/pytest -n 2 -m slow $(PYTEST_ARGS)
+
+benchmarks: $(VENV)/installed-test  ## times against their bounds, one at a time
+	@echo "== Benchmarks"
+	@$(BIN)/pytest -m benchmark -s $(PYTEST_ARGS)
+
+lint: $(VENV)/installed-test  ## style and format
+	@echo "== Style and format"
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+
+types: $(VENV)/installed-test  ## strict types of the package
+	@echo "== Types"
+	@$(BIN)/mypy
+
+imports: $(VENV)/installed-test  ## direction of imports between folders
+	@echo "== Direction of imports"
+	@$(BIN)/lint-imports
+
+docs: $(VENV)/installed-docs  ## documentation in docs/_build/html, warnings are errors
+	@echo "== Documentation"
+	@$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
+	@echo "docs/_build/html/index.html"
+
+studies: $(VENV)/installed-core  ## every study, figures and numbers into STUDY_OUTPUT (STUDY_ARGS=--quick)
+	@set -e; for study in studies/*.py; do \
+		echo "== $$study"; \
+		$(BIN)/python "$$study" $(STUDY_ARGS) --output "$(STUDY_OUTPUT)"; \
+	done
+
+ci:  ## everything that must hold, in the order of .ci/run
+	@.ci/run
+
+clean:  ## remove what was built (not .venv)
+	rm -rf build dist docs/_build docs/_generated studies/output *.egg-info .pytest_cache .hypothesis \
+		.mypy_cache .ruff_cache .import_linter_cache
+	find teleopdesign tests studies -name __pycache__ -type d -prune -exec rm -rf {} + 2>/dev/null || true
