@@ -1,0 +1,50 @@
+"""What can go wrong, in one line: where, what was found, what was expected, the nearest match."""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+_LONGEST_QUOTE = 60  # characters of a user's text that a message repeats
+
+
+class TeleopDesignError(Exception):
+    """Base of every error that the package raises on purpose."""
+
+    def __init__(self, message: str) -> None:
+        # A user's text may hold line breaks and control characters; a message stays one line.
+        super().__init__("".join(c if c.isprintable() else _escaped(c) for c in message))
+
+
+class ExperimentError(TeleopDesignError):
+    """A file of an experiment, or something written in it, cannot be used."""
+
+
+class ModelError(TeleopDesignError):
+    """A model, diagram or effect is put together in a way that has no meaning."""
+
+
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """The name in `known` that a person who wrote `word` probably meant; None if none is close."""
+    names = list(known)
+    matches = get_close_matches(word, names, n=1, cutoff=0.6)
+    if matches:
+        return matches[0]
+    by_lower_case = {name.lower(): name for name in reversed(names)}
+    matches = get_close_matches(word.lower(), by_lower_case, n=1, cutoff=0.6)
+    return by_lower_case[matches[0]] if matches else None
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """End of a message: '; did you mean "x"?', or nothing if no known name is close."""
+    match = nearest(word, known)
+    return "" if match is None else f'; did you mean "{match}"?'
+
+
+def quoted(text: str) -> str:
+    """`text` in double quotes, shortened if it is long."""
+    if len(text) > _LONGEST_QUOTE:
+        text = text[: _LONGEST_QUOTE - 3] + "..."
+    return f'"{text}"'
+
+
+def _escaped(character: str) -> str:
+    return character.encode("unicode_escape").decode("ascii")

@@ -1,0 +1,171 @@
+"""Channels: which column of a record is which quantity of which body, its unit, how exact."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from ..errors import ExperimentError, did_you_mean, quoted
+from ..quantity import si_factor, to_si
+from .description import ONE_BODY, BodyDescription
+from .toml_table import Table
+
+# what a body's channel is called -> its quantity in the table of units
+BODY_QUANTITIES = {
+    "position": "position",
+    "velocity": "velocity",
+    "actuator_force": "force",
+    "interaction_force": "force",
+}
+_REQUIRED = ("position", "actuator_force")
+_OF_THE_RECORD = ("time", "segment")
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One measured signal.
+
+    quantity: "position", "velocity", "actuator_force", "interaction_force", "time" or "segment"
+    body: None for time and segment
+    column: header, variable or dataset name in the record files; `unit`: the unit it is written in
+    resolution: step of the encoder or converter, SI; None: not stated
+    noise: rms, SI; None: not stated
+    """
+
+    quantity: str
+    body: str | None
+    column: str
+    unit: str
+    resolution: float | None
+    noise: float | None
+
+
+def channels_from(table: Table, bodies: Mapping[str, BodyDescription]) -> dict[str, Channel]:
+    """[channels] -> "device.position" and the like (always with the body), "time", "segment".
+
+    raises ExperimentError: unknown or missing channel, wrong kind of unit, a column used twice
+    """
+    table = _flattened(table, bodies)
+    known = _known_names(bodies)
+    channels: dict[str, Channel] = {}
+    for key in table.content:
+        if key == "sample_rate":
+            continue
+        if key not in known:
+            listed = ", ".join((*known, "sample_rate"))
+            hint = did_you_mean(key, (*known, "sample_rate"))
+            raise ExperimentError(
+                f"{table.where()}: no quantity {quoted(key)}, expected some of {listed}{hint}"
+            )
+        name = known[key]
+        if name in channels:
+            raise ExperimentError(f"{table.where(key)}: {quoted(name)} is given twice")
+        channels[name] = _channel(table.table(key), name, bodies)
+    _refuse_missing(table, channels, bodies)
+    _refuse_shared_columns(table, channels)
+    return channels
+
+
+def factor_of(channel: Channel, bodies: Mapping[str, BodyDescription], where: str) -> float:
+    """Factor from the column's unit to SI; raises ExperimentError if the unit does not fit."""
+    if channel.body is None:
+        quantity = "time" if channel.quantity == "time" else "dimensionless"
+        return si_factor(channel.unit, quantity=quantity, where=where)
+    axis = bodies[channel.body].axis
+    quantity = BODY_QUANTITIES[channel.quantity]
+    return si_factor(channel.unit, quantity=quantity, axis=axis, where=where)
+
+
+def sample_rate_from(experiment: Table, channels: Table) -> float | None:
+    """`sample_rate` in Hz, written under [channels] or at the top of the file; None if absent.
+
+    Exactly one of it and the channel `time` must be there.
+    """
+    given = [table for table in (channels, experiment) if "sample_rate" in table.content]
+    if "time" in channels.content and given:
+        raise ExperimentError(
+            f"{given[0].where('sample_rate')}: found beside channels.time, expected one of the two"
+        )
+    if len(given) == 2:
+        raise ExperimentError(f"{experiment.where('sample_rate')}: is given twice")
+    if not given:
+        if "time" not in channels.content:
+            raise ExperimentError(
+                f'{channels.where()}: no "time", expected {{ column = ..., unit = "s" }} '
+                'or sample_rate = { value = 1000, unit = "Hz" }'
+            )
+        return None
+    return frequency_from(given[0], "sample_rate")
+
+
+def frequency_from(table: Table, key: str) -> float:
+    """{ value, unit } under `key` as a positive frequency in Hz."""
+    entry = table.table(key)
+    entry.allow(("value", "unit"))
+    value = entry.number("value", above=0)
+    where = entry.where("unit")
+    return to_si(value, entry.text("unit"), quantity="frequency", where=where)
+
+
+def _flattened(table: Table, bodies: Mapping[str, BodyDescription]) -> Table:
+    """To TOML, "master.position" without quotes is a table in a table: make it one key again."""
+    content: dict[str, Any] = {}
+    for key, value in table.content.items():
+        if key in bodies and isinstance(value, dict):
+            content |= {f"{key}.{quantity}": entry for quantity, entry in value.items()}
+        else:
+            content[key] = value
+    return Table(content, table.file, table.key)
+
+
+def _known_names(bodies: Mapping[str, BodyDescription]) -> dict[str, str]:
+    """Key in the file -> name in the package; one body may be written with or without prefix."""
+    names = {
+        f"{body}.{quantity}": f"{body}.{quantity}"
+        for body in bodies
+        for quantity in BODY_QUANTITIES
+    }
+    short = {quantity: f"device.{quantity}" for quantity in BODY_QUANTITIES}
+    of_the_record = {name: name for name in _OF_THE_RECORD}
+    return of_the_record | (short | names if tuple(bodies) == ONE_BODY else names)
+
+
+def _channel(table: Table, name: str, bodies: Mapping[str, BodyDescription]) -> Channel:
+    body, _, quantity = name.rpartition(".")
+    if quantity in _OF_THE_RECORD:
+        table.allow(("column", "unit"))
+    else:
+        table.allow(("column", "unit", "resolution", "noise"))
+    unit = table.text("unit", "1" if quantity == "segment" else None)
+    written = Channel(quantity, body or None, table.text("column"), unit, None, None)
+    factor = factor_of(written, bodies, table.where("unit"))
+    resolution = table.number_or_none("resolution", above=0)
+    noise = table.number_or_none("noise", above=0)
+    return Channel(
+        quantity,
+        written.body,
+        written.column,
+        unit,
+        None if resolution is None else resolution * factor,
+        None if noise is None else noise * factor,
+    )
+
+
+def _refuse_missing(
+    table: Table, channels: Mapping[str, Channel], bodies: Mapping[str, BodyDescription]
+) -> None:
+    for body in bodies:
+        for quantity in _REQUIRED:
+            if f"{body}.{quantity}" not in channels:
+                name = quantity if tuple(bodies) == ONE_BODY else f"{body}.{quantity}"
+                listed = ", ".join(table.content) or "no channel"
+                raise ExperimentError(f"{table.where()}: no {quoted(name)}, found {listed}")
+
+
+def _refuse_shared_columns(table: Table, channels: Mapping[str, Channel]) -> None:
+    first_use: dict[str, str] = {}
+    for name, channel in channels.items():
+        other = first_use.setdefault(channel.column, name)
+        if other != name:
+            raise ExperimentError(
+                f"{table.where(name)}: found column {quoted(channel.column)}, which {other} uses"
+            )

@@ -1,0 +1,197 @@
+"""An experiment: a folder with one experiment.toml and the record files that it names."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import final
+
+from ..errors import ExperimentError, did_you_mean, quoted
+from ..quantity import unit_of
+from .channel import BODY_QUANTITIES, Channel, channels_from, frequency_from, sample_rate_from
+from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from
+from .record import Record, read_record
+from .toml_table import Table, read_toml
+
+_FILE = "experiment.toml"
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Experiment:
+    """What was measured, and what the user believes so far. All signals in SI units.
+
+    bodies: "device", or "master" and "slave"
+    channels: "device.position" and the like, "time", "segment"
+    bandwidth: Hz; model and measurement are compared below it; None: to be chosen from the record
+    """
+
+    folder: Path
+    title: str
+    bodies: Mapping[str, BodyDescription]
+    environment: EnvironmentDescription | None
+    channels: Mapping[str, Channel]
+    bandwidth: float | None
+    records: tuple[Record, ...]
+
+    @property
+    def fit_records(self) -> tuple[Record, ...]:
+        """Records that parameters are estimated on; at least one."""
+        return tuple(record for record in self.records if record.use == "fit")
+
+    @property
+    def check_records(self) -> tuple[Record, ...]:
+        """Records that errors are reported on, never fitted; may be empty."""
+        return tuple(record for record in self.records if record.use == "check")
+
+    def axis(self, body: str) -> str:
+        """Axis of a body: "prismatic" or "revolute"; raises ExperimentError: no such body."""
+        if body not in self.bodies:
+            raise ExperimentError(
+                f"{self.folder.name}/{_FILE}: no body {quoted(body)}, "
+                f"found {', '.join(self.bodies)}"
+            )
+        return self.bodies[body].axis
+
+    def __repr__(self) -> str:
+        lines = [f"Experiment {quoted(self.title)} ({self.folder.name})"]
+        for name, body in self.bodies.items():
+            effects = ", ".join(body.effects) or "no effects"
+            lines.append(f"  {name}: {body.axis}, {effects}")
+            for quantity in BODY_QUANTITIES:
+                channel = self.channels.get(f"{name}.{quantity}")
+                if channel is not None:
+                    unit = unit_of(BODY_QUANTITIES[quantity], body.axis)
+                    lines.append(f"    {quantity} in {unit}{_exactness(channel, unit)}")
+        lines += [f"  {record!r}" for record in self.records]
+        return "\n".join(lines)
+
+
+def load_experiment(folder: str | Path) -> Experiment:
+    """Read and check a whole experiment.
+
+    folder: that of experiment.toml (the path of the file itself will do)
+    raises ExperimentError: anything missing, unknown, of the wrong type or unit, in one line
+    """
+    folder = _found_folder(Path(folder))
+    experiment = read_toml(folder / _FILE, f"{folder.name}/{_FILE}")
+    experiment.allow(("title", "model", "channels", "comparison", "records", "sample_rate"))
+    title = experiment.text("title", folder.name)
+    model = experiment.table("model")
+    bodies = bodies_from(model)
+    environment = environment_from(model, bodies)
+    channels = channels_from(experiment.table("channels"), bodies)
+    sample_rate = sample_rate_from(experiment, experiment.table("channels"))
+    comparison = experiment.table("comparison")
+    comparison.allow(("bandwidth",))
+    bandwidth = frequency_from(comparison, "bandwidth") if comparison.content else None
+    records = tuple(
+        read_record(
+            folder,
+            file,
+            use=use,
+            position_zero=zero,
+            channels=channels,
+            bodies=bodies,
+            sample_rate=sample_rate,
+        )
+        for file, use, zero in _record_entries(experiment, folder)
+    )
+    _check_bandwidth(bandwidth, records, comparison)
+    return Experiment(folder, title, bodies, environment, channels, bandwidth, records)
+
+
+def _found_folder(path: Path) -> Path:
+    try:
+        if path.name == _FILE and path.is_file():
+            path = path.parent
+        path = path.resolve()
+        if path.is_dir():
+            names = sorted(entry.name for entry in path.iterdir())
+        else:
+            parent = path.parent
+            names = [entry.name for entry in parent.iterdir()] if parent.is_dir() else []
+            raise ExperimentError(f"{path.name}: no such folder{did_you_mean(path.name, names)}")
+    except (OSError, ValueError) as problem:  # ValueError: a null character in the path
+        reason = getattr(problem, "strerror", None) or str(problem)
+        raise ExperimentError(f"{path.name}: cannot be read: {reason}") from None
+    if _FILE not in names:
+        listed = ", ".join(names[:10]) + (", ..." if len(names) > 10 else "")
+        raise ExperimentError(
+            f"{path.name}: no {_FILE}, "
+            f"found {listed or 'an empty folder'}{did_you_mean(_FILE, names)}"
+        )
+    return path
+
+
+def _record_entries(experiment: Table, folder: Path) -> list[tuple[str, str, str]]:
+    """(file, use, position_zero) of each [[records]], checked before any file is read."""
+    entries: list[tuple[str, str, str]] = []
+    for table in experiment.tables("records"):
+        table.allow(("file", "use", "position_zero"))
+        file = table.text("file")
+        _check_path(table, folder, file)
+        if any(file == other for other, _, _ in entries):
+            raise ExperimentError(f"{table.where('file')}: {quoted(file)} is listed twice")
+        use = _choice(table, "use", ("fit", "check"))
+        zero = _choice(table, "position_zero", ("common", "own"), "common")
+        entries.append((file, use, zero))
+    if not any(use == "fit" for _, use, _ in entries):
+        raise ExperimentError(
+            f'{experiment.where("records")}: found {len(entries)} records, none with use = "fit", '
+            "expected at least one"
+        )
+    return entries
+
+
+def _choice(table: Table, key: str, choices: tuple[str, ...], default: str | None = None) -> str:
+    value = table.text(key, default)
+    if value not in choices:
+        listed = " or ".join(quoted(choice) for choice in choices)
+        raise ExperimentError(
+            f"{table.where(key)}: found {quoted(value)}, "
+            f"expected {listed}{did_you_mean(value, choices)}"
+        )
+    return value
+
+
+def _check_path(table: Table, folder: Path, file: str) -> None:
+    where = table.where("file")
+    try:
+        path = (folder / file).resolve()
+        inside = path.is_relative_to(folder)
+        there = path.is_file()
+    except (OSError, ValueError) as problem:
+        reason = getattr(problem, "strerror", None) or str(problem)
+        raise ExperimentError(f"{where}: {quoted(file)} cannot be read: {reason}") from None
+    if not inside:
+        raise ExperimentError(
+            f"{where}: found {quoted(file)}, expected a file inside {folder.name}/"
+        )
+    if not there:
+        names = sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file())
+        others = [name for name in names if name != _FILE]
+        listed = ", ".join(others[:10]) + (", ..." if len(others) > 10 else "")
+        raise ExperimentError(
+            f"{where}: no file {quoted(file)}, found {listed or 'none'}{did_you_mean(file, others)}"
+        )
+
+
+def _check_bandwidth(
+    bandwidth: float | None, records: tuple[Record, ...], comparison: Table
+) -> None:
+    for record in records:
+        highest = 0.5 / record.sample_time
+        if bandwidth is not None and bandwidth >= highest:
+            raise ExperimentError(
+                f"{comparison.where('bandwidth')}: found {bandwidth:g} Hz, expected less than "
+                f"{highest:g} Hz, half the sample rate of {record.file}"
+            )
+
+
+def _exactness(channel: Channel, unit: str) -> str:
+    parts = []
+    if channel.resolution is not None:
+        parts.append(f"resolution {channel.resolution:.3g} {unit}")
+    if channel.noise is not None:
+        parts.append(f"noise {channel.noise:.3g} {unit}")
+    return f" ({', '.join(parts)})" if parts else ""

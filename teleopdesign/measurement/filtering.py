@@ -1,0 +1,78 @@
+"""Low-pass, derivatives and zero-order hold as multipliers of one Fourier transform.
+
+The record is continued oddly at both ends (level and slope go on), so that only the ends suffer.
+Every multiplier is even in length, zero-phase where the physics is, and applies to (..., n) arrays.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+
+Array = NDArray[np.float64]
+#: seconds of odd continuation at each end, where the record is long enough
+CONTINUED = 0.6
+
+
+class Spectrum:
+    """Multiplies signals on one uniform grid of n samples by functions of frequency.
+
+    n: samples;  sample_time: s
+    """
+
+    def __init__(self, n: int, sample_time: float) -> None:
+        self.n, self.sample_time = n, sample_time
+        self.margin = max(1, min(round(CONTINUED / sample_time), n - 1))
+        self.length = fft.next_fast_len(n + 4 * self.margin, real=True)
+        self.frequency = np.arange(self.length // 2 + 1) / (self.length * sample_time)
+
+    def transform(self, y: Array) -> NDArray[np.complex128]:
+        """Transform of (..., n) signals, continued at both ends."""
+        m, n = self.margin, self.n
+        left = 2 * y[..., :1] - y[..., m:0:-1]
+        right = 2 * y[..., -1:] - y[..., -2 : -m - 2 : -1]
+        gap = self.length - n - 2 * m
+        ramp = np.linspace(0.0, 1.0, gap + 2)[1:-1]
+        # a smooth bridge closes the circle without a step in level or slope
+        bridge = right[..., -1:] + (left[..., :1] - right[..., -1:]) * (
+            ramp * ramp * (3.0 - 2.0 * ramp)
+        )
+        whole = np.concatenate([left, y, right, bridge], axis=-1)
+        return np.asarray(fft.rfft(whole), dtype=np.complex128)
+
+    def back(self, transformed: NDArray[np.complex128]) -> Array:
+        """The signals (..., n) of a transform."""
+        y: Array = fft.irfft(transformed, self.length)
+        return np.ascontiguousarray(y[..., self.margin : self.margin + self.n])
+
+    def multiply(self, y: Array, gain: NDArray[np.complex128] | Array) -> Array:
+        """Signals (..., n) times a function of frequency, real or complex."""
+        return self.back(self.transform(y) * gain)
+
+    def lowpass(self, cutoff: float, order: int = 4) -> Array:
+        """Gain of a Butterworth low-pass run forward and backward: zero phase, |H|^2.
+
+        cutoff: Hz; order of the one-way filter (4: the filter of the force error)
+        """
+        nyquist = 0.5 / self.sample_time
+        warped = np.tan(0.5 * np.pi * np.minimum(self.frequency / nyquist, 0.99999))
+        edge = np.tan(0.5 * np.pi * min(cutoff / nyquist, 0.99999))
+        return np.asarray(1.0 / (1.0 + (warped / edge) ** (2 * order)))
+
+    def derivative(self, order: int) -> NDArray[np.complex128]:
+        """(j omega)^order."""
+        return np.asarray((2j * np.pi * self.frequency) ** order, dtype=np.complex128)
+
+    def hold(self) -> NDArray[np.complex128]:
+        """Zero-order hold: from row values to the staircase, seen at the rows' times."""
+        x = np.pi * self.frequency * self.sample_time
+        return np.asarray(np.sinc(x / np.pi) * np.exp(-1j * x), dtype=np.complex128)
+
+
+@lru_cache(maxsize=64)
+def spectrum(n: int, sample_time: float) -> Spectrum:
+    """The Spectrum for that grid, made once."""
+    return Spectrum(n, sample_time)

@@ -1,0 +1,185 @@
+"""The motion of one body through one uninterrupted stretch of a record, ready for comparison."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .filtering import Array, Spectrum, spectrum
+from .record import Record
+
+#: smoothing edge over comparison bandwidth: the band below is untouched (|H| > 0.998 there)
+SMOOTHING = 1.5
+#: a body whose reading stands still longer than this part of a period at the bandwidth may be stuck
+DWELL = 0.25
+#: steps of the reading that a motion must cover to be told from the give of a contact that holds
+TRAVEL = 3
+#: s, shortest stretch that leaves something after the ends are trimmed
+SHORTEST = 0.6
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One body along one segment (n samples, uniform); all SI, position positive like the forces.
+
+    position, velocity, acceleration: smoothed to `SMOOTHING` times the bandwidth, zero phase
+    command: as commanded, held until the next row;  interaction: smoothed (zeros if not measured)
+    direction: +1, -1, or 0 where the reading cannot tell a motion
+    step: what one reading leaves open of the position (encoder step, or twice its noise)
+    rows: the samples' place in the record
+    """
+
+    body: str
+    file: str
+    time: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+    command: Array
+    interaction: Array
+    direction: NDArray[np.int8]
+    step: float
+    rows: slice
+    spectrum: Spectrum
+    smoothing: Array
+    lowpass: Array
+
+    @property
+    def sample_time(self) -> float:
+        """Seconds between samples."""
+        return self.spectrum.sample_time
+
+    def at_rows(self, staircase: Array) -> Array:
+        """A held signal (..., n), value of each row until the next, as a smooth one at the rows."""
+        return self.spectrum.multiply(staircase, self.spectrum.hold() * self.smoothing)
+
+    def lowpassed(self, y: Array) -> Array:
+        """Signals (..., n) through the comparison's zero-phase low-pass."""
+        return self.spectrum.multiply(y, self.lowpass)
+
+
+def reading_noise(position: Array) -> float:
+    """Rms noise of one position reading, from its content near the Nyquist frequency."""
+    fourth = np.diff(position, 4)
+    # white noise passes a fourth difference with gain sqrt(70); the median ignores sharp motion
+    return float(np.median(np.abs(fourth)) / 0.6745 / np.sqrt(70.0))
+
+
+def reading_step(position: Array) -> float:
+    """Smallest step between neighbouring values that the readings take: the encoder's, if any."""
+    values = np.unique(position)
+    if len(values) < 2:
+        return 0.0
+    gaps = np.diff(values)
+    return float(np.quantile(gaps[gaps > 1e-9 * np.ptp(values)], 0.05))
+
+
+def told_direction(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:
+    """+1 or -1 where consecutive readings tell a motion that way, 0 where they cannot.
+
+    A motion is told by changes of the reading that go the same way, no more than `patience` samples
+    apart, over at least `TRAVEL` steps; a shorter one may be the give of a contact that holds.
+    Between motions the body may rest, creep or turn, and nothing is said.
+
+    change: smallest change of a reading that counts;  step: what one reading leaves open
+    """
+    direction = np.zeros(len(position), dtype=np.int8)
+    changes = np.flatnonzero(np.abs(np.diff(position)) > 0.5 * change) + 1
+    if len(changes) < 2:
+        return direction
+    sign = np.sign(position[changes] - position[changes - 1]).astype(np.int64)
+    same = (sign[1:] == sign[:-1]) & (np.diff(changes) <= patience)
+    runs = np.concatenate([[0], np.flatnonzero(~same) + 1, [len(changes)]])
+    first, last = runs[:-1], runs[1:] - 1
+    travel = np.abs(position[changes[last]] - position[changes[first] - 1])
+    long = (travel > (TRAVEL - 0.5) * step) & (last > first)
+    edges = np.zeros(len(position) + 1, dtype=np.int64)
+    np.add.at(edges, changes[first[long]], sign[first[long]])
+    np.add.at(edges, changes[last[long]], -sign[first[long]])
+    return np.cumsum(edges[:-1]).astype(np.int8)
+
+
+def play(position: Array, width: float) -> Array:
+    """Position behind a play of total `width`: it follows only what exceeds it (hysteresis)."""
+    half = 0.5 * width
+    out = np.empty_like(position)
+    here = position[0]
+    for k, x in enumerate(position.tolist()):
+        here = min(max(here, x - half), x + half)
+        out[k] = here
+    return out
+
+
+def motion_of(
+    *,
+    body: str,
+    file: str,
+    time: Array,
+    position: Array,
+    command: Array,
+    interaction: Array | None,
+    sample_time: float,
+    rows: slice,
+    bandwidth: float,
+    resolution: float | None,
+) -> Motion:
+    """Smooth and differentiate one uninterrupted stretch of readings (n samples each, SI).
+
+    bandwidth: Hz, of the comparison;  resolution: encoder step, None where not stated
+    """
+    n = len(position)
+    s = spectrum(n, sample_time)
+    smoothing = s.lowpass(min(SMOOTHING * bandwidth, 0.45 / sample_time), order=8)
+    transformed = s.transform(position) * smoothing
+    noise = reading_noise(position)
+    if resolution is not None and noise < resolution:
+        step, reading = resolution, position
+    else:
+        step = max(resolution or reading_step(position), 4.0 * noise)
+        reading = play(position, step)
+    patience = max(2, round(DWELL / bandwidth / sample_time))
+    change = step if reading is position else 1e-9 * step
+    return Motion(
+        body=body,
+        file=file,
+        time=time,
+        position=s.back(transformed),
+        velocity=s.back(transformed * s.derivative(1)),
+        acceleration=s.back(transformed * s.derivative(2)),
+        command=command,
+        interaction=np.zeros(n) if interaction is None else s.multiply(interaction, smoothing),
+        direction=told_direction(reading, change, step, patience),
+        step=step,
+        rows=rows,
+        spectrum=s,
+        smoothing=smoothing,
+        lowpass=s.lowpass(bandwidth),
+    )
+
+
+def motions(
+    record: Record, body: str, *, bandwidth: float, resolution: float | None
+) -> tuple[Motion, ...]:
+    """The stretches of one record for one body, those long enough to low-pass and trim.
+
+    bandwidth: Hz, of the comparison;  resolution: encoder step (SI), None where not stated
+    """
+    interaction = record.signals.get(f"{body}.interaction_force")
+    return tuple(
+        motion_of(
+            body=body,
+            file=record.file,
+            time=record.time[rows],
+            position=record.signals[f"{body}.position"][rows],
+            command=record.signals[f"{body}.actuator_force"][rows],
+            interaction=None if interaction is None else interaction[rows],
+            sample_time=record.sample_time,
+            rows=rows,
+            bandwidth=bandwidth,
+            resolution=resolution,
+        )
+        for rows in record.segments
+        if (rows.stop - rows.start) * record.sample_time >= SHORTEST
+    )

@@ -1,0 +1,104 @@
+"""Public recordings of real devices, obtained from where they are published and made experiments.
+
+    from teleopdesign.measurement.recordings import fetch
+    experiment = load_experiment(fetch("emps"))
+
+The files stay where their authors put them (no licence is stated for the data): each is downloaded
+once at a fixed commit, checked against its hash, and converted into an experiment's folder.
+"""
+
+import hashlib
+import shutil
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+from ...errors import ExperimentError, did_you_mean, quoted
+from . import emps, hsm150, mtm_wrist, psm_insertion
+from ._recording import RawFile, Recording
+
+_PUBLIC = "https://raw.githubusercontent.com"
+
+RECORDINGS: Mapping[str, Recording] = {
+    "emps": emps.RECORDING,
+    "hsm150": hsm150.RECORDING,
+    "mtm_wrist": mtm_wrist.RECORDING,
+    "psm_insertion": psm_insertion.RECORDING,
+}
+
+
+def fetch(name: str, folder: str | Path | None = None, *, source: str | Path = _PUBLIC) -> Path:
+    """The experiment's folder of a public recording; downloaded and converted if not there yet.
+
+    name: one of RECORDINGS ("emps", "hsm150", "mtm_wrist", "psm_insertion")
+    folder: where the experiment's folder is put; None: the user's cache
+    source: address of a server laid out as OWNER/REPOSITORY/COMMIT/PATH, or a folder of copies laid
+        out as OWNER/REPOSITORY/PATH
+    raises ExperimentError: no such recording, no connection, or a file that is not the one expected
+    """
+    if name not in RECORDINGS:
+        raise ExperimentError(
+            f"recordings: no recording {quoted(name)}, found {', '.join(RECORDINGS)}"
+            f"{did_you_mean(name, RECORDINGS)}"
+        )
+    target = (_cache() if folder is None else Path(folder)) / name
+    if (target / "experiment.toml").is_file():
+        return target
+    recording = RECORDINGS[name]
+    raw = [_obtain(file, str(source)) for file in recording.files]
+    _convert(recording, raw, target)
+    return target
+
+
+def _cache() -> Path:
+    import pooch
+
+    return Path(pooch.os_cache("teleopdesign"))
+
+
+def _obtain(file: RawFile, source: str) -> Path:
+    if source.startswith(("http://", "https://")):
+        return _download(file, f"{source}/{file.repository}/{file.commit}/{file.path}")
+    path = Path(source) / file.repository / file.path
+    if not path.is_file():
+        raise ExperimentError(f"recordings: no file {file.repository}/{file.path} in the source")
+    if hashlib.sha256(path.read_bytes()).hexdigest() != file.sha256:
+        raise _not_as_expected(f"{file.repository}/{file.path}")
+    return path
+
+
+def _download(file: RawFile, address: str) -> Path:
+    import pooch
+
+    try:
+        return Path(
+            pooch.retrieve(
+                address,
+                known_hash=f"sha256:{file.sha256}",
+                fname=file.path.rsplit("/", 1)[-1],
+                path=_cache() / "raw" / file.repository,
+            )
+        )
+    except OSError as problem:
+        raise ExperimentError(
+            f"recordings: {address} cannot be downloaded: {type(problem).__name__}"
+        ) from None
+    except ValueError:
+        raise _not_as_expected(address) from None
+
+
+def _not_as_expected(file: str) -> ExperimentError:
+    return ExperimentError(f"recordings: {file}: found other content, expected the known sha256")
+
+
+def _convert(recording: Recording, raw: list[Path], target: Path) -> None:
+    """Write the folder under another name first: an interrupted conversion leaves no half one."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=target.parent) as temporary:
+        unfinished = Path(temporary) / target.name
+        unfinished.mkdir()
+        recording.convert(raw, unfinished)
+        (unfinished / "experiment.toml").write_text(recording.experiment, encoding="utf-8")
+        if target.exists():
+            shutil.rmtree(target)  # without experiment.toml: nothing that we finished
+        unfinished.rename(target)

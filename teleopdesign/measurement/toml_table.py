@@ -1,0 +1,131 @@
+"""A table of a TOML file, read strictly: a key unknown, missing or of a wrong type is an error."""
+
+import math
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, final
+
+from ..errors import ExperimentError, did_you_mean, quoted
+
+
+@final
+@dataclass(frozen=True)
+class Table:
+    """One table: its content, the file ("rod/experiment.toml") and the dotted key to it."""
+
+    content: Mapping[str, Any]
+    file: str
+    key: str = ""
+
+    def where(self, key: str = "") -> str:
+        """Beginning of a message about `key` of this table, or about the table itself."""
+        path = ".".join(part for part in (self.key, key) if part)
+        return f"{self.file}: {path}" if path else self.file
+
+    def allow(self, known: Iterable[str]) -> None:
+        """Refuse every key that is not in `known`."""
+        known = tuple(known)
+        for key in self.content:
+            if key not in known:
+                listed = ", ".join(known)
+                raise ExperimentError(
+                    f"{self.where()}: unknown key {quoted(key)}, "
+                    f"expected {listed}{did_you_mean(key, known)}"
+                )
+
+    def table(self, key: str) -> "Table":
+        """The table under `key`; empty if there is none."""
+        value = self.content.get(key, {})
+        if not isinstance(value, dict):
+            raise self._wrong_type(key, "a table")
+        return Table(value, self.file, ".".join(part for part in (self.key, key) if part))
+
+    def tables(self, key: str) -> tuple["Table", ...]:
+        """The tables of the array `[[key]]`, each with its number (from 1) in its key."""
+        value = self.content.get(key, [])
+        if not isinstance(value, list) or not all(isinstance(row, dict) for row in value):
+            raise self._wrong_type(key, f"tables written as [[{key}]]")
+        return tuple(Table(row, self.file, f"{key}[{i}]") for i, row in enumerate(value, start=1))
+
+    def text(self, key: str, default: str | None = None) -> str:
+        """The text under `key`, not empty; without a default it must be there."""
+        if key not in self.content and default is not None:
+            return default
+        value = self._required(key, "a text in quotes")
+        if not isinstance(value, str) or not value.strip():
+            raise self._wrong_type(key, "a text in quotes")
+        return value
+
+    def flag(self, key: str, default: bool) -> bool:
+        """true or false under `key`."""
+        value = self.content.get(key, default)
+        if not isinstance(value, bool):
+            raise self._wrong_type(key, "true or false")
+        return value
+
+    def number(self, key: str, *, above: float = -math.inf) -> float:
+        """The finite number > `above` under `key`."""
+        value = self._required(key, "a number")
+        return self._checked(value, key, above)
+
+    def number_or_none(self, key: str, *, above: float = -math.inf) -> float | None:
+        """As `number`, None if the key is absent."""
+        return self.number(key, above=above) if key in self.content else None
+
+    def _required(self, key: str, kind: str) -> Any:
+        if key not in self.content:
+            hint = did_you_mean(key, self.content).replace("did you mean", "is it written as")
+            raise ExperimentError(f"{self.where()}: no key {quoted(key)}, expected {kind}{hint}")
+        return self.content[key]
+
+    def _checked(self, value: object, key: str, above: float) -> float:
+        wanted = "a finite number" if above == -math.inf else f"a finite number above {above:g}"
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise self._wrong_type(key, "a number")
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number) or number <= above:
+            raise ExperimentError(f"{self.where(key)}: found {number:g}, expected {wanted}")
+        return number
+
+    def _wrong_type(self, key: str, expected: str) -> ExperimentError:
+        found = described(self.content.get(key))
+        return ExperimentError(f"{self.where(key)}: found {found}, expected {expected}")
+
+
+def described(value: object) -> str:
+    """A TOML value as a message names it."""
+    if isinstance(value, str):
+        return quoted(value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, list):
+        return "a list"
+    if isinstance(value, float):
+        return f"{value:g}"
+    if isinstance(value, int):
+        return "a whole number"
+    return f"a {type(value).__name__}"
+
+
+def read_toml(path: Path, file: str) -> Table:
+    """The whole file as a table; `file` is its name in messages.
+
+    raises ExperimentError: unreadable, not UTF-8, or not TOML (with the line number)
+    """
+    try:
+        return Table(tomllib.loads(path.read_bytes().decode("utf-8-sig")), file)
+    except OSError as problem:
+        raise ExperimentError(f"{file}: cannot be read: {problem.strerror}") from None
+    except UnicodeDecodeError as problem:
+        raise ExperimentError(f"{file}: not UTF-8 text (byte {problem.start})") from None
+    except RecursionError:
+        raise ExperimentError(f"{file}: brackets nested too deeply") from None
+    except ValueError as problem:  # TOMLDecodeError, and numbers too long to convert
+        raise ExperimentError(f"{file}: not valid TOML: {problem}") from None

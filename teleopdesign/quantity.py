@@ -1,0 +1,244 @@
+"""Quantities and their units: SI inside, anything a laboratory writes at the file's boundary.
+
+A quantity has one unit on a prismatic axis and another on a revolute one (`unit_of`). A user's unit
+is a product of symbols with powers and SI prefixes, such as `mm`, `N*s/m`, `N m s/rad`, `kg*m^2` or
+`deg/s`; `to_si` checks that it fits the quantity. Radians have no dimension; degrees, turns and rpm
+are converted.
+"""
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from .errors import ExperimentError, did_you_mean, quoted
+
+AXES = ("prismatic", "revolute")
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """What a quantity is called and in which units it is written, the SI unit first."""
+
+    noun: str
+    units: tuple[str, ...]
+
+
+_TIME = _Kind("a time", ("s", "ms"))
+_FREQUENCY = _Kind("a frequency", ("Hz", "rad/s"))
+_ANGLE = _Kind("an angle", ("rad", "deg"))
+_NUMBER = _Kind("a number without dimension", ("1", "%"))
+
+# quantity -> (on a prismatic axis, on a revolute axis)
+QUANTITIES: Mapping[str, tuple[_Kind, _Kind]] = {
+    "time": (_TIME, _TIME),
+    "position": (_Kind("a length", ("m", "mm")), _ANGLE),
+    "velocity": (
+        _Kind("a velocity", ("m/s", "mm/s")),
+        _Kind("an angular velocity", ("rad/s", "deg/s")),
+    ),
+    "acceleration": (
+        _Kind("an acceleration", ("m/s^2", "mm/s^2")),
+        _Kind("an angular acceleration", ("rad/s^2", "deg/s^2")),
+    ),
+    "force": (_Kind("a force", ("N", "mN")), _Kind("a torque", ("N*m", "mNm"))),
+    "inertia": (_Kind("a mass", ("kg", "g")), _Kind("a moment of inertia", ("kg*m^2", "g*cm^2"))),
+    "damping": (
+        _Kind("a damping", ("N*s/m", "N*s/mm")),
+        _Kind("a rotary damping", ("N*m*s/rad", "mNm*s/rad")),
+    ),
+    "stiffness": (
+        _Kind("a stiffness", ("N/m", "N/mm")),
+        _Kind("a rotary stiffness", ("N*m/rad", "N*m/deg")),
+    ),
+    "drag": (
+        _Kind("a quadratic drag", ("N*s^2/m^2", "kg/m")),
+        _Kind("a rotary quadratic drag", ("N*m*s^2/rad^2", "mNm*s^2/rad^2")),
+    ),
+    "cubic_stiffness": (
+        _Kind("a cubic stiffness", ("N/m^3", "N/mm^3")),
+        _Kind("a rotary cubic stiffness", ("N*m/rad^3", "mNm/rad^3")),
+    ),
+    "frequency": (_FREQUENCY, _FREQUENCY),
+    "angle": (_ANGLE, _ANGLE),
+    "dimensionless": (_NUMBER, _NUMBER),
+}
+
+
+@dataclass(frozen=True)
+class _Unit:
+    """`scale` times kg^a m^b s^c rad^d; `powers` is (a, b, c, d)."""
+
+    scale: float
+    powers: tuple[int, int, int, int]
+
+
+_PREFIXES = {"n": 1e-9, "u": 1e-6, "µ": 1e-6, "μ": 1e-6, "m": 1e-3, "c": 1e-2, "d": 1e-1}
+_PREFIXES |= {"k": 1e3, "M": 1e6, "G": 1e9}
+_PREFIXED = {
+    "m": _Unit(1.0, (0, 1, 0, 0)),
+    "g": _Unit(1e-3, (1, 0, 0, 0)),
+    "s": _Unit(1.0, (0, 0, 1, 0)),
+    "N": _Unit(1.0, (1, 1, -2, 0)),
+    "Nm": _Unit(1.0, (1, 2, -2, 0)),
+    "Nms": _Unit(1.0, (1, 2, -1, 0)),
+    "Hz": _Unit(1.0, (0, 0, -1, 0)),
+    "rad": _Unit(1.0, (0, 0, 0, 1)),
+}
+_SYMBOLS = {
+    "1": _Unit(1.0, (0, 0, 0, 0)),
+    "%": _Unit(1e-2, (0, 0, 0, 0)),
+    "Nmm": _Unit(1e-3, (1, 2, -2, 0)),
+    "min": _Unit(60.0, (0, 0, 1, 0)),
+    "deg": _Unit(math.pi / 180, (0, 0, 0, 1)),
+    "°": _Unit(math.pi / 180, (0, 0, 0, 1)),
+    "rev": _Unit(2 * math.pi, (0, 0, 0, 1)),
+    "rpm": _Unit(2 * math.pi / 60, (0, 0, -1, 1)),
+    **_PREFIXED,
+}
+_SYMBOLS |= {
+    prefix + name: _Unit(factor * unit.scale, unit.powers)
+    for name, unit in _PREFIXED.items()
+    for prefix, factor in _PREFIXES.items()
+    if prefix + name not in _SYMBOLS  # "min" and the like are no prefixed unit
+}
+
+_TOKEN = re.compile(r"\s*(\*\*|[*·/^()²³]|[A-Za-zµμ°%]+|[-+]?\d+)")
+_LONGEST_UNIT = 60  # characters; also bounds the nesting of brackets
+_LARGEST_POWER = 4
+_SCALES = (1e-40, 1e40)
+
+
+def unit_of(quantity: str, axis: str) -> str:
+    """SI unit in which `quantity` is stored and shown: "N*m" for a force on a revolute axis.
+
+    axis: "prismatic" or "revolute"
+    raises ExperimentError: no such quantity or axis
+    """
+    return _kind(quantity, axis, "").units[0]
+
+
+def to_si(
+    value: float, unit: str | None, *, quantity: str, axis: str = "prismatic", where: str = ""
+) -> float:
+    """`value`, written in `unit`, in the SI unit of `quantity` on `axis` (see `unit_of`).
+
+    unit: None is allowed where the quantity has no dimension
+    where: file and key, the beginning of an error message
+    raises ExperimentError: not a unit, a unit of something else, or a result that is not finite
+    """
+    result = value * si_factor(unit, quantity=quantity, axis=axis, where=where)
+    if not math.isfinite(result):
+        raise ExperimentError(f"{_begin(where)}found {value:g} {unit}, expected a finite number")
+    return result
+
+
+def si_factor(
+    unit: str | None, *, quantity: str, axis: str = "prismatic", where: str = ""
+) -> float:
+    """Factor from `unit` to the SI unit of `quantity`; arguments and errors of `to_si`."""
+    kind = _kind(quantity, axis, where)
+    expected = f"expected {kind.noun} such as " + " or ".join(quoted(u) for u in kind.units)
+    if unit is None:
+        if quantity in ("dimensionless", "angle"):
+            return 1.0
+        raise ExperimentError(f"{_begin(where)}no unit, {expected}")
+    try:
+        found = _parse(unit)
+    except _NotAUnit as problem:
+        hint = did_you_mean(unit, kind.units) or did_you_mean(problem.part, _SYMBOLS)
+        raise ExperimentError(f"{_begin(where)}found {quoted(unit)}, {expected}{hint}") from None
+    wanted = _parse(kind.units[0])
+    if found.powers[:3] != wanted.powers[:3]:
+        raise ExperimentError(f"{_begin(where)}found {quoted(unit)}, {expected}")
+    if quantity == "frequency" and found.powers[3] == 1:
+        return found.scale / (2 * math.pi)  # an angular frequency in rad/s or rpm; Hz counts turns
+    return found.scale
+
+
+def _kind(quantity: str, axis: str, where: str) -> _Kind:
+    if quantity not in QUANTITIES:
+        raise ExperimentError(
+            f"{_begin(where)}no quantity {quoted(quantity)}, expected one of "
+            f"{', '.join(QUANTITIES)}{did_you_mean(quantity, QUANTITIES)}"
+        )
+    if axis not in AXES:
+        raise ExperimentError(
+            f"{_begin(where)}no axis {quoted(axis)}, expected {' or '.join(AXES)}"
+            f"{did_you_mean(axis, AXES)}"
+        )
+    return QUANTITIES[quantity][AXES.index(axis)]
+
+
+def _begin(where: str) -> str:
+    return f"{where}: " if where else ""
+
+
+class _NotAUnit(Exception):
+    """`part` of a text is no unit; stays inside this file."""
+
+    def __init__(self, part: str) -> None:
+        super().__init__(part)
+        self.part = part
+
+
+def _parse(text: str) -> _Unit:
+    if not 0 < len(text) <= _LONGEST_UNIT:
+        raise _NotAUnit(text)
+    tokens, position = [], 0
+    stripped = text.rstrip()
+    while position < len(stripped):
+        match = _TOKEN.match(stripped, position)
+        if match is None:
+            raise _NotAUnit(text)
+        tokens.append(match.group(1))
+        position = match.end()
+    unit, rest = _product(tokens, text)
+    if rest:
+        raise _NotAUnit(text)
+    return unit
+
+
+def _product(tokens: list[str], text: str) -> tuple[_Unit, list[str]]:
+    """Product and quotient from left to right, up to the end or a closing bracket."""
+    unit, tokens = _factor(tokens, text)
+    while tokens and tokens[0] != ")":
+        sign = -1 if tokens[0] == "/" else 1
+        if tokens[0] in ("*", "·", "/"):
+            tokens = tokens[1:]
+        factor, tokens = _factor(tokens, text)
+        unit = _times(unit, factor, sign, text)
+    return unit, tokens
+
+
+def _factor(tokens: list[str], text: str) -> tuple[_Unit, list[str]]:
+    """A symbol with its power, or a bracket."""
+    if not tokens:
+        raise _NotAUnit(text)
+    name, tokens = tokens[0], tokens[1:]
+    if name == "(":
+        unit, tokens = _product(tokens, text)
+        if not tokens:
+            raise _NotAUnit(text)
+        return unit, tokens[1:]
+    if name not in _SYMBOLS:
+        raise _NotAUnit(name)
+    power = 1
+    if tokens and tokens[0] in "²³":
+        power, tokens = "²³".index(tokens[0]) + 2, tokens[1:]
+    elif tokens and tokens[0] in ("^", "**"):
+        if len(tokens) < 2 or not re.fullmatch(r"[-+]?\d", tokens[1]):
+            raise _NotAUnit(text)
+        power, tokens = int(tokens[1]), tokens[2:]
+    if abs(power) > _LARGEST_POWER:
+        raise _NotAUnit(text)
+    return _times(_SYMBOLS["1"], _SYMBOLS[name], power, text), tokens
+
+
+def _times(unit: _Unit, factor: _Unit, power: int, text: str) -> _Unit:
+    """unit * factor^power"""
+    scale = unit.scale * factor.scale**power
+    if not _SCALES[0] < scale < _SCALES[1]:
+        raise _NotAUnit(text)
+    a, b, c, d = (u + power * f for u, f in zip(unit.powers, factor.powers, strict=True))
+    return _Unit(scale, (a, b, c, d))

@@ -1,0 +1,133 @@
+"""Every mistake in a record file is one line: file, column, row, what was found and expected."""
+
+import gzip
+import sys
+
+import numpy as np
+import pytest
+from measurement.rod_example import assert_says, error_of
+from scipy.io import savemat
+
+
+def cell(row, column, text):
+    """Put `text` into a cell of fit.csv; row from 1, without the header."""
+
+    def change(lines):
+        cells = lines[row].split(",")
+        cells[column] = text
+        return [*lines[:row], ",".join(cells), *lines[row + 1 :]]
+
+    return change
+
+
+def shifted(row, seconds):
+    """From `row` on, time stamps are `seconds` later."""
+
+    def change(lines):
+        def later(line):
+            t, rest = line.split(",", 1)
+            return f"{float(t) + seconds:.6g},{rest}"
+
+        return [*lines[:row], *(later(line) for line in lines[row:])]
+
+    return change
+
+
+IN_A_TABLE = {
+    "nan": (cell(7, 2, "nan"), 'position: column "x", row 7: found nan, expected a finite'),
+    "infinite": (cell(7, 2, "-inf"), "row 7: found -inf"),
+    "no number": (cell(7, 2, "abc"), 'position: column "x", row 7: found "abc", expected a num'),
+    "empty cell": (cell(149, 3, ""), 'column "f_h", row 149: found an empty cell'),
+    "last row": (cell(150, 1, "1.2.3"), 'column "u", row 150: found "1.2.3"'),
+    "underscore": (cell(3, 1, "1_000"), 'row 3: found "1_000"'),
+    "decimal comma": (cell(7, 2, "0,5"), "row 7: found 5 cells, expected 4"),
+    "row cut short": (lambda lines: [*lines[:-1], "1.49,0.1"], "row 150: found 2 cells"),
+    "empty file": (lambda lines: [], "found no header"),
+    "only a header": (lambda lines: lines[:1], "a header and no rows"),
+    "no header": (lambda lines: lines[1:], "found numbers in the first row"),
+    "few rows": (lambda lines: lines[:51], "found 50 rows, expected at least 64"),
+    "short": (lambda lines: lines[:91], "found 0.9 s of samples, expected at least 1 s"),
+    "semicolons": (
+        lambda lines: [line.replace(",", ";") for line in lines],
+        "separated by semicolons, expected commas",
+    ),
+    "tabs": (lambda lines: [line.replace(",", "\t") for line in lines], "separated by tabs"),
+    "column twice": (lambda lines: ["t,u,x,f_h,x", *(f"{v},0" for v in lines[1:])], '2 col'),
+    "gap": (shifted(50, 0.5), 'channels.time: row 50: found a step of 0.51 s.*column `segment`'),
+    "one sample lost": (shifted(50, 0.01), "row 50: found a step of 0.02 s, expected 0.01 s"),
+    "one sample lost at the end": (shifted(149, 0.01), "row 149: found a step of 0.02 s"),
+    "time goes back": (shifted(50, -0.5), "row 50: found a step of -0.49 s, expected time that"),
+    "jitter": (cell(50, 0, "0.494"), "row 51: found a step of 0.006 s.*give or take 20%|row 50"),
+    "time stands": (cell(50, 0, "0.48"), "row 5[01]: found a step of"),
+    "constant time": (
+        lambda lines: [lines[0], *("1," + line.split(",", 1)[1] for line in lines[1:])],
+        "does not increase",
+    ),
+    "time backwards": (lambda lines: [lines[0], *lines[:0:-1]], "does not increase"),
+    "time in other units": (
+        lambda lines: [lines[0], *(f"{i},1,2,3" for i in range(150))],
+        "less than 0.5 Hz",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("mistake", IN_A_TABLE)
+def test_a_mistake_in_a_table_is_named(rod, mistake):
+    change, expected = IN_A_TABLE[mistake]
+    file = rod / "fit.csv"
+    file.write_text("".join(line + "\n" for line in change(file.read_text().splitlines())))
+    assert_says(error_of(rod), expected)
+
+
+@pytest.mark.parametrize("ending", [".csv.gz", ".parquet", ".mat", ".h5"])
+@pytest.mark.parametrize("content", [b"", b"no such kind of file, whatever its name says " * 10])
+def test_a_file_that_is_not_what_its_name_says_is_named(rod, edit, ending, content):
+    (rod / f"fit{ending}").write_bytes(content)
+    edit(rod / "experiment.toml", "fit.csv", f"fit{ending}")
+    assert_says(error_of(rod), f"^rod/fit{ending}: ")
+
+
+def test_a_file_that_was_cut_off_is_named(rod, edit):
+    packed = gzip.compress((rod / "fit.csv").read_bytes())
+    (rod / "fit.csv.gz").write_bytes(packed[: len(packed) // 2])
+    edit(rod / "experiment.toml", "fit.csv", "fit.csv.gz")
+    assert_says(error_of(rod), "^rod/fit.csv.gz: cannot be read")
+
+
+def test_text_in_another_encoding_is_named(rod):
+    (rod / "fit.csv").write_text((rod / "fit.csv").read_text(), encoding="utf-16")
+    assert_says(error_of(rod), "^rod/fit.csv: not UTF-8 text")
+
+
+def test_columns_of_different_length_are_named(rod, edit):
+    columns = {name: np.arange(150.0) / 100 for name in ("t", "u", "f_h")}
+    savemat(rod / "fit.mat", columns | {"x": np.arange(149.0)})
+    edit(rod / "experiment.toml", "fit.csv", "fit.mat")
+    assert_says(error_of(rod), 'position: column "x" has 149 rows, expected 150 as "t"')
+
+
+def test_a_matrix_is_not_a_column(rod, edit):
+    columns = {name: np.arange(150.0) / 100 for name in ("t", "u", "f_h")}
+    savemat(rod / "fit.mat", columns | {"x": np.zeros((150, 2))})
+    edit(rod / "experiment.toml", "fit.csv", "fit.mat")
+    assert_says(error_of(rod), r"found an array of shape \(150, 2\), expected one column")
+
+
+def test_text_in_a_parquet_file_is_named(rod, edit):
+    pyarrow = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+
+    columns = {name: np.arange(150.0) / 100 for name in ("t", "u", "f_h")}
+    table = pyarrow.table(columns | {"x": ["here"] * 150})
+    parquet.write_table(table, rod / "fit.parquet")
+    edit(rod / "experiment.toml", "fit.csv", "fit.parquet")
+    assert_says(error_of(rod), 'column "x", row 1: found "here", expected a number')
+
+
+@pytest.mark.parametrize(("ending", "package"), [(".parquet", "pyarrow"), (".h5", "h5py")])
+def test_a_missing_reader_says_what_to_install(rod, edit, monkeypatch, ending, package):
+    monkeypatch.setitem(sys.modules, package, None)
+    monkeypatch.setitem(sys.modules, f"{package}.parquet", None)
+    (rod / f"fit{ending}").write_bytes(b"")
+    edit(rod / "experiment.toml", "fit.csv", f"fit{ending}")
+    assert_says(error_of(rod), rf'needs {package}: pip install "teleopdesign\[io\]"')
