@@ -1,0 +1,227 @@
+"""One moving body with its effects: device, master or slave.
+
+    inertia * a = acting force + interaction force - force - friction
+
+`Body.equation` composes the laws of its effects by role into that one equation, which every form
+(transfer function, python-control system, kernel, residual along a motion) starts from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+
+import sympy as sp
+
+from ..effects import SIGNALS, Effect, Parameter, ordered
+from ..errors import ModelError, did_you_mean
+from ..quantity import unit_of
+
+INERTIA = Parameter("inertia", "inertia of the body", lower=0.0)
+
+
+@dataclass(frozen=True)
+class Value:
+    """A parameter's value (SI); fixed: known, not to be re-estimated; stderr: NaN where unknown."""
+
+    value: float
+    fixed: bool = False
+    stderr: float = float("nan")
+
+
+@dataclass(frozen=True)
+class BodyEquation:
+    """The composed equation of one body, in sympy, on the symbols of `effects.SIGNALS`.
+
+    inertia: total inertia;  force: forces subtracted, without their share in the acceleration
+    level: friction level;  friction: friction force, level in place (sgn v times level by default)
+    acting: force that acts, from `command`, with `delayed(...)` where a delay is in the chain
+    rates: hidden state -> rate of change;  stages: states of the actuation chain among them
+    """
+
+    inertia: sp.Expr
+    force: sp.Expr
+    level: sp.Expr
+    friction: sp.Expr
+    acting: sp.Expr
+    rates: Mapping[sp.Symbol, sp.Expr]
+    stages: tuple[sp.Symbol, ...]
+
+
+@dataclass(frozen=True)
+class Body:
+    """A body on one axis: its inertia, its effects, and a value for every parameter.
+
+    axis: "prismatic" or "revolute";  parameters: "inertia", "coulomb.level", ... -> Value (SI)
+    """
+
+    axis: str
+    parameters: Mapping[str, Value]
+    effects: tuple[Effect, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        names = [e.name for e in self.effects]
+        if doubled := {n for n in names if names.count(n) > 1}:
+            raise ModelError(f'body: effect "{min(doubled)}" is there twice')
+        shapes = [e.name for e in self.effects if e.role == "friction_shape"]
+        if len(shapes) > 1:
+            raise ModelError(f"body: two friction shapes, {' and '.join(shapes)}: one is possible")
+        for effect in self.effects:
+            if missing := effect.needs - set(names):
+                raise ModelError(f'body: "{effect.name}" needs "{min(missing)}" beside it')
+        expected = [name for name, _ in self.declared()]
+        for name in self.parameters:
+            if name not in expected:
+                raise ModelError(
+                    f'body: no parameter "{name}", has {", ".join(expected)}'
+                    f"{did_you_mean(name, expected)}"
+                )
+        for name, parameter in self.declared():
+            if name not in self.parameters:
+                raise ModelError(f'body: parameter "{name}" has no value')
+            value = self.parameters[name].value
+            if not parameter.lower <= value <= parameter.upper:
+                raise ModelError(
+                    f"body: {name} = {value:g} {self.unit(name)} is outside "
+                    f"{parameter.lower:g} .. {parameter.upper:g}"
+                )
+        object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
+
+    def declared(self) -> list[tuple[str, Parameter]]:
+        """Every parameter of the body by its name in answers, with its declaration."""
+        own = [(f"{e.name}.{n}", p) for e in self.effects for n, p in e.parameters.items()]
+        return [("inertia", INERTIA), *own]
+
+    def parameter(self, name: str) -> Parameter:
+        """Declaration of the parameter of that name."""
+        return dict(self.declared())[name]
+
+    def unit(self, name: str) -> str:
+        """Unit of the parameter of that name on this axis."""
+        return unit_of(self.parameter(name).quantity, self.axis)
+
+    def has(self, effect: str) -> bool:
+        """Whether the effect of that name is in the body."""
+        return any(e.name == effect for e in self.effects)
+
+    def effect(self, name: str) -> Effect:
+        """The effect of that name; ModelError where the body has none."""
+        for effect in self.effects:
+            if effect.name == name:
+                return effect
+        raise ModelError(f'body: has no effect "{name}"')
+
+    def with_effect(self, effect: Effect, values: Mapping[str, float] | None = None) -> Body:
+        """The body with one effect more, at the given values (default: where it is absent).
+
+        A shape of friction replaces the one that was there.
+        """
+        given = dict(values or {})
+        unknown = set(given) - set(effect.parameters)
+        if unknown:
+            raise ModelError(
+                f'{effect.name}: no parameter "{min(unknown)}"'
+                f"{did_you_mean(min(unknown), effect.parameters)}"
+            )
+        start = {n: effect.absent.get(n, 1.0) for n in effect.parameters} | given
+        kept = self
+        if effect.role == "friction_shape":
+            for other in self.effects:
+                if other.role == "friction_shape":
+                    kept = kept.without_effect(other.name)
+        added = {f"{effect.name}.{n}": Value(v) for n, v in start.items()}
+        return replace(
+            kept, effects=(*kept.effects, effect), parameters={**kept.parameters, **added}
+        )
+
+    def without_effect(self, name: str) -> Body:
+        """The body without that effect."""
+        self.effect(name)
+        return replace(
+            self,
+            effects=tuple(e for e in self.effects if e.name != name),
+            parameters={k: v for k, v in self.parameters.items() if not k.startswith(f"{name}.")},
+        )
+
+    def with_values(self, values: Mapping[str, float | Value]) -> Body:
+        """The body with other parameter values; `fixed` is kept where a plain number is given."""
+        new = {
+            k: v if isinstance(v, Value) else replace(self.parameters[k], value=float(v))
+            for k, v in values.items()
+        }
+        return replace(self, parameters={**self.parameters, **new})
+
+    def symbols(self) -> dict[str, sp.Symbol]:
+        """Parameter name -> sympy symbol of the equation: "coulomb.level" -> coulomb_level."""
+        own = {f"{e.name}.{n}": s for e in self.effects for n, s in e.symbols().items()}
+        return {"inertia": sp.Symbol("inertia", real=True), **own}
+
+    def numbers(self) -> dict[sp.Symbol, float]:
+        """Parameter symbol -> value, to substitute in the equation."""
+        return {s: self.parameters[n].value for n, s in self.symbols().items()}
+
+    def equation(self) -> BodyEquation:
+        """Compose the effects by role into the body's equation."""
+        acceleration, velocity = SIGNALS["acceleration"], SIGNALS["velocity"]
+        force = sp.expand(sum((e.expression() for e in ordered(self.effects, "force")), sp.S(0)))
+        share = force.coeff(acceleration, 1)
+        level = sum((e.expression() for e in ordered(self.effects, "friction_level")), sp.S(0))
+        rates: dict[sp.Symbol, sp.Expr] = {}
+        friction = level * sp.sign(velocity)
+        acting: sp.Expr = SIGNALS["command"]
+        stages: list[sp.Symbol] = []
+        for effect in (*self.effects,):
+            given = {"level": level} if effect.role == "friction_shape" else {}
+            if effect.role == "actuation":
+                continue
+            symbols = effect.state_symbols()
+            rates |= {symbols[n]: r for n, r in effect.rates(given).items()}
+            if effect.role == "friction_shape":
+                friction = effect.expression(given)
+        for effect in ordered(self.effects, "actuation"):
+            symbols = effect.state_symbols()
+            rates |= {symbols[n]: r for n, r in effect.rates({"command": acting}).items()}
+            acting = effect.expression({"command": acting})
+            stages += symbols.values()
+        return BodyEquation(
+            inertia=self.symbols()["inertia"] + share,
+            force=sp.expand(force - share * acceleration),
+            level=level,
+            friction=friction,
+            acting=acting,
+            rates=MappingProxyType(rates),
+            stages=tuple(stages),
+        )
+
+    def impedance(self, s: sp.Symbol) -> tuple[sp.Expr, tuple[str, ...]]:
+        """Impedance relative to position, Z(s) (force per position), and the effects left out.
+
+        The linear forms that effects declare, inertia s^2 included.
+        """
+        z: sp.Expr = self.symbols()["inertia"] * s**2
+        left_out = []
+        for effect in self.effects:
+            if effect.role == "actuation":
+                continue
+            part = effect.linear_form(s)
+            if part is None:
+                left_out.append(effect.name)
+            else:
+                z += part
+        return z, tuple(left_out)
+
+    def actuation(self, s: sp.Symbol) -> tuple[sp.Expr, tuple[str, ...]]:
+        """Transfer function from command to acting force, and the effects left out."""
+        transfer: sp.Expr = sp.S(1)
+        left_out = []
+        for effect in ordered(self.effects, "actuation"):
+            part = effect.linear_form(s)
+            if part is None:
+                left_out.append(effect.name)
+            else:
+                transfer *= part
+        return transfer, tuple(left_out)
+
+
+__all__ = ["INERTIA", "Body", "BodyEquation", "Value"]

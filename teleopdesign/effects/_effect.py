@@ -1,0 +1,150 @@
+"""What an effect is, and how effects of different roles combine into the equation of one body.
+
+A body is a chain of roles:
+
+    command -> actuation -> acting force
+    inertia * a = acting force + interaction force - force - friction
+    friction    = friction_shape (sgn v unless one is given) of the sum of all friction_level laws
+
+An effect file states its law once, with sympy, on the symbols of `now`; every form of it (transfer
+function, python-control system, compiled kernel, residual along a measured motion, catalogue page)
+is derived from that law.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
+from typing import Any, Literal
+
+import sympy as sp
+
+Role = Literal["actuation", "force", "friction_level", "friction_shape"]
+ROLES: tuple[Role, ...] = ("actuation", "force", "friction_level", "friction_shape")
+# between command and body the signal passes the amplifier (lag) before it is held up (delay)
+ACTUATION_ORDER = ("actuator_lag", "actuation_delay")
+
+#: symbols that a law may use; `direction` is sgn(velocity), `command` the input of an actuation
+#: stage, `acting_force` its final output, `level` what the friction_level laws add up to
+SIGNALS = {
+    name: sp.Symbol(name, real=True)
+    for name in ("time position velocity acceleration direction command acting_force level".split())
+}
+#: delayed(signal, delay): the signal a fixed time earlier
+delayed = sp.Function("delayed", real=True)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of an effect: its quantity (a key of `quantity`), meaning and bounds (SI).
+
+    starts: where a search begins, as multiples of the record's own scale of that quantity.
+    """
+
+    quantity: str
+    meaning: str
+    lower: float = 0.0
+    upper: float = float("inf")
+    starts: tuple[float, ...] = (0.1,)
+
+
+@dataclass(frozen=True)
+class State:
+    """A hidden state: its quantity and rate law(now, p), where `now` also carries the states."""
+
+    quantity: str
+    rate: Callable[[Any, Any], sp.Expr]
+
+
+@dataclass(frozen=True, eq=False)
+class Effect:
+    """A physical effect: one law in one role; see the package's folder for examples.
+
+    law(now, p) returns the force it adds (role force), its share of the friction level
+    (friction_level), the friction force (friction_shape), or the stage's output (actuation).
+    linear: declares that the law is linear in the motion (or in the command), so that the LTI form
+    is that law at (position, velocity, acceleration) = (1, s, s^2); False: the LTI form leaves the
+    effect out, and says so. It is never found by differentiating sgn.
+    absent: parameter values at which the effect is not there at all.
+    needs: effects that the model must have for this one to mean anything.
+    """
+
+    role: Role
+    law: Callable[[Any, Any], sp.Expr]
+    parameters: Mapping[str, Parameter]
+    absent: Mapping[str, float]
+    states: Mapping[str, State] = field(default_factory=dict)
+    linear: bool = False
+    needs: frozenset[str] = frozenset()
+    always: frozenset[str] = frozenset()
+    source: str = ""
+    name: str = ""
+    text: str = ""
+
+    def named(self, name: str, text: str) -> Effect:
+        """The effect under the name of its file, with the file's docstring as its text."""
+        return replace(self, name=name, text=text)
+
+    @property
+    def title(self) -> str:
+        """First line of the file's docstring."""
+        return self.text.strip().split("\n")[0]
+
+    def symbols(self) -> dict[str, sp.Symbol]:
+        """Parameter name -> sympy symbol NAME_PARAMETER, one per effect."""
+        return {p: sp.Symbol(f"{self.name}_{p}", real=True) for p in self.parameters}
+
+    def state_symbols(self) -> dict[str, sp.Symbol]:
+        """State name -> sympy symbol."""
+        return {s: sp.Symbol(f"{self.name}_{s}", real=True) for s in self.states}
+
+    def _now(self, signals: Mapping[str, Any] | None) -> SimpleNamespace:
+        return SimpleNamespace(**{**SIGNALS, **self.state_symbols(), **(signals or {})})
+
+    def _parameters(self, values: Mapping[str, Any] | None) -> SimpleNamespace:
+        return SimpleNamespace(**{**self.symbols(), **(values or {})})
+
+    def expression(
+        self, signals: Mapping[str, Any] | None = None, values: Mapping[str, Any] | None = None
+    ) -> sp.Expr:
+        """The law on symbols, or on whatever is given in their place."""
+        return sp.sympify(self.law(self._now(signals), self._parameters(values)))
+
+    def rates(
+        self, signals: Mapping[str, Any] | None = None, values: Mapping[str, Any] | None = None
+    ) -> dict[str, sp.Expr]:
+        """Hidden state -> its rate of change, on symbols or on what is given."""
+        now, p = self._now(signals), self._parameters(values)
+        return {name: sp.sympify(state.rate(now, p)) for name, state in self.states.items()}
+
+    def is_absent(self, values: Mapping[sp.Symbol, float]) -> bool:
+        """Whether these parameter values (by symbol) mean that the effect is not there."""
+        symbols = self.symbols()
+        return all(values[symbols[name]] == value for name, value in self.absent.items())
+
+    def linear_form(self, s: sp.Symbol, values: Mapping[str, Any] | None = None) -> sp.Expr | None:
+        """Declared linear part at the Laplace variable s; None where the effect declares none.
+
+        role force: complex stiffness (force per position, added to the impedance relative to
+        position); role actuation: transfer function from command to the stage's output.
+        """
+        if not self.linear:
+            return None
+        drive = sp.Symbol("drive")
+        signals = dict(position=drive, velocity=s * drive, acceleration=s**2 * drive, command=drive)
+        states = self.state_symbols()
+        law, rates = self.expression(signals, values), self.rates(signals, values)
+        settled = sp.solve([s * states[n] - rate for n, rate in rates.items()], *states.values())
+        law = law.subs(settled) if rates else law
+        law = law.replace(delayed, lambda signal, delay: signal * sp.exp(-s * delay))
+        return sp.simplify(law / drive)
+
+
+def ordered(effects: tuple[Effect, ...], role: Role) -> list[Effect]:
+    """The effects of one role in the order in which they act."""
+    chosen = [e for e in effects if e.role == role]
+    rank = {name: i for i, name in enumerate(ACTUATION_ORDER)}
+    if role != "actuation":
+        return chosen
+    return sorted(chosen, key=lambda e: rank.get(e.name, len(rank)))

@@ -1,0 +1,25 @@
+"""Actuation delay: the commanded force acts a fixed time later.
+
+    acting force(t) = command(t - tau)
+
+Computation, buses and drives. Told from `actuator_lag` by commands that hold content above 1/tau:
+below that both are a phase in proportion to frequency.
+"""
+
+from ._effect import Effect, Parameter, delayed
+
+
+def law(now, p):
+    return delayed(now.command, p.delay)
+
+
+EFFECT = Effect(
+    role="actuation",
+    law=law,
+    linear=True,
+    parameters={
+        "delay": Parameter("time", "tau: time from command to force", upper=0.2, starts=(0.5, 2.0))
+    },
+    absent={"delay": 0.0},
+    source="dead time in the sense of any control text",
+)

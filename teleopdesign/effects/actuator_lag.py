@@ -1,0 +1,28 @@
+"""Actuator lag: the commanded force acts through a first-order lag.
+
+    tau dw/dt = command - w,   acting force = w
+
+A current loop, a motor's inductance. Told from `actuation_delay` by commands that hold content
+above 1/tau: a lag also weakens them.
+"""
+
+from ._effect import Effect, Parameter, State
+
+
+def law(now, p):
+    return now.output
+
+
+def output(now, p):
+    return (now.command - now.output) / p.time_constant
+
+
+EFFECT = Effect(
+    role="actuation",
+    law=law,
+    states={"output": State("force", output)},
+    linear=True,
+    parameters={"time_constant": Parameter("time", "tau: lag", upper=0.2, starts=(0.5, 2.0))},
+    absent={"time_constant": 0.0},
+    source="first-order lag in the sense of any control text",
+)

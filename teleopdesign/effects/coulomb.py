@@ -1,0 +1,23 @@
+"""Coulomb friction: a constant level against the motion, whatever the speed.
+
+    level = F_C,   F = F_C sgn(v);   stuck: whatever balances, up to F_C
+
+Holds for dry contacts that slide steadily. Near rest a record shows `presliding` instead where the
+position resolves the give of the contact.
+"""
+
+from ._effect import Effect, Parameter
+
+
+def law(now, p):
+    return p.level
+
+
+EFFECT = Effect(
+    role="friction_level",
+    law=law,
+    parameters={"level": Parameter("force", "F_C: friction force while sliding")},
+    absent={"level": 0.0},
+    always=frozenset({"even in velocity", "non-negative", "dissipates"}),
+    source="Bernstein, Lawrence, Pao, World Haptics 2005, eq (1)",
+)

@@ -1,0 +1,34 @@
+"""Presliding: friction is a hysteretic spring before it slides (Dahl).
+
+    F = sigma z,   dz/dt = v - (sigma / level) abs(v) z
+
+The contact gives by level/sigma before it slides; with `stribeck` and `viscous` beside it this is
+LuGre. Seen only in motion of a few bristle lengths that the encoder resolves; in larger motion it
+is mistaken for `actuation_delay`, for both round the corners of the friction loop.
+"""
+
+from ._effect import Effect, Parameter, State
+
+
+def law(now, p):
+    return p.stiffness * now.bristle
+
+
+def bristle(now, p):
+    return now.velocity - p.stiffness / now.level * abs(now.velocity) * now.bristle
+
+
+EFFECT = Effect(
+    role="friction_shape",
+    law=law,
+    states={"bristle": State("position", bristle)},
+    parameters={
+        "stiffness": Parameter(
+            "stiffness", "sigma: bristle stiffness before sliding", starts=(3.0, 30.0, 300.0)
+        )
+    },
+    absent={"stiffness": float("inf")},
+    needs=frozenset({"coulomb"}),
+    always=frozenset({"dissipates"}),
+    source="Mahvash, Okamura, ICRA 2006, eq (2); Dahl, AIAA J. 14 (1976) 1675",
+)

@@ -1,0 +1,31 @@
+"""Stribeck: friction falls from a static level F_S to the Coulomb level F_C as speed grows.
+
+    level = F_C + (F_S - F_C) exp(-(v / v_S)^2)
+
+Holds for lubricated contacts in steady sliding. A record tells it from `presliding` only if it
+crosses v_S slowly, both ways, and travels many bristle lengths between reversals.
+"""
+
+from sympy import exp
+
+from ._effect import Effect, Parameter
+
+
+def law(now, p):
+    return p.extra_static_level * exp(-((now.velocity / p.stribeck_velocity) ** 2))
+
+
+EFFECT = Effect(
+    role="friction_level",
+    law=law,
+    parameters={
+        "extra_static_level": Parameter("force", "F_S - F_C: extra friction at rest"),
+        "stribeck_velocity": Parameter(
+            "velocity", "v_S: extra level down to 1/e", starts=(0.02, 0.1, 0.5)
+        ),
+    },
+    absent={"extra_static_level": 0.0},
+    needs=frozenset({"coulomb"}),
+    always=frozenset({"even in velocity", "non-negative", "dissipates"}),
+    source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
+)

@@ -1,0 +1,193 @@
+"""The model that a user holds against a recording: bodies with their effects at places.
+
+Frozen: `model.with_effect("stribeck", at="device")` returns a new one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+
+from .blocks import Body, Value
+from .effects import EFFECTS, Effect, Parameter, find_effect
+from .errors import ExperimentError, ModelError, did_you_mean
+from .measurement.description import BodyDescription, ModelValue
+from .measurement.experiment import Experiment
+from .quantity import to_si
+
+
+@dataclass(frozen=True)
+class Model:
+    """Bodies by their place ("device", or "master" and "slave"), each with its effects (SI)."""
+
+    bodies: Mapping[str, Body]
+    known: Mapping[str, Effect] = field(default_factory=lambda: EFFECTS, repr=False)
+
+    @classmethod
+    def from_experiment(
+        cls, experiment: Experiment, known: Mapping[str, Effect] = EFFECTS
+    ) -> Model:
+        """The model that an experiment.toml describes, its values converted to SI.
+
+        known: the effects by name, for those who add their own
+        raises ExperimentError: unknown effect or parameter, wrong unit, value out of bounds
+        """
+        if experiment.environment is not None:
+            raise ExperimentError(
+                f"{experiment.folder.name}/experiment.toml: model.environment: a modelled "
+                "environment is not supported yet; measure slave.interaction_force and leave it out"
+            )
+        bodies = {n: _body(b, experiment, known) for n, b in experiment.bodies.items()}
+        return cls(MappingProxyType(bodies), known)
+
+    def body(self, at: str) -> Body:
+        """The body at that place; ModelError with the nearest place where there is none."""
+        if at not in self.bodies:
+            raise ModelError(
+                f'model: no body "{at}", has {", ".join(self.bodies)}'
+                f"{did_you_mean(at, self.bodies)}"
+            )
+        return self.bodies[at]
+
+    def with_effect(
+        self,
+        effect: str | Effect,
+        *,
+        at: str | None = None,
+        values: Mapping[str, float] | None = None,
+    ) -> Model:
+        """The model with one effect more.
+
+        at: place; may be left out where there is one body only
+        values: parameter -> value (SI); where not given, the effect starts as absent and a fit
+        finds its own starting values
+        raises ModelError: no such effect, place or parameter, or the effect is already there
+        """
+        found = (
+            find_effect(effect, self.known, "with_effect") if isinstance(effect, str) else effect
+        )
+        place = self._place(at)
+        return self._with_body(place, self.body(place).with_effect(found, values))
+
+    def without_effect(self, effect: str, *, at: str | None = None) -> Model:
+        """The model without that effect."""
+        place = self._place(at)
+        return self._with_body(place, self.body(place).without_effect(effect))
+
+    def with_values(self, values: Mapping[str, float | Value]) -> Model:
+        """The model with other parameter values, by full names such as "device.coulomb.level"."""
+        model = self
+        for place, body in self.bodies.items():
+            own = {
+                name.removeprefix(f"{place}."): v
+                for name, v in values.items()
+                if name.startswith(f"{place}.")
+            }
+            if own:
+                model = model._with_body(place, body.with_values(own))
+        if unknown := set(values) - set(self.parameters):
+            name = min(unknown)
+            raise ModelError(f'model: no parameter "{name}"{did_you_mean(name, self.parameters)}')
+        return model
+
+    @property
+    def parameters(self) -> dict[str, Value]:
+        """Every parameter by its full name, "device.coulomb.level" -> Value (SI)."""
+        return {
+            f"{place}.{name}": body.parameters[name]
+            for place, body in self.bodies.items()
+            for name, _ in body.declared()
+        }
+
+    def declared(self, name: str) -> Parameter:
+        """Declaration of the parameter of that full name."""
+        place, _, own = name.partition(".")
+        return self.body(place).parameter(own)
+
+    def unit(self, name: str) -> str:
+        """Unit of the parameter of that full name."""
+        place, _, own = name.partition(".")
+        return self.body(place).unit(own)
+
+    @property
+    def absent(self) -> tuple[tuple[str, str], ...]:
+        """(effect, place) of the effects whose values say that they are not there."""
+        return tuple(
+            (effect.name, place)
+            for place, body in self.bodies.items()
+            for effect in body.effects
+            if effect.is_absent(body.numbers())
+        )
+
+    @property
+    def effects(self) -> tuple[tuple[str, str], ...]:
+        """(effect, place) of every effect in the model."""
+        return tuple((e.name, place) for place, b in self.bodies.items() for e in b.effects)
+
+    def _place(self, at: str | None) -> str:
+        if at is not None:
+            return at
+        if len(self.bodies) > 1:
+            raise ModelError(f"model: at = one of {', '.join(self.bodies)} must be given")
+        return next(iter(self.bodies))
+
+    def _with_body(self, place: str, body: Body) -> Model:
+        return replace(self, bodies=MappingProxyType({**self.bodies, place: body}))
+
+    def __repr__(self) -> str:
+        lines = []
+        for name, value in self.parameters.items():
+            mark = "  (fixed)" if value.fixed else ""
+            error = f" +- {value.stderr:.2g}" if value.stderr == value.stderr else ""
+            lines.append(f"  {name} = {value.value:.5g}{error} {self.unit(name)}{mark}")
+        return "Model\n" + "\n".join(lines)
+
+
+def _number(value: ModelValue, parameter: Parameter, axis: str) -> Value:
+    unit = value.unit
+    if unit is None:
+        if parameter.quantity != "dimensionless":
+            raise ExperimentError(f"{value.where}: no unit given")
+        unit = "1"
+    number = to_si(value.value, unit, quantity=parameter.quantity, axis=axis, where=value.where)
+    if not parameter.lower <= number <= parameter.upper:
+        raise ExperimentError(
+            f"{value.where}: {value.value:g} {unit} is outside {parameter.lower:g} .. "
+            f"{parameter.upper:g}"
+        )
+    return Value(number, value.fixed)
+
+
+def _body(
+    description: BodyDescription, experiment: Experiment, known: Mapping[str, Effect]
+) -> Body:
+    from .blocks.body import INERTIA
+
+    effects: list[Effect] = []
+    parameters: dict[str, Value] = {}
+    if description.inertia is not None:
+        parameters["inertia"] = _number(description.inertia, INERTIA, description.axis)
+    for name, given in description.effects.items():
+        where = f"{description.where}.effects"
+        try:
+            effect = find_effect(name, known, where)
+        except ModelError as error:
+            raise ExperimentError(str(error)) from error
+        effects.append(effect)
+        for key in given:
+            if key not in effect.parameters:
+                raise ExperimentError(
+                    f'{where}.{name}: no parameter "{key}", has {", ".join(effect.parameters)}'
+                    f"{did_you_mean(key, effect.parameters)}"
+                )
+        for key, parameter in effect.parameters.items():
+            if key in given:
+                number = _number(given[key], parameter, description.axis)
+            else:
+                number = Value(effect.absent.get(key, 1.0))
+            parameters[f"{name}.{key}"] = number
+    try:
+        return Body(description.axis, parameters, tuple(effects))
+    except ModelError as error:
+        raise ExperimentError(f"{description.where}: {error}") from error
