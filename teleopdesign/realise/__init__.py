@@ -1,0 +1,1 @@
+"""Any block or diagram in each of its forms, derived from its laws."""

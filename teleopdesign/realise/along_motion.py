@@ -1,0 +1,268 @@
+"""A body along a measured motion: the force that its model leaves unexplained, with tangents.
+
+The motion is given, so the effects decouple: each turns arrays into arrays, composed by role.
+
+    command -> actuation stages (averages over each hold) -> acting force at the rows
+    needed friction = acting + interaction - inertia a - forces
+    friction = shape(level, motion); where the position cannot tell a motion it is what balances
+    residual = needed friction - friction           > 0: more force acts than the model needs
+
+Every array carries its tangents, the derivatives by the parameters that are asked for; both come
+from the same sympy law. Hidden states advance exactly where their rate is affine in them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from ..blocks import Body
+from ..effects import SIGNALS, Effect, Role, delayed, ordered
+from ..measurement.filtering import Array
+from ..measurement.motion import Motion
+from .scan import shape_bounds, stage_scan
+
+#: projected steps towards the friction that balances; the error moves by under 5 % after these
+BALANCE_STEPS = 4
+
+
+@dataclass(frozen=True)
+class Traced:
+    """A signal of n samples and its tangents (p, n) by the p parameters asked for."""
+
+    value: Array
+    tangent: Array
+
+    def __add__(self, other: Traced) -> Traced:
+        return Traced(self.value + other.value, self.tangent + other.tangent)
+
+    def __sub__(self, other: Traced) -> Traced:
+        return Traced(self.value - other.value, self.tangent - other.tangent)
+
+
+def through(filtered: Callable[[Array], Array], signal: Traced) -> Traced:
+    """A signal and its tangents through a linear filter; tangents that are zero stay so."""
+    moving = signal.tangent.any(axis=1)
+    both = filtered(np.vstack([signal.value[None], signal.tangent[moving]]))
+    tangent = np.zeros_like(signal.tangent)
+    tangent[moving] = both[1:]
+    return Traced(both[0], tangent)
+
+
+@dataclass(frozen=True)
+class Law:
+    """A sympy expression as a numpy function of signals and parameters, with its derivatives."""
+
+    signals: tuple[sp.Symbol, ...]
+    parameters: tuple[sp.Symbol, ...]
+    call: Callable[..., Any]
+
+    def __call__(
+        self,
+        given: Mapping[sp.Symbol, Traced],
+        values: Mapping[sp.Symbol, float],
+        wrt: Sequence[Any],
+    ) -> Traced:
+        arrays = [given[s].value for s in self.signals]
+        n = len(next(iter(given.values())).value)
+        with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
+            out = self.call(*arrays, *[np.float64(values[p]) for p in self.parameters])
+        value = np.broadcast_to(np.asarray(out[0], dtype=float), (n,))
+        tangent = np.zeros((len(wrt), n))
+        for p, d in zip(self.parameters, out[1 + len(arrays) :], strict=True):
+            if p in wrt:
+                tangent[list(wrt).index(p)] += d
+        for s, d in zip(self.signals, out[1 : 1 + len(arrays)], strict=True):
+            if given[s].tangent.any():
+                tangent += d * given[s].tangent
+        return Traced(value.copy(), tangent)
+
+
+#: signals that depend on parameters themselves
+_TRACED = frozenset({SIGNALS["command"], SIGNALS["acting_force"], SIGNALS["level"]})
+
+
+@lru_cache(maxsize=512)
+def law_of(
+    expression: sp.Expr,
+    signals: tuple[sp.Symbol, ...] = tuple(SIGNALS.values()),
+    traced: frozenset[sp.Symbol] = _TRACED,
+) -> Law:
+    """The expression as a Law; every symbol that is no signal is a parameter.
+
+    traced: the signals that carry tangents; the motion is given and carries none
+    """
+    used = tuple(s for s in signals if expression.has(s))
+    parameters = tuple(sorted(expression.free_symbols - set(signals), key=str))
+    gradients = [sp.diff(expression, s) if s in traced else sp.S(0) for s in used]
+    gradients += [sp.diff(expression, p) for p in parameters]
+    call = sp.lambdify([*used, *parameters], [expression, *gradients], "numpy", cse=True)
+    return Law(used, parameters, call)
+
+
+_MOTION = ("time", "position", "velocity", "acceleration")
+
+
+@dataclass(frozen=True)
+class Residual:
+    """What the model leaves along one motion (n samples), SI, tangents (p, n).
+
+    residual: force that acts beyond what the model needs;  friction: the model's friction force
+    acting: acting force at the rows
+    """
+
+    motion: Motion
+    residual: Traced
+    friction: Traced
+    acting: Traced
+
+
+def residual_along(body: Body, motion: Motion, wrt: Sequence[str] = ()) -> Residual:
+    """Residual force of the body's model along the motion.
+
+    wrt: parameters ("coulomb.level") whose tangents are carried along
+    returns: n samples smoothed as the motion is, not yet through the comparison's low-pass
+    """
+    symbols, values = body.symbols(), body.numbers()
+    columns = [symbols[name] for name in wrt]
+    n = len(motion.time)
+
+    def plain(y: Array) -> Traced:
+        return Traced(y, np.zeros((len(columns), n)))
+
+    given = {SIGNALS[name]: plain(getattr(motion, name)) for name in _MOTION}
+    acting = _acting(body, motion, plain(motion.command), values, columns)
+    given[SIGNALS["acting_force"]] = acting
+    inertia = law_of(symbols["inertia"] * SIGNALS["acceleration"])
+    needed = acting + plain(motion.interaction) - inertia(given, values, columns)
+    for effect in ordered(body.effects, "force"):
+        needed = needed - law_of(effect.expression())(given, values, columns)
+    friction = _friction(body, motion, given, needed, values, columns)
+    return Residual(motion, needed - friction, friction, acting)
+
+
+def _present(body: Body, role: Role, values: Mapping[Any, float]) -> list[Effect]:
+    """Effects of a role but those whose values say that they are absent: laws may divide by it."""
+    return [e for e in ordered(body.effects, role) if not e.is_absent(values)]
+
+
+def _acting(
+    body: Body, motion: Motion, command: Traced, values: Mapping[Any, float], columns: list[Any]
+) -> Traced:
+    """Acting force at the rows: each stage on averages over the hold of a row."""
+    stage = command
+    for effect in _present(body, "actuation", values):
+        stage = _stage(effect, motion, stage, values, columns)
+    return through(motion.at_rows, stage)
+
+
+def _stage(
+    effect: Effect,
+    motion: Motion,
+    command: Traced,
+    values: Mapping[Any, float],
+    columns: list[Any],
+) -> Traced:
+    law = effect.expression()
+    zero = np.zeros_like(command.tangent)
+    given = {SIGNALS[name]: Traced(getattr(motion, name), zero) for name in _MOTION} | {
+        SIGNALS["command"]: command
+    }
+    extra: list[sp.Symbol] = []
+    for i, call in enumerate(sorted(law.atoms(delayed), key=str)):
+        symbol = sp.Symbol(f"delayed_{i}", real=True)
+        law = law.subs(call, symbol)
+        given[symbol] = _shifted(command, call.args[1], values, columns, motion.sample_time)
+        extra.append(symbol)
+    if effect.states:
+        outputs = stage_scan(effect, given, values, columns, motion.sample_time)
+        given |= outputs
+        extra += outputs
+    signals = (*SIGNALS.values(), *extra)
+    return law_of(law, signals, _TRACED | set(extra))(given, values, columns)
+
+
+def _shifted(
+    signal: Traced, delay: sp.Expr, values: Mapping[Any, float], columns: list[Any], step: float
+) -> Traced:
+    """A held signal some time earlier, as averages over each hold: exact, linear between rows."""
+    tau = float(delay.subs(values))
+    whole, part = divmod(max(tau, 0.0) / step, 1.0)
+    n = signal.value.shape[-1]
+    late = np.clip(np.arange(n) - int(whole), 0, None)
+    later = np.clip(late - 1, 0, None)
+    value = (1 - part) * signal.value[late] + part * signal.value[later]
+    tangent = (1 - part) * signal.tangent[:, late] + part * signal.tangent[:, later]
+    slope = (signal.value[later] - signal.value[late]) / step
+    for i, column in enumerate(columns):
+        if delay.has(column):
+            tangent[i] += slope * float(sp.diff(delay, column).subs(values))
+    return Traced(value, tangent)
+
+
+def _friction(
+    body: Body,
+    motion: Motion,
+    given: Mapping[Any, Traced],
+    needed: Traced,
+    values: Mapping[Any, float],
+    columns: list[Any],
+) -> Traced:
+    laws = [e.expression() for e in ordered(body.effects, "friction_level")]
+    zero = np.zeros_like(needed.tangent)
+    if not laws:
+        return Traced(np.zeros_like(needed.value), zero)
+    level = sp.Add(*laws)
+
+    def towards(way: float) -> Traced:
+        ways = {SIGNALS["direction"]: Traced(np.full_like(needed.value, way), zero)}
+        found = law_of(level)({**given, **ways}, values, columns)
+        found.tangent[:, found.value < 0] = 0.0
+        return Traced(np.maximum(found.value, 0.0), found.tangent)
+
+    forward = towards(1.0)
+    backward = towards(-1.0) if level.has(SIGNALS["direction"]) else forward
+    shapes = _present(body, "friction_shape", values)
+    if shapes:
+        low, high = shape_bounds(shapes[0], motion, given, forward, backward, values, columns)
+    else:
+        low, high = _sliding_bounds(motion, forward, backward)
+    return _balanced(motion, needed, low, high)
+
+
+def _sliding_bounds(motion: Motion, forward: Traced, backward: Traced) -> tuple[Traced, Traced]:
+    """sgn v times the level where the motion is told, anything up to it where it is not."""
+    ahead, back = motion.direction > 0, motion.direction < 0
+    low = Traced(
+        np.where(ahead, forward.value, -backward.value),
+        np.where(ahead, forward.tangent, -backward.tangent),
+    )
+    high = Traced(
+        np.where(back, -backward.value, forward.value),
+        np.where(back, -backward.tangent, forward.tangent),
+    )
+    return low, high
+
+
+def _balanced(motion: Motion, needed: Traced, low: Traced, high: Traced) -> Traced:
+    """Friction between its bounds that leaves least to balance within the bandwidth.
+
+    Minimises the low-passed difference to what is needed, by projected steps: clipping what is
+    needed itself would turn its noise above the bandwidth into a bias below it.
+    """
+
+    def clipped(trial: Traced) -> Traced:
+        value = np.clip(trial.value, low.value, high.value)
+        tangent = np.where(trial.value >= high.value, high.tangent, trial.tangent)
+        tangent = np.where(trial.value <= low.value, low.tangent, tangent)
+        return Traced(value, tangent)
+
+    friction = clipped(needed)
+    for _ in range(BALANCE_STEPS):
+        friction = clipped(friction + through(motion.lowpassed, needed - friction))
+    return friction

@@ -1,0 +1,54 @@
+"""Generated source -> compiled function, kept in a cache folder so that it compiles once a machine.
+
+The file name is a hash of the content; numba keeps its machine code beside it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import os
+import sys
+import tempfile
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+
+def cache_folder() -> Path:
+    """Where generated kernels are kept: TELEOPDESIGN_CACHE, or the platform's cache folder."""
+    if given := os.environ.get("TELEOPDESIGN_CACHE"):
+        folder = Path(given)
+    else:
+        import pooch
+
+        folder = Path(pooch.os_cache("teleopdesign"))
+    folder = folder / "kernels"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        folder = Path(tempfile.gettempdir()) / "teleopdesign-kernels"
+        folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+@lru_cache(maxsize=256)
+def compiled(source: str, function: str) -> Callable[..., Any]:
+    """The function of that name in the source (a module that uses numba), from the cache folder."""
+    digest = hashlib.sha256(source.encode()).hexdigest()[:20]
+    folder = cache_folder()
+    path = folder / f"teleopdesign_{function}_{digest}.py"
+    if not path.is_file():
+        # written aside and renamed: two processes may want the same kernel at once
+        with tempfile.NamedTemporaryFile(
+            "w", dir=path.parent, suffix=".tmp", delete=False, encoding="utf-8"
+        ) as file:
+            file.write(source)
+        Path(file.name).replace(path)
+    if str(folder) not in sys.path:
+        sys.path.append(str(folder))  # numba's cache finds the module again by its name
+    importlib.invalidate_caches()
+    module = importlib.import_module(path.stem)
+    found: Callable[..., Any] = getattr(module, function)
+    return found

@@ -1,0 +1,250 @@
+"""Hidden states along a measured motion: loops over the samples, generated from the effects' rates.
+
+A state whose rate is affine in it, dz/dt = A z + B, advances exactly over a sample in which its
+signals are held: z(t + h) = e^x z + h phi_1(x) B with x = A h; the average over the sample is
+phi_1(x) z + h phi_2(x) B. Tangents follow by differentiating the same expressions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import sympy as sp
+
+from ..effects import SIGNALS, Effect
+from ..errors import ModelError
+from ..measurement.filtering import Array
+from ..measurement.motion import Motion
+from .compiled import compiled
+
+if TYPE_CHECKING:
+    from .along_motion import Traced
+
+_HEAD = '''"""Generated from an effect's law; do not edit."""
+from math import *
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True, error_model="numpy")
+def phi(x):
+    """phi_1, phi_2 and their slopes, accurate through zero."""
+    if abs(x) < 1e-2:
+        p1 = 1 + x / 2 * (1 + x / 3 * (1 + x / 4 * (1 + x / 5)))
+        p2 = 0.5 + x / 6 * (1 + x / 4 * (1 + x / 5 * (1 + x / 6)))
+        s1 = 0.5 + x / 3 * (1 + x * 3 / 8 * (1 + x * 4 / 15 * (1 + x * 5 / 24)))
+        s2 = 1 / 6 + x / 12 * (1 + x * 3 / 10 * (1 + x * 2 / 9))
+        return p1, p2, s1, s2
+    p1 = expm1(x) / x
+    p2 = (p1 - 1) / x
+    s1 = (exp(x) - p1) / x
+    return p1, p2, s1, (s1 - p2) / x
+
+
+'''
+
+
+def _affine(effect: Effect) -> tuple[sp.Symbol, sp.Expr, sp.Expr]:
+    """The effect's one state z with its rate as A z + B."""
+    if len(effect.states) != 1:
+        raise ModelError(f"{effect.name}: {len(effect.states)} states in one scan; one is possible")
+    (name,) = effect.states
+    z, rate = effect.state_symbols()[name], effect.rates()[name]
+    slope = sp.diff(rate, z)
+    if slope.has(z):
+        raise ModelError(f"{effect.name}: the rate of {name} must be affine in {name}")
+    return z, slope, sp.simplify(rate - slope * z)
+
+
+def _code(expression: sp.Expr) -> str:
+    return str(sp.pycode(expression, fully_qualified_modules=False))
+
+
+def _gradient_lines(what: str, expression: sp.Expr, by: dict[str, sp.Symbol]) -> list[str]:
+    return [f"{what}_{name} = {_code(sp.diff(expression, s))}" for name, s in by.items()]
+
+
+def _indented(lines: list[str], depth: int) -> str:
+    return "\n".join(" " * depth + line for line in lines)
+
+
+def _used(effect: Effect) -> list[str]:
+    laws = (effect.expression(), *effect.rates().values())
+    return [n for n, s in SIGNALS.items() if any(law.has(s) for law in laws)]
+
+
+@lru_cache(maxsize=64)
+def _stage_source(effect: Effect) -> str:
+    z, a, b = _affine(effect)
+    used = _used(effect)
+    by = {"command": SIGNALS["command"], **effect.symbols()}
+    columns = list(effect.parameters)
+    sum_of = {
+        what: " + ".join(
+            [f"{what}_command * dcommand[j, k]"]
+            + [f"{what}_{c} * (columns[{i}] == j)" for i, c in enumerate(columns)]
+        )
+        for what in ("a", "b")
+    }
+    names = {**{n: s.name for n, s in effect.symbols().items()}}
+    return f"""{_HEAD}
+@njit(cache=True, error_model="numpy")
+def stage(h, columns, {", ".join(names.values())}, {", ".join(f"{n}_" for n in used)}, dcommand,
+          end, dend, mean, dmean):
+    p, n = dcommand.shape
+    dz = np.zeros(p)
+    {z.name} = 0.0
+    for k in range(n):
+{_indented([f"{n} = {n}_[k]" for n in used], 8)}
+        a = {_code(a)}
+        b = {_code(b)}
+        if k == 0:
+            {z.name} = -b / a if a != 0.0 else 0.0
+{_indented(_gradient_lines("a", a, by) + _gradient_lines("b", b, by), 8)}
+        x = a * h
+        e = exp(x)
+        p1, p2, s1, s2 = phi(x)
+        z = {z.name}
+        mean[k] = z * p1 + b * h * p2
+        end[k] = z
+        for j in range(p):
+            da = {sum_of["a"]}
+            db = {sum_of["b"]}
+            dmean[j, k] = dz[j] * p1 + z * s1 * h * da + h * p2 * db + b * h * s2 * h * da
+            dend[j, k] = dz[j]
+            dz[j] = dz[j] * e + z * e * h * da + h * p1 * db + b * h * s1 * h * da
+        {z.name} = z * e + b * h * p1
+"""
+
+
+def _columns_of(effect: Effect, columns: list[Any]) -> Array:
+    own = effect.symbols()
+    return np.array(
+        [columns.index(own[n]) if own[n] in columns else -1 for n in effect.parameters], dtype=int
+    )
+
+
+def stage_scan(
+    effect: Effect,
+    given: Mapping[Any, Traced],
+    values: Mapping[Any, float],
+    columns: list[Any],
+    step: float,
+) -> dict[sp.Symbol, Traced]:
+    """State of an actuation stage, as its average over the hold of each row, with tangents."""
+    from .along_motion import Traced
+
+    scan = compiled(_stage_source(effect), "stage")
+    command = given[SIGNALS["command"]]
+    end, dend = np.empty_like(command.value), np.empty_like(command.tangent)
+    mean, dmean = np.empty_like(command.value), np.empty_like(command.tangent)
+    scan(
+        step,
+        _columns_of(effect, columns),
+        *[values[s] for s in effect.symbols().values()],
+        *[given[SIGNALS[n]].value for n in _used(effect)],
+        command.tangent,
+        end,
+        dend,
+        mean,
+        dmean,
+    )
+    (symbol,) = effect.state_symbols().values()
+    return {symbol: Traced(mean, dmean)}
+
+
+@lru_cache(maxsize=64)
+def _shape_source(effect: Effect) -> str:
+    z, a, b = _affine(effect)
+    law = effect.expression()
+    slope = sp.diff(law, z)
+    used = [n for n in _used(effect) if n not in ("velocity", "level")]
+    by = {"level": SIGNALS["level"], **effect.symbols()}
+    names = list(effect.parameters)
+    own = " + ".join(f"{{0}}_{c} * (columns[{i}] == j)" for i, c in enumerate(names))
+    arguments = [s.name for s in effect.symbols().values()] + [f"{n}_" for n in used]
+    return f"""{_HEAD}
+@njit(cache=True, error_model="numpy")
+def shape(h, half_step, columns, position, direction, {", ".join(arguments)},
+          forward, dforward, backward, dbackward, low, dlow, high, dhigh):
+    p, n = dforward.shape
+    dz = np.zeros(p)
+    z = 0.0
+    for k in range(n):
+        velocity = (position[k] - position[max(k - 1, 0)]) / h
+        ahead = velocity >= 0.0
+        level = max(forward[k] if ahead else backward[k], 1e-12)
+{_indented([f"{n} = {n}_[k]" for n in used], 8)}
+        a = {_code(a)}
+        b = {_code(b)}
+{_indented(_gradient_lines("a", a, by) + _gradient_lines("b", b, by), 8)}
+        x = a * h
+        e = exp(x)
+        p1, p2, s1, s2 = phi(x)
+        before = z
+        z = before * e + b * h * p1
+        {z.name} = z
+        force = {_code(law)}
+        slope = {_code(slope)}
+{_indented(_gradient_lines("f", law, effect.symbols()), 8)}
+{_indented(_gradient_lines("g", slope, effect.symbols()), 8)}
+        # where the reading cannot tell a motion, the position is open by half a step
+        free = half_step if direction[k] == 0 else 0.0
+        below = force - free * abs(slope)
+        above = force + free * abs(slope)
+        low[k] = max(below, -backward[k])
+        high[k] = min(above, forward[k])
+        for j in range(p):
+            dlevel = dforward[j, k] if ahead else dbackward[j, k]
+            da = a_level * dlevel + {own.format("a")}
+            db = b_level * dlevel + {own.format("b")}
+            dz[j] = dz[j] * e + before * e * h * da + h * p1 * db + b * h * s1 * h * da
+            df = slope * dz[j] + {own.format("f")}
+            dg = free * copysign(1.0, slope) * ({own.format("g")})
+            dlow[j, k] = df - dg if below > -backward[k] else -dbackward[j, k]
+            dhigh[j, k] = df + dg if above < forward[k] else dforward[j, k]
+"""
+
+
+def shape_bounds(
+    effect: Effect,
+    motion: Motion,
+    given: Mapping[Any, Traced],
+    forward: Traced,
+    backward: Traced,
+    values: Mapping[Any, float],
+    columns: list[Any],
+) -> tuple[Traced, Traced]:
+    """Bounds of the friction of a shape with one hidden state, driven by the measured motion.
+
+    They coincide where the motion is told; where it is not, they lie apart by what half a step of
+    the position means to the bristle, and no further than the level.
+    """
+    from .along_motion import Traced
+
+    scan = compiled(_shape_source(effect), "shape")
+    used = [n for n in _used(effect) if n not in ("velocity", "level")]
+    low, high = np.empty_like(forward.value), np.empty_like(forward.value)
+    dlow, dhigh = np.empty_like(forward.tangent), np.empty_like(forward.tangent)
+    scan(
+        motion.sample_time,
+        0.5 * motion.step,
+        _columns_of(effect, columns),
+        motion.position,
+        motion.direction,
+        *[values[s] for s in effect.symbols().values()],
+        *[given[SIGNALS[n]].value for n in used],
+        forward.value,
+        forward.tangent,
+        backward.value,
+        backward.tangent,
+        low,
+        dlow,
+        high,
+        dhigh,
+    )
+    return Traced(low, dlow), Traced(high, dhigh)
