@@ -1,0 +1,243 @@
+"""The diagnosis as text and as the answer file, with the predictions that anyone can recompute."""
+
+from __future__ import annotations
+
+import csv
+import gzip
+import json
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..model import Model
+from ..realise.along_motion import residual_along
+from .evidence import chance
+from .fit import Fit
+from .ladder import ADEQUATE, Diagnosis, Rung
+from .rank import Ranked, Ranking
+
+
+def answer(diagnosis: Diagnosis) -> dict[str, Any]:
+    """The answer as plain data: verdict, ladder, candidates, parameters; SI units."""
+    checked = bool(diagnosis.experiment.check_records)
+    return {
+        "verdict": diagnosis.verdict,
+        "missing": [_place(c.key) for c in diagnosis.missing],
+        "ladder": [
+            {
+                "added": None if r.added is None else _place(r.added.key),
+                "fit_error": r.fit.fit_error,
+                "check_error": r.fit.check_error,
+            }
+            for r in diagnosis.rungs
+        ],
+        "noise_floor": diagnosis.floor.value,
+        "noise_floor_source": diagnosis.floor.source,
+        "check": "records" if checked else "blocks of fit",
+        "bandwidth": {"value": diagnosis.prepared.bandwidth, "unit": "Hz"},
+        "candidates": _candidates(diagnosis),
+        "indistinguishable": [[_place(c.key) for c in g] for g in diagnosis.groups],
+        "model_parameters": _parameters(diagnosis.after, _added(diagnosis)),
+        "left_over_noise_floors": _finite(diagnosis.left),
+        "at_bound": list(diagnosis.after.at_bound),
+    }
+
+
+def _place(key: tuple[str, str]) -> dict[str, str]:
+    return {"effect": key[0], "at": key[1]}
+
+
+def _finite(x: float) -> float | None:
+    return float(x) if math.isfinite(x) else None
+
+
+def _added(diagnosis: Diagnosis) -> set[str]:
+    return {f"{r.added.at}.{r.added.effect.name}" for r in diagnosis.rungs if r.added is not None}
+
+
+def _parameter(model: Model, name: str) -> dict[str, Any]:
+    value = model.parameters[name]
+    return {
+        "value": _finite(value.value),
+        "stderr": _finite(value.stderr),
+        "unit": model.unit(name),
+    }
+
+
+def _parameters(found: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
+    skip = set(without)
+    return {
+        n: _parameter(found.model, n)
+        for n in found.model.parameters
+        if n.rpartition(".")[0] not in skip
+    }
+
+
+def shares(ranking: Ranking) -> dict[tuple[str, str], float]:
+    """Share of each candidate in what the ranking cannot tell apart; they sum to one."""
+    weights = {
+        r.candidate.key: math.exp(-0.5 * max(r.behind, 0.0) ** 2) if r.told else 0.0
+        for r in ranking.ranked
+    }
+    total = sum(weights.values()) or 1.0
+    return {k: w / total for k, w in weights.items()}
+
+
+def _candidates(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """Every effect tried, most probable first: with its best step's fit and probability.
+
+    An accepted effect: the chance that its gain is real times its share among its equals. Others:
+    their share in the last ranking times the chance that this ranking's best is real.
+    """
+    found: dict[tuple[str, str], dict[str, Any]] = {}
+    steps: list[tuple[Rung | None, Ranking]] = [
+        (r, r.ranking) for r in diagnosis.rungs if r.ranking is not None
+    ]
+    steps.append((None, diagnosis.last))
+    for rung, ranking in steps:
+        share = shares(ranking)
+        for ranked in ranking.ranked:
+            key = ranked.candidate.key
+            probability = _probability(diagnosis, rung, ranking, ranked, share[key])
+            if key not in found or probability > found[key]["probability"]:
+                found[key] = _row(diagnosis, rung, ranked, probability)
+    return sorted(found.values(), key=lambda c: -c["probability"])
+
+
+def _probability(
+    diagnosis: Diagnosis, rung: Rung | None, ranking: Ranking, ranked: Ranked, share: float
+) -> float:
+    if rung is None:
+        # nothing was accepted here: what is left over would have to be this effect after all
+        gain = 1.0 - (ranked.fit.check_error / max(ranking.base.check_error, 1e-300)) ** 2
+        real = (1.0 - chance(ranked.score)) * min(max(gain, 0.0), 1.0)
+        return float(np.clip(0.3 * share * real, 0.0, 0.3))
+    gain = ranking.base.check_error**2 - ranked.fit.check_error**2
+    excess = ranking.base.check_error**2 - min(diagnosis.floor.value, ranked.fit.check_error) ** 2
+    explained = min(max(gain / excess, 0.0), 1.0) if excess > 0 else 0.0
+    return float(np.clip(share * (0.5 + 0.49 * explained) * (1.0 - chance(ranked.score)), 0, 0.99))
+
+
+def _row(
+    diagnosis: Diagnosis, rung: Rung | None, ranked: Ranked, probability: float
+) -> dict[str, Any]:
+    effect, at = ranked.candidate.key
+    accepted = rung is not None and rung.added is not None and rung.added.key == (effect, at)
+    model = ranked.fit.model
+    if accepted and diagnosis.model.body(at).has(effect):
+        model = diagnosis.model  # all parameters are re-estimated with each effect that follows
+    return {
+        "effect": effect,
+        "at": at,
+        "probability": probability,
+        "check_error": ranked.fit.check_error,
+        "parameters": {
+            n: _parameter(model, f"{at}.{effect}.{n}") for n in ranked.candidate.effect.parameters
+        },
+    }
+
+
+def write_answer(diagnosis: Diagnosis, path: str | Path) -> None:
+    """Write the answer as JSON."""
+    Path(path).write_text(json.dumps(answer(diagnosis), indent=1) + "\n", encoding="utf-8")
+
+
+def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
+    """Write measured and modelled force, a row a sample of every record; .csv or .csv.gz.
+
+    `BODY.measured` is actuator plus interaction force as recorded; residuals are not low-passed
+    beyond the smoothing of the motion, so that their low-passed figures can be recomputed.
+    """
+    path = Path(path)
+    bodies = list(diagnosis.experiment.bodies)
+    head = ["record", "t"]
+    for body in bodies:
+        head += [f"{body}.{q}" for q in ("measured", "model_before", "model_after")]
+        head += [f"{body}.residual_before", f"{body}.residual_after"]
+    opened = (
+        gzip.open(path, "wt", newline="") if path.suffix == ".gz" else path.open("w", newline="")
+    )
+    with opened as file:
+        out = csv.writer(file)
+        out.writerow(head)
+        for record in diagnosis.experiment.records:
+            columns = _predicted(diagnosis, record.file)
+            for k in range(len(record.time)):
+                out.writerow(
+                    [record.file, f"{record.time[k]:.9g}", *(f"{c[k]:.7g}" for c in columns)]
+                )
+
+
+def _predicted(diagnosis: Diagnosis, file: str) -> list[np.ndarray]:
+    record = next(r for r in diagnosis.experiment.records if r.file == file)
+    columns: list[np.ndarray] = []
+    for body in diagnosis.experiment.bodies:
+        interaction = record.signals.get(f"{body}.interaction_force")
+        measured = record.signals[f"{body}.actuator_force"] + (
+            0.0 if interaction is None else interaction
+        )
+        before, after = np.zeros_like(measured), np.zeros_like(measured)
+        for stretch in diagnosis.prepared.stretches:
+            motion = stretch.motion
+            if motion.file != file or motion.body != body:
+                continue
+            for model, out in ((diagnosis.before.model, before), (diagnosis.model, after)):
+                out[motion.rows] = residual_along(model.body(body), motion).residual.value
+        columns += [measured, measured - before, measured - after, before, after]
+    return columns
+
+
+def _number(value: float, error: float, unit: str) -> str:
+    if math.isfinite(error) and error > 0:
+        return f"{value:.4g} +- {error:.1g} {unit}"
+    return f"{value:.4g} {unit}"
+
+
+def ladder_text(diagnosis: Diagnosis) -> str:
+    """The ladder as a table, with parameters, noise floor and verdict."""
+    lines = [f"{'added':<34}{'fit error':>10}{'check error':>13}"]
+    for rung in diagnosis.rungs:
+        name = "(your model, re-estimated)" if rung.added is None else f"+ {rung.added}"
+        lines.append(
+            f"{name:<34}{100 * rung.fit.fit_error:>9.2f}%{100 * rung.fit.check_error:>12.2f}%"
+        )
+        if rung.added is None:
+            continue
+        model = diagnosis.model
+        for p in rung.added.effect.parameters:
+            full = f"{rung.added.at}.{rung.added.effect.name}.{p}"
+            value = model.parameters[full]
+            bound = "  at its bound" if full in diagnosis.after.at_bound else ""
+            lines.append(
+                f"      {p} = {_number(value.value, value.stderr, model.unit(full))}{bound}"
+            )
+        if rung.equals:
+            others = ", ".join(map(str, rung.equals))
+            lines.append(f"      no different on these records: {others}")
+    lines.append(
+        f"{'noise floor':<34}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
+        f"  ({diagnosis.floor.source})"
+    )
+    lines.append("")
+    lines.append(sentence(diagnosis))
+    return "\n".join(lines)
+
+
+def sentence(diagnosis: Diagnosis) -> str:
+    """The verdict in words."""
+    left = diagnosis.left
+    rest = "" if left <= ADEQUATE else f" What is left is {left:.1f} noise floors: more is missing."
+    if diagnosis.verdict == "model_adequate":
+        return f"verdict: model_adequate. What is left is noise ({left:.2f} noise floors)."
+    if diagnosis.verdict == "effects_missing":
+        names = ", ".join(map(str, diagnosis.missing))
+        return f"verdict: effects_missing: {names}.{rest}"
+    if diagnosis.groups:
+        names = "; ".join(" or ".join(map(str, g)) for g in diagnosis.groups)
+        return f"verdict: undecided between {names}: these records cannot tell.{rest}"
+    return (
+        f"verdict: undecided. No effect tried explains the {left:.1f} noise floors that are left."
+    )

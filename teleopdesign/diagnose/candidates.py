@@ -1,0 +1,58 @@
+"""Which effects may be missing: those of the catalogue that the model could take."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+from ..effects import Effect
+from ..model import Model
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect at a place."""
+
+    effect: Effect
+    at: str
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """(name, place), as answers write it."""
+        return self.effect.name, self.at
+
+    def __str__(self) -> str:
+        return f"{self.effect.name} at {self.at}"
+
+
+def candidates(model: Model) -> tuple[Candidate, ...]:
+    """Effects that the model lacks and could take, at each of its bodies."""
+    found = []
+    for place, body in model.bodies.items():
+        shaped = any(e.role == "friction_shape" for e in body.effects)
+        for effect in model.known.values():
+            if body.has(effect.name) or (shaped and effect.role == "friction_shape"):
+                continue
+            if all(body.has(need) for need in effect.needs):
+                found.append(Candidate(effect, place))
+    return tuple(found)
+
+
+def started(model: Model, scale: dict[str, float]) -> list[Model]:
+    """The model with its absent effects at each combination of their starting values.
+
+    scale: quantity -> the record's own size of it (SI)
+    returns: the model itself where no effect is absent
+    """
+    models = [model]
+    for name, place in model.absent:
+        parameters = model.body(place).effect(name).parameters
+        free = [n for n in parameters if not model.parameters[f"{place}.{name}.{n}"].fixed]
+        grids = [[m * scale[parameters[n].quantity] for m in parameters[n].starts] for n in free]
+        names = [f"{place}.{name}.{n}" for n in free]
+        models = [
+            m.with_values(dict(zip(names, values, strict=True)))
+            for m in models
+            for values in product(*grids)
+        ]
+    return models

@@ -1,0 +1,105 @@
+"""Where a model fails: measured and modelled force side by side, as labelled data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..measurement.experiment import Experiment
+from ..model import Model
+from ..quantity import unit_of
+from ..realise.along_motion import residual_along
+from .force_error import Prepared, force_error, prepare
+from .noise_floor import NoiseFloor, noise_floor
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from xarray import Dataset
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A model held against an experiment, as it stands.
+
+    fit_error, check_error: relative force errors (NaN where there is no such record)
+    data: per sample of every record and body (dimension "sample"): record, body, segment, time,
+        position, velocity, direction, measured, model and residual force, the three low-passed
+    """
+
+    model: Model
+    prepared: Prepared
+    fit_error: float
+    check_error: float
+    floor: NoiseFloor
+    data: Dataset
+
+    def plot(self) -> Figure:
+        """Residual over time, velocity and position."""
+        from ..plot.diagnosis import plot_comparison
+
+        return plot_comparison(self)
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write the data with its units."""
+        self.data.to_netcdf(path)
+
+    def __repr__(self) -> str:
+        lines = [f"Comparison below {self.prepared.bandwidth:.3g} Hz"]
+        for use, error in (("fit", self.fit_error), ("check", self.check_error)):
+            if error == error:
+                lines.append(f"  {use + ' error':<12} {100 * error:.2f} %")
+        lines.append(f"  {'noise floor':<12} {100 * self.floor.value:.2f} %  ({self.floor.source})")
+        return "\n".join(lines)
+
+
+def compare(model: Model, experiment: Experiment, *, seed: int = 0) -> Comparison:
+    """Hold the model, as it stands, against every record of the experiment.
+
+    seed: of the draws for the noise floor
+    raises ExperimentError: the experiment lacks what the comparison needs
+    """
+    prepared = prepare(experiment)
+    return Comparison(
+        model=model,
+        prepared=prepared,
+        fit_error=force_error(model, prepared.of("fit")),
+        check_error=force_error(model, prepared.of("check")),
+        floor=noise_floor(model, prepared, np.random.default_rng(seed)),
+        data=residual_data(model, prepared),
+    )
+
+
+def residual_data(model: Model, prepared: Prepared) -> Dataset:
+    """Forces of the model along every measured motion; see `Comparison.data`."""
+    import xarray as xr
+
+    columns: dict[str, list[Any]] = {}
+    for number, stretch in enumerate(prepared.stretches):
+        motion = stretch.motion
+        along = residual_along(model.body(motion.body), motion)
+        measured = motion.lowpassed(motion.at_rows(motion.command) + motion.interaction)
+        residual = motion.lowpassed(along.residual.value)
+        n = len(motion.time)
+        for name, values in {
+            "record": np.full(n, motion.file),
+            "use": np.full(n, stretch.use),
+            "body": np.full(n, motion.body),
+            "segment": np.full(n, number),
+            "time": motion.time,
+            "position": motion.position,
+            "velocity": motion.velocity,
+            "direction": motion.direction,
+            "measured": measured,
+            "model": measured - residual,
+            "residual": residual,
+        }.items():
+            columns.setdefault(name, []).append(values)
+    axis = next(iter(model.bodies.values())).axis
+    quantity = {"measured": "force", "model": "force", "residual": "force"}
+    data = xr.Dataset({k: ("sample", np.concatenate(v)) for k, v in columns.items()})
+    for name in ("time", "position", "velocity", "measured", "model", "residual"):
+        data[name].attrs["units"] = unit_of(quantity.get(name, name), axis)
+    return data.set_coords(["record", "use", "body", "segment", "time"])

@@ -1,0 +1,257 @@
+"""Parameters from the fit records: bounded least squares on the low-passed residual force."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..blocks import Value
+from ..measurement.filtering import Array
+from ..model import Model
+from .candidates import started
+from .force_error import Prepared, Stretch, folds, force_error, referred
+from .least_squares import minimise
+from .scales import scales
+
+#: seconds over which residuals count as one observation in standard errors and tests
+BLOCK = 0.25
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted model: parameters with standard errors, and its errors on both uses.
+
+    fit_error, check_error: relative force errors; NaN where there is no such record
+    fit_residual, check_residual: low-passed residuals on the rows that count, weighted, relative to
+        the force that acts by the model (`referred`): what models are compared by
+    fit_blocks, check_blocks: number of the block of each of these rows
+    jacobian: (rows, p) of fit_residual by `free`, in units of the record's scales
+    """
+
+    model: Model
+    free: tuple[str, ...]
+    fit_error: float
+    check_error: float
+    at_bound: tuple[str, ...]
+    fit_residual: Array
+    check_residual: Array
+    fit_blocks: NDArray[np.intp]
+    check_blocks: NDArray[np.intp]
+    jacobian: Array
+
+
+def free_parameters(model: Model) -> tuple[str, ...]:
+    """Names of the parameters that are not fixed."""
+    return tuple(n for n, v in model.parameters.items() if not v.fixed)
+
+
+def block_numbers(stretches: Sequence[Stretch]) -> NDArray[np.intp]:
+    """Number of the block (a quarter of a second of one stretch) of each row."""
+    parts, first = [], 0
+    for s in stretches:
+        own = ((s.motion.time[s.keep] - s.motion.time[s.keep[0]]) / BLOCK).astype(int)
+        parts.append(own + first)
+        first += int(own[-1]) + 1
+    return np.concatenate(parts) if parts else np.zeros(0, dtype=int)
+
+
+def weighted(stretches: Sequence[Stretch], values: Sequence[Array]) -> Array:
+    """Residuals of all stretches in one, each row times the root of the rows it stands for."""
+    parts = [np.sqrt(s.weight) * r for s, r in zip(stretches, values, strict=True)]
+    return np.concatenate(parts) if parts else np.zeros(0)
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How far a fit is driven: relative change of squares and parameters, evaluations."""
+
+    tolerance: float
+    evaluations: int
+
+
+#: distance to a bound, in the record's scale of the quantity, that counts as being there
+AT_BOUND = 1e-6
+#: decades to either side of the record's scale in which a logarithmic parameter is searched
+DECADES = 8.0
+ROUGH, FINE = Effort(1e-4, 12), Effort(1e-7, 60)
+
+
+@dataclass(frozen=True)
+class _Solution:
+    """Free parameters at the optimum, with weighted residual and jacobian by value / scale."""
+
+    values: Array
+    scale: Array
+    at_bound: NDArray[np.bool_]
+    residual: Array
+    jacobian: Array
+
+
+def estimate(model: Model, prepared: Prepared, *, effort: Effort = FINE) -> Fit:
+    """Re-estimate the parameters of the model that are not fixed, on the fit records.
+
+    Without check records, blocks of the fit records are held out in turn: what is reported as
+    check then comes from fits that have not seen those blocks.
+    """
+    stretches = prepared.of("fit")
+    free = free_parameters(model)
+    solution = _solve(model, free, prepared, stretches, effort)
+    blocks = block_numbers(stretches)
+    errors = standard_errors(solution.jacobian, solution.residual, blocks) * solution.scale
+    fitted = model.with_values(
+        {
+            n: Value(float(v), model.parameters[n].fixed, float(e))
+            for n, v, e in zip(free, solution.values, errors, strict=True)
+        }
+    )
+    check = prepared.of("check")
+    if check:
+        parts = [v for v, _ in referred(fitted, check)]
+        check_error = force_error(fitted, check)
+    else:
+        check, parts, check_error = _held_out(fitted, free, prepared)
+    return Fit(
+        model=fitted,
+        free=free,
+        fit_error=force_error(fitted, stretches),
+        check_error=check_error,
+        at_bound=tuple(n for n, b in zip(free, solution.at_bound, strict=True) if b),
+        fit_residual=solution.residual,
+        check_residual=weighted(check, parts),
+        fit_blocks=blocks,
+        check_blocks=block_numbers(check),
+        jacobian=solution.jacobian,
+    )
+
+
+#: gain in squares on the fit records from which a fit from rough starts is driven on
+WORTH = 0.005
+
+
+def estimate_from_starts(model: Model, prepared: Prepared, base: Fit | None = None) -> Fit:
+    """The best fit of a model, from every starting value of the effects that are still absent.
+
+    base: a fit of the model without them; one that gains next to nothing on it stays rough
+    """
+    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
+    models = started(model, unit)
+    if len(models) == 1 and base is None:
+        return estimate(models[0], prepared)
+    rough = [estimate(m, prepared, effort=ROUGH) for m in models]
+    best = min(rough, key=_fit_squares)
+    if base is not None and _fit_squares(best) > (1.0 - WORTH) * _fit_squares(base):
+        return best
+    return estimate(best.model, prepared)
+
+
+def _fit_squares(found: Fit) -> float:
+    return float(found.fit_residual @ found.fit_residual)
+
+
+def _held_out(
+    fitted: Model, free: tuple[str, ...], prepared: Prepared
+) -> tuple[tuple[Stretch, ...], list[Array], float]:
+    """Residuals of blocks of the fit records, each from a fit that has not seen it; the error."""
+    held: list[Stretch] = []
+    parts: list[Array] = []
+    squares = 0.0
+    for seen, unseen in folds(prepared.of("fit")):
+        solution = _solve(fitted, free, prepared, seen, ROUGH)
+        model = _at(fitted, free, solution.values)
+        held += unseen
+        parts += [v for v, _ in referred(model, unseen)]
+        squares += force_error(model, unseen) ** 2 * sum(s.measured for s in unseen)
+    return tuple(held), parts, float(np.sqrt(squares / sum(s.measured for s in held)))
+
+
+def _solve(
+    model: Model,
+    free: tuple[str, ...],
+    prepared: Prepared,
+    stretches: Sequence[Stretch],
+    effort: Effort,
+) -> _Solution:
+    """Bounded least squares on the referred residuals of these stretches."""
+    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
+    scale = np.array([unit[model.declared(n).quantity] for n in free])
+    over_decades = np.array([_over_decades(model, n) for n in free], dtype=bool)
+    lower = np.array([model.declared(n).lower for n in free]) / scale
+    upper = np.array([model.declared(n).upper for n in free]) / scale
+    start = np.array([model.parameters[n].value for n in free]) / scale
+    lower[over_decades], upper[over_decades] = -DECADES * np.log(10), DECADES * np.log(10)
+    start[over_decades] = np.log(np.maximum(start[over_decades], 1e-300))
+    # a law may divide by a parameter whose bound is zero: stay a trifle inside
+    lower, upper = lower + 0.1 * AT_BOUND, upper - 0.1 * AT_BOUND
+    roots = [np.sqrt(s.weight) for s in stretches]
+
+    def values(x: Array) -> Array:
+        return scale * np.where(over_decades, np.exp(np.where(over_decades, x, 0.0)), x)
+
+    def both(x: Array) -> tuple[Array, Array]:
+        parts = referred(_at(model, free, values(x)), stretches, free)
+        r = np.concatenate([w * v for w, (v, _) in zip(roots, parts, strict=True)])
+        j = np.concatenate([w * t.T for w, (_, t) in zip(roots, parts, strict=True)])
+        return r, j * np.where(over_decades, values(x), scale)
+
+    best = start
+    if free:
+        best = minimise(
+            both,
+            start,
+            lower,
+            upper,
+            tolerance=effort.tolerance,
+            evaluations=effort.evaluations,
+        )
+    residual, jacobian = both(best)
+    at_bound = (best - lower < AT_BOUND) | (upper - best < AT_BOUND)
+    slope = np.where(over_decades, values(best), scale)
+    return _Solution(values(best), slope, at_bound, residual, jacobian)
+
+
+def _over_decades(model: Model, name: str) -> bool:
+    """Whether a parameter is searched on a logarithmic scale: positive, and zero means nothing.
+
+    A strength that may vanish is searched on a linear one, so that it can reach zero.
+    """
+    declared = model.declared(name)
+    place, _, own = name.partition(".")
+    effect, _, parameter = own.partition(".")
+    if not parameter or declared.lower < 0 or np.isfinite(declared.upper):
+        return False
+    return model.body(place).effect(effect).absent.get(parameter) != 0.0
+
+
+def _at(model: Model, names: Sequence[str], values: Array) -> Model:
+    return model.with_values(
+        {
+            n: replace(model.parameters[n], value=float(v))
+            for n, v in zip(names, values, strict=True)
+        }
+    )
+
+
+def standard_errors(jacobian: Array, residual: Array, blocks: NDArray[np.intp]) -> Array:
+    """Standard errors that hold under residuals correlated within a block (sandwich estimate).
+
+    jacobian: (rows, p);  residual: (rows,);  blocks: block number of each row
+    NaN where the parameter cannot be told from the others
+    """
+    p = jacobian.shape[1]
+    if p == 0:
+        return np.zeros(0)
+    norm = np.linalg.norm(jacobian, axis=0)
+    told = norm > 0
+    scaled = jacobian[:, told] / norm[told]
+    bread = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12, hermitian=True)
+    scores = np.zeros((int(blocks.max()) + 1, int(told.sum())))
+    np.add.at(scores, blocks, scaled * residual[:, None])
+    count = len(scores)
+    meat = scores.T @ scores * count / max(count - p, 1)
+    variance = np.diag(bread @ meat @ bread)
+    errors = np.full(p, np.nan)
+    errors[told] = np.sqrt(np.maximum(variance, 0.0)) / norm[told]
+    return errors

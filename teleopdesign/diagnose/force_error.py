@@ -1,0 +1,239 @@
+"""Model against measurement: the force residual, and the force error as one figure.
+
+    error = rms(LP residual) / rms(LP (actuator force + interaction force)),  record less its ends
+
+LP is the zero-phase low-pass at the comparison's bandwidth; sums of squares run over all bodies,
+records and segments of one use ("fit" or "check").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..effects import SIGNALS
+from ..errors import ExperimentError
+from ..measurement.experiment import Experiment
+from ..measurement.filtering import Array
+from ..measurement.motion import Motion, motions
+from ..model import Model
+from ..realise.along_motion import residual_along
+
+#: seconds at each end of a stretch where the low-pass has not settled
+TRIM = 0.25
+#: samples kept per second and hertz of bandwidth after the low-pass (2 would be Nyquist's)
+OVERSAMPLING = 5.0
+#: blocks of the fit records that are held out in turn where there is no check record
+FOLDS = 4
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """One body along one segment with its use, and the rows that count.
+
+    keep: the rows that count, thinned to what the low-pass leaves
+    weight: rows that each of them stands for
+    measured: sum of squares of the low-passed measured force over the rows that count
+    own_zero: the record's encoder zero is its own, to be found on it
+    """
+
+    motion: Motion
+    use: str
+    keep: NDArray[np.intp]
+    weight: float
+    measured: float
+    own_zero: bool = False
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """An experiment made ready for comparison at one bandwidth (Hz)."""
+
+    experiment: Experiment
+    bandwidth: float
+    stretches: tuple[Stretch, ...]
+
+    def of(self, use: str) -> tuple[Stretch, ...]:
+        """The stretches of one use."""
+        return tuple(s for s in self.stretches if s.use == use)
+
+
+def default_bandwidth(experiment: Experiment) -> float:
+    """Bandwidth (Hz) where none is given: as far as the position still tells an acceleration.
+
+    The highest frequency below a tenth of the sample rate at which the acceleration's spectrum
+    stands 10 dB above what white reading noise would leave there.
+    """
+    found = []
+    for record in experiment.records:
+        rate = 1.0 / record.sample_time
+        for body in experiment.bodies:
+            x = np.concatenate([record.signals[f"{body}.position"][s] for s in record.segments])
+            n = min(len(x), 4096)
+            windows = np.lib.stride_tricks.sliding_window_view(x, n)[:: max(1, n // 2)]
+            window = np.hanning(n)
+            density = np.mean(
+                np.abs(np.fft.rfft((windows - windows.mean(1)[:, None]) * window)) ** 2, 0
+            )
+            frequency = np.fft.rfftfreq(n, record.sample_time)
+            noise = np.median(density[frequency > 0.3 * rate])
+            told = frequency[(density > 10 * noise) & (frequency <= 0.1 * rate)]
+            found.append(told.max() if told.size else 0.02 * rate)
+    return float(max(min(found), 1.0))
+
+
+def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepared:
+    """Smooth, differentiate and cut the records of an experiment for comparison.
+
+    bandwidth: Hz; default: the experiment's, or chosen from the record
+    raises ExperimentError: bandwidth too high for the sample rate, or no stretch long enough
+    """
+    chosen = bandwidth or experiment.bandwidth or default_bandwidth(experiment)
+    stretches = []
+    for record in experiment.records:
+        if chosen > 0.4 / record.sample_time:
+            raise ExperimentError(
+                f"{experiment.folder.name}/experiment.toml: comparison.bandwidth: {chosen:g} Hz is "
+                f"too high for {record.file} at {1 / record.sample_time:g} Hz, expected below "
+                f"{0.4 / record.sample_time:g} Hz"
+            )
+        for body in experiment.bodies:
+            channel = experiment.channels[f"{body}.position"]
+            for motion in motions(record, body, bandwidth=chosen, resolution=channel.resolution):
+                stretches.append(
+                    _stretch(motion, record.use, chosen, own_zero=record.position_zero == "own")
+                )
+    if not any(s.use == "fit" for s in stretches):
+        raise ExperimentError(f"{experiment.folder.name}: fit records: no stretch of 0.6 s or more")
+    return Prepared(experiment, chosen, tuple(stretches))
+
+
+def _stretch(motion: Motion, use: str, bandwidth: float, *, own_zero: bool) -> Stretch:
+    n, rate = len(motion.time), 1.0 / motion.sample_time
+    trim = min(int(TRIM * rate), n // 3)
+    stride = max(1, int(rate / (OVERSAMPLING * bandwidth)))
+    keep = np.arange(trim, n - trim, stride)
+    return Stretch(
+        motion, use, keep, float(stride), _squares(motion, keep, float(stride)), own_zero
+    )
+
+
+def residuals(
+    model: Model, stretches: Sequence[Stretch], wrt: Sequence[str] = ()
+) -> list[tuple[Array, Array]]:
+    """Low-passed residual force and its tangents (p, rows) on the rows that count, per stretch.
+
+    wrt: full parameter names ("device.coulomb.level")
+    """
+    return [(r, d) for r, d, _, _ in _with_acting(model, stretches, wrt)]
+
+
+def referred(
+    model: Model, stretches: Sequence[Stretch], wrt: Sequence[str] = ()
+) -> list[tuple[Array, Array]]:
+    """Residuals relative to the force that acts by the model, at the scale of the measured force.
+
+    A model whose actuator passes next to nothing leaves next to no residual force; relative to
+    what it lets act, nothing is gained. Equal to `residuals` where nothing stands between command
+    and force.
+    """
+    parts = _with_acting(model, stretches, wrt)
+    if not any(e.role == "actuation" for b in model.bodies.values() for e in b.effects):
+        return [(r, d) for r, d, _, _ in parts]
+    whole = sum(s.measured for s in stretches)
+    acting = sum(s.weight * float(a @ a) for s, (_, _, a, _) in zip(stretches, parts, strict=True))
+    acting = max(acting, 1e-12 * whole)
+    slope = sum(
+        (s.weight * (da @ a) for s, (_, _, a, da) in zip(stretches, parts, strict=True)),
+        np.zeros(len(wrt)),
+    )
+    factor = float(np.sqrt(whole / acting))
+    return [(factor * r, factor * (d - np.outer(slope / acting, r))) for r, d, _, _ in parts]
+
+
+def _with_acting(
+    model: Model, stretches: Sequence[Stretch], wrt: Sequence[str]
+) -> list[tuple[Array, Array, Array, Array]]:
+    """Residual and acting plus interaction force, low-passed, on the rows that count; tangents."""
+    found = []
+    for stretch in stretches:
+        motion, rows = stretch.motion, stretch.keep
+        prefix = f"{motion.body}."
+        mine = [i for i, name in enumerate(wrt) if name.startswith(prefix)]
+        own = [wrt[i].removeprefix(prefix) for i in mine]
+        along = residual_along(model.body(motion.body), motion, own)
+        signals = []
+        for traced, offset in ((along.residual, 0.0), (along.acting, motion.interaction)):
+            value = motion.lowpassed(traced.value + offset)[rows]
+            tangent = np.zeros((len(wrt), len(rows)))
+            moving = traced.tangent.any(axis=1)
+            if moving.any():
+                tangent[np.array(mine)[moving]] = motion.lowpassed(traced.tangent[moving])[:, rows]
+            signals += [value, tangent]
+        if stretch.own_zero:
+            signals[0], signals[1] = _without_zero(model, stretch, signals[0], signals[1])
+        found.append((signals[0], signals[1], signals[2], signals[3]))
+    return found
+
+
+def _without_zero(
+    model: Model, stretch: Stretch, residual: Array, tangent: Array
+) -> tuple[Array, Array]:
+    """Residual and tangents of a record with an own encoder zero, at the zero that fits it best.
+
+    A step to the least-squares zero, exact where force is linear in position, as for a spring.
+    """
+    body, motion = model.body(stretch.motion.body), stretch.motion
+    if not any(e.expression().has(SIGNALS["position"]) for e in body.effects):
+        return residual, tangent
+    shift = 1e-3 * float(np.std(motion.position))
+    moved = residual_along(body, replace(motion, position=motion.position + shift)).residual.value
+    slope = (motion.lowpassed(moved)[stretch.keep] - residual) / shift
+    size = float(slope @ slope)
+    if size == 0.0:
+        return residual, tangent
+    return (
+        residual - slope * float(slope @ residual) / size,
+        tangent - np.outer(tangent @ slope / size, slope),
+    )
+
+
+def error_of(stretches: Sequence[Stretch], values: Sequence[Array]) -> float:
+    """The force error of these stretches from their low-passed residuals."""
+    left = sum(s.weight * float(np.sum(r**2)) for s, r in zip(stretches, values, strict=True))
+    whole = sum(s.measured for s in stretches)
+    return float(np.sqrt(left / whole))
+
+
+def force_error(model: Model, stretches: Sequence[Stretch]) -> float:
+    """Relative force error of the model as it stands, on these stretches; NaN if there are none."""
+    if not stretches:
+        return float("nan")
+    return error_of(stretches, [r for r, _ in residuals(model, stretches)])
+
+
+def folds(
+    stretches: Sequence[Stretch],
+) -> list[tuple[tuple[Stretch, ...], tuple[Stretch, ...]]]:
+    """The stretches with `FOLDS` blocks of each held out in turn: (seen, held out)."""
+    found = []
+    for i in range(FOLDS):
+        seen, unseen = [], []
+        for s in stretches:
+            part = np.arange(len(s.keep)) * FOLDS // len(s.keep) == i
+            seen.append(_cut(s, s.keep[~part]))
+            unseen.append(_cut(s, s.keep[part]))
+        found.append((tuple(seen), tuple(unseen)))
+    return found
+
+
+def _cut(stretch: Stretch, keep: NDArray[np.intp]) -> Stretch:
+    return replace(stretch, keep=keep, measured=_squares(stretch.motion, keep, stretch.weight))
+
+
+def _squares(motion: Motion, keep: NDArray[np.intp], weight: float) -> float:
+    measured = motion.lowpassed(motion.at_rows(motion.command) + motion.interaction)
+    return weight * float(np.sum(measured[keep] ** 2))

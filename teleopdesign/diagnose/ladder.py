@@ -1,0 +1,208 @@
+"""The ladder: effects added one at a time, each supported by records that it was not fitted on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import ModelError
+from ..measurement.experiment import Experiment
+from ..model import Model
+from .candidates import Candidate
+from .evidence import chance
+from .fit import Fit, estimate, estimate_from_starts
+from .force_error import Prepared, prepare
+from .noise_floor import NoiseFloor, noise_floor
+from .rank import Ranked, Ranking, check_score, check_squares, rank_candidates
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: a gain counts from this many standard deviations of its chance part ...
+SURE = 4.0
+#: ... and from this part of the noise floor's square: while a body is stuck or turns, its friction
+#: is known no better than that, and less may be the method's own
+OF_FLOOR = 0.25
+#: ... and from this part of the squares before: less is no answer to where a model fails
+RELEVANT = 0.03
+#: candidates that lie closer than this (standard deviations) explain the record equally well
+CLOSE = 3.0
+#: what is left counts as noise up to this many noise floors
+ADEQUATE = 1.5
+#: most effects that one diagnosis adds
+MOST = 6
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One step of the ladder: what was added (None: the user's model), the fit, and the ranking.
+
+    ranking: the candidates that were compared on this step; equals: those as good as the added one
+    """
+
+    added: Candidate | None
+    fit: Fit
+    ranking: Ranking | None = None
+    equals: tuple[Candidate, ...] = ()
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What a recording says about a model.
+
+    verdict: "effects_missing", "model_adequate" or "undecided"
+    rungs: the user's model re-estimated, then one rung an effect
+    last: ranking after the last rung, none of which was accepted
+    left: error of the last rung over the noise floor
+    """
+
+    experiment: Experiment
+    prepared: Prepared
+    verdict: str
+    rungs: tuple[Rung, ...]
+    last: Ranking
+    floor: NoiseFloor
+
+    @property
+    def before(self) -> Fit:
+        """The user's model, re-estimated."""
+        return self.rungs[0].fit
+
+    @property
+    def after(self) -> Fit:
+        """The model with every accepted effect."""
+        return self.rungs[-1].fit
+
+    @property
+    def model(self) -> Model:
+        """The model that the diagnosis ends with."""
+        return self.after.model
+
+    @property
+    def missing(self) -> tuple[Candidate, ...]:
+        """Effects that can be named, in the order added; none where the verdict is undecided."""
+        added = [r for r in self.rungs if r.added is not None]
+        if self.verdict != "effects_missing":
+            return ()
+        return tuple(r.added for r in added if r.added is not None)
+
+    @property
+    def groups(self) -> tuple[tuple[Candidate, ...], ...]:
+        """Effects that explain the records equally well, named one first."""
+        return tuple((r.added, *r.equals) for r in self.rungs if r.added is not None and r.equals)
+
+    @property
+    def left(self) -> float:
+        """Error that is left, in noise floors."""
+        return self.after.check_error / self.floor.value if self.floor.value else float("inf")
+
+    def plot(self) -> Figure:
+        """The figure: forces, residual over time, velocity and position, ladder (a Figure)."""
+        from ..plot.diagnosis import plot_diagnosis
+
+        return plot_diagnosis(self)
+
+    def __repr__(self) -> str:
+        from .answer import ladder_text
+
+        return ladder_text(self)
+
+
+def find_missing(
+    experiment: Experiment,
+    model: Model | None = None,
+    *,
+    progress: Callable[[str], None] | None = None,
+    seed: int = 0,
+) -> Diagnosis:
+    """Hold a model against an experiment and add the effects that its check records support.
+
+    model: default: the one that the experiment describes
+    progress: called with a line of text at each step;  seed: of the draws for the noise floor
+    raises ExperimentError: the experiment lacks what the comparison needs
+    """
+    say = progress or (lambda _: None)
+    prepared = prepare(experiment)
+    say("re-estimating the model")
+    base = estimate_from_starts(model or Model.from_experiment(experiment), prepared)
+    rungs = [Rung(None, base)]
+    while True:
+        here = rungs[-1].fit
+        floor = noise_floor(here.model, prepared, np.random.default_rng(seed))
+        step = len(rungs)
+        ranking = rank_candidates(here, prepared, progress=partial(_said, say, f"step {step}: "))
+        supported = [r for r in ranking.ranked if is_supported(here, r, floor)]
+        if not supported or len(rungs) > MOST:
+            break
+        equals = [r for r in supported if r.behind < CLOSE and _close(r, supported[0])]
+        best = min(equals, key=_simplicity)
+        others = tuple(r.candidate for r in equals if r is not best)
+        rungs.append(Rung(best.candidate, best.fit, ranking, others))
+        rungs = _pruned(rungs, prepared, floor)
+    return Diagnosis(experiment, prepared, _verdict(rungs, floor), tuple(rungs), ranking, floor)
+
+
+def _said(say: Callable[[str], None], before: str, text: str) -> None:
+    say(before + text)
+
+
+def is_supported(base: Fit, ranked: Ranked, floor: NoiseFloor) -> bool:
+    """Whether a candidate can be told, lowers the check error enough, and leaves the rest in place.
+
+    One that drives a parameter of the model to its bound takes the place of an effect that is
+    there: it describes the records, but is no missing physics beside the model's own.
+    """
+    displaced = set(ranked.fit.at_bound) - set(base.at_bound)
+    return ranked.told and not displaced and is_better(base, ranked.fit, floor)
+
+
+def is_better(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
+    """Whether `other` has the smaller check error by more than chance and by enough to matter."""
+    before = check_squares(base)
+    gain = (before - check_squares(other)) / before
+    score = check_score(base, other)
+    return (
+        score > SURE
+        and gain > RELEVANT
+        and gain > OF_FLOOR * (floor.value / base.check_error) ** 2
+        and chance(score) * len(base.model.known) < 0.01
+    )
+
+
+def _close(one: Ranked, other: Ranked) -> bool:
+    return abs(one.fit.check_error - other.fit.check_error) < 0.02 * other.fit.check_error
+
+
+def _simplicity(ranked: Ranked) -> tuple[int, int]:
+    effect = ranked.candidate.effect
+    return len(effect.parameters), len(effect.needs)
+
+
+def _pruned(rungs: list[Rung], prepared: Prepared, floor: NoiseFloor) -> list[Rung]:
+    """Without the effects that those added later have made superfluous."""
+    last = rungs[-1]
+    for rung in rungs[1:-1]:
+        assert rung.added is not None
+        name, at = rung.added.key
+        try:
+            without = estimate(last.fit.model.without_effect(name, at=at), prepared)
+        except ModelError:
+            continue
+        if not is_better(without, last.fit, floor):
+            kept = [r for r in rungs if r is not rung]
+            return [*kept[:-1], Rung(last.added, without, last.ranking, last.equals)]
+    return rungs
+
+
+def _verdict(rungs: list[Rung], floor: NoiseFloor) -> str:
+    added = [r for r in rungs if r.added is not None]
+    if not added:
+        left = rungs[-1].fit.check_error
+        return "model_adequate" if left <= ADEQUATE * floor.value else "undecided"
+    if all(r.equals for r in added):
+        return "undecided"
+    return "effects_missing"

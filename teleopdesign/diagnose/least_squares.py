@@ -1,0 +1,70 @@
+"""Bounded nonlinear least squares by damped Gauss-Newton steps.
+
+scipy's trust-region method creeps towards a bound through its interior, and most candidates of a
+diagnosis end at one (an effect that is not there). Here each step is a bounded linear problem in
+as many unknowns as there are parameters, by scipy's `lsq_linear`: a bound is reached at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from ..measurement.filtering import Array
+
+
+def minimise(
+    function: Callable[[Array], tuple[Array, Array]],
+    start: Array,
+    lower: Array,
+    upper: Array,
+    *,
+    tolerance: float,
+    evaluations: int,
+) -> Array:
+    """Parameters that minimise the sum of squares of the residual, from a start within the bounds.
+
+    function: x (p,) -> residual (n,), jacobian (n, p);  tolerance: relative change of squares
+    """
+    x = np.clip(start, lower, upper)
+    residual, jacobian = function(x)
+    squares, damping, quiet = float(residual @ residual), 1e-3, 0
+    for _ in range(evaluations - 1):
+        step = _step(jacobian, residual, lower - x, upper - x, damping)
+        trial = np.clip(x + step, lower, upper)
+        expected = squares - float(np.sum((residual + jacobian @ (trial - x)) ** 2))
+        if expected <= 1e-3 * tolerance * squares:
+            break
+        new_residual, new_jacobian = function(trial)
+        new = float(new_residual @ new_residual)
+        if not np.isfinite(new) or new >= squares:
+            damping *= 10.0
+            if damping > 1e8:
+                break
+            continue
+        good = (squares - new) / expected
+        damping = damping / 10.0 if good > 0.75 else damping * 3.0 if good < 0.25 else damping
+        quiet = quiet + 1 if squares - new < tolerance * squares else 0
+        x, residual, jacobian, squares = trial, new_residual, new_jacobian, new
+        if quiet >= 2:
+            break
+    return np.asarray(x)
+
+
+def _step(jacobian: Array, residual: Array, below: Array, above: Array, damping: float) -> Array:
+    """Damped Gauss-Newton step within the bounds, scaled by the columns of the jacobian."""
+    size = np.linalg.norm(jacobian, axis=0)
+    size = np.where(size > 0, size, 1.0)
+    scaled = jacobian / size
+    normal = scaled.T @ scaled + damping * np.eye(len(size))
+    gradient = scaled.T @ residual
+    root = np.linalg.cholesky(normal + 1e-12 * np.eye(len(size)))
+    target = -np.linalg.solve(root, gradient)
+    step = np.linalg.solve(root.T, target)
+    if np.any(step < below * size) or np.any(step > above * size):
+        low, high = below * size, above * size
+        high = np.where(high - low > 0, high, low + 1e-300)  # a range may have shrunk to nothing
+        step = lsq_linear(root.T, target, (low, high), method="bvls").x
+    return np.asarray(step / size)

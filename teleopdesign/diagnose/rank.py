@@ -1,0 +1,128 @@
+"""Rank candidate effects: each is added, everything is re-estimated, the check records decide."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .candidates import Candidate, candidates
+from .evidence import gain_score
+from .fit import Fit, estimate_from_starts
+from .force_error import Prepared
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """A candidate with the model fitted with it.
+
+    score: how surely it lowers the error on the check records (standard deviations)
+    behind: how surely the best candidate has the smaller error on all records; 0 for the best
+    told: its parameters can be told from those of the model it was added to
+    """
+
+    candidate: Candidate
+    fit: Fit
+    score: float
+    behind: float
+    told: bool
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """Candidates, best first, and the fit that they are compared with."""
+
+    base: Fit
+    ranked: tuple[Ranked, ...]
+
+    @property
+    def best(self) -> Ranked:
+        """The candidate with the smallest error."""
+        return self.ranked[0]
+
+    def __repr__(self) -> str:
+        lines = [f"{'candidate':<32}{'fit error':>10}{'check error':>13}{'score':>8}{'behind':>8}"]
+        lines.append(
+            f"{'(the model)':<32}{self.base.fit_error:>10.4f}{self.base.check_error:>13.4f}"
+        )
+        for r in self.ranked:
+            note = "" if r.told else "  cannot be told from the model's own parameters"
+            lines.append(
+                f"{r.candidate!s:<32}{r.fit.fit_error:>10.4f}{r.fit.check_error:>13.4f}{r.score:>8.1f}{r.behind:>8.1f}{note}"
+            )
+        return "\n".join(lines)
+
+
+def check_squares(found: Fit) -> float:
+    """Sum of squares on the check records, relative to the force that acts by the model."""
+    return float(found.check_residual @ found.check_residual)
+
+
+def check_score(before: Fit, after: Fit) -> float:
+    """How surely `after` has the smaller error on the check records."""
+    return gain_score(before.check_residual, after.check_residual, after.check_blocks)
+
+
+def whole_score(before: Fit, after: Fit) -> float:
+    """How surely `after` has the smaller error on all records together."""
+    shift = int(after.fit_blocks.max()) + 1
+    return gain_score(
+        np.concatenate([before.fit_residual, before.check_residual]),
+        np.concatenate([after.fit_residual, after.check_residual]),
+        np.concatenate([after.fit_blocks, after.check_blocks + shift]),
+    )
+
+
+#: part of a new parameter's column that must lie outside the span of the model's own
+TOLD = 0.02
+
+
+def is_told(found: Fit, base: Fit) -> bool:
+    """Whether some new parameter changes the residual in a way that the base's cannot imitate."""
+    new = [i for i, n in enumerate(found.free) if n not in base.free]
+    old = [i for i, n in enumerate(found.free) if n in base.free]
+    for i in new:
+        column = found.jacobian[:, i]
+        size = float(np.linalg.norm(column))
+        if size == 0.0:
+            continue
+        if not old:
+            return True
+        own = found.jacobian[:, old]
+        rest = column - own @ np.linalg.lstsq(own, column, rcond=1e-10)[0]
+        if float(np.linalg.norm(rest)) > TOLD * size:
+            return True
+    return False
+
+
+def rank_candidates(
+    base: Fit,
+    prepared: Prepared,
+    *,
+    progress: Callable[[str], None] | None = None,
+) -> Ranking:
+    """Try every candidate on top of a fitted model.
+
+    base: the fitted model that something may be missing in
+    progress: called with a line of text before each candidate
+    """
+    fits: list[tuple[Candidate, Fit]] = []
+    for candidate in candidates(base.model):
+        if progress is not None:
+            progress(str(candidate))
+        added = base.model.with_effect(candidate.effect, at=candidate.at)
+        fits.append((candidate, estimate_from_starts(added, prepared, base)))
+    told = {c.key: is_told(f, base) for c, f in fits}
+    fits.sort(key=lambda cf: (not told[cf[0].key], check_squares(cf[1])))
+    ranked = [
+        Ranked(
+            candidate=c,
+            fit=f,
+            score=check_score(base, f),
+            behind=whole_score(f, fits[0][1]) if i else 0.0,
+            told=told[c.key],
+        )
+        for i, (c, f) in enumerate(fits)
+    ]
+    return Ranking(base, tuple(ranked))

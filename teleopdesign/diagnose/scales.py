@@ -1,0 +1,36 @@
+"""The record's own scale of every quantity: where searches start and steps are measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..measurement.motion import Motion
+
+
+def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
+    """Quantity -> typical size along these motions (SI): rms values and their quotients."""
+
+    def rms(parts: list[np.ndarray]) -> float:
+        return float(np.sqrt(np.mean(np.concatenate(parts) ** 2))) or 1e-12
+
+    force = rms([m.lowpassed(m.at_rows(m.command) + m.interaction) for m in motions])
+    position = rms([m.position - m.position.mean() for m in motions])
+    velocity = rms([m.velocity for m in motions])
+    acceleration = rms([m.lowpassed(m.acceleration) for m in motions])
+    return {
+        "time": 1.0 / (2 * np.pi * bandwidth),
+        "position": position,
+        "velocity": velocity,
+        "acceleration": acceleration,
+        "force": force,
+        "inertia": force / acceleration,
+        "damping": force / velocity,
+        "stiffness": force / position,
+        "drag": force / velocity**2,
+        "cubic_stiffness": force / position**3,
+        "frequency": bandwidth,
+        "angle": 1.0,
+        "dimensionless": 1.0,
+    }

@@ -1,0 +1,150 @@
+"""Figures of design: Bode plots, force against velocity, signals over time. Nothing is computed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+
+    from ..frequency import FrequencyResponse
+    from ..simulate import ForceVelocity, Simulation
+
+STYLE = Path(__file__).with_name("teleopdesign.mplstyle")
+ONE_COLUMN, TWO_COLUMNS = 3.5, 7.16  # inches
+
+#: the four cases in the same colours (Okabe and Ito) and lines in every figure
+CASES = {
+    "none": ("#000000", "-", "no compensation"),
+    "MBC": ("#0072B2", (0, (5, 1.6)), "motion-based cancellation"),
+    "FF": ("#D55E00", (0, (4, 1.4, 1, 1.4)), "force feedback"),
+    "hybrid": ("#009E73", "-", "hybrid"),
+}
+_SYMBOLS = {
+    "R_D": "R_D",
+    "R_A": "R_A",
+    "R_M": "R_M",
+    "R_V": "R_V",
+    "R_H": "R_H",
+    "E": "R_D - R_M",
+    "L": "L",
+    "L_D": "L_D",
+    "L_E": "L_D - L",
+    "R_FF": r"R_{\mathrm{FF}}",
+    "R_MBC": r"R_{\mathrm{MBC}}",
+    "L_velocity": r"\dot L",
+    "L_acceleration": r"\ddot L",
+}
+
+
+def symbol(name: str) -> str:
+    """The signal's symbol in mathtext; names without one as they are."""
+    return f"${_SYMBOLS[name]}$" if name in _SYMBOLS else name.replace("_", " ")
+
+
+def unit_text(unit: str) -> str:
+    """A unit as printed on an axis."""
+    return unit.replace("*", r"$\,$").replace("^2", "²")
+
+
+def save_figure(
+    figure: matplotlib.figure.Figure,
+    path: str | Path,
+    *,
+    suffixes: tuple[str, ...] = (".pdf", ".png"),
+) -> list[Path]:
+    """Write the figure in house style, once for each suffix; returns the files."""
+    import matplotlib.pyplot as plt
+
+    files = [Path(path).with_suffix(suffix) for suffix in suffixes]
+    with plt.style.context(STYLE):  # fonts and resolution are taken when it is drawn
+        for file in files:
+            figure.savefig(file)
+    return files
+
+
+def plot_bode(response: FrequencyResponse) -> matplotlib.figure.Figure:
+    """Magnitude in dB and phase against frequency."""
+    import matplotlib.pyplot as plt
+    import numpy as np
+    from matplotlib.ticker import MultipleLocator
+
+    data = response.data
+    unit = data["magnitude"].attrs["units"]
+    with plt.style.context(STYLE):
+        figure, (upper, lower) = plt.subplots(2, 1, sharex=True, figsize=(ONE_COLUMN, 3.4))
+        for case in data["case"].values:
+            colour, line, label = CASES.get(str(case), (None, "-", str(case)))
+            f, one = data["frequency"].values, data.sel(case=case)
+            style = {"color": colour, "linestyle": line, "label": label}
+            upper.semilogx(f, 20 * np.log10(one["magnitude"].values), **style)
+            lower.semilogx(f, one["phase"].values, **style)
+        beside = "" if unit == "1" else f" re 1 {unit_text(unit)}"
+        upper.set_ylabel(f"magnitude (dB{beside})")
+        lower.set_ylabel("phase (deg)")
+        lower.set_xlabel("frequency (Hz)")
+        spread = float(data["phase"].max() - data["phase"].min())
+        lower.yaxis.set_major_locator(MultipleLocator(90 if spread > 270 else 45))
+        lower.set_xlim(float(data["frequency"][0]), float(data["frequency"][-1]))
+        for axis in (upper, lower):
+            axis.grid(True)
+        figure.align_ylabels()
+        if len(data["case"]) > 1:
+            upper.legend(loc="best")
+    return figure
+
+
+def plot_force_velocity(result: ForceVelocity) -> matplotlib.figure.Figure:
+    """Force against velocity, a panel for each case, top to bottom."""
+    import matplotlib.pyplot as plt
+    from matplotlib.ticker import MaxNLocator, MultipleLocator
+
+    data = result.data
+    cases = [str(c) for c in data["case"].values]
+    unit = unit_text(data["force"].attrs["units"])
+    speed = unit_text(data["velocity"].attrs["units"])
+    largest = float(abs(data["force"]).max())
+    limit = 1.0 if 0.4 < largest <= 1.0 else 1.15 * largest
+    with plt.style.context(STYLE):
+        figure, axes = plt.subplots(
+            len(cases), 1, sharex=True, sharey=True, squeeze=False, figsize=(ONE_COLUMN, 5.4)
+        )
+        for letter, case, axis in zip("abcdefgh", cases, axes[:, 0], strict=False):
+            colour, _, label = CASES.get(case, (None, "-", case))
+            one = data.sel(case=case)
+            axis.axhline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
+            axis.axvline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
+            axis.plot(one["velocity"].values, one["force"].values, color=colour)
+            axis.set_title(f"({letter}) {label}", loc="left", pad=3)
+            text = f"rms {result.rms[case]:.2f} {unit}"
+            axis.text(0.985, 0.06, text, transform=axis.transAxes, ha="right", color=colour)
+            axis.set_ylim(-limit, limit)
+            if limit == 1.0:
+                axis.yaxis.set_major_locator(MultipleLocator(0.5))
+        axes[-1, 0].xaxis.set_major_locator(MaxNLocator(5))
+        axes[-1, 0].set_xlabel(f"velocity ({speed})")
+        figure.supylabel(rf"force error $R_D - R_M$ ({unit})", fontsize=8)
+    return figure
+
+
+def plot_simulation(
+    simulation: Simulation, names: tuple[str, ...] = ()
+) -> matplotlib.figure.Figure:
+    """Signals against time, one panel each."""
+    import matplotlib.pyplot as plt
+
+    shown = names or tuple(n for n in ("L", "R_A", "R_M") if n in simulation.data)
+    with plt.style.context(STYLE):
+        height = 0.6 + 1.05 * len(shown)
+        figure, axes = plt.subplots(
+            len(shown), 1, sharex=True, squeeze=False, figsize=(ONE_COLUMN, height)
+        )
+        for name, axis in zip(shown, axes[:, 0], strict=True):
+            signal = simulation[name]
+            axis.plot(signal["time"].values, signal.values)
+            axis.set_ylabel(f"{symbol(name)} ({unit_text(signal.attrs['units'])})")
+            axis.grid(True)
+        axes[-1, 0].set_xlabel("time (s)")
+        figure.align_ylabels()
+    return figure

@@ -1,0 +1,179 @@
+"""Figures of comparisons and diagnoses; draws what they hold and computes nothing of its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..diagnose.comparison import Comparison, residual_data
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ..diagnose.ladder import Diagnosis
+
+STYLE = Path(__file__).with_name("teleopdesign.mplstyle")
+MEASURED, BEFORE, AFTER = "0.55", "#D55E00", "#0072B2"
+FORWARD, BACKWARD, UNTOLD = "#009E73", "#CC79A7", "0.6"
+#: most points drawn per panel; more are not seen and make files large
+POINTS = 6000
+
+
+def _check_rows(data: Any) -> Any:
+    """The samples of the check records, or of all where there are none; first body only."""
+    first = data["body"].values == data["body"].values[0]
+    check = first & (data["use"].values == "check")
+    chosen = data.isel(sample=check if check.any() else first)
+    return chosen.isel(sample=slice(None, None, max(1, chosen.sizes["sample"] // POINTS)))
+
+
+def _label(data: Any, name: str) -> str:
+    return f"{name} ({data[name].attrs['units'].replace('*', ' ')})"
+
+
+def _by_direction(ax: Axes, data: Any, over: str) -> None:
+    for way, color, label in (
+        (0, UNTOLD, "not told"),
+        (1, FORWARD, "forward"),
+        (-1, BACKWARD, "backward"),
+    ):
+        chosen = data["direction"].values == way
+        ax.plot(
+            data[over].values[chosen],
+            data["residual"].values[chosen],
+            ".",
+            ms=1.0,
+            color=color,
+            label=label,
+            rasterized=True,
+        )
+    ax.axhline(0, color="k", lw=0.5)
+    ax.set_xlabel(_label(data, over))
+    ax.set_ylabel(_label(data, "residual"))
+
+
+def _runs(data: Any) -> list[slice]:
+    """Slices of consecutive samples of one record and segment, so that no line joins two."""
+    segment = data["segment"].values
+    edges = [0, *(np.flatnonzero(np.diff(segment)) + 1), len(segment)]
+    return [slice(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+
+
+def _over_time(ax: Axes, data: Any, name: str, color: str, label: str, width: float) -> None:
+    for i, run in enumerate(_runs(data)):
+        ax.plot(
+            data["time"].values[run],
+            data[name].values[run],
+            color=color,
+            lw=width,
+            label=label if i == 0 else None,
+        )
+
+
+def plot_comparison(comparison: Comparison) -> Figure:
+    """Measured and modelled force, and the residual over time, velocity and position."""
+    import matplotlib.pyplot as plt
+
+    data = _check_rows(comparison.data)
+    with plt.style.context(STYLE):
+        figure, axes = plt.subplots(2, 2, figsize=(7.16, 4.6))
+        _over_time(axes[0, 0], data, "measured", MEASURED, "measured", 1.4)
+        _over_time(axes[0, 0], data, "model", AFTER, "model", 0.7)
+        _force_axes(axes[0, 0], data)
+        _over_time(axes[0, 1], data, "residual", AFTER, "residual", 0.7)
+        axes[0, 1].set(xlabel=_label(data, "time"), ylabel=_label(data, "residual"))
+        _by_direction(axes[1, 0], data, "velocity")
+        _by_direction(axes[1, 1], data, "position")
+        axes[1, 0].legend(markerscale=6, loc="upper left")
+    return figure
+
+
+def _force_axes(ax: Axes, data: Any) -> None:
+    ax.set(
+        xlabel=_label(data, "time"), ylabel=_label(data, "measured").replace("measured", "force")
+    )
+    ax.legend(loc="upper right", ncols=3)
+
+
+def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
+    """Forces and residual before and after, residual over velocity and position, the ladder.
+
+    Drawn from the check records' low-passed forces (fit records where there is no check record).
+    """
+    import matplotlib.pyplot as plt
+
+    before = _check_rows(residual_data(diagnosis.before.model, diagnosis.prepared))
+    after = _check_rows(residual_data(diagnosis.model, diagnosis.prepared))
+    changed = len(diagnosis.rungs) > 1
+    with plt.style.context(STYLE):
+        figure, axes = plt.subplot_mosaic(
+            [
+                ["force", "force"],
+                ["time", "time"],
+                ["v0", "x0"],
+                ["v1", "x1"],
+                ["ladder", "ladder"],
+            ],
+            figsize=(7.16, 8.6),
+            height_ratios=[1.1, 1.0, 1.1, 1.1, 0.35 + 0.22 * len(diagnosis.rungs)],
+        )
+        ax = axes["force"]
+        _over_time(ax, before, "measured", MEASURED, "measured", 1.6)
+        _over_time(ax, before, "model", BEFORE, "your model", 0.6)
+        if changed:
+            _over_time(ax, after, "model", AFTER, "with what was missing", 0.6)
+        _force_axes(ax, before)
+        ax.set_title(diagnosis.experiment.title, loc="left")
+        ax = axes["time"]
+        _over_time(ax, before, "residual", BEFORE, "before", 0.7)
+        if changed:
+            _over_time(ax, after, "residual", AFTER, "after", 0.7)
+        ax.set(xlabel=_label(before, "time"), ylabel=_label(before, "residual"))
+        ax.legend(loc="upper right", ncols=2)
+        _residual_maps(axes, before, after, changed=changed)
+        _ladder(axes["ladder"], diagnosis)
+    return figure
+
+
+def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None:
+    for over, first, second in (("velocity", "v0", "v1"), ("position", "x0", "x1")):
+        _by_direction(axes[first], before, over)
+        axes[first].set_title("residual before", loc="left")
+        if changed:
+            _by_direction(axes[second], after, over)
+            axes[second].set_ylim(axes[first].get_ylim())
+            axes[second].set_title("after, same scale", loc="left")
+        else:
+            axes[second].set_axis_off()
+    axes["v0"].legend(markerscale=6, loc="upper left", ncols=3, columnspacing=0.8)
+
+
+def _ladder(ax: Axes, diagnosis: Diagnosis) -> None:
+    names = [
+        "your model, re-estimated" if r.added is None else f"+ {r.added}" for r in diagnosis.rungs
+    ]
+    errors = [100 * r.fit.check_error for r in diagnosis.rungs]
+    rows = np.arange(len(names))
+    colors = [BEFORE] + [AFTER] * (len(names) - 1)
+    ax.barh(rows, errors, height=0.62, color=colors)
+    for y, error in zip(rows, errors, strict=True):
+        ax.annotate(
+            f"{error:.2f} %", (error, y), xytext=(3, 0), textcoords="offset points", va="center"
+        )
+    floor = 100 * diagnosis.floor.value
+    ax.axvline(floor, color="k", lw=0.8, ls="--")
+    ax.annotate(
+        f"noise floor {floor:.2f} %",
+        (floor, 1.0),
+        xycoords=("data", "axes fraction"),
+        xytext=(2, 2),
+        textcoords="offset points",
+        va="bottom",
+    )
+    ax.set_yticks(rows, names)
+    ax.invert_yaxis()
+    ax.set_xlim(0, 1.15 * max(*errors, floor))
+    ax.set_xlabel("check error (% of the measured force)")
