@@ -25,6 +25,9 @@ class ModelError(TeleopDesignError):
 def nearest(word: str, known: Iterable[str]) -> str | None:
     """The name in `known` that a person who wrote `word` probably meant; None if none is close."""
     names = list(known)
+    for name in names:
+        if name.lower() == word.lower():
+            return name
     matches = get_close_matches(word, names, n=1, cutoff=0.6)
     if matches:
         return matches[0]

@@ -18,6 +18,12 @@ from ..effects import SIGNALS, Effect, Parameter, ordered
 from ..errors import ModelError, did_you_mean
 from ..quantity import unit_of
 
+#: roles that one effect of a body can have, in the words of messages
+ONE_ONLY = {
+    "friction_shape": "friction shapes",
+    "friction_speed": "speeds of the friction level",
+    "structure": "structures",
+}
 INERTIA = Parameter("inertia", "inertia of the body", lower=0.0)
 
 
@@ -64,9 +70,10 @@ class Body:
         names = [e.name for e in self.effects]
         if doubled := {n for n in names if names.count(n) > 1}:
             raise ModelError(f'body: effect "{min(doubled)}" is there twice')
-        shapes = [e.name for e in self.effects if e.role == "friction_shape"]
-        if len(shapes) > 1:
-            raise ModelError(f"body: two friction shapes, {' and '.join(shapes)}: one is possible")
+        for role, words in ONE_ONLY.items():
+            same = [e.name for e in self.effects if e.role == role]
+            if len(same) > 1:
+                raise ModelError(f"body: two {words}, {' and '.join(same)}: one is possible")
         for effect in self.effects:
             if missing := effect.needs - set(names):
                 raise ModelError(f'body: "{effect.name}" needs "{min(missing)}" beside it')
@@ -115,7 +122,7 @@ class Body:
     def with_effect(self, effect: Effect, values: Mapping[str, float] | None = None) -> Body:
         """The body with one effect more, at the given values (default: where it is absent).
 
-        A shape of friction replaces the one that was there.
+        A shape of friction, or a structure, replaces the one that was there.
         """
         given = dict(values or {})
         unknown = set(given) - set(effect.parameters)
@@ -126,9 +133,9 @@ class Body:
             )
         start = {n: effect.absent.get(n, 1.0) for n in effect.parameters} | given
         kept = self
-        if effect.role == "friction_shape":
+        if effect.role in ONE_ONLY:
             for other in self.effects:
-                if other.role == "friction_shape":
+                if other.role == effect.role:
                     kept = kept.without_effect(other.name)
         added = {f"{effect.name}.{n}": Value(v) for n, v in start.items()}
         return replace(
@@ -161,17 +168,28 @@ class Body:
         """Parameter symbol -> value, to substitute in the equation."""
         return {s: self.parameters[n].value for n, s in self.symbols().items()}
 
+    def level(self) -> sp.Expr:
+        """Friction level: laws added, factors multiplied, at the speed that the level follows."""
+        added = (e.expression() for e in ordered(self.effects, "friction_level"))
+        level = sum(added, sp.S(0))
+        for effect in ordered(self.effects, "friction_factor"):
+            level *= effect.expression()
+        for effect in ordered(self.effects, "friction_speed"):
+            level = level.subs(SIGNALS["velocity"], effect.expression())
+        return level
+
     def equation(self) -> BodyEquation:
         """Compose the effects by role into the body's equation."""
         acceleration, velocity = SIGNALS["acceleration"], SIGNALS["velocity"]
-        force = sp.expand(sum((e.expression() for e in ordered(self.effects, "force")), sp.S(0)))
+        forces = [*ordered(self.effects, "force"), *ordered(self.effects, "structure")]
+        force = sp.expand(sum((e.expression() for e in forces), sp.S(0)))
         share = force.coeff(acceleration, 1)
-        level = sum((e.expression() for e in ordered(self.effects, "friction_level")), sp.S(0))
         rates: dict[sp.Symbol, sp.Expr] = {}
+        level = self.level()
         friction = level * sp.sign(velocity)
         acting: sp.Expr = SIGNALS["command"]
         stages: list[sp.Symbol] = []
-        for effect in (*self.effects,):
+        for effect in self.effects:
             given = {"level": level} if effect.role == "friction_shape" else {}
             if effect.role == "actuation":
                 continue

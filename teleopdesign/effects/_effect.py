@@ -4,7 +4,9 @@ A body is a chain of roles:
 
     command -> actuation -> acting force
     inertia * a = acting force + interaction force - force - friction
-    friction    = friction_shape (sgn v unless one is given) of the sum of all friction_level laws
+    friction    = friction_shape (sgn v unless one is given) of the friction level
+    level       = sum of the friction_level laws, times all friction_factor laws;
+                  where a friction_speed law is there, at that speed instead of the body's own
 
 An effect file states its law once, with sympy, on the symbols of `now`; every form of it (transfer
 function, python-control system, compiled kernel, residual along a measured motion, catalogue page)
@@ -16,20 +18,44 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import sympy as sp
 
-Role = Literal["actuation", "force", "friction_level", "friction_shape"]
-ROLES: tuple[Role, ...] = ("actuation", "force", "friction_level", "friction_shape")
-# between command and body the signal passes the amplifier (lag) before it is held up (delay)
-ACTUATION_ORDER = ("actuator_lag", "actuation_delay")
+Role = Literal[
+    "actuation",
+    "structure",
+    "force",
+    "friction_level",
+    "friction_factor",
+    "friction_speed",
+    "friction_shape",
+]
+ROLES: tuple[Role, ...] = get_args(Role)
+#: the order in which actuation stages act, where an effect of that name is there; others come last
+ACTUATION_ORDER = (
+    "actuator_gain",
+    "torque_ripple",
+    "actuator_lag",
+    "actuation_delay",
+    "actuator_saturation",
+)
+
+#: starts for the period of something that repeats along the travel (multiples of rms travel) and
+#: for its phase: even in 1/period and close enough that one falls into the right period, as the
+#: whole travel is about four times its rms
+PERIODS = tuple(8.0 / k for k in range(1, 61))
+PHASES = (0.0, 1.5708, 3.1416, 4.7124)
 
 #: symbols that a law may use; `direction` is sgn(velocity), `command` the input of an actuation
-#: stage, `acting_force` its final output, `level` what the friction_level laws add up to
+#: stage, `acting_force` the output of the last, `level` the friction level, `interaction_force`
+#: the force of hand or environment on the body
 SIGNALS = {
     name: sp.Symbol(name, real=True)
-    for name in ("time position velocity acceleration direction command acting_force level".split())
+    for name in (
+        "time position velocity acceleration direction command acting_force interaction_force "
+        "level".split()
+    )
 }
 #: delayed(signal, delay): the signal a fixed time earlier
 delayed = sp.Function("delayed", real=True)
@@ -39,7 +65,8 @@ delayed = sp.Function("delayed", real=True)
 class Parameter:
     """One parameter of an effect: its quantity (a key of `quantity`), meaning and bounds (SI).
 
-    starts: where a search begins, as multiples of the record's own scale of that quantity.
+    starts: where a search begins, as multiples of the record's own scale of that quantity
+    scale: another scale of the record than the quantity's: "duration" for times as long as it
     """
 
     quantity: str
@@ -47,22 +74,29 @@ class Parameter:
     lower: float = 0.0
     upper: float = float("inf")
     starts: tuple[float, ...] = (0.1,)
+    scale: str = ""
 
 
 @dataclass(frozen=True)
 class State:
-    """A hidden state: its quantity and rate law(now, p), where `now` also carries the states."""
+    """A hidden state: its quantity and rate law(now, p), where `now` also carries the states.
+
+    start: the signal that it equals when a record starts; "": it starts settled, or at rest
+    """
 
     quantity: str
     rate: Callable[[Any, Any], sp.Expr]
+    start: str = ""
 
 
 @dataclass(frozen=True, eq=False)
 class Effect:
     """A physical effect: one law in one role; see the package's folder for examples.
 
-    law(now, p) returns the force it adds (role force), its share of the friction level
-    (friction_level), the friction force (friction_shape), or the stage's output (actuation).
+    law(now, p) returns the force it adds (role force; role structure: in place of the interaction
+    force, which acts on a tip of its own), its share of the friction level
+    (friction_level), a factor of that level (friction_factor), the speed that the level follows
+    (friction_speed), the friction force (friction_shape), or the stage's output (actuation).
     linear: declares that the law is linear in the motion (or in the command), so that the LTI form
     is that law at (position, velocity, acceleration) = (1, s, s^2); False: the LTI form leaves the
     effect out, and says so. It is never found by differentiating sgn.
@@ -126,13 +160,14 @@ class Effect:
     def linear_form(self, s: sp.Symbol, values: Mapping[str, Any] | None = None) -> sp.Expr | None:
         """Declared linear part at the Laplace variable s; None where the effect declares none.
 
-        role force: complex stiffness (force per position, added to the impedance relative to
-        position); role actuation: transfer function from command to the stage's output.
+        roles force and structure: complex stiffness (force per position, added to the impedance
+        relative to position); role actuation: transfer function from command to its output.
         """
         if not self.linear:
             return None
         drive = sp.Symbol("drive")
         signals = dict(position=drive, velocity=s * drive, acceleration=s**2 * drive, command=drive)
+        signals |= dict(interaction_force=sp.S(0))
         states = self.state_symbols()
         law, rates = self.expression(signals, values), self.rates(signals, values)
         settled = sp.solve([s * states[n] - rate for n, rate in rates.items()], *states.values())

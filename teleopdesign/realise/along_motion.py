@@ -25,7 +25,8 @@ from ..blocks import Body
 from ..effects import SIGNALS, Effect, Role, delayed, ordered
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
-from .scan import shape_bounds, stage_scan
+from .ode_scan import ode_scan
+from .scan import driven_scan, shape_bounds, stage_scan
 
 #: projected steps towards the friction that balances; the error moves by under 5 % after these
 BALANCE_STEPS = 4
@@ -138,17 +139,31 @@ def residual_along(body: Body, motion: Motion, wrt: Sequence[str] = ()) -> Resid
     given = {SIGNALS[name]: plain(getattr(motion, name)) for name in _MOTION}
     acting = _acting(body, motion, plain(motion.command), values, columns)
     given[SIGNALS["acting_force"]] = acting
+    given[SIGNALS["interaction_force"]] = plain(motion.interaction)
     inertia = law_of(symbols["inertia"] * SIGNALS["acceleration"])
     needed = acting + plain(motion.interaction) - inertia(given, values, columns)
-    for effect in ordered(body.effects, "force"):
-        needed = needed - law_of(effect.expression())(given, values, columns)
+    for effect in (*_present(body, "force", values), *_present(body, "structure", values)):
+        needed = needed - _force(effect, given, values, columns, motion.sample_time)
     friction = _friction(body, motion, given, needed, values, columns)
     return Residual(motion, needed - friction, friction, acting)
 
 
+def _force(
+    effect: Effect,
+    given: Mapping[sp.Symbol, Traced],
+    values: Mapping[Any, float],
+    columns: list[Any],
+    step: float,
+) -> Traced:
+    """Force of an effect along the motion, its hidden states simulated."""
+    hidden = ode_scan(effect, given, values, columns, step) if effect.states else {}
+    law = law_of(effect.expression(), (*SIGNALS.values(), *hidden), _TRACED | set(hidden))
+    return law({**given, **hidden}, values, columns)
+
+
 def _present(body: Body, role: Role, values: Mapping[Any, float]) -> list[Effect]:
     """Effects of a role but those whose values say that they are absent: laws may divide by it."""
-    return [e for e in ordered(body.effects, role) if not e.is_absent(values)]
+    return [e for e in ordered(body.effects, role) if not (e.states and e.is_absent(values))]
 
 
 def _acting(
@@ -213,15 +228,21 @@ def _friction(
     values: Mapping[Any, float],
     columns: list[Any],
 ) -> Traced:
-    laws = [e.expression() for e in ordered(body.effects, "friction_level")]
+    level = body.level()
     zero = np.zeros_like(needed.tangent)
-    if not laws:
+    if level == 0:
         return Traced(np.zeros_like(needed.value), zero)
-    level = sp.Add(*laws)
+    hidden: dict[Any, Traced] = {}
+    for effect in ordered(body.effects, "friction_speed"):
+        if effect.is_absent(values):
+            level = level.subs(effect.expression(), sp.Abs(SIGNALS["velocity"]))
+        else:
+            hidden |= driven_scan(effect, given, values, columns, motion.sample_time)
+    law = law_of(level, (*SIGNALS.values(), *hidden), _TRACED | set(hidden))
 
     def towards(way: float) -> Traced:
         ways = {SIGNALS["direction"]: Traced(np.full_like(needed.value, way), zero)}
-        found = law_of(level)({**given, **ways}, values, columns)
+        found = law({**given, **hidden, **ways}, values, columns)
         found.tangent[:, found.value < 0] = 0.0
         return Traced(np.maximum(found.value, 0.0), found.tangent)
 

@@ -30,7 +30,7 @@ import numpy as np
 from numba import njit
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def phi(x):
     """phi_1, phi_2 and their slopes, accurate through zero."""
     if abs(x) < 1e-2:
@@ -57,7 +57,7 @@ def _affine(effect: Effect) -> tuple[sp.Symbol, sp.Expr, sp.Expr]:
     slope = sp.diff(rate, z)
     if slope.has(z):
         raise ModelError(f"{effect.name}: the rate of {name} must be affine in {name}")
-    return z, slope, sp.simplify(rate - slope * z)
+    return z, slope, rate.subs(z, 0)
 
 
 def _code(expression: sp.Expr) -> str:
@@ -92,7 +92,7 @@ def _stage_source(effect: Effect) -> str:
     }
     names = {**{n: s.name for n, s in effect.symbols().items()}}
     return f"""{_HEAD}
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def stage(h, columns, {", ".join(names.values())}, {", ".join(f"{n}_" for n in used)}, dcommand,
           end, dend, mean, dmean):
     p, n = dcommand.shape
@@ -136,10 +136,36 @@ def stage_scan(
     step: float,
 ) -> dict[sp.Symbol, Traced]:
     """State of an actuation stage, as its average over the hold of each row, with tangents."""
+    (_, mean) = _advanced(effect, given, given[SIGNALS["command"]], values, columns, step)
+    (symbol,) = effect.state_symbols().values()
+    return {symbol: mean}
+
+
+def driven_scan(
+    effect: Effect,
+    given: Mapping[Any, Traced],
+    values: Mapping[Any, float],
+    columns: list[Any],
+    step: float,
+) -> dict[sp.Symbol, Traced]:
+    """State that the measured motion drives, at the rows, with tangents."""
+    (end, _) = _advanced(effect, given, given[SIGNALS["velocity"]], values, columns, step)
+    (symbol,) = effect.state_symbols().values()
+    return {symbol: end}
+
+
+def _advanced(
+    effect: Effect,
+    given: Mapping[Any, Traced],
+    command: Traced,
+    values: Mapping[Any, float],
+    columns: list[Any],
+    step: float,
+) -> tuple[Traced, Traced]:
+    """The effect's state at the rows and its average over the hold of each."""
     from .along_motion import Traced
 
     scan = compiled(_stage_source(effect), "stage")
-    command = given[SIGNALS["command"]]
     end, dend = np.empty_like(command.value), np.empty_like(command.tangent)
     mean, dmean = np.empty_like(command.value), np.empty_like(command.tangent)
     scan(
@@ -153,8 +179,7 @@ def stage_scan(
         mean,
         dmean,
     )
-    (symbol,) = effect.state_symbols().values()
-    return {symbol: Traced(mean, dmean)}
+    return Traced(end, dend), Traced(mean, dmean)
 
 
 @lru_cache(maxsize=64)
@@ -168,7 +193,7 @@ def _shape_source(effect: Effect) -> str:
     own = " + ".join(f"{{0}}_{c} * (columns[{i}] == j)" for i, c in enumerate(names))
     arguments = [s.name for s in effect.symbols().values()] + [f"{n}_" for n in used]
     return f"""{_HEAD}
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def shape(h, half_step, columns, position, direction, {", ".join(arguments)},
           forward, dforward, backward, dbackward, low, dlow, high, dhigh):
     p, n = dforward.shape

@@ -1,0 +1,57 @@
+"""Backlash: actuator side and tip side are two bodies joined through a gap.
+
+    F = K (d -+ g/2) + C (v - v_t) outside the gap, abs(d) > g/2, else 0;   d = x - x_t
+    m_t dv_t/dt = F + interaction force
+
+Gears and worn joints. Told from `transmission_compliance` by small motion, in which the tip does
+not follow at all.
+"""
+
+from typing import Any
+
+from sympy import Piecewise
+
+from ._effect import Effect, Parameter, State
+
+
+def coupling(now: Any, p: Any) -> Any:
+    apart, closing = now.position - now.tip_position, now.velocity - now.tip_velocity
+    return Piecewise(
+        (p.stiffness * (apart - p.gap / 2) + p.damping * closing, apart > p.gap / 2),
+        (p.stiffness * (apart + p.gap / 2) + p.damping * closing, apart < -p.gap / 2),
+        (0, True),
+    )
+
+
+def law(now, p):
+    return coupling(now, p) + now.interaction_force
+
+
+def tip_position(now, p):
+    return now.tip_velocity
+
+
+def tip_velocity(now, p):
+    return (coupling(now, p) + now.interaction_force) / p.tip_inertia
+
+
+EFFECT = Effect(
+    role="structure",
+    law=law,
+    states={
+        "tip_position": State("position", tip_position, "position"),
+        "tip_velocity": State("velocity", tip_velocity, "velocity"),
+    },
+    parameters={
+        "tip_inertia": Parameter("inertia", "m_t: inertia of the tip side", starts=(0.3,)),
+        "stiffness": Parameter(
+            "stiffness", "K: contact stiffness", starts=(0.05, 0.3), scale="resonance_stiffness"
+        ),
+        "damping": Parameter(
+            "damping", "C: contact damping", starts=(0.03,), scale="resonance_damping"
+        ),
+        "gap": Parameter("position", "g: width of the gap", starts=(0.03, 0.3)),
+    },
+    absent={"tip_inertia": 0.0},
+    source="two masses with lost motion",
+)

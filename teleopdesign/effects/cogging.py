@@ -1,0 +1,28 @@
+"""Cogging: a force that repeats along the travel.
+
+    F = A sin(2 pi x / p + phi)
+
+Magnets against iron teeth, ball screws, gear meshing. It does not depend on the direction, as
+`position_dependent_friction` does, nor on the command, as `torque_ripple` does.
+"""
+
+from sympy import pi, sin
+
+from ._effect import PERIODS, PHASES, Effect, Parameter
+
+
+def law(now, p):
+    return p.amplitude * sin(2 * pi * now.position / p.period + p.phase)
+
+
+EFFECT = Effect(
+    role="force",
+    law=law,
+    parameters={
+        "amplitude": Parameter("force", "A: amplitude"),
+        "period": Parameter("position", "p: travel of one period", starts=PERIODS),
+        "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=PHASES),
+    },
+    absent={"amplitude": 0.0},
+    source="periodic detent force of a slotted machine, first harmonic",
+)

@@ -1,0 +1,33 @@
+"""Friction drift: the level changes slowly as the device warms up.
+
+    level = F_C (1 - d (1 - exp(-t / tau))),   t from the start of each record, which starts cold
+
+Grease and seals. Records shorter than tau show only a trend, from which d and tau cannot both be
+told.
+"""
+
+from sympy import exp
+
+from ._effect import Effect, Parameter
+
+
+def law(now, p):
+    return 1 - p.fraction * (1 - exp(-now.time / p.time_constant))
+
+
+EFFECT = Effect(
+    role="friction_factor",
+    law=law,
+    parameters={
+        "fraction": Parameter(
+            "dimensionless", "d: part of the cold level that is lost", lower=-1.0, upper=1.0
+        ),
+        "time_constant": Parameter(
+            "time", "tau: of warming up", starts=(0.2, 1.0), scale="duration"
+        ),
+    },
+    absent={"fraction": 0.0},
+    needs=frozenset({"coulomb"}),
+    always=frozenset({"even in velocity", "non-negative", "dissipates"}),
+    source="first-order warm-up of a lubricant",
+)

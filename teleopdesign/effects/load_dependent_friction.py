@@ -1,0 +1,24 @@
+"""Load-dependent friction: the level grows with the force carried.
+
+    level = F_C + mu abs(acting force)
+
+Gears, screws and capstans press harder on their contacts the more they transmit. Told from
+`coulomb` by commands that vary at equal speed.
+"""
+
+from ._effect import Effect, Parameter
+
+
+def law(now, p):
+    return p.coefficient * abs(now.acting_force)
+
+
+EFFECT = Effect(
+    role="friction_level",
+    law=law,
+    parameters={"coefficient": Parameter("dimensionless", "mu: level per force carried")},
+    absent={"coefficient": 0.0},
+    needs=frozenset({"coulomb"}),
+    always=frozenset({"even in velocity", "non-negative", "dissipates"}),
+    source="Amontons' law on the transmitted force",
+)

@@ -1,0 +1,30 @@
+"""Position-dependent friction: the level varies along the travel.
+
+    level = F_C (1 + e sin(2 pi x / p + phi))
+
+Bent rails, eccentric gears, uneven preload; with a period beyond the travel, a slope. It turns
+round with the direction, which tells it from `cogging` and `spring`.
+"""
+
+from sympy import pi, sin
+
+from ._effect import PERIODS, PHASES, Effect, Parameter
+
+
+def law(now, p):
+    return 1 + p.amplitude * sin(2 * pi * now.position / p.period + p.phase)
+
+
+EFFECT = Effect(
+    role="friction_factor",
+    law=law,
+    parameters={
+        "amplitude": Parameter("dimensionless", "e: half of its range, over the mean", upper=1.0),
+        "period": Parameter("position", "p: travel of one period", starts=PERIODS),
+        "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=PHASES),
+    },
+    absent={"amplitude": 0.0},
+    needs=frozenset({"coulomb"}),
+    always=frozenset({"even in velocity", "non-negative", "dissipates"}),
+    source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
+)

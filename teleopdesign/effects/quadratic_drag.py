@@ -1,0 +1,23 @@
+"""Quadratic drag: a force with the square of velocity, against it.
+
+    F = D v abs(v)
+
+Turbulent air or oil, fans, orifices. Felt only at high speed; mistaken for `viscous` where the
+speed varies little.
+"""
+
+from ._effect import Effect, Parameter
+
+
+def law(now, p):
+    return p.drag * now.velocity * abs(now.velocity)
+
+
+EFFECT = Effect(
+    role="force",
+    law=law,
+    parameters={"drag": Parameter("drag", "D: force per velocity squared")},
+    absent={"drag": 0.0},
+    always=frozenset({"dissipates"}),
+    source="drag equation of fluid mechanics",
+)

@@ -1,0 +1,28 @@
+"""Torque ripple: the actuator's gain varies along the travel.
+
+    acting force = command (1 + r sin(2 pi x / p + phi))
+
+Commutation and magnets of a motor, eccentric capstans. Nothing acts where nothing is commanded:
+that tells it from `cogging`.
+"""
+
+from sympy import pi, sin
+
+from ._effect import PERIODS, PHASES, Effect, Parameter
+
+
+def law(now, p):
+    return now.command * (1 + p.amplitude * sin(2 * pi * now.position / p.period + p.phase))
+
+
+EFFECT = Effect(
+    role="actuation",
+    law=law,
+    parameters={
+        "amplitude": Parameter("dimensionless", "r: relative amplitude", upper=1.0),
+        "period": Parameter("position", "p: travel of one period", starts=PERIODS),
+        "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=PHASES),
+    },
+    absent={"amplitude": 0.0},
+    source="torque constant of a commutated motor, first harmonic",
+)

@@ -1,0 +1,140 @@
+"""Several coupled hidden states along a measured motion, such as a tip body, with tangents.
+
+Runge-Kutta steps; the signals that drive them are interpolated between rows, and sub-steps keep
+the fastest mode well within the method's stability. Generated from the effect's rates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import sympy as sp
+
+from ..effects import SIGNALS, Effect
+from .compiled import compiled
+
+if TYPE_CHECKING:
+    from .along_motion import Traced
+
+#: part of a radian of the fastest mode that one sub-step may cover, and the most sub-steps
+MODE_STEP, MOST_STEPS = 0.5, 40
+
+
+def _lines(lines: list[str], depth: int) -> str:
+    return "\n".join(" " * depth + line for line in lines)
+
+
+def _code(expression: sp.Expr) -> str:
+    return str(sp.pycode(expression, fully_qualified_modules=False))
+
+
+def _drivers(effect: Effect) -> list[str]:
+    rates = effect.rates().values()
+    return [n for n, s in SIGNALS.items() if any(r.has(s) for r in rates)]
+
+
+@lru_cache(maxsize=32)
+def _source(effect: Effect) -> str:
+    states = list(effect.state_symbols().values())
+    rates = list(effect.rates().values())
+    parameters = list(effect.symbols().values())
+    drivers = _drivers(effect)
+    unpack = [f"{s} = z[{i}]" for i, s in enumerate(states)]
+    unpack += [f"{s} = p[{i}]" for i, s in enumerate(parameters)]
+    unpack += [f"{d} = u[{i}]" for i, d in enumerate(drivers)]
+    slopes = [f"f[{i}] = {_code(r)}" for i, r in enumerate(rates)]
+    for i, rate in enumerate(rates):
+        by_state = [f"({_code(sp.diff(rate, s))}) * d[{j}, c]" for j, s in enumerate(states)]
+        by_parameter = [
+            f"({_code(sp.diff(rate, s))}) * (columns[{j}] == c)" for j, s in enumerate(parameters)
+        ]
+        slopes_of_tangent = " + ".join(by_state + by_parameter)
+        unpack_tangent = f"g[{i}, c] = {slopes_of_tangent}"
+        slopes.append(f"for c in range(d.shape[1]):\n        {unpack_tangent}")
+    return f'''"""Generated from an effect's rates; do not edit."""
+from math import *
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def rate(z, d, u, p, columns, f, g):
+{_lines(unpack, 4)}
+{_lines(slopes, 4)}
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def scan(h, steps, p, columns, drive, z, out, dout):
+    m, n = drive.shape
+    s, q = len(z), dout.shape[1]
+    d = np.zeros((s, q))
+    f = np.zeros((4, s))
+    g = np.zeros((4, s, q))
+    u = np.zeros(m)
+    w = h / steps
+    for k in range(n):
+        for i in range(s):
+            out[i, k] = z[i]
+            for c in range(q):
+                dout[i, c, k] = d[i, c]
+        if k == n - 1:
+            break
+        for step in range(steps):
+            for stage in range(4):
+                part = (0.0, 0.5, 0.5, 1.0)[stage]
+                here = (step + part) / steps
+                for i in range(m):
+                    u[i] = drive[i, k] + here * (drive[i, k + 1] - drive[i, k])
+                before = max(stage - 1, 0)
+                rate(z + part * w * f[before], d + part * w * g[before], u, p, columns,
+                     f[stage], g[stage])
+            z = z + w / 6 * (f[0] + 2 * f[1] + 2 * f[2] + f[3])
+            d = d + w / 6 * (g[0] + 2 * g[1] + 2 * g[2] + g[3])
+'''
+
+
+@lru_cache(maxsize=32)
+def _fastest(effect: Effect) -> Any:
+    """Function of the parameters: the largest rate (rad/s) of the states among themselves.
+
+    Laws with gaps or stops are judged where they are stiffest, by the largest of their pieces.
+    """
+    states = list(effect.state_symbols().values())
+    rates = [r.replace(sp.Piecewise, lambda *pieces: pieces[0][0]) for r in effect.rates().values()]
+    matrix = sp.Matrix(rates).jacobian(states)
+    return sp.lambdify(list(effect.symbols().values()), matrix, "numpy")
+
+
+def ode_scan(
+    effect: Effect,
+    given: Mapping[Any, Traced],
+    values: Mapping[Any, float],
+    columns: list[Any],
+    step: float,
+) -> dict[sp.Symbol, Traced]:
+    """The effect's hidden states at the rows, with tangents, driven by the measured signals.
+
+    given: signals at the rows, which carry no tangents themselves;  step: s between rows
+    """
+    from .along_motion import Traced
+
+    own = effect.symbols()
+    parameters = np.array([values[s] for s in own.values()], dtype=float)
+    places = np.array([columns.index(s) if s in columns else -1 for s in own.values()], dtype=int)
+    modes = np.linalg.eigvals(np.nan_to_num(np.array(_fastest(effect)(*parameters), dtype=float)))
+    steps = int(np.clip(np.ceil(step * np.abs(modes).max() / MODE_STEP), 1, MOST_STEPS))
+    drive = np.ascontiguousarray([given[SIGNALS[n]].value for n in _drivers(effect)])
+    start = np.array(
+        [given[SIGNALS[s.start]].value[0] if s.start else 0.0 for s in effect.states.values()]
+    )
+    n, count = drive.shape[1], len(effect.states)
+    out, tangent = np.empty((count, n)), np.empty((count, len(columns), n))
+    compiled(_source(effect), "scan")(step, steps, parameters, places, drive, start, out, tangent)
+    return {
+        symbol: Traced(out[i], tangent[i])
+        for i, symbol in enumerate(effect.state_symbols().values())
+    }
