@@ -5,10 +5,11 @@ from __future__ import annotations
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .comparison import Comparison, compare
-from .fit import Fit, estimate_from_starts
+from .fit import Fit
 from .force_error import prepare
 from .ladder import Diagnosis, Rung, find_missing
 from .rank import Ranked, Ranking, rank_candidates
+from .search import estimate_from_starts
 
 __all__ = [
     "Comparison",

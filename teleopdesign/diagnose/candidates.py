@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import product
 
+from ..blocks.body import ONE_ONLY
 from ..effects import Effect
 from ..model import Model
 
@@ -29,9 +30,9 @@ def candidates(model: Model) -> tuple[Candidate, ...]:
     """Effects that the model lacks and could take, at each of its bodies."""
     found = []
     for place, body in model.bodies.items():
-        shaped = any(e.role == "friction_shape" for e in body.effects)
+        taken = {e.role for e in body.effects} & set(ONE_ONLY)
         for effect in model.known.values():
-            if body.has(effect.name) or (shaped and effect.role == "friction_shape"):
+            if body.has(effect.name) or effect.role in taken:
                 continue
             if all(body.has(need) for need in effect.needs):
                 found.append(Candidate(effect, place))
@@ -48,7 +49,10 @@ def started(model: Model, scale: dict[str, float]) -> list[Model]:
     for name, place in model.absent:
         parameters = model.body(place).effect(name).parameters
         free = [n for n in parameters if not model.parameters[f"{place}.{name}.{n}"].fixed]
-        grids = [[m * scale[parameters[n].quantity] for m in parameters[n].starts] for n in free]
+        grids = [
+            [m * scale[parameters[n].scale or parameters[n].quantity] for m in parameters[n].starts]
+            for n in free
+        ]
         names = [f"{place}.{name}.{n}" for n in free]
         models = [
             m.with_values(dict(zip(names, values, strict=True)))

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
+from scipy.special import ndtr
 
 from ..measurement.filtering import Array
 
@@ -34,4 +34,4 @@ def gain_score(before: Array, after: Array, blocks: NDArray[np.intp]) -> float:
 
 def chance(score: float) -> float:
     """Probability that chance alone brings a score of this size or more (one-sided, normal)."""
-    return float(stats.norm.sf(score))
+    return float(ndtr(-score))

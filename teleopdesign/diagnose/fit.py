@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from ..blocks import Value
 from ..measurement.filtering import Array
 from ..model import Model
-from .candidates import started
 from .force_error import Prepared, Stretch, folds, force_error, referred
 from .least_squares import minimise
 from .scales import scales
@@ -80,7 +79,7 @@ ROUGH, FINE = Effort(1e-4, 12), Effort(1e-7, 60)
 
 
 @dataclass(frozen=True)
-class _Solution:
+class Solution:
     """Free parameters at the optimum, with weighted residual and jacobian by value / scale."""
 
     values: Array
@@ -98,7 +97,7 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = FINE) -> Fit:
     """
     stretches = prepared.of("fit")
     free = free_parameters(model)
-    solution = _solve(model, free, prepared, stretches, effort)
+    solution = solve(model, free, prepared, stretches, effort)
     blocks = block_numbers(stretches)
     errors = standard_errors(solution.jacobian, solution.residual, blocks) * solution.scale
     fitted = model.with_values(
@@ -127,30 +126,6 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = FINE) -> Fit:
     )
 
 
-#: gain in squares on the fit records from which a fit from rough starts is driven on
-WORTH = 0.005
-
-
-def estimate_from_starts(model: Model, prepared: Prepared, base: Fit | None = None) -> Fit:
-    """The best fit of a model, from every starting value of the effects that are still absent.
-
-    base: a fit of the model without them; one that gains next to nothing on it stays rough
-    """
-    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
-    models = started(model, unit)
-    if len(models) == 1 and base is None:
-        return estimate(models[0], prepared)
-    rough = [estimate(m, prepared, effort=ROUGH) for m in models]
-    best = min(rough, key=_fit_squares)
-    if base is not None and _fit_squares(best) > (1.0 - WORTH) * _fit_squares(base):
-        return best
-    return estimate(best.model, prepared)
-
-
-def _fit_squares(found: Fit) -> float:
-    return float(found.fit_residual @ found.fit_residual)
-
-
 def _held_out(
     fitted: Model, free: tuple[str, ...], prepared: Prepared
 ) -> tuple[tuple[Stretch, ...], list[Array], float]:
@@ -159,7 +134,7 @@ def _held_out(
     parts: list[Array] = []
     squares = 0.0
     for seen, unseen in folds(prepared.of("fit")):
-        solution = _solve(fitted, free, prepared, seen, ROUGH)
+        solution = solve(fitted, free, prepared, seen, ROUGH)
         model = _at(fitted, free, solution.values)
         held += unseen
         parts += [v for v, _ in referred(model, unseen)]
@@ -167,19 +142,20 @@ def _held_out(
     return tuple(held), parts, float(np.sqrt(squares / sum(s.measured for s in held)))
 
 
-def _solve(
+def solve(
     model: Model,
     free: tuple[str, ...],
     prepared: Prepared,
     stretches: Sequence[Stretch],
     effort: Effort,
-) -> _Solution:
+) -> Solution:
     """Bounded least squares on the referred residuals of these stretches."""
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
-    scale = np.array([unit[model.declared(n).quantity] for n in free])
+    declared = [model.declared(n) for n in free]
+    scale = np.array([unit[d.scale or d.quantity] for d in declared])
     over_decades = np.array([_over_decades(model, n) for n in free], dtype=bool)
-    lower = np.array([model.declared(n).lower for n in free]) / scale
-    upper = np.array([model.declared(n).upper for n in free]) / scale
+    lower = np.array([d.lower for d in declared]) / scale
+    upper = np.array([d.upper for d in declared]) / scale
     start = np.array([model.parameters[n].value for n in free]) / scale
     lower[over_decades], upper[over_decades] = -DECADES * np.log(10), DECADES * np.log(10)
     start[over_decades] = np.log(np.maximum(start[over_decades], 1e-300))
@@ -209,7 +185,7 @@ def _solve(
     residual, jacobian = both(best)
     at_bound = (best - lower < AT_BOUND) | (upper - best < AT_BOUND)
     slope = np.where(over_decades, values(best), scale)
-    return _Solution(values(best), slope, at_bound, residual, jacobian)
+    return Solution(values(best), slope, at_bound, residual, jacobian)
 
 
 def _over_decades(model: Model, name: str) -> bool:

@@ -14,10 +14,11 @@ from ..measurement.experiment import Experiment
 from ..model import Model
 from .candidates import Candidate
 from .evidence import chance
-from .fit import Fit, estimate, estimate_from_starts
+from .fit import Fit, estimate
 from .force_error import Prepared, prepare
 from .noise_floor import NoiseFloor, noise_floor
 from .rank import Ranked, Ranking, check_score, check_squares, rank_candidates
+from .search import estimate_from_starts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -140,7 +141,12 @@ def find_missing(
             break
         equals = [r for r in supported if r.behind < CLOSE and _close(r, supported[0])]
         best = min(equals, key=_simplicity)
-        others = tuple(r.candidate for r in equals if r is not best)
+        # one that needs more parameters to do as well explains nothing that the simpler does not
+        others = tuple(
+            r.candidate
+            for r in equals
+            if r is not best and _simplicity(r)[0] == _simplicity(best)[0]
+        )
         rungs.append(Rung(best.candidate, best.fit, ranking, others))
         rungs = _pruned(rungs, prepared, floor)
     return Diagnosis(experiment, prepared, _verdict(rungs, floor), tuple(rungs), ranking, floor)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
 from .candidates import Candidate, candidates
 from .evidence import gain_score
-from .fit import Fit, estimate_from_starts
+from .fit import Fit
 from .force_error import Prepared
+from .search import estimate_from_starts
 
 
 @dataclass(frozen=True)
@@ -107,12 +110,16 @@ def rank_candidates(
     base: the fitted model that something may be missing in
     progress: called with a line of text before each candidate
     """
-    fits: list[tuple[Candidate, Fit]] = []
-    for candidate in candidates(base.model):
+
+    def tried(candidate: Candidate) -> tuple[Candidate, Fit]:
         if progress is not None:
             progress(str(candidate))
         added = base.model.with_effect(candidate.effect, at=candidate.at)
-        fits.append((candidate, estimate_from_starts(added, prepared, base)))
+        return candidate, estimate_from_starts(added, prepared, base)
+
+    # transforms and kernels release the interpreter's lock, so threads share the cores
+    with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
+        fits = list(pool.map(tried, candidates(base.model)))
     told = {c.key: is_told(f, base) for c, f in fits}
     fits.sort(key=lambda cf: (not told[cf[0].key], check_squares(cf[1])))
     ranked = [

@@ -1,0 +1,114 @@
+"""The best fit of a model with new effects, from many starting values.
+
+Few survive each round: first one linear step is predicted from every start, and where none promises
+a gain the search ends; then a few real steps are made from the best, then rough fits, then a fine
+one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..measurement.filtering import Array
+from ..model import Model
+from .candidates import started
+from .fit import FINE, ROUGH, Effort, Fit, estimate, free_parameters, solve
+from .force_error import Prepared, referred
+from .scales import scales
+
+#: gain in squares on the fit records from which a fit from rough starts is driven on
+WORTH = 0.005
+#: starts kept after the prediction, and after the first steps
+PREDICTED, STEPPED = 2, 1
+FIRST_STEPS = Effort(1e-3, 4)
+
+
+def estimate_from_starts(model: Model, prepared: Prepared, base: Fit | None = None) -> Fit:
+    """The best fit of a model, from every starting value of the effects that are still absent.
+
+    base: a fit of the model without them; one that gains next to nothing on it stays rough
+    """
+    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
+    models = started(model, unit)
+    if base is not None:
+        models = _promising(model, models, prepared, base, unit)
+        if not models:
+            return unchanged(model, base)
+    elif len(models) == 1:
+        return estimate(model, prepared)
+    if len(models) > STEPPED + 1:
+        models = _best_stepped(models, prepared)
+    rough = [estimate(m, prepared, effort=ROUGH) for m in models]
+    best = min(rough, key=_squares)
+    if base is not None and _squares(best) > (1.0 - WORTH) * _squares(base):
+        return best
+    return estimate(best.model, prepared, effort=FINE)
+
+
+def unchanged(model: Model, base: Fit) -> Fit:
+    """The fit of a model whose new effects stay absent: what the base leaves, all of it."""
+    return replace(base, model=model.with_values(dict(base.model.parameters)))
+
+
+def _squares(found: Fit) -> float:
+    return float(found.fit_residual @ found.fit_residual)
+
+
+def _promising(
+    model: Model, models: list[Model], prepared: Prepared, base: Fit, unit: dict[str, float]
+) -> list[Model]:
+    """The starts from which one linear step promises most; none where none promises a gain.
+
+    The tangents by amplitude and phase span every phase: one phase of each start is predicted, and
+    those that differ from it in phase alone are kept with it.
+    """
+    new = [n for n in free_parameters(model) if n not in base.free]
+    angles = [n for n in new if model.declared(n).quantity == "angle"]
+    first = {n: models[0].parameters[n].value for n in angles}
+    alike = [m for m in models if all(m.parameters[n].value == v for n, v in first.items())]
+    promised = sorted((_promise(m, new, prepared, base, unit), i) for i, m in enumerate(alike))
+    if promised[0][0] > (1.0 - WORTH) * _squares(base):
+        return []
+    chosen = [alike[i] for _, i in promised[:PREDICTED]]
+    others = [n for n in new if n not in angles]
+    return [
+        m
+        for m in models
+        if any(all(m.parameters[n] == c.parameters[n] for n in others) for c in chosen)
+    ]
+
+
+def _promise(
+    model: Model, new: list[str], prepared: Prepared, base: Fit, unit: dict[str, float]
+) -> float:
+    """Sum of squares after one linear step from this start, by all parameters."""
+    stretches = prepared.of("fit")
+    parts = referred(model, stretches, new)
+    roots = [np.sqrt(s.weight) for s in stretches]
+    residual = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
+    columns = np.concatenate([w * d.T for w, (_, d) in zip(roots, parts, strict=True)])
+    columns = columns * np.array([unit[model.declared(n).quantity] for n in new])
+    return _left(np.hstack([base.jacobian, columns]), residual)
+
+
+def _left(columns: Array, residual: Array) -> float:
+    """Squares of the residual that these columns cannot take away, by normal equations."""
+    size = np.linalg.norm(columns, axis=0)
+    columns = columns / np.where(size > 0, size, 1.0)
+    normal = columns.T @ columns + 1e-9 * np.eye(columns.shape[1])
+    gradient = columns.T @ residual
+    return float(residual @ residual - gradient @ np.linalg.solve(normal, gradient))
+
+
+def _best_stepped(models: list[Model], prepared: Prepared) -> list[Model]:
+    """The starts that lie lowest after a few real steps, where these steps have led them."""
+    stretches, found = prepared.of("fit"), []
+    for i, model in enumerate(models):
+        free = free_parameters(model)
+        solution = solve(model, free, prepared, stretches, FIRST_STEPS)
+        squares = float(solution.residual @ solution.residual)
+        found.append((squares, i, dict(zip(free, solution.values.tolist(), strict=True))))
+    found.sort(key=lambda f: f[:2])
+    return [models[i].with_values(values) for _, i, values in found[:STEPPED]]
