@@ -1,0 +1,74 @@
+"""Control laws: chosen, not found. Every file that does not begin with `_` holds one law.
+
+controller("smoothed_coulomb", {"level": 0.5, "smoothing_velocity": 0.015})
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Literal
+
+from ..errors import ModelError, did_you_mean
+from ._controller import (
+    SIGNALS,
+    ControlLaw,
+    Controller,
+    ControllerEquation,
+    Stage,
+    parameter_symbol,
+)
+
+__all__ = [
+    "CONTROLLERS",
+    "SIGNALS",
+    "ControlLaw",
+    "Controller",
+    "ControllerEquation",
+    "Stage",
+    "controller",
+    "parameter_symbol",
+    "scheduled_force_feedback",
+]
+
+
+def _laws() -> Mapping[str, ControlLaw]:
+    files = sorted(p for p in Path(__file__).parent.glob("*.py") if not p.name.startswith("_"))
+    found = {p.stem: importlib.import_module(f"{__name__}.{p.stem}") for p in files}
+    return MappingProxyType({n: m.CONTROLLER.named(n, m.__doc__ or "") for n, m in found.items()})
+
+
+CONTROLLERS: Mapping[str, ControlLaw] = _laws()
+
+
+def controller(name: str, values: Mapping[str, float]) -> Controller:
+    """The control law of that name with these parameter values (SI)."""
+    if name not in CONTROLLERS:
+        raise ModelError(
+            f'controller: no law "{name}", has {", ".join(CONTROLLERS)}'
+            f"{did_you_mean(name, CONTROLLERS)}"
+        )
+    return Controller((Stage(CONTROLLERS[name], values),))
+
+
+def scheduled_force_feedback(
+    *,
+    gain: float,
+    scheduling_velocity: float,
+    bandwidth: float,
+    schedule: Literal["before", "after"] = "before",
+) -> Controller:
+    """Block H: low-pass of the force error with a gain k b/(b + abs(v)).
+
+    gain: k at rest, 1;  scheduling_velocity: b in m/s;  bandwidth: of the low-pass, Hz
+    schedule: whether the gain acts before the filter or after it; the two differ where abs(v)
+    changes within the filter's time constant. The paper leaves it open.
+    """
+    if schedule not in ("before", "after"):
+        raise ModelError(f'schedule: "before" or "after", found "{schedule}"')
+    values = {"gain": gain, "scheduling_velocity": scheduling_velocity}
+    scheduled = controller("velocity_schedule", values)
+    low_pass = controller("low_pass", {"bandwidth": bandwidth})
+    return scheduled.then(low_pass) if schedule == "before" else low_pass.then(scheduled)

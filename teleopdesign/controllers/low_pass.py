@@ -1,0 +1,26 @@
+"""First-order low-pass.
+
+dw/dt = 2 pi f_c (input - w),   output = w
+"""
+
+from sympy import pi
+
+from ..effects import Parameter, State
+from ._controller import ControlLaw
+
+
+def law(now, p):
+    return now.output
+
+
+def output(now, p):
+    return 2 * pi * p.bandwidth * (now.input - now.output)
+
+
+CONTROLLER = ControlLaw(
+    law=law,
+    states={"output": State("force", output)},
+    linear=True,
+    parameters={"bandwidth": Parameter("frequency", "f_c: -3 dB frequency in Hz")},
+    source="Bernstein, Lawrence, Pao, World Haptics 2005, section 5 (filter of H)",
+)

@@ -1,0 +1,23 @@
+"""Transfer functions and impedances from the wiring, symbolic."""
+
+from .noncommutative import counterexample, on_matrices, proved_equal
+from .printing import as_latex, as_text, block_symbol
+from .transfer_functions import (
+    TransferFunctions,
+    return_difference,
+    transfer,
+    transfer_functions,
+)
+
+__all__ = [
+    "TransferFunctions",
+    "as_latex",
+    "as_text",
+    "block_symbol",
+    "counterexample",
+    "on_matrices",
+    "proved_equal",
+    "return_difference",
+    "transfer",
+    "transfer_functions",
+]

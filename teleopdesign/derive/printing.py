@@ -1,0 +1,72 @@
+"""Expressions in blocks as a paper writes them: Gamma for I + H, what is subtracted last."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy as sp
+from sympy.printing.latex import LatexPrinter
+from sympy.printing.precedence import PRECEDENCE
+from sympy.printing.str import StrPrinter
+
+
+def block_symbol(name: str) -> sp.Symbol:
+    """The block of that name, as a symbol that commutes with no other block."""
+    return sp.Symbol(name, commutative=False)
+
+
+def with_gamma(expression: sp.Expr) -> sp.Expr:
+    """The expression with Gamma = I + H by its name: X + H X is written Gamma X."""
+    if not expression.args:
+        return expression
+    expression = expression.func(*(with_gamma(a) for a in expression.args))
+    h, gamma = block_symbol("H"), block_symbol("Gamma")
+    if expression.is_Add:
+        terms = set(expression.args)
+        for term in expression.args:
+            if h * term in terms and term in terms:
+                terms = (terms - {term, h * term}) | {gamma * term}
+        return sp.Add(*terms)
+    return expression
+
+
+def _ordered(expression: sp.Add) -> list[tuple[bool, sp.Expr]]:
+    """(is subtracted, term), blocks before their products, what is subtracted last."""
+    terms = [(bool(t.as_coeff_Mul()[0] < 0), t) for t in expression.args]
+    rank = sorted(terms, key=lambda x: (x[0], len(sp.Mul.make_args(x[1])), str(x[1])))
+    return [(negative, -t if negative else t) for negative, t in rank]
+
+
+class _Text(StrPrinter):
+    def _print_Add(self, expr: sp.Add, order: Any = None) -> str:
+        out = ""
+        for negative, term in _ordered(expr):
+            out += (" - " if negative else " + ") + self.parenthesize(term, PRECEDENCE["Add"])
+        return out.removeprefix(" + ").replace("+ 1", "+ I")
+
+    def _print_Mul(self, expr: sp.Mul) -> str:
+        negative = expr.as_coeff_Mul()[0] == -1
+        factors = [a for a in expr.args if a != -1]
+        text = " ".join(self.parenthesize(a, PRECEDENCE["Mul"]) for a in factors)
+        return f"-{text}" if negative else text
+
+    def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
+        return f"{self.parenthesize(expr.base, PRECEDENCE['Pow'])}^{expr.exp}"
+
+
+class _Latex(LatexPrinter):
+    def _print_Add(self, expr: sp.Add, order: Any = None) -> str:
+        out = ""
+        for negative, term in _ordered(expr):
+            out += (" - " if negative else " + ") + ("I" if term == 1 else self._print(term))
+        return out.removeprefix(" + ")
+
+
+def as_text(expression: sp.Expr) -> str:
+    """Plain text: Z_H (Z_M + Gamma Z_H - C)^-1 Gamma."""
+    return str(_Text().doprint(expression))
+
+
+def as_latex(expression: sp.Expr) -> str:
+    """LaTeX."""
+    return str(_Latex().doprint(expression))

@@ -1,0 +1,93 @@
+"""The haptic interface: a device held by a hand, force feedback, cancellation, position loop.
+
+    R_A = R_D + H (R_D - R_M) + C L         Z_M L = R_A - R_M
+    R_H = -Z_H L                            R_M = -(R_H + R_V)
+    R_D = K (L_D - L)                       where there is a position loop
+
+Bernstein, Lawrence, Pao, World Haptics 2005, figures 1, 3 and 4. Only R_H = -Z_H L fits both the
+sum R_M = -(R_H + R_V) and the total impedance Z_H + Z_M.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from ..blocks import Body
+from ..controllers import Controller
+from ..errors import ModelError
+from .wiring import ANY, AnyBlock, Attached, Block, Control, Diagram, Junction, Moving
+
+TEXTS = {
+    "R_D": "desired force",
+    "R_A": "force commanded to the actuator",
+    "R_M": "force of the device on the hand (the interaction force is its negative)",
+    "R_V": "voluntary force of the hand on the device",
+    "R_H": "passive force of the hand on the device",
+    "E": "force error R_D - R_M",
+    "R_FF": "force that the force feedback H adds",
+    "R_MBC": "force that the motion-based cancellation C adds",
+    "L": "motion of the device",
+    "L_D": "reference of the motion",
+    "L_E": "position error L_D - L",
+}
+
+
+def haptic_interface(
+    device: Body | AnyBlock = ANY,
+    *,
+    hand: Body | AnyBlock | None = None,
+    cancellation: Controller | AnyBlock | None = None,
+    force_feedback: Controller | AnyBlock | None = None,
+    position_loop: Controller | AnyBlock | None = None,
+    analog: Collection[str] = (),
+) -> Diagram:
+    """Wire a haptic interface; a block that is not given is not there.
+
+    device, hand: Z_M and Z_H, impedances relative to position;  cancellation: C, from the motion
+    to a force;  force_feedback: H, from the force error R_D - R_M to a force;
+    position_loop: K, from the position error to R_D
+    analog: controllers among "C", "H", "K" that no computer samples
+    ANY stands for a block of which nothing but its place is known.
+    """
+    for name in analog:
+        if name not in ("C", "H", "K"):
+            raise ModelError(f'haptic interface: analog: no controller "{name}", has C, H, K')
+    blocks: list[Block] = [Moving("Z_M", device, "L", "R_A", {"R_M": -1}, "R_V")]
+    command, on_hand = {"R_D": 1}, {"R_V": -1}
+    junctions = [Junction("E", {"R_D": 1, "R_M": -1})]
+    outside = {"R_V": "force"}
+    if hand is not None:
+        blocks.append(Attached("Z_H", hand, "L", "R_H"))
+        on_hand = {"R_H": -1, "R_V": -1}
+    if force_feedback is not None:
+        blocks.append(Control("H", force_feedback, "E", "R_FF", "L", "H" in analog))
+        command["R_FF"] = 1
+    if cancellation is not None:
+        blocks.append(Control("C", cancellation, "L", "R_MBC", "L", "C" in analog))
+        command["R_MBC"] = 1
+    if position_loop is None:
+        outside["R_D"] = "force"
+    else:
+        blocks.append(Control("K", position_loop, "L_E", "R_D", "L", "K" in analog))
+        junctions.append(Junction("L_E", {"L_D": 1, "L": -1}))
+        outside["L_D"] = "position"
+    junctions += [Junction("R_A", command), Junction("R_M", on_hand)]
+    made = {*outside, *(s for p in (*blocks, *junctions) for s in p.outputs)}
+    return Diagram(
+        "haptic interface",
+        tuple(blocks),
+        tuple(junctions),
+        outside,
+        measured=("L", "R_M"),
+        texts={name: text for name, text in TEXTS.items() if name in made},
+    )
+
+
+def four_cases(hybrid: Diagram) -> dict[str, Diagram]:
+    """The diagram without compensation, with cancellation, with force feedback, and with both."""
+    return {
+        "none": hybrid.without("C", "H"),
+        "MBC": hybrid.without("H"),
+        "FF": hybrid.without("C"),
+        "hybrid": hybrid,
+    }

@@ -1,0 +1,283 @@
+"""A diagram: named blocks, wired by the names of their signals; data, no computation.
+
+Every form (symbolic transfer functions, LTI systems, interconnected python-control system, compiled
+simulation) is read off this one wiring.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+
+from ..blocks import Body
+from ..controllers import Controller
+from ..errors import ModelError, did_you_mean
+
+
+@dataclass(frozen=True)
+class AnyBlock:
+    """A block known by its name only: enough to derive transfer functions, not to simulate."""
+
+
+ANY = AnyBlock()
+
+
+@dataclass(frozen=True)
+class Moving:
+    """A body that forces move:  Z motion = command + loads.
+
+    command: force commanded to its actuator (its actuation effects stand between)
+    loads: other forces on it, signal -> sign
+    driver: outside force that is whatever it must be where the motion is prescribed instead
+    """
+
+    name: str
+    body: Body | AnyBlock
+    motion: str
+    command: str
+    loads: Mapping[str, int]
+    driver: str
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return (self.motion,)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return (self.command, *self.loads)
+
+
+@dataclass(frozen=True)
+class Attached:
+    """A body that follows a motion and resists it:  force = sign Z motion."""
+
+    name: str
+    body: Body | AnyBlock
+    motion: str
+    force: str
+    sign: int = -1
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return (self.force,)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return (self.motion,)
+
+
+@dataclass(frozen=True)
+class Control:
+    """A controller:  output = controller(input), along the velocity of `motion`.
+
+    analog: realised by electronics that no computer samples
+    """
+
+    name: str
+    controller: Controller | AnyBlock
+    input: str
+    output: str
+    motion: str
+    analog: bool = False
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return (self.output,)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return (self.input, self.motion)
+
+
+@dataclass(frozen=True)
+class Junction:
+    """A summing junction:  output = sum of sign * signal."""
+
+    output: str
+    terms: Mapping[str, int]
+
+    @property
+    def name(self) -> str:
+        return f"junction {self.output}"
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return (self.output,)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return tuple(self.terms)
+
+
+Block = Moving | Attached | Control
+Part = Moving | Attached | Control | Junction
+
+
+@dataclass(frozen=True)
+class Diagram:
+    """Blocks and junctions wired by signal names.
+
+    outside: signals that come from outside, name -> quantity
+    measured: signals that sensors give to the computer; what controllers make of them is sampled
+    texts: what each signal is, with sign
+    """
+
+    name: str
+    blocks: tuple[Block, ...]
+    junctions: tuple[Junction, ...]
+    outside: Mapping[str, str]
+    measured: tuple[str, ...]
+    texts: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        made: dict[str, str] = dict.fromkeys(self.outside, "outside")
+        names = [b.name for b in self.blocks]
+        if doubled := {n for n in names if names.count(n) > 1}:
+            raise ModelError(f'{self.name}: block "{min(doubled)}" is there twice')
+        for part in self.parts:
+            for signal in part.outputs:
+                if signal in made:
+                    raise ModelError(
+                        f'{self.name}: signal "{signal}" is made by {part.name} and {made[signal]}'
+                    )
+                made[signal] = part.name
+        needed = [(p.name, s) for p in self.parts for s in p.inputs]
+        needed += [("measured", s) for s in self.measured]
+        for where, signal in needed:
+            if signal not in made:
+                raise ModelError(
+                    f'{self.name}: {where}: nothing makes signal "{signal}"'
+                    f"{did_you_mean(signal, made)}"
+                )
+        for name in ("outside", "texts"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Blocks and junctions."""
+        return (*self.blocks, *self.junctions)
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """Names of all signals: those from outside first."""
+        return (*self.outside, *(s for part in self.parts for s in part.outputs))
+
+    @property
+    def bodies(self) -> tuple[Moving | Attached, ...]:
+        return tuple(b for b in self.blocks if not isinstance(b, Control))
+
+    @property
+    def controls(self) -> tuple[Control, ...]:
+        return tuple(b for b in self.blocks if isinstance(b, Control))
+
+    def block(self, name: str) -> Block:
+        """The block of that name; ModelError with the nearest one."""
+        for block in self.blocks:
+            if block.name == name:
+                return block
+        names = [b.name for b in self.blocks]
+        raise ModelError(
+            f'{self.name}: no block "{name}", has {", ".join(names)}{did_you_mean(name, names)}'
+        )
+
+    def has(self, name: str) -> bool:
+        """Whether the diagram has a block of that name."""
+        return any(b.name == name for b in self.blocks)
+
+    def signal(self, name: str) -> str:
+        """The name itself; ModelError with the nearest signal where there is none of that name."""
+        if name not in self.signals:
+            raise ModelError(
+                f'{self.name}: no signal "{name}", has {", ".join(self.signals)}'
+                f"{did_you_mean(name, self.signals)}"
+            )
+        return name
+
+    def without(self, *names: str) -> Diagram:
+        """The diagram without these blocks: what they gave is zero. Absent ones are no matter."""
+        gone = {s for n in names if self.has(n) for s in self.block(n).outputs}
+        junctions = tuple(
+            replace(j, terms={s: g for s, g in j.terms.items() if s not in gone})
+            for j in self.junctions
+        )
+        return replace(
+            self,
+            blocks=tuple(b for b in self.blocks if b.name not in names),
+            junctions=junctions,
+            measured=tuple(s for s in self.measured if s not in gone),
+        )
+
+    def opened(self, *names: str) -> Diagram:
+        """The diagram with the outputs of these controllers from outside instead. Absent: as is."""
+        free = {s: "force" for n in names if self.has(n) for s in self.block(n).outputs}
+        kept = tuple(b for b in self.blocks if b.name not in names)
+        return _pruned(replace(self, blocks=kept, outside={**self.outside, **free}))
+
+    def with_block(self, name: str, block: Body | Controller) -> Diagram:
+        """The diagram with another body or controller in the place of that name."""
+        old = self.block(name)
+        if isinstance(old, Control):
+            if isinstance(block, Body):
+                raise ModelError(f"{self.name}: {name} is a controller, found a body")
+            new: Block = replace(old, controller=block)
+        else:
+            if not isinstance(block, Body):
+                raise ModelError(f"{self.name}: {name} is a body, found a controller")
+            new = replace(old, body=block)
+        return replace(self, blocks=tuple(new if b is old else b for b in self.blocks))
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Every parameter as "block.law.parameter", such as "Z_M.coulomb.level" -> value (SI)."""
+        found: dict[str, float] = {}
+        for block in self.blocks:
+            if isinstance(block, Control):
+                if isinstance(block.controller, Controller):
+                    found |= {f"{block.name}.{n}": v for n, v in block.controller.names().items()}
+            elif isinstance(block.body, Body):
+                found |= {f"{block.name}.{n}": v.value for n, v in block.body.parameters.items()}
+        return found
+
+    def with_values(self, values: Mapping[str, float]) -> Diagram:
+        """The diagram with other parameter values, by the names in `values`."""
+        known, diagram = self.values, self
+        for name in values:
+            if name not in known:
+                raise ModelError(f'{self.name}: no parameter "{name}"{did_you_mean(name, known)}')
+        for block in self.blocks:
+            start = f"{block.name}."
+            own = {n.removeprefix(start): v for n, v in values.items() if n.startswith(start)}
+            part = block.controller if isinstance(block, Control) else block.body
+            if own and not isinstance(part, AnyBlock):
+                diagram = diagram.with_block(block.name, part.with_values(own))
+        return diagram
+
+    def __repr__(self) -> str:
+        lines = [f"Diagram {self.name}"]
+        for part in self.parts:
+            lines.append(f"  {_line(part)}")
+        lines.append(f"  from outside: {', '.join(self.outside)}")
+        return "\n".join(lines)
+
+
+def _sum(terms: Iterable[tuple[str, int]]) -> str:
+    text = " ".join(f"{'+' if sign > 0 else '-'} {signal}" for signal, sign in terms)
+    return text.removeprefix("+ ") or "0"
+
+
+def _line(part: Part) -> str:
+    if isinstance(part, Moving):
+        return f"{part.name} {part.motion} = {_sum([(part.command, 1), *part.loads.items()])}"
+    if isinstance(part, Attached):
+        return f"{part.force} = {'-' if part.sign < 0 else ''}{part.name} {part.motion}"
+    if isinstance(part, Control):
+        return f"{part.output} = {part.name} {part.input}"
+    return f"{part.output} = {_sum(part.terms.items())}"
+
+
+def _pruned(diagram: Diagram) -> Diagram:
+    """Without outside signals and junctions that only a block taken out had used."""
+    used = {s for part in diagram.parts for s in part.inputs} | set(diagram.measured)
+    outside = {s: q for s, q in diagram.outside.items() if s in used or q == "force"}
+    return replace(diagram, outside=outside)
