@@ -1,0 +1,119 @@
+"""Frequency response between signals: the symbolic transfer function with values in place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import sympy as sp
+
+from ..derive import block_symbol, transfer
+from ..diagrams import Diagram
+from ..realise.lti import LinearBlocks, S, as_transfer_function, linear_blocks
+
+if TYPE_CHECKING:
+    import control
+    import matplotlib.figure
+    import xarray
+
+
+@dataclass(frozen=True)
+class FrequencyResponse:
+    """Magnitude and phase (degrees, unwrapped) over `case` and `frequency` (Hz).
+
+    left_out: what has no linear form, by case;  output, input: signals
+    """
+
+    data: xarray.Dataset
+    output: str
+    input: str
+    left_out: Mapping[str, tuple[str, ...]]
+
+    def plot(self) -> matplotlib.figure.Figure:
+        """Bode plot, one line a case."""
+        from ..plot.design import plot_bode
+
+        return plot_bode(self)
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write magnitude and phase with their units to a netCDF file."""
+        self.data.to_netcdf(path)
+
+    def __repr__(self) -> str:
+        f = self.data["frequency"].values
+        head = f"Frequency response {self.input} to {self.output}, {f[0]:g} to {f[-1]:g} Hz, at "
+        lines = [f"{head}speed {self.data.attrs['speed']:g}"]
+        for case, gone in self.left_out.items():
+            lines.append(f"  {case}: left out: {', '.join(gone) or 'nothing'}")
+        return "\n".join(lines)
+
+
+def bode(
+    diagrams: Diagram | Mapping[str, Diagram],
+    *,
+    output: str = "R_M",
+    input: str = "R_D",
+    given: str = "",
+    frequency: np.ndarray | None = None,
+    speed: float = 0.0,
+) -> FrequencyResponse:
+    """Frequency response from one signal to another, for one diagram or several cases.
+
+    given: a motion that is prescribed; output "E", input and given "L" is the apparent mechanism
+        impedance Zhat_M
+    frequency: Hz, default 0.1 to 1000;  speed: where smoothed friction and schedules are frozen
+    """
+    import xarray
+
+    cases = {diagrams.name: diagrams} if isinstance(diagrams, Diagram) else dict(diagrams)
+    f = np.geomspace(0.1, 1000.0, 401) if frequency is None else np.asarray(frequency, dtype=float)
+    rows, left_out = [], {}
+    for name, diagram in cases.items():
+        expression, linear = _scalar(diagram, output, input, given, speed)
+        call = sp.lambdify(S, expression, "numpy")
+        rows.append(np.broadcast_to(np.asarray(call(2j * np.pi * f), dtype=complex), f.shape))
+        left_out[name] = linear.left_out
+    phase = np.degrees(np.unwrap(np.angle(np.array(rows)), axis=1))
+    phase -= 360 * np.floor((phase[:, :1] + 90) / 360)  # starting between -90 and 270 degrees
+    unit = "N/m" if given else "1"
+    dims = ("case", "frequency")
+    data = xarray.Dataset(
+        {
+            "magnitude": (dims, np.abs(rows), {"units": unit}),
+            "phase": (dims, phase, {"units": "deg"}),
+        },
+        {"case": list(cases), "frequency": ("frequency", f, {"units": "Hz"})},
+        {"output": output, "input": input, "speed": abs(speed)},
+    )
+    return FrequencyResponse(data, output, input, left_out)
+
+
+def transfer_function(
+    diagram: Diagram,
+    *,
+    output: str = "R_M",
+    input: str = "R_D",
+    given: str = "",
+    speed: float = 0.0,
+    delay_order: int = 4,
+) -> tuple[control.TransferFunction, tuple[str, ...]]:
+    """The transfer function as a python-control system, and what has no linear form.
+
+    Arguments as in `bode`;  delay_order: of the Pade approximation of dead times
+    """
+    expression, linear = _scalar(diagram, output, input, given, speed)
+    return as_transfer_function(expression, delay_order=delay_order), linear.left_out
+
+
+def _scalar(
+    diagram: Diagram, output: str, source: str, given: str, speed: float
+) -> tuple[sp.Expr, LinearBlocks]:
+    """Symbolic transfer function with each block's linear form in place; one degree of freedom."""
+    linear = linear_blocks(diagram, speed=speed)
+    form = transfer(diagram, output, (source,), given=given)[source]
+    values = {block_symbol(n): e for n, e in linear.blocks.items()}
+    values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
+    return sp.sympify(form).subs(values), linear

@@ -1,0 +1,242 @@
+"""Source of the simulation loop, generated from the equations of a diagram.
+
+Inner steps: exponential Runge-Kutta of order four (Cox, Matthews, J. Comput. Phys. 176 (2002) 430,
+eqs (26) to (29)), with the rate of a hidden state split as A z + B, A frozen at the start of the
+step; A = 0 for the motion, for which it is the classical Runge-Kutta method. At every sample the
+computer reads its sensors and steps its states exactly for inputs held over the sample.
+"""
+
+from __future__ import annotations
+
+import keyword
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ..errors import ModelError
+from .equations import (
+    TIME,
+    Equations,
+    acceleration,
+    estimate,
+    measured,
+    signal,
+    travel_rate,
+    velocity,
+)
+
+_HEAD = '''"""Generated from the laws of the blocks of a diagram; do not edit."""
+from math import *
+
+{jit}
+
+@jitted
+def phi(z):
+    """exp, phi_1, phi_2, phi_3 of z, accurate through zero."""
+    if abs(z) < 1.0:
+        p3 = {series}
+        p2 = z * p3 + 0.5
+        p1 = z * p2 + 1.0
+        return z * p1 + 1.0, p1, p2, p3
+    e = exp(z)
+    p1 = (e - 1.0) / z
+    p2 = (p1 - 1.0) / z
+    return e, p1, p2, (p2 - 0.5) / z
+
+
+@jitted
+def weights(z):
+    """exp and phi_1 of z/2, exp of z, and the three weights of a step."""
+    e, p1, p2, p3 = phi(z / 2)
+    q1 = 0.5 * (e + 1.0) * p1
+    q2 = 0.25 * (p1 * p1 + 2 * p2)
+    q3 = 0.125 * (p1 * p2 + p2 + 2 * p3)
+    return e, p1, e * e, q1 - 3 * q2 + 4 * q3, 2 * q2 - 4 * q3, 4 * q3 - q2
+
+'''
+_JIT = """from numba import njit
+
+jitted = njit(cache=True, error_model="numpy")
+"""
+_NO_JIT = """
+
+def jitted(function):
+    return function
+"""
+
+
+#: arguments of the generated `run`; arrays: inputs (n, 2 N + 1) on half steps, sampled (n, samples
+#: + 1), held (samples + 1, commands), history (N + 1, late), out (rows, columns)
+ARGUMENTS = (
+    "samples inner h period lag late_steps encoder_step smoothing parameters inputs sampled start "
+    "computer_start every_step held history out"
+).split()
+#: names that the generated code has for itself
+RESERVED = frozenset(
+    [*ARGUMENTS, *keyword.kwlist, *dir(math), "abs", "max", "min", "range"]
+    + "c e f j m made n now q row time values worst y z rates slopes signals computer phi".split()
+)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Order of everything that the generated function takes and gives, as names.
+
+    columns: of a row of the result;  exponential: states stepped exactly in their affine part
+    """
+
+    states: tuple[str, ...]
+    computer_states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    sampled_inputs: tuple[str, ...]
+    commands: tuple[str, ...]
+    late: tuple[str, ...]
+    parameters: tuple[str, ...]
+    columns: tuple[str, ...]
+    exponential: tuple[str, ...]
+
+
+def slopes(equations: Equations) -> dict[sp.Symbol, sp.Expr]:
+    """Hidden state -> A, where its rate is A z + B with A free of the state."""
+    moving = {f(m) for m in equations.motions for f in (signal, velocity)}
+    found = {}
+    for state, rate in equations.rates.items():
+        # as it stands: simplified, exp(-u) may come out as 1/exp(u), which overflows
+        slope = sp.diff(rate, state) if state not in moving else sp.S(0)
+        if slope != 0 and not slope.has(state):
+            found[state] = slope
+    return found
+
+
+def _code(expression: sp.Expr) -> str:
+    return str(sp.pycode(expression, fully_qualified_modules=False))
+
+
+def _function(
+    name: str,
+    arguments: Iterable[sp.Symbol],
+    results: list[sp.Expr],
+    renamed: Mapping[sp.Symbol, sp.Symbol],
+) -> str:
+    """Source of a function that returns the results, common parts computed once."""
+    if not results:
+        return ""
+    shared, out = sp.cse(
+        [sp.sympify(r).xreplace(renamed) for r in results], symbols=sp.numbered_symbols("k")
+    )
+    lines = [f"    {s} = {_code(e)}" for s, e in shared]
+    value = ", ".join(_code(e) for e in out)
+    given = ", ".join(str(renamed.get(a, a)) for a in arguments)
+    return f"@jitted\ndef {name}({given}):\n" + "\n".join([*lines, f"    return ({value},)\n\n\n"])
+
+
+class Generator:
+    """Names and source for one diagram's equations."""
+
+    def __init__(self, equations: Equations) -> None:
+        e = self.equations = equations
+        self._refuse_reserved()
+        self.slopes = slopes(e)
+        self.states = sorted(e.rates, key=str)
+        self.computer_states = sorted(e.computer.rates, key=str)
+        self.motions = [*e.motions, *e.prescribed]
+        self.commands = list(e.commands)
+        self.late = list(e.late)
+        self.sampled_inputs = [signal(s) for s in e.sampled_inputs] if e.commands else []
+        used = set().union(*(x.free_symbols for x in self._expressions()))
+        self.parameters = sorted(used & set(e.parameters), key=str)
+        self.analog = [
+            TIME,
+            *self.states,
+            *e.inputs,
+            *(e.commands[c] for c in self.commands),
+            *self.late,
+            *self.parameters,
+        ]
+        self.sensors = sorted(
+            {s for x in self._computer_expressions() for s in x.free_symbols}
+            & {measured(s) for s in (*e.signals, *self.motions)},
+            key=str,
+        )
+        self.reads = [
+            *self.sensors,
+            *(f(m) for m in self.motions for f in (travel_rate, estimate)),
+            *self.sampled_inputs,
+            *self.computer_states,
+            *self.parameters,
+        ]
+        self.renamed = {p: sp.Symbol(f"p{i}", real=True) for i, p in enumerate(self.parameters)}
+        self.motion_signals = [f(m) for m in self.motions for f in (signal, velocity, acceleration)]
+
+    def _refuse_reserved(self) -> None:
+        e = self.equations
+        names = {*e.signals, *e.computer.signals, *e.motions, *map(str, e.inputs)}
+        for name in sorted(names & RESERVED):
+            raise ModelError(
+                f'signal "{name}" has a name that generated code needs itself: call it otherwise'
+            )
+
+    def _computer_expressions(self) -> list[sp.Expr]:
+        computer = self.equations.computer
+        return [*computer.rates.values(), *computer.signals.values()]
+
+    def _expressions(self) -> list[sp.Expr]:
+        e = self.equations
+        late = [expression for expression, _ in e.late.values()]
+        return [*e.rates.values(), *e.signals.values(), *late, *self._computer_expressions()]
+
+    def layout(self) -> Layout:
+        """The order of everything."""
+        e = self.equations
+        names = [s.name for s in self.motion_signals]
+        names += [*e.signals, *e.computer.signals]
+        names += [s.name for s in self.states if s.name not in names]
+        return Layout(
+            states=tuple(s.name for s in self.states),
+            computer_states=tuple(s.name for s in self.computer_states),
+            inputs=tuple(s.name for s in e.inputs),
+            sampled_inputs=tuple(s.name for s in self.sampled_inputs),
+            commands=tuple(self.commands),
+            late=tuple(s.name for s in self.late),
+            parameters=tuple(e.parameters[p] for p in self.parameters),
+            columns=tuple(names),
+            exponential=tuple(s.name for s in self.slopes),
+        )
+
+    def source(self, *, jit: bool) -> str:
+        """The module's functions of the equations; the loop over them is `loop_source`."""
+        e = self.equations
+        series = "p3"
+        for k in range(12, -1, -1):
+            series = (
+                f"1 / {_factorial(k + 3)} + z * ({series})" if k < 12 else f"1 / {_factorial(15)}"
+            )
+        head = _HEAD.format(jit=_JIT if jit else _NO_JIT, series=series)
+        rates = [e.rates[s] for s in self.states]
+        accelerations = [e.rates[velocity(m)] for m in e.motions]
+        parts = [
+            head,
+            _function("rates", self.analog, rates, self.renamed),
+            _function("slopes", self.analog, list(self.slopes.values()), self.renamed),
+            _function("signals", self.analog, [*accelerations, *e.signals.values()], self.renamed),
+            _function("late_values", self.analog, [x for x, _ in e.late.values()], self.renamed),
+            self._computer_functions(),
+        ]
+        return "".join(parts)
+
+    def _computer_functions(self) -> str:
+        computer = self.equations.computer
+        out = []
+        for name, wanted in (("before", True), ("after", False)):
+            chosen = [s for s in self.computer_states if (s in computer.before) is wanted]
+            a = [sp.diff(computer.rates[s], s) for s in chosen]
+            b = [computer.rates[s].xreplace({s: sp.S(0)}) for s in chosen]
+            out.append(_function(f"{name}_rates", self.reads, [*a, *b], self.renamed))
+        out.append(_function("computer", self.reads, list(computer.signals.values()), self.renamed))
+        return "".join(out)
+
+
+def _factorial(n: int) -> str:
+    return f"{float(sp.factorial(n)):.1f}"

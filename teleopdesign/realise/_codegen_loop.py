@@ -1,0 +1,193 @@
+"""Source of the generated loop `run` over inner steps and samples, line by line."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from ._codegen import ARGUMENTS, Generator
+from .equations import acceleration, estimate, signal, travel_rate, velocity
+
+
+def loop_source(generator: Generator) -> str:
+    """Source of `run`, to stand behind the functions of the generator."""
+    return _Loop(generator).source()
+
+
+class _Loop:
+    """Source of `run`, line by line."""
+
+    def __init__(self, generator: Generator) -> None:
+        self.g = generator
+        self.lines: list[str] = []
+
+    def add(self, depth: int, *lines: str) -> None:
+        self.lines += ["    " * depth + line for line in lines if line]
+
+    def source(self) -> str:
+        g = self.g
+        self.add(0, "@jitted")
+        self.add(0, f"def run({', '.join(ARGUMENTS)}):")
+        self.add(1, *(f"p{i} = parameters[{i}]" for i in range(len(g.parameters))))
+        self.add(1, *(f"{s} = start[{i}]" for i, s in enumerate(g.states)))
+        self.add(1, *(f"{s} = computer_start[{i}]" for i, s in enumerate(g.computer_states)))
+        self.add(1, *(f"{c} = 0.0" for c in g.commands), *(f"{s} = 0.0" for s in g.late))
+        self.add(1, *(f"slope_{s} = 0.0" for s in g.slopes), "worst = 0.0", "row = 0")
+        computed = [f"{n}_made" for n in g.equations.computer.signals] if g.commands else []
+        for m in g.motions if g.commands else []:
+            computed += [f"{m}_before", f"{travel_rate(m)}", f"{estimate(m)}"]
+        computed += [n for n in g.equations.signals]
+        computed += [f"{acceleration(m)}" for m in g.equations.motions]
+        self.add(1, *(f"{name} = 0.0" for name in computed))
+        self.add(1, "for j in range(samples * inner + 1):")
+        self.add(2, "time = j * h", *self._inputs("2 * j", ""))
+        if g.commands:
+            self.add(2, "if j % inner == 0:", "    n = j // inner")
+            self._sample(3)
+        if g.commands:
+            self.add(2, "m = (j - lag) // inner")
+            self.add(2, "if m >= 0:")
+            self.add(3, *(f"{c} = held[m, {i}]" for i, c in enumerate(g.commands)))
+        self._late(2)
+        self.add(2, "if every_step or j % inner == 0:")
+        self._record(3)
+        self.add(2, "if j == samples * inner:", "    break")
+        self._step(2)
+        self.add(1, "return worst")
+        return "\n".join(self.lines) + "\n"
+
+    def _inputs(self, index: str, suffix: str) -> list[str]:
+        return [
+            f"{s}{suffix} = inputs[{i}, {index}]" for i, s in enumerate(self.g.equations.inputs)
+        ]
+
+    def _call(self, name: str, states: str = "", inputs: str = "", late: str = "") -> str:
+        g = self.g
+        arguments = [f"time{inputs}"]
+        arguments += [f"{s}{states}" for s in g.states]
+        arguments += [f"{s}{inputs}" for s in g.equations.inputs]
+        arguments += g.commands
+        arguments += [f"{s}{late}" for s in g.late]
+        arguments += [f"p{i}" for i in range(len(g.parameters))]
+        return f"{name}({', '.join(arguments)})"
+
+    def _analog_now(self, depth: int) -> None:
+        """Signals and accelerations at the node, under their names."""
+        g = self.g
+        names = [acceleration(m).name for m in g.equations.motions] + list(g.equations.signals)
+        if names:
+            self.add(depth, f"now = {self._call('signals')}")
+            self.add(depth, *(f"{n} = now[{i}]" for i, n in enumerate(names)))
+
+    def _sample(self, depth: int) -> None:
+        g = self.g
+        self._analog_now(depth)  # what sensors see: just before the new command
+        for m in g.motions:
+            x, v, rate, known = signal(m), velocity(m), travel_rate(m), estimate(m)
+            seen = f"{x}_seen"
+            self.add(depth, f"{seen} = {x}", "if encoder_step > 0.0:")
+            self.add(depth + 1, f"{seen} = floor({x} / encoder_step + 0.5) * encoder_step")
+            self.add(depth, "if n == 0:", f"    {rate} = {v}", f"    {known} = {v}", "else:")
+            self.add(depth + 1, f"{rate} = ({seen} - {x}_before) / period")
+            self.add(depth + 1, f"{known} = smoothing * {known} + (1.0 - smoothing) * {rate}")
+            self.add(depth, f"{x}_before = {seen}")
+        for s in g.sensors:
+            name = s.name.removesuffix("_measured")
+            self.add(depth, f"{s} = {name}_seen" if name in g.motions else f"{s} = {name}")
+        self.add(depth, *(f"{s} = sampled[{i}, n]" for i, s in enumerate(g.sampled_inputs)))
+        reads = [str(g.renamed.get(s, s)) for s in g.reads]
+        given = ", ".join(reads)
+        chosen = [s for s in g.computer_states if s in g.equations.computer.before]
+        self.add(depth, "if n > 0:" if chosen else "")
+        self._exact(depth + 1, "before", chosen, given)
+        names = list(g.equations.computer.signals)
+        self.add(depth, f"made = computer({given})" if names else "")
+        self.add(depth, *(f"{n}_made = made[{i}]" for i, n in enumerate(names)))
+        for i, c in enumerate(g.commands):
+            source = (
+                f"{c}_made" if c in names else f"sampled[{g.sampled_inputs.index(signal(c))}, n]"
+            )
+            self.add(depth, f"held[n, {i}] = {source}")
+        rest = [s for s in g.computer_states if s not in g.equations.computer.before]
+        self._exact(depth, "after", rest, given)
+
+    def _exact(self, depth: int, name: str, states: list[sp.Symbol], given: str) -> None:
+        if not states:
+            return
+        self.add(depth, f"made_{name} = {name}_rates({given})")
+        for i, s in enumerate(states):
+            self.add(depth, f"e, f, _, _ = phi(period * made_{name}[{i}])")
+            self.add(depth, f"{s} = e * {s} + period * f * made_{name}[{i + len(states)}]")
+
+    def _late(self, depth: int) -> None:
+        g = self.g
+        if not g.late:
+            return
+        self.add(depth, f"values = {self._call('late_values')}")
+        for k, (s, (expression, _)) in enumerate(g.equations.late.items()):
+            smooth = bool(expression.free_symbols & set(g.equations.rates)) or not g.commands
+            self.add(depth, f"history[j, {k}] = values[{k}]", f"q = j - late_steps[{k}]")
+            self.add(depth, f"{s} = history[q, {k}] if q >= 0 else 0.0")
+            end = f"history[q + 1, {k}] if q >= -1 else 0.0" if smooth else f"{s}"
+            self.add(depth, f"{s}_end = {end}", f"{s}_middle = 0.5 * ({s} + {s}_end)")
+
+    def _record(self, depth: int) -> None:
+        g = self.g
+        if not g.commands:
+            self._analog_now(depth)
+        else:
+            self.add(depth, "if j % inner != 0:")
+            self._analog_now(depth + 1)
+        columns = g.layout().columns
+        made = {n: f"{n}_made" for n in g.equations.computer.signals}
+        for i, name in enumerate(columns):
+            self.add(depth, f"out[row, {i}] = {made.get(name, name)}")
+        self.add(depth, "row += 1")
+
+    def _step(self, depth: int) -> None:
+        g = self.g
+        self.add(depth, *self._inputs("2 * j + 1", "_middle"), *self._inputs("2 * j + 2", "_end"))
+        self.add(depth, "time_middle = time + 0.5 * h", "time_end = time + h")
+        if g.slopes:
+            self.add(depth, f"c = {self._call('slopes')}")
+            for i, s in enumerate(g.slopes):
+                self.add(depth, f"z = abs(c[{i}]) * h", f"y = abs(slope_{s}) * h")
+                self.add(
+                    depth, "if j > 0 and min(z, y) < 0.5:", "    worst = max(worst, abs(z - y))"
+                )
+                self.add(depth, f"slope_{s} = c[{i}]")
+                self.add(depth, f"{s}_h, {s}_g, {s}_e, {s}_1, {s}_2, {s}_3 = weights(h * c[{i}])")
+        for stage in range(4 if g.states else 0):
+            self._stage(depth, stage)
+        for i, s in enumerate(g.states):
+            if s in g.slopes:
+                self.add(
+                    depth,
+                    f"{s} = {s}_e * {s} + h * ({s}_1 * {s}_n0"
+                    f" + {s}_2 * ({s}_n1 + {s}_n2) + {s}_3 * {s}_n3)",
+                )
+            else:
+                self.add(
+                    depth, f"{s} = {s} + h / 6.0 * (r0[{i}] + 2 * (r1[{i}] + r2[{i}]) + r3[{i}])"
+                )
+        self.add(depth, *(f"{s} = {s}_end" for s in g.late))
+
+    def _stage(self, depth: int, stage: int) -> None:
+        """Rates at the stage, then the states at which the next one is taken."""
+        g = self.g
+        at = "" if stage == 0 else str(stage)
+        when = ("", "_middle", "_middle", "_end")[stage]
+        self.add(depth, f"r{stage} = {self._call('rates', at, when, when)}")
+        for i, s in enumerate(g.states):
+            if s in g.slopes:
+                self.add(depth, f"{s}_n{stage} = r{stage}[{i}] - slope_{s} * {s}{at}")
+            if stage == 3:
+                continue
+            if s not in g.slopes:
+                length = "h" if stage == 2 else "0.5 * h"
+                self.add(depth, f"{s}{stage + 1} = {s} + {length} * r{stage}[{i}]")
+            elif stage < 2:
+                new = f"{s}_h * {s} + 0.5 * h * {s}_g * {s}_n{stage}"
+                self.add(depth, f"{s}{stage + 1} = {new}")
+            else:
+                new = f"{s}_h * {s}1 + 0.5 * h * {s}_g * (2 * {s}_n2 - {s}_n0)"
+                self.add(depth, f"{s}3 = {new}")

@@ -1,0 +1,337 @@
+"""A diagram as explicit equations on sympy symbols: what every simulated form starts from.
+
+Bodies and what connects them are continuous ("analog"). What lies between sensors and commands is
+the computer's: sampled, with its commands held, or, in the continuous approximation, part of the
+same set of equations. All equations are linear in accelerations and forces and are solved for them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ..blocks import Body
+from ..controllers import Controller, ControllerEquation, parameter_symbol
+from ..diagrams import Attached, Control, Diagram, Junction, Moving
+from ..effects import SIGNALS, delayed
+from ..errors import ModelError
+from ._linear import solve_linear
+
+#: signal's name -> symbol that stands for it
+_Reader = Callable[[str], sp.Symbol]
+TIME = sp.Symbol("time", real=True)
+_NO_COMMAND = sp.Symbol("no_command", real=True)
+
+
+@dataclass(frozen=True)
+class Computer:
+    """The sampled part: states before and after their step over one sample, and the signals.
+
+    rates: continuous rates, inputs held over a sample;  before: states stepped ahead of the output
+    """
+
+    rates: Mapping[sp.Symbol, sp.Expr]
+    before: frozenset[sp.Symbol]
+    signals: Mapping[str, sp.Expr]
+
+
+@dataclass(frozen=True)
+class Equations:
+    """Explicit equations of a diagram.
+
+    rates: state -> rate;  signals: analog signal -> expression, and the friction of each body
+    as "Z_M_friction";  inputs: analog inputs
+    commands: held commands (sampled) by signal;  late: symbol -> (expression, delay)
+    sampled_inputs: outside signals that the computer reads;  motions: motions that are simulated
+    prescribed: motions that are given;  parameters: symbol -> name in `Diagram.values`
+    """
+
+    rates: Mapping[sp.Symbol, sp.Expr]
+    signals: Mapping[str, sp.Expr]
+    inputs: tuple[sp.Symbol, ...]
+    commands: Mapping[str, sp.Symbol]
+    late: Mapping[sp.Symbol, tuple[sp.Expr, sp.Expr]]
+    computer: Computer
+    sampled_inputs: tuple[str, ...]
+    motions: tuple[str, ...]
+    prescribed: tuple[str, ...]
+    parameters: Mapping[sp.Symbol, str]
+
+
+def signal(name: str) -> sp.Symbol:
+    """Symbol of a signal; of a motion, its position."""
+    return sp.Symbol(name, real=True)
+
+
+def velocity(motion: str) -> sp.Symbol:
+    return sp.Symbol(f"{motion}_velocity", real=True)
+
+
+def acceleration(motion: str) -> sp.Symbol:
+    return sp.Symbol(f"{motion}_acceleration", real=True)
+
+
+def measured(name: str) -> sp.Symbol:
+    """What a sensor gives at a sample."""
+    return sp.Symbol(f"{name}_measured", real=True)
+
+
+def travel_rate(motion: str) -> sp.Symbol:
+    """Measured travel of the last sample over its duration."""
+    return sp.Symbol(f"{motion}_travel_rate", real=True)
+
+
+def estimate(motion: str) -> sp.Symbol:
+    """Velocity as the computer knows it: filtered travel rate."""
+    return sp.Symbol(f"{motion}_velocity_estimate", real=True)
+
+
+def equations(
+    diagram: Diagram, *, prescribed: Iterable[str] = (), sampled: bool = True
+) -> Equations:
+    """Explicit equations of a diagram whose blocks all have laws.
+
+    prescribed: motions that are given; the outside force that drives each is then a result
+    sampled: commands are held inputs and the computer is apart; False: all is one
+    """
+    return _Builder(diagram, tuple(prescribed), sampled).build()
+
+
+class _Builder:
+    def __init__(self, diagram: Diagram, prescribed: tuple[str, ...], sampled: bool) -> None:
+        self.diagram, self.prescribed, self.sampled = diagram, prescribed, sampled
+        self.moving = [b for b in diagram.blocks if isinstance(b, Moving)]
+        motions = [b.motion for b in self.moving]
+        for motion in prescribed:
+            if motion not in motions:
+                raise ModelError(
+                    f'{diagram.name}: "{motion}" is no motion, has {", ".join(motions)}'
+                )
+        self.motions = tuple(m for m in motions if m not in prescribed)
+        driven = {b.driver for b in self.moving if b.motion in prescribed}
+        self.outside = [s for s in diagram.outside if s not in driven]
+        self.digital, self.sampled_inputs = self._computers_signals()
+        self.rates: dict[sp.Symbol, sp.Expr] = {}
+        self.late: dict[sp.Symbol, tuple[sp.Expr, sp.Expr]] = {}
+        self.friction: dict[str, sp.Expr] = {}
+        self.acting: dict[sp.Symbol, sp.Expr] = {}
+
+    def _electronic(self) -> set[str]:
+        """Outputs of analog controllers and of the junctions before and behind them."""
+        made = {j.output: j for j in self.diagram.junctions}
+        found = {c.output for c in self.diagram.controls if c.analog}
+        found |= {c.input for c in self.diagram.controls if c.analog and c.input in made}
+        grown = True
+        while grown:
+            behind = {j.output for j in made.values() if found & set(j.terms)}
+            grown, found = not behind <= found, found | behind
+        return found
+
+    def _computers_signals(self) -> tuple[set[str], tuple[str, ...]]:
+        """Signals between sensors and commands, and the outside signals among them."""
+        made = {s: p for p in self.diagram.parts for s in p.outputs}
+        sensors, electronic = set(self.diagram.measured), self._electronic()
+        todo = [b.command for b in self.moving]
+        found: set[str] = set()
+        seen: set[str] = set()
+        while todo:
+            name = todo.pop()
+            if name in seen or name in sensors:
+                continue
+            seen.add(name)
+            part = made.get(name)
+            if isinstance(part, Moving | Attached):
+                raise ModelError(
+                    f'{self.diagram.name}: the computer uses "{name}" of {part.name}, which is not '
+                    f"measured; sensors give {', '.join(sensors)}"
+                )
+            inputs = () if part is None else part.inputs
+            if name in electronic:
+                inputs = tuple(s for s in inputs if s not in self.diagram.outside)
+            else:
+                found.add(name)
+            todo += inputs
+        inputs = tuple(s for s in self.outside if s in found)
+        return found - set(self.diagram.outside), inputs
+
+    def _held(self) -> list[str]:
+        """The computer's signals that something analog takes: these are held."""
+        known = self.digital | set(self.sampled_inputs)
+        takers = [b.command for b in self.moving]
+        for part in self.diagram.parts:
+            electronic = isinstance(part, Control) and part.analog
+            if electronic or (isinstance(part, Junction) and part.output not in self.digital):
+                takers += [s for s in part.inputs if s in self.digital]
+        return sorted({s for s in takers if s in known})
+
+    def build(self) -> Equations:
+        rows, unknown = self._analog_rows()
+        computer = Computer({}, frozenset(), {})
+        commands: dict[str, sp.Symbol] = {}
+        inputs = [s for s in self.outside if s not in self.sampled_inputs or self._taken(s)]
+        if self.sampled:
+            commands = {s: signal(s) for s in self._held()}
+            computer = self._computer()
+        else:
+            more, names = self._computer_rows(signal, velocity, velocity)
+            rows += more[0]
+            self.rates |= more[1]
+            unknown += [signal(s) for s in names]
+            inputs = list(self.outside)
+        solved = self._acted(solve_linear(rows, unknown, self.diagram.name))
+        for motion in self.motions:
+            self.rates[signal(motion)] = velocity(motion)
+            self.rates[velocity(motion)] = solved[acceleration(motion)]
+        rates = {x: rate.xreplace(solved) for x, rate in self.rates.items()}
+        late = {s: (e.xreplace(solved), d) for s, (e, d) in self.late.items()}
+        signals = {s.name: e for s, e in solved.items() if s.name in self.diagram.signals}
+        signals |= {n: e.xreplace(solved) for n, e in self.friction.items()}
+        given = [f(m) for m in self.prescribed for f in (signal, velocity, acceleration)]
+        return Equations(
+            rates=rates,
+            signals=signals,
+            inputs=(*(signal(s) for s in inputs), *given),
+            commands=commands,
+            late=late,
+            computer=computer,
+            sampled_inputs=self.sampled_inputs,
+            motions=self.motions,
+            prescribed=self.prescribed,
+            parameters=_parameter_names(self.diagram),
+        )
+
+    def _acted(self, solved: dict[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
+        """The solution with forces behind nonlinear actuators in place, and these forces."""
+        forces = {s: e.xreplace(solved) for s, e in self.acting.items()}
+        if any(e.free_symbols & set(forces) for e in forces.values()):
+            raise ModelError(
+                f"{self.diagram.name}: a command depends at once on the force behind a nonlinear "
+                "actuator: a filter in the force feedback, or sampling, parts them"
+            )
+        return {s: e.xreplace(forces) for s, e in solved.items()} | forces
+
+    def _taken(self, name: str) -> bool:
+        """Whether something analog takes this outside signal as it is."""
+        parts = [p for p in self.diagram.parts if isinstance(p, Junction)]
+        return any(name in p.terms and p.output not in self.digital for p in parts)
+
+    def _analog_rows(self) -> tuple[list[sp.Expr], list[sp.Symbol]]:
+        rows: list[sp.Expr] = []
+        unknown = [acceleration(m) for m in self.motions]
+        unknown += [signal(b.driver) for b in self.moving if b.motion in self.prescribed]
+        for part in self.diagram.parts:
+            if isinstance(part, Moving):
+                load = sum(g * signal(s) for s, g in part.loads.items())
+                rows.append(self._needed(part, signal(part.command)) - load)
+            elif isinstance(part, Attached):
+                rows.append(signal(part.force) - part.sign * self._needed(part, _NO_COMMAND))
+                unknown.append(signal(part.force))
+            elif isinstance(part, Control) and part.analog:
+                v = velocity(part.motion)
+                equation = _placed(part, signal(part.input), v, v)
+                rows.append(signal(part.output) - equation.output)
+                unknown.append(signal(part.output))
+                self.rates |= equation.rates
+            elif isinstance(part, Junction) and part.output not in self.digital:
+                rows.append(signal(part.output) - _sum(part, signal))
+                unknown.append(signal(part.output))
+        return rows, unknown
+
+    def _needed(self, part: Moving | Attached, command: sp.Symbol) -> sp.Expr:
+        """inertia a + force + friction - acting: the force that the body needs from others."""
+        assert isinstance(part.body, Body)
+        if parted := [e.name for e in part.body.effects if e.role == "structure"]:
+            raise ModelError(
+                f"{self.diagram.name}: {part.name}: {parted[0]} has no simulated form yet; what "
+                "holds the body would have to be wired to its tip"
+            )
+        equation = part.body.equation()
+        names = {s: parameter_symbol(part.name, n) for n, s in part.body.symbols().items()}
+        hidden = {x: sp.Symbol(f"{part.name}_{x.name}", real=True) for x in equation.rates}
+        here: dict[sp.Expr, sp.Expr] = {
+            **names,
+            **hidden,
+            SIGNALS["position"]: signal(part.motion),
+            SIGNALS["velocity"]: velocity(part.motion),
+            SIGNALS["acceleration"]: acceleration(part.motion),
+            SIGNALS["direction"]: sp.sign(velocity(part.motion)),
+            SIGNALS["time"]: TIME,
+            SIGNALS["command"]: command,
+        }
+        acting = self._undelayed(part.name, equation.acting.xreplace(here))
+        if sp.diff(acting, command).has(command):  # found once the command is known
+            force = sp.Symbol(f"{part.name}_acting", real=True)
+            self.acting[force], acting = acting, force
+        here[SIGNALS["acting_force"]] = acting
+        total = equation.inertia * SIGNALS["acceleration"] + equation.force + equation.friction
+        for state, rate in equation.rates.items():
+            self.rates[hidden[state]] = self._undelayed(part.name, rate.xreplace(here))
+        if equation.friction != 0:
+            self.friction[f"{part.name}_friction"] = equation.friction.xreplace(here)
+        return (total.xreplace(here) - acting).xreplace({_NO_COMMAND: sp.S(0)})
+
+    def _undelayed(self, name: str, expression: sp.Expr) -> sp.Expr:
+        """delayed(x, tau) replaced by a symbol that the simulation looks up in its history."""
+        for call in sorted(expression.atoms(delayed), key=str):
+            symbol = sp.Symbol(f"{name}_late_{len(self.late)}", real=True)
+            known = {c: s for s, c in self.late.items()}
+            symbol = known.get(call.args, symbol)
+            self.late[symbol] = call.args
+            expression = expression.xreplace({call: symbol})
+        return expression
+
+    def _computer_rows(
+        self, of: _Reader, rate: _Reader, speed: _Reader
+    ) -> tuple[tuple[list[sp.Expr], dict[sp.Symbol, sp.Expr], set[sp.Symbol]], list[str]]:
+        rows: list[sp.Expr] = []
+        rates: dict[sp.Symbol, sp.Expr] = {}
+        before: set[sp.Symbol] = set()
+        names: list[str] = []
+        for part in self.diagram.parts:
+            if isinstance(part, Control):
+                if part.analog:
+                    continue
+                equation = _placed(part, of(part.input), rate(part.motion), speed(part.motion))
+                rows.append(signal(part.output) - equation.output)
+                rates |= equation.rates
+                before |= equation.before
+            elif isinstance(part, Junction) and part.output in self.digital:
+                rows.append(signal(part.output) - _sum(part, of))
+            else:
+                continue
+            names += part.outputs
+        return (rows, rates, before), names
+
+    def _computer(self) -> Computer:
+        sensors = set(self.diagram.measured)
+
+        def of(name: str) -> sp.Symbol:
+            return measured(name) if name in sensors else signal(name)
+
+        (rows, rates, before), names = self._computer_rows(of, travel_rate, estimate)
+        solved = solve_linear(rows, [signal(s) for s in names], self.diagram.name)
+        return Computer(
+            {x: r.xreplace(solved) for x, r in rates.items()},
+            frozenset(before),
+            {s.name: e for s, e in solved.items()},
+        )
+
+
+def _placed(part: Control, given: sp.Expr, rate: sp.Expr, speed: sp.Expr) -> ControllerEquation:
+    assert isinstance(part.controller, Controller)
+    signals = {"input": given, "velocity": speed, "speed": sp.Abs(speed), "travel_rate": rate}
+    return part.controller.equation(part.name, signals)
+
+
+def _sum(part: Junction, of: _Reader) -> sp.Expr:
+    return sp.Add(*(sign * of(s) for s, sign in part.terms.items()))
+
+
+def _parameter_names(diagram: Diagram) -> dict[sp.Symbol, str]:
+    names = {}
+    for full in diagram.values:
+        block, _, own = full.partition(".")
+        names[parameter_symbol(block, own)] = full
+    return names

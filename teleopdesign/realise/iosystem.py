@@ -1,0 +1,116 @@
+"""A diagram as an interconnected nonlinear python-control system: interchange and reference.
+
+Bodies, with what joins them, are one system; each controller and each of its junctions is another,
+joined by the names of their signals. Controllers act in continuous time: python-control cannot mix
+sampled and continuous blocks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import sympy as sp
+
+from ..controllers import Controller
+from ..diagrams import Control, Diagram
+from ..errors import ModelError
+from .equations import TIME, Equations, equations, signal, velocity
+from .simulated import simulated
+
+if TYPE_CHECKING:
+    import control
+
+MECHANICS = "mechanics"
+
+
+def to_iosystem(
+    diagram: Diagram, *, prescribed: tuple[str, ...] = (), give: float = 1e-5
+) -> control.InterconnectedSystem:
+    """The diagram as a python-control system.
+
+    prescribed: motions that are inputs ("L", "L_velocity", "L_acceleration") instead of results
+    give: m or rad, as in `simulate`
+    Inputs are the signals from outside, outputs all others; states are those of `simulate`.
+    raises ModelError: a block without laws, or a dead time, which python-control cannot hold
+    """
+    import control
+
+    diagram = simulated(diagram, give)
+    blocks = tuple(
+        replace(b, analog=False) if isinstance(b, Control) else b for b in diagram.blocks
+    )
+    diagram = replace(diagram, blocks=blocks)
+    parts = equations(diagram, prescribed=prescribed)
+    if parts.late:
+        raise ModelError(
+            f"{diagram.name}: actuation_delay has no python-control form: use `simulate` instead"
+        )
+    values = diagram.values
+    numbers = {s: values[n] for s, n in parts.parameters.items()}
+    systems = [_mechanics(parts, numbers)]
+    for part in diagram.controls:
+        systems.append(_controller(part, numbers))
+    for junction in diagram.junctions:
+        if junction.output in parts.computer.signals:
+            terms = [s if sign > 0 else f"-{s}" for s, sign in junction.terms.items()]
+            name = f"sum_{junction.output}"
+            systems.append(control.summing_junction(terms, junction.output, name=name))
+    driven = {f"{m}{end}" for m in parts.prescribed for end in ("", "_velocity", "_acceleration")}
+    outside = [s for s in diagram.outside if s not in parts.signals]
+    taken = {s for system in systems for s in system.input_labels}
+    made = [s for system in systems for s in system.output_labels]
+    return control.interconnect(
+        systems,
+        inputs=[s for s in [*outside, *sorted(driven)] if s in taken],
+        outputs=made,
+        name=diagram.name.replace(" ", "_"),
+    )
+
+
+def _mechanics(parts: Equations, numbers: dict[sp.Symbol, float]) -> Any:
+    moved = [s for m in parts.motions for s in (signal(m), velocity(m))]
+    given = [*parts.inputs, *parts.commands.values()]
+    states = sorted(parts.rates, key=str)
+    # a signal that the system takes and gives under one name would be wired to itself
+    outputs = {str(s): s for s in moved} | {n: e for n, e in parts.signals.items()}
+    return _nlsys(MECHANICS, states, given, [parts.rates[s] for s in states], outputs, numbers)
+
+
+def _controller(part: Control, numbers: dict[sp.Symbol, float]) -> Any:
+    assert isinstance(part.controller, Controller)
+    v = velocity(part.motion)
+    signals = {"input": signal(part.input), "velocity": v, "speed": sp.Abs(v), "travel_rate": v}
+    equation = part.controller.equation(part.name, signals)
+    states = sorted(equation.rates, key=str)
+    rates = [equation.rates[s] for s in states]
+    used = set().union(*(e.free_symbols for e in (equation.output, *rates)))
+    given = [s for s in (signal(part.input), v) if s in used]
+    return _nlsys(part.name, states, given, rates, {part.output: equation.output}, numbers)
+
+
+def _nlsys(
+    name: str,
+    states: Sequence[sp.Symbol],
+    inputs: Sequence[sp.Symbol],
+    rates: Sequence[sp.Expr],
+    outputs: dict[str, sp.Expr],
+    numbers: dict[sp.Symbol, float],
+) -> Any:
+    import control
+
+    def function(expressions: Sequence[sp.Expr]) -> Callable[..., Any]:
+        found = [sp.sympify(e).subs(numbers) for e in expressions]
+        call = sp.lambdify([TIME, list(states), list(inputs)], found, "math", cse=True)
+        return lambda t, x, u, params: np.array(call(t, x, u), dtype=float)
+
+    return control.nlsys(
+        function(rates) if states else None,
+        function(list(outputs.values())),
+        inputs=[str(s) for s in inputs],
+        outputs=list(outputs),
+        states=[str(s) for s in states] or None,
+        name=name,
+    )

@@ -1,0 +1,95 @@
+"""Force against velocity over whole cycles of a motion, case by case."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .simulation import Simulation
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+    import xarray
+
+
+@dataclass(frozen=True)
+class ForceVelocity:
+    """A force over a velocity.
+
+    data: `force` and `velocity` over `case` and `time`
+    rms: case -> rms of the force;  at_peak_speed: case -> mean size of the force at the peaks
+    """
+
+    data: xarray.Dataset
+    rms: Mapping[str, float]
+    at_peak_speed: Mapping[str, float]
+
+    def plot(self) -> matplotlib.figure.Figure:
+        """One panel for each case, top to bottom."""
+        from ..plot.design import plot_force_velocity
+
+        return plot_force_velocity(self)
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write the curves with their units to a netCDF file."""
+        self.data.to_netcdf(path)
+
+    def to_json(self, path: str | Path) -> None:
+        """Write the figures of each case to a JSON file."""
+        unit = self.data["force"].attrs["units"]
+        figures = {
+            case: {"rms": self.rms[case], "at_peak_speed": self.at_peak_speed[case], "unit": unit}
+            for case in self.rms
+        }
+        Path(path).write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
+
+    def __repr__(self) -> str:
+        unit = self.data["force"].attrs["units"]
+        lines = [
+            f"  {case:<8} rms {self.rms[case]:.3f} {unit}, at peak speed "
+            f"{self.at_peak_speed[case]:.3f} {unit}"
+            for case in self.rms
+        ]
+        return "\n".join(["Force against velocity", *lines])
+
+
+def force_velocity(
+    simulations: Mapping[str, Simulation],
+    *,
+    force: str = "E",
+    velocity: str = "L_velocity",
+    after: float = 0.0,
+) -> ForceVelocity:
+    """The force of each simulation against velocity.
+
+    simulations: case -> simulation, all on one grid of time
+    force: signal, by default the force error R_D - R_M;  after: start of the whole cycles used, s
+    """
+    import xarray
+
+    forces, speeds = [], []
+    for simulation in simulations.values():
+        kept = simulation.data["time"].values >= after - 1e-9
+        time = simulation.data["time"][kept]
+        forces.append(simulation[force].values[kept])
+        speeds.append(simulation[velocity].values[kept])
+        units = simulation[force].attrs["units"], simulation[velocity].attrs["units"]
+    dims = ("case", "time")
+    data = xarray.Dataset(
+        {
+            "force": (dims, np.array(forces), {"units": units[0], "signal": force}),
+            "velocity": (dims, np.array(speeds), {"units": units[1], "signal": velocity}),
+        },
+        {"case": list(simulations), "time": time},
+    )
+    rms, peak = {}, {}
+    for case, f, v in zip(simulations, forces, speeds, strict=True):
+        rms[case] = float(np.sqrt(np.mean(f**2)))
+        # within a thousandth of the peak speed: 5 degrees of a sinusoid
+        peak[case] = float(np.mean(np.abs(f[np.abs(v) > 0.999 * np.abs(v).max()])))
+    return ForceVelocity(data, rms, peak)

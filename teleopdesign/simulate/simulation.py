@@ -1,0 +1,137 @@
+"""Simulate a diagram with the compiled kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from ..diagrams import Diagram
+from ..errors import ModelError, did_you_mean
+from .motion import Motion
+from .prepared import SAMPLED, Input, Prepared, Sampling, prepare
+from .units import signal_units
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+    import xarray
+
+    from ..realise.kernel import Timing
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """Signals over time.
+
+    data: one variable for each signal and hidden state over `time` (s), units in the attributes; at
+    a sample, sensed signals are those just before the command changes
+    """
+
+    diagram: Diagram
+    data: xarray.Dataset
+
+    def __getitem__(self, name: str) -> xarray.DataArray:
+        if name not in self.data:
+            raise ModelError(
+                f'simulation: no signal "{name}", has {", ".join(map(str, self.data))}'
+                f"{did_you_mean(name, [str(n) for n in self.data])}"
+            )
+        return self.data[name]
+
+    def plot(self, *names: str) -> matplotlib.figure.Figure:
+        """Signals against time, one panel each; default: motion, commanded force, interaction."""
+        from ..plot.design import plot_simulation
+
+        return plot_simulation(self, names)
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write the signals with their units to a netCDF file."""
+        self.data.to_netcdf(path)
+
+    def __repr__(self) -> str:
+        t, a = self.data["time"].values, self.data.attrs
+        lines = [
+            f"Simulation of the {self.diagram.name}: {t[-1]:g} s, {len(t)} rows, {a['scheme']}"
+        ]
+        for name, x in self.data.items():
+            size = float(np.sqrt(np.mean(x.values**2)))
+            lines.append(f"  {name:<28} rms {size:<10.4g} {x.attrs['units']}")
+        return "\n".join(lines)
+
+
+def simulate(
+    diagram: Diagram,
+    *,
+    duration: float,
+    inputs: Mapping[str, Input] | None = None,
+    motion: Mapping[str, Motion] | None = None,
+    initial: Mapping[str, float] | None = None,
+    computer: Sampling | Literal["continuous"] = SAMPLED,
+    step: float = 1e-4,
+    give: float = 1e-5,
+    long_step: Literal["refine", "refuse"] = "refine",
+    every_step: bool = False,
+    estimate_error: bool = False,
+    jit: bool = True,
+) -> Simulation:
+    """Simulate from t = 0.
+
+    inputs: signals from outside (SI): a number, a function of time, or samples (those that the
+        computer reads: one a sample; others: one each half step); 0 where not given
+    motion: motions that are prescribed; the force that this takes becomes a result (R_V)
+    initial: state -> start, such as "L", "L_velocity" or "Z_M_presliding_bristle"; else 0
+    computer: how controllers are sampled; "continuous": they are not, as in `to_iosystem`
+    step: inner step, s, rounded down to divide the sample period
+    give: m or rad; ideal Coulomb friction is a bristle that gives by this before it slides
+    long_step: a step too long for bristle or oscillations is made shorter, or refused
+    every_step: rows at every inner step instead of every sample (continuous: of 1 ms)
+    estimate_error: run again with half the step and give each signal an attribute `step_error`, the
+        largest difference over its largest size; large where stick and slip make motion chaotic
+    jit: False runs the generated code in plain Python
+    raises ModelError: block without laws, unknown signal, step refused or force not finite
+    """
+    prepared = prepare(
+        diagram,
+        duration=duration,
+        inputs=inputs,
+        motion=motion,
+        initial=initial,
+        computer=computer,
+        step=step,
+        give=give,
+        jit=jit,
+    )
+    rows, timing = prepared.checked(long_step=long_step, every_step=every_step)
+    result = _labelled(prepared, rows, timing, every_step)
+    if estimate_error:
+        stride = 2 if every_step else 1
+        finer, _ = prepared.run(prepared.timing(2 * timing.inner), every_step=every_step)
+        difference = np.abs(finer[::stride] - rows).max(axis=0)
+        size = np.maximum(np.abs(finer).max(axis=0), np.finfo(float).tiny)
+        for name, error in zip(prepared.program.layout.columns, difference / size, strict=True):
+            result.data[name].attrs["step_error"] = float(error)
+    return result
+
+
+def _labelled(prepared: Prepared, rows: np.ndarray, timing: Timing, every_step: bool) -> Simulation:
+    """Rows as labelled arrays with units."""
+    import xarray
+
+    step = timing.step if every_step else timing.period
+    units = signal_units(prepared.diagram)
+    data = {
+        name: (
+            "time",
+            rows[:, i],
+            {"units": units(name), "text": prepared.diagram.texts.get(name, "")},
+        )
+        for i, name in enumerate(prepared.program.layout.columns)
+    }
+    time = ("time", step * np.arange(len(rows)), {"units": "s"})
+    scheme = f"exponential Runge-Kutta of order 4, step {timing.step * 1e3:.4g} ms"
+    attrs = {"diagram": prepared.diagram.name, "step_s": timing.step, "scheme": scheme}
+    attrs |= {f"parameter {n}": v for n, v in prepared.diagram.values.items()}
+    return Simulation(prepared.diagram, xarray.Dataset(data, {"time": time}, attrs))

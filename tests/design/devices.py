@@ -1,0 +1,27 @@
+"""Devices that the design tests share; few structures, so that few kernels are compiled."""
+
+import numpy as np
+
+from teleopdesign.blocks import Body, Value
+from teleopdesign.controllers import controller, scheduled_force_feedback
+from teleopdesign.effects import EFFECTS
+
+
+def body(inertia=0.15, **parameters):
+    """A body with the effects that `effect__parameter=value` names."""
+    numbers = {n.replace("__", "."): v for n, v in parameters.items()}
+    effects = tuple(dict.fromkeys(n.split(".")[0] for n in numbers))
+    values = {"inertia": Value(inertia)} | {n: Value(v) for n, v in numbers.items()}
+    return Body("prismatic", values, tuple(EFFECTS[e] for e in effects))
+
+
+LUGRE = {
+    "coulomb__level": 0.5,
+    "stribeck__extra_static_level": 0.1,
+    "stribeck__stribeck_velocity": 0.005,
+    "presliding__stiffness": 1e5,
+    "viscous__damping": 0.1,
+}
+CANCELLATION = controller("smoothed_coulomb", {"level": 0.5, "smoothing_velocity": 0.015})
+FEEDBACK = scheduled_force_feedback(gain=5.0, scheduling_velocity=0.08, bandwidth=20.0)
+LOOP = controller("lead", {"gain": 2e4, "zero": 2 * np.pi, "pole": 100 * np.pi})
