@@ -1,9 +1,7 @@
-import os
-from pathlib import Path
-
 import numpy as np
 import pytest
 from measurement.rod_example import COUNT, PAIR, rows, write_rod
+from shared_data import shared_folder
 
 
 @pytest.fixture
@@ -38,8 +36,4 @@ def edit():
 @pytest.fixture(scope="session")
 def shared():
     """Folder of measurements outside the package; without it tests of them are skipped."""
-    default = Path(__file__).parents[3] / "shared"
-    folder = Path(os.environ.get("TELEOPDESIGN_SHARED", default))
-    if not (folder / "data").is_dir():
-        pytest.skip("no folder of shared measurements: set TELEOPDESIGN_SHARED")
-    return folder
+    return shared_folder("data").parent

@@ -1,0 +1,33 @@
+"""Lets the tests here import the truth simulator; cases and diagnoses that several of them use."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "hidden"))
+
+
+@pytest.fixture(scope="session")
+def stribeck_case(tmp_path_factory):
+    """A device whose model lacks `stribeck`: the folder, with truth.json."""
+    from diagnose.own_cases import write_own
+
+    return write_own(tmp_path_factory.mktemp("own") / "stribeck", "stribeck")
+
+
+@pytest.fixture(scope="session")
+def experiment(stribeck_case):
+    from teleopdesign import load_experiment
+
+    return load_experiment(stribeck_case)
+
+
+@pytest.fixture(scope="session")
+def diagnosis(experiment):
+    """What is found on `stribeck_case` among the few effects of `own_cases.FEW`."""
+    from diagnose.own_cases import FEW
+
+    from teleopdesign import Model, find_missing
+
+    return find_missing(experiment, Model.from_experiment(experiment, FEW))

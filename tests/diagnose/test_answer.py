@@ -1,0 +1,117 @@
+"""The answer as files and as text."""
+
+import csv
+import gzip
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnose.contract import violations
+from diagnose.own_cases import FEW
+
+from teleopdesign import Model, compare, find_missing
+from teleopdesign.diagnose.answer import (
+    answer,
+    ladder_text,
+    shares,
+    write_answer,
+    write_predictions,
+)
+
+EVERY_KEY = {
+    "verdict", "missing", "ladder", "noise_floor", "candidates", "indistinguishable",
+    "model_parameters",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def written(diagnosis, tmp_path_factory):
+    file = tmp_path_factory.mktemp("answer") / "answer.json"
+    write_answer(diagnosis, file)
+    return json.loads(file.read_text(), parse_constant=lambda name: pytest.fail(name))
+
+
+def test_the_answer_file_keeps_the_format(written):
+    assert set(written) >= EVERY_KEY
+    assert violations(written) == []
+
+
+def test_the_answer_says_what_the_diagnosis_found(written, diagnosis):
+    assert written["verdict"] == "effects_missing"
+    assert written["missing"][0] == {"effect": "stribeck", "at": "device"}
+    assert written["check"] == "records"
+    assert written["bandwidth"] == {"value": diagnosis.prepared.bandwidth, "unit": "Hz"}
+    best = written["candidates"][0]
+    assert best["effect"] == "stribeck" and best["probability"] > 0.8
+    assert set(best["parameters"]) == {"extra_static_level", "stribeck_velocity"}
+    assert best["parameters"]["extra_static_level"]["unit"] == "N*m"
+    assert set(written["model_parameters"]) == set(diagnosis.before.model.parameters)
+
+
+def test_every_effect_tried_is_a_candidate(written, diagnosis):
+    tried = {
+        r.candidate.key for g in (diagnosis.rungs[1].ranking, diagnosis.last) for r in g.ranked
+    }
+    assert {(c["effect"], c["at"]) for c in written["candidates"]} == tried
+
+
+def test_shares_of_a_ranking_sum_to_one(diagnosis):
+    found = shares(diagnosis.rungs[1].ranking)
+    assert sum(found.values()) == pytest.approx(1.0)
+    assert max(found, key=found.get) == ("stribeck", "device")
+
+
+def test_predictions_hold_every_sample_and_add_up(diagnosis, experiment, tmp_path):
+    file = tmp_path / "predictions.csv"
+    write_predictions(diagnosis, file)
+    with file.open() as opened:
+        head = next(csv.reader(opened))
+        rows = list(csv.DictReader(opened, head))
+    assert head == [
+        "record", "t", "device.measured", "device.model_before", "device.model_after",
+        "device.residual_before", "device.residual_after",
+    ]  # fmt: skip
+    assert len(rows) == sum(len(r.time) for r in experiment.records)
+    assert {r["record"] for r in rows} == {"fit.csv.gz", "check.csv.gz"}
+    column = {n: np.array([float(r[n]) for r in rows]) for n in head[1:]}
+    for which in ("before", "after"):
+        total = column[f"device.model_{which}"] + column[f"device.residual_{which}"]
+        # seven digits are written
+        np.testing.assert_allclose(total, column["device.measured"], atol=3e-6 * total.max())
+    record = experiment.records[0]
+    np.testing.assert_allclose(column["t"][: len(record.time)], record.time, atol=1e-9)
+    zipped = tmp_path / "predictions.csv.gz"
+    write_predictions(diagnosis, zipped)
+    with gzip.open(zipped, "rt") as a, file.open() as b:
+        assert a.read() == b.read().replace("\r\n", "\n")
+
+
+def test_the_ladder_is_a_table_with_parameters_floor_and_verdict(diagnosis):
+    text = ladder_text(diagnosis)
+    assert repr(diagnosis) == text
+    for part in ("your model, re-estimated", "+ stribeck at device", "noise floor", "N*m",
+                 "verdict: effects_missing"):  # fmt: skip
+        assert part in text
+    assert max(map(len, text.splitlines())) < 120
+
+
+def test_a_diagnosis_without_check_record_says_so(experiment):
+    only = replace(experiment, records=experiment.fit_records)
+    few = {n: FEW[n] for n in ("coulomb", "viscous", "stribeck")}
+    found = answer(find_missing(only, Model.from_experiment(only, few)))
+    assert found["check"] == "blocks of fit"
+    assert violations(found) == []
+    assert found["missing"] == [{"effect": "stribeck", "at": "device"}]
+
+
+def test_a_comparison_holds_the_figures_and_the_labelled_forces(experiment, diagnosis):
+    found = compare(diagnosis.before.model, experiment)
+    assert found.fit_error == pytest.approx(diagnosis.before.fit_error)
+    assert found.check_error == pytest.approx(diagnosis.before.check_error)
+    assert found.data.sizes["sample"] == sum(len(r.time) for r in experiment.records)
+    np.testing.assert_allclose(
+        found.data["model"] + found.data["residual"], found.data["measured"], atol=1e-12
+    )
+    assert found.data["measured"].attrs["units"] == "N*m"
+    assert "check error" in repr(found) and "%" in repr(found)

@@ -1,0 +1,146 @@
+"""Which effects are tried, where their search starts, and what a bound means."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnose.own_cases import FEW
+
+from teleopdesign import Model
+from teleopdesign.diagnose.candidates import candidates, started
+from teleopdesign.diagnose.fit import estimate, free_parameters
+from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.diagnose.rank import is_told
+from teleopdesign.diagnose.scales import scales
+from teleopdesign.effects import EFFECTS
+
+
+@pytest.fixture(scope="module")
+def model(experiment):
+    return Model.from_experiment(experiment)
+
+
+@pytest.fixture(scope="module")
+def prepared(experiment):
+    return prepare(experiment)
+
+
+def names(model):
+    return {c.effect.name for c in candidates(model)}
+
+
+def test_what_the_model_has_is_no_candidate(model):
+    assert {"coulomb", "viscous"}.isdisjoint(names(model))
+    assert "stribeck" in names(model)
+
+
+def test_an_effect_that_needs_another_waits_for_it(model):
+    bare = model.without_effect("coulomb")
+    needing = {n for n, e in EFFECTS.items() if "coulomb" in e.needs}
+    assert needing
+    assert needing.isdisjoint(names(bare))
+    assert "coulomb" in names(bare)
+
+
+def test_a_second_shape_of_friction_is_no_candidate(model):
+    shaped = model.with_effect("presliding", values={"stiffness": 1e4})
+    assert not [n for n in names(shaped) if EFFECTS[n].role == "friction_shape"]
+
+
+def test_every_body_is_a_place(model):
+    pair = replace(model, bodies={"master": model.body("device"), "slave": model.body("device")})
+    found = candidates(pair)
+    assert {c.at for c in found} == {"master", "slave"}
+    assert len(found) == 2 * len(candidates(model))
+    assert str(found[0]).endswith(" at master")
+
+
+def needs_of(name):
+    """What an effect needs, and what that needs, in the order in which it can be added."""
+    own = sorted(EFFECTS[name].needs)
+    return list(dict.fromkeys([*(n for need in own for n in needs_of(need)), *own]))
+
+
+@pytest.mark.parametrize("name", sorted(EFFECTS))
+def test_a_search_starts_within_bounds_at_every_combination(name, model, prepared):
+    effect = EFFECTS[name]
+    base = model
+    for other in ("coulomb", "viscous"):
+        base = base.without_effect(other)
+    for need in needs_of(name):
+        base = base.with_effect(need, values=dict.fromkeys(EFFECTS[need].parameters, 1.0))
+    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
+    starts = started(base.with_effect(name), unit)
+    assert len(starts) >= np.prod([len(p.starts) for p in effect.parameters.values()])
+    for start in starts:
+        values = start.body("device").parameters
+        for parameter, declared in effect.parameters.items():
+            value = values[f"{name}.{parameter}"].value
+            assert np.isfinite(value)
+            assert declared.lower <= value <= declared.upper
+
+
+def test_scales_are_those_of_the_record(prepared):
+    motions = [s.motion for s in prepared.of("fit")]
+    unit = scales(motions, prepared.bandwidth)
+    (m,) = motions
+    assert unit["velocity"] == pytest.approx(np.std(m.velocity), rel=0.05)
+    assert unit["stiffness"] * unit["position"] == pytest.approx(unit["force"])
+    assert unit["inertia"] * unit["acceleration"] == pytest.approx(unit["force"])
+    assert all(np.isfinite(v) and v > 0 for v in unit.values())
+
+
+def test_every_quantity_of_an_effect_has_a_scale(prepared):
+    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
+    wanted = {p.scale or p.quantity for e in EFFECTS.values() for p in e.parameters.values()}
+    assert wanted <= set(unit)
+
+
+def test_a_fixed_parameter_stays(experiment, model, prepared):
+    inertia = model.parameters["device.inertia"]
+    fixed = model.with_values({"device.inertia": replace(inertia, fixed=True)})
+    found = estimate(fixed, prepared)
+    assert "device.inertia" not in free_parameters(fixed)
+    assert found.model.parameters["device.inertia"].value == inertia.value
+    assert (
+        found.model.parameters["device.coulomb.level"].value
+        != model.parameters["device.coulomb.level"].value
+    )
+
+
+def test_an_effect_that_is_not_there_ends_at_its_bound_and_says_so(model, prepared):
+    """A friction that only ever helps the motion cannot be: its level ends at zero."""
+    truth = estimate(model, prepared)
+    reversed_force = [
+        replace(s, motion=replace(s.motion, direction=-s.motion.direction))
+        for s in prepared.stretches
+    ]
+    found = estimate(
+        truth.model.without_effect("viscous"), replace(prepared, stretches=tuple(reversed_force))
+    )
+    assert found.at_bound == ("device.coulomb.level",)
+    assert found.model.parameters["device.coulomb.level"].value == pytest.approx(0.0, abs=1e-6)
+
+
+def test_inertia_beside_a_free_inertia_cannot_be_told(model, prepared):
+    base = estimate(model, prepared)
+    twice = estimate(base.model.with_effect("added_inertia", values={"inertia": 1e-4}), prepared)
+    assert not is_told(twice, base)
+    absent = estimate(base.model.with_effect("spring", values={"stiffness": 1e-4}), prepared)
+    assert not is_told(absent, base), "no spring is there: its stiffness is not determined"
+    less = estimate(base.model.without_effect("coulomb"), prepared)
+    whole = estimate(less.model.with_effect("coulomb", values={"level": 0.1}), prepared)
+    assert is_told(whole, less)
+
+
+def test_without_check_records_blocks_are_held_out(experiment, model):
+    only = prepare(replace(experiment, records=experiment.fit_records))
+    found = estimate(model, only)
+    assert np.isfinite(found.check_error)
+    # blocks that a fit has not seen are fitted a little worse than those it has
+    assert found.fit_error < found.check_error < 1.5 * found.fit_error
+    assert len(found.check_residual) == len(found.check_blocks) == len(found.fit_residual)
+
+
+def test_few_is_part_of_the_catalogue():
+    assert set(FEW) <= set(EFFECTS)

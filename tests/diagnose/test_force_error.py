@@ -1,0 +1,241 @@
+"""The force error and its floor: figures that anyone can recompute."""
+
+import importlib.util
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnose.own_cases import truth_of, write_own
+from measurement.rod_example import write_rod
+from shared_data import shared_folder
+
+from teleopdesign import ExperimentError, Model, load_experiment
+from teleopdesign.diagnose.answer import write_predictions
+from teleopdesign.diagnose.fit import block_numbers, estimate
+from teleopdesign.diagnose.force_error import (
+    FOLDS,
+    default_bandwidth,
+    error_of,
+    folds,
+    force_error,
+    prepare,
+    residuals,
+)
+from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.realise.along_motion import residual_along
+
+
+@pytest.fixture(scope="module")
+def prepared(experiment):
+    return prepare(experiment)
+
+
+@pytest.fixture(scope="module")
+def model(experiment):
+    return Model.from_experiment(experiment)
+
+
+def test_the_error_is_that_of_the_plain_formula(prepared, model):
+    """rms(LP r) / rms(LP (u + f)) of the check record less 0.25 s at each end, by hand."""
+    (stretch,) = prepared.of("check")
+    m = stretch.motion
+    inside = slice(int(0.25 / m.sample_time), -int(0.25 / m.sample_time))
+    left = m.lowpassed(residual_along(model.body("device"), m).residual.value)[inside]
+    record = prepared.experiment.check_records[0]
+    force = record.signals["device.actuator_force"] + record.signals.get(
+        "device.interaction_force", 0.0
+    )
+    by_hand = np.sqrt(np.mean(left**2) / np.mean(m.lowpassed(force)[inside] ** 2))
+    # rows are thinned to five a period of the bandwidth; the command is taken half a sample late
+    assert force_error(model, prepared.of("check")) == pytest.approx(by_hand, rel=0.01)
+
+
+@pytest.mark.parametrize("scorer", ["own", "shared"])
+def test_the_error_can_be_recomputed_from_the_predictions(scorer, diagnosis, tmp_path):
+    file = tmp_path / "predictions.csv.gz"
+    write_predictions(diagnosis, file)
+    if scorer == "shared":
+        path = shared_folder("hidden/score.py")
+        spec = importlib.util.spec_from_file_location("score", path)
+        score = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(score)
+        found, problem = score.recompute(file, diagnosis.prepared.bandwidth)
+        assert problem is None
+    else:
+        found = recomputed(file, diagnosis)
+    # thinning and the half sample of the held command
+    assert found == pytest.approx(diagnosis.after.check_error, rel=0.01)
+
+
+def recomputed(file, diagnosis):
+    """The check error after all effects, from the file alone, by scipy's filter."""
+    import csv
+    import gzip
+
+    from scipy.signal import butter, sosfiltfilt
+
+    with gzip.open(file, "rt") as opened:
+        rows = [r for r in csv.DictReader(opened) if r["record"] == "check.csv.gz"]
+    rate = round(1 / (float(rows[1]["t"]) - float(rows[0]["t"])))
+    sos = butter(4, diagnosis.prepared.bandwidth, fs=rate, output="sos")
+
+    def inside(column):
+        y = np.array([float(r[column]) for r in rows])
+        return sosfiltfilt(sos, y, padlen=int(0.6 * rate))[rate // 4 : -rate // 4]
+
+    left, measured = inside("device.residual_after"), inside("device.measured")
+    return np.sqrt(np.sum(left**2) / np.sum(measured**2))
+
+
+def test_a_model_with_nothing_in_it_leaves_everything(prepared, model):
+    body = model.body("device")
+    for name in [e.name for e in body.effects]:
+        body = body.without_effect(name)
+    empty = replace(model, bodies={"device": body.with_values({"inertia": 0.0})})
+    assert force_error(empty, prepared.of("check")) == pytest.approx(1.0, rel=1e-3)
+
+
+def test_no_records_of_a_use_have_no_error(model):
+    assert np.isnan(force_error(model, ()))
+
+
+def test_the_true_parameters_leave_the_error_that_the_simulation_says(
+    prepared, model, stribeck_case
+):
+    truth = truth_of(stribeck_case)
+    values = dict(truth["model_parameters"])
+    (hidden,) = truth["effects"]
+    known = model.with_effect(
+        "stribeck", values={n: v["value"] for n, v in hidden["parameters"].items()}
+    ).with_values(values)
+    found = force_error(known, prepared.of("check"))
+    # the reference knows where a motion reverses; measured along an encoder it is a little more
+    assert 0.9 * truth["check_error_true"] < found < 1.5 * truth["check_error_true"]
+    base = estimate(model, prepared)
+    assert base.check_error == pytest.approx(truth["check_error_base"], rel=0.1)
+    assert base.fit_error == pytest.approx(truth["fit_error_base"], rel=0.1)
+
+
+# the floor
+
+
+@pytest.mark.parametrize(("effect", "seed"), [("stribeck", 8), (None, 4), ("spring", 8)])
+def test_the_floor_is_what_step_and_noise_leave_on_the_true_motion(effect, seed, tmp_path):
+    """Within 30 % of the floor that the simulator finds by drawing errors onto its true motion."""
+    folder = write_own(tmp_path / "case", effect, seed=seed)
+    truth = truth_of(folder)
+    prepared = prepare(load_experiment(folder))
+    model = Model.from_experiment(prepared.experiment)
+    if effect:
+        (hidden,) = truth["effects"]
+        values = {n: v["value"] for n, v in hidden["parameters"].items()}
+        model = model.with_effect(effect, values=values)
+    model = model.with_values(truth["model_parameters"])
+    floor = noise_floor(model, prepared, np.random.default_rng(0))
+    assert floor.source == "stated resolution and noise"
+    # below it: a friction that balances where no motion is told takes up noise with it
+    assert 0.65 < floor.value / truth["noise_floor"] < 1.3
+
+
+def test_the_floor_hardly_depends_on_the_draws(prepared, model):
+    drawn = [noise_floor(model, prepared, np.random.default_rng(s)).value for s in (1, 2, 3)]
+    assert np.ptp(drawn) < 0.15 * np.mean(drawn)
+    again = noise_floor(model, prepared, np.random.default_rng(1)).value
+    assert again == drawn[0], "the generator is the only chance in it"
+
+
+def test_a_floor_from_the_readings_says_so_and_is_near_the_stated_one(experiment, prepared, model):
+    channels = {n: replace(c, resolution=None, noise=None) for n, c in experiment.channels.items()}
+    blind = prepare(replace(experiment, channels=channels))
+    stated = noise_floor(model, prepared, np.random.default_rng(0))
+    seen = noise_floor(model, blind, np.random.default_rng(0))
+    assert seen.source == "step and noise seen in the readings"
+    # the command of a controller that differentiates an encoder looks noisier than it is read
+    assert 0.5 * stated.value < seen.value < 3.0 * stated.value
+
+
+# what is compared
+
+
+def test_the_default_bandwidth_ends_where_the_position_tells_no_acceleration(experiment):
+    # the simulated machines are driven up to 15 to 18 Hz, sampled at 1 kHz
+    assert 10.0 < default_bandwidth(experiment) <= 100.0
+    record = experiment.records[0]
+    rng = np.random.default_rng(0)
+    x = record.signals["device.position"]
+    noisy = x + 0.02 * np.std(x) * rng.standard_normal(len(x))
+    worse = replace(record, signals={**record.signals, "device.position": noisy})
+    lower = default_bandwidth(replace(experiment, records=(worse,)))
+    assert lower < default_bandwidth(experiment)
+
+
+def test_a_bandwidth_too_high_for_the_samples_is_one_line(experiment):
+    with pytest.raises(ExperimentError, match="bandwidth: 450 Hz is too high for fit.csv.gz"):
+        prepare(experiment, bandwidth=450.0)
+
+
+def test_a_record_without_a_stretch_long_enough_is_one_line(experiment):
+    rows = tuple(slice(k, k + 400) for k in range(0, 4000, 400))
+    record = replace(experiment.fit_records[0], segments=rows)
+    with pytest.raises(ExperimentError, match="no stretch of 0.6 s or more"):
+        prepare(replace(experiment, records=(record,)))
+
+
+def test_segments_are_stretches_of_their_own(experiment, model):
+    """Cut in three, what remains of the record leaves the same error but for its ends."""
+    whole = experiment.fit_records[0]
+    n = len(whole.time)
+    cuts = (slice(0, n // 3), slice(n // 3, 2 * n // 3), slice(2 * n // 3, n))
+    cut = replace(whole, segments=cuts)
+    parts = prepare(replace(experiment, records=(cut,)))
+    assert [s.motion.rows for s in parts.of("fit")] == list(cuts)
+    numbers = block_numbers(parts.of("fit"))
+    assert np.all(np.diff(numbers) >= 0) and len(np.unique(numbers)) == numbers[-1] + 1
+    one = prepare(replace(experiment, records=(whole,)))
+    # 1 s of 12 is left out at the cuts
+    assert force_error(model, parts.of("fit")) == pytest.approx(
+        force_error(model, one.of("fit")), rel=0.1
+    )
+
+
+def test_held_out_blocks_cover_every_row_once(prepared):
+    stretches = prepared.of("fit")
+    pairs = folds(stretches)
+    assert len(pairs) == FOLDS
+    for i, s in enumerate(stretches):
+        held = np.concatenate([unseen[i].keep for _, unseen in pairs])
+        np.testing.assert_array_equal(np.sort(held), s.keep)
+        for seen, unseen in pairs:
+            assert not set(seen[i].keep) & set(unseen[i].keep)
+    whole = sum(s.measured for s in stretches)
+    assert sum(u.measured for _, un in pairs for u in un) == pytest.approx(whole)
+
+
+def test_an_own_encoder_zero_costs_nothing_where_a_spring_knows_the_position(experiment, model):
+    """Shifted by an unknown zero, a record with its own zero leaves the same residual.
+
+    Exactly so for a linear model: a friction at rest balances up to its level, which bends.
+    """
+    sprung = model.without_effect("coulomb").with_effect("spring", values={"stiffness": 0.5})
+    record = replace(experiment.check_records[0], position_zero="own")
+    x = record.signals["device.position"]
+    shifted = replace(record, signals={**record.signals, "device.position": x + 0.3 * np.ptp(x)})
+    fit_records = experiment.fit_records
+    found, plain = (
+        residuals(sprung, prepare(replace(experiment, records=(*fit_records, r))).of("check"))[0][0]
+        for r in (shifted, record)
+    )
+    np.testing.assert_allclose(found, plain, rtol=0, atol=1e-6 * np.abs(plain).max())
+    common = prepare(
+        replace(experiment, records=(*fit_records, replace(shifted, position_zero="common")))
+    ).of("check")
+    assert error_of(common, [residuals(sprung, common)[0][0]]) > 1.05 * force_error(
+        sprung, prepare(replace(experiment, records=(*fit_records, shifted))).of("check")
+    )
+
+
+def test_an_experiment_that_is_no_machine_is_still_compared(tmp_path):
+    """Signals that no model explains have an error, not a failure."""
+    experiment = load_experiment(write_rod(tmp_path / "rod"))
+    found = estimate(Model.from_experiment(experiment), prepare(experiment))
+    assert 0.0 <= found.check_error < 10.0

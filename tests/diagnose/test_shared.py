@@ -1,0 +1,63 @@
+"""Diagnoses of shared measurements, simulated and real, against what is known of them."""
+
+import json
+
+import pytest
+from shared_data import shared_folder
+from truth_effects import TEN
+
+from teleopdesign import Model, find_missing, load_experiment
+from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.force_error import prepare
+
+
+def one_body_cases():
+    """(folder, truth) of every shared case with one body."""
+    cases = shared_folder("hidden/cases")
+    truths = (json.loads(p.read_text()) for p in sorted((cases.parent / "truth").glob("*.json")))
+    return [(cases / t["case"], t) for t in truths if t["kind"] == "device"]
+
+
+def test_the_models_re_estimated_error_is_that_of_the_reference():
+    """Within 5 %: the reference knows the true motion, the diagnosis an encoder's."""
+    far = {}
+    for folder, truth in one_body_cases():
+        experiment = load_experiment(folder)
+        found = estimate(Model.from_experiment(experiment), prepare(experiment)).check_error
+        ratio = found / truth["check_error_base"]
+        if truth["level"] in ("clear", "weak") and not 0.95 < ratio < 1.05:
+            far[truth["case"]] = ratio
+    assert not far
+
+
+@pytest.mark.slow
+def test_nine_in_ten_single_effects_are_named_first():
+    right, wrong = 0, {}
+    for folder, truth in one_body_cases():
+        if truth["level"] not in ("clear", "weak") or truth["effects"][0]["effect"] not in TEN:
+            continue
+        true = truth["effects"][0]["effect"]
+        found = find_missing(load_experiment(folder))
+        group = {c.effect.name for g in found.groups[:1] for c in g}
+        first = {found.missing[0].effect.name} if found.missing else group
+        right += true in first
+        if true not in first:
+            wrong[truth["case"]] = (true, first)
+    assert right >= 0.9 * (right + len(wrong)), wrong
+
+
+@pytest.mark.slow
+def test_no_effect_is_named_where_nothing_is_missing():
+    nulls = [folder for folder, truth in one_body_cases() if truth["level"] == "null"]
+    assert nulls
+    assert {f.name: find_missing(load_experiment(f)).missing for f in nulls} == {
+        f.name: () for f in nulls
+    }
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "bound"), [("emps", 0.052), ("psm_insertion", 0.225)])
+def test_a_real_recording_is_explained_as_well_as_known(name, bound):
+    """Check errors that plain models of the same effects reach on these recordings."""
+    found = find_missing(load_experiment(shared_folder("data") / name))
+    assert found.after.check_error <= bound

@@ -1,0 +1,222 @@
+"""Low-pass, derivatives, hold; what readings tell of a motion."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.signal import butter, sosfiltfilt
+
+from teleopdesign.measurement.filtering import spectrum
+from teleopdesign.measurement.motion import (
+    SMOOTHING,
+    TRAVEL,
+    motion_of,
+    play,
+    reading_noise,
+    reading_step,
+    told_direction,
+)
+
+RATE = 1000.0
+T = np.arange(4000) / RATE
+INSIDE = slice(700, -700)  # the ends feel how the record is continued
+
+
+def rough(seed=0, n=4000):
+    """A record with content at every frequency and a drift."""
+    rng = np.random.default_rng(seed)
+    return np.cumsum(rng.standard_normal(n)) / 30 + rng.standard_normal(n)
+
+
+@pytest.mark.parametrize("cutoff", [5.0, 60.0, 200.0])
+def test_the_low_pass_is_butterworth_of_order_4_run_forward_and_backward(cutoff):
+    y = rough()
+    s = spectrum(len(y), 1 / RATE)
+    ours = s.multiply(y, s.lowpass(cutoff))
+    sos = butter(4, cutoff, fs=RATE, output="sos")
+    known = sosfiltfilt(sos, y, padtype="odd", padlen=600)
+    # both have the same gain; inside only the tails of other continuations differ
+    np.testing.assert_allclose(ours[INSIDE], known[INSIDE], rtol=0, atol=1e-6 * np.ptp(y))
+
+
+def test_the_low_pass_halves_at_its_cutoff_and_leaves_a_constant():
+    s = spectrum(len(T), 1 / RATE)
+    wave = np.sin(2 * np.pi * 60 * T)
+    np.testing.assert_allclose(
+        s.multiply(wave, s.lowpass(60.0))[INSIDE], 0.5 * wave[INSIDE], atol=1e-3
+    )
+    np.testing.assert_allclose(s.multiply(np.full(4000, 7.0), s.lowpass(60.0)), 7.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("frequency", [0.7, 6.0, 40.0])
+def test_derivatives_of_a_sine_are_exact(frequency):
+    w = 2 * np.pi * frequency
+    s = spectrum(len(T), 1 / RATE)
+    for order, expected in ((1, w * np.cos(w * T)), (2, -(w**2) * np.sin(w * T))):
+        gain = s.derivative(order) * s.lowpass(300.0, order=8)
+        found = s.multiply(np.sin(w * T), gain)
+        # the continuation has a kink in curvature at either end, low-passed it dies out inside
+        np.testing.assert_allclose(found[INSIDE], expected[INSIDE], atol=1e-4 * w**order)
+
+
+def test_a_held_command_acts_half_a_sample_late():
+    w = 2 * np.pi * 10
+    s = spectrum(len(T), 1 / RATE)
+    held = s.multiply(np.sin(w * T), s.hold())
+    late = np.sin(w * (T - 0.5 / RATE))
+    # and weaker by (w h)^2 / 24 = 1.6e-4
+    np.testing.assert_allclose(held[INSIDE], late[INSIDE], atol=2e-4)
+    assert np.abs(held - np.sin(w * T))[INSIDE].max() > 0.9 * w * 0.5 / RATE
+
+
+@pytest.mark.parametrize("n", [3, 10, 601, 602, 1999])
+def test_every_length_of_record_comes_back_as_it_was(n):
+    y = rough(n=n)
+    s = spectrum(n, 1 / RATE)
+    np.testing.assert_allclose(s.multiply(y, np.ones(len(s.frequency))), y, atol=1e-12)
+    assert s.multiply(np.vstack([y, 2 * y]), s.lowpass(100.0)).shape == (2, n)
+
+
+# direction
+
+STEP = 1e-5
+PATIENCE = 20
+
+
+def told(position):
+    return told_direction(position, STEP, STEP, PATIENCE)
+
+
+def read(position):
+    return STEP * np.round(position / STEP)
+
+
+def test_a_body_at_rest_is_told_no_direction():
+    assert not told(np.full(500, 3 * STEP)).any()
+
+
+def test_an_encoder_that_dithers_between_two_steps_tells_no_motion():
+    rng = np.random.default_rng(0)
+    assert not told(STEP * rng.integers(0, 2, 500).astype(float)).any()
+
+
+def test_a_creep_slower_than_the_patience_tells_no_motion():
+    slow = read(np.arange(2000) * STEP / (2 * PATIENCE))
+    assert not told(slow).any()
+
+
+def test_a_motion_is_told_from_its_first_step_to_its_last():
+    x = read(np.concatenate([np.zeros(100), np.arange(200) * 2 * STEP, np.full(100, 400 * STEP)]))
+    direction = told(x)
+    assert np.all(direction[102:299] == 1)
+    assert not direction[:100].any() and not direction[301:].any()
+    np.testing.assert_array_equal(told(-x), -direction)
+
+
+def test_a_give_of_less_than_the_travel_tells_no_motion():
+    x = read(np.concatenate([np.zeros(50), np.linspace(0, (TRAVEL - 1) * STEP, 20), np.zeros(50)]))
+    assert not told(x).any()
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 2**31), speed=st.floats(0.01, 30.0))
+def test_the_direction_never_contradicts_the_readings(seed, speed):
+    """Every change of the reading within a told motion goes the told way."""
+    rng = np.random.default_rng(seed)
+    legs = np.repeat(rng.normal(size=60) * speed * STEP, rng.integers(1, 40, 60))
+    x = read(np.cumsum(legs))
+    direction = told(x)
+    assert set(np.unique(direction)) <= {-1, 0, 1}
+    change = np.diff(x)
+    inside = (direction[1:] != 0) & (direction[:-1] == direction[1:])
+    assert np.all(change[inside] * direction[1:][inside] >= 0)
+    # what is told covers the least travel, from before its first change to its last
+    edges = np.flatnonzero(np.diff(direction, prepend=0))
+    for start, end in zip(edges, [*edges, len(x) - 1][1:], strict=False):
+        if direction[start]:
+            assert abs(x[end] - x[start - 1]) > (TRAVEL - 0.6) * STEP
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 2**31), width=st.floats(0.1, 5.0))
+def test_play_follows_within_half_its_width_and_ignores_less(seed, width):
+    x = np.cumsum(np.random.default_rng(seed).normal(size=200))
+    y = play(x, width)
+    assert np.all(np.abs(x - y) <= 0.5 * width + 1e-12)
+    moved = np.diff(y) != 0
+    assert np.all(np.sign(np.diff(y)[moved]) == np.sign(x[1:] - y[:-1])[moved])
+    assert np.ptp(play(0.49 * width * np.sin(x), width)) <= 0.49 * width
+
+
+def test_noise_and_step_of_readings_are_seen_in_them():
+    rng = np.random.default_rng(1)
+    smooth = 0.01 * np.sin(2 * np.pi * 3 * T)
+    noisy = smooth + 2e-5 * rng.standard_normal(len(T))
+    assert reading_noise(noisy) == pytest.approx(2e-5, rel=0.1)  # 4000 samples: 2 %
+    assert reading_step(read(smooth)) == pytest.approx(STEP, rel=1e-6)
+    assert reading_step(np.full(10, 1.0)) == 0.0
+
+
+# motion
+
+
+def motion(position, *, bandwidth=60.0, resolution=None):
+    return motion_of(
+        body="device",
+        file="made",
+        time=T,
+        position=position,
+        command=np.zeros(len(T)),
+        interaction=None,
+        sample_time=1 / RATE,
+        rows=slice(0, len(T)),
+        bandwidth=bandwidth,
+        resolution=resolution,
+    )
+
+
+def test_a_motion_within_the_band_keeps_position_velocity_and_acceleration():
+    w = 2 * np.pi * 20
+    m = motion(read(0.01 * np.sin(w * T)), resolution=STEP)
+    quantities = ((m.position, 0.01 * np.sin(w * T)), (m.velocity, 0.01 * w * np.cos(w * T)))
+    for k, (found, expected) in enumerate(quantities):
+        # what an encoder step of 1e-3 of the amplitude leaves of its own, 0.3 of a step rms
+        size = np.abs(expected).max()
+        assert np.std((found - expected)[INSIDE]) < (2e-4 + 1e-3 * k) * size
+
+
+def test_smoothing_leaves_the_band_of_the_comparison_untouched():
+    m = motion(0.01 * np.sin(2 * np.pi * 3 * T), bandwidth=60.0)
+    band = m.spectrum.frequency <= 60.0
+    assert m.smoothing[band].min() > 0.998
+    assert m.smoothing[m.spectrum.frequency > 2 * SMOOTHING * 60.0].max() < 1e-4
+    half = m.spectrum.lowpass(60.0)[np.argmin(abs(m.spectrum.frequency - 60.0))]
+    assert half == pytest.approx(0.5, abs=0.01)
+
+
+def test_the_low_pass_is_the_same_in_time_and_in_frequency():
+    rng = np.random.default_rng(1)
+    y = np.cumsum(rng.standard_normal((3, len(T))), axis=1)
+    m = motion(0.01 * np.sin(2 * np.pi * 3 * T), bandwidth=60.0)
+    before = y.copy()
+    in_time = m.lowpassed(y)
+    in_frequency = m.spectrum.multiply(y, m.spectrum.lowpass(60.0))
+    # both continue the record by 0.6 s, forty time constants of the filter
+    assert np.abs(in_time - in_frequency).max() < 1e-9 * np.abs(y).max()
+    assert np.array_equal(m.lowpassed(y[0]), in_time[0])
+    assert np.array_equal(y, before), "what is filtered stays as it was"
+
+
+def test_noisy_readings_tell_the_motion_that_clean_ones_tell():
+    rng = np.random.default_rng(2)
+    x = 0.01 * np.sin(2 * np.pi * 2 * T)
+    m = motion(x + 5e-6 * rng.standard_normal(len(T)), resolution=1e-7)
+    moving = np.abs(np.cos(2 * np.pi * 2 * T)) > 0.2
+    speed = np.sign(np.cos(2 * np.pi * 2 * T))
+    assert m.step > 1e-5, "the noise is what one reading leaves open"
+    assert np.mean(m.direction[moving] == speed[moving]) > 0.97
+    assert not np.any(m.direction[moving] == -speed[moving])
+
+
+def test_an_interaction_force_that_is_not_measured_is_zero():
+    assert not motion(0.01 * np.sin(T)).interaction.any()

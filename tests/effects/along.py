@@ -1,0 +1,103 @@
+"""Bodies and motions that the tests of effects share."""
+
+import numpy as np
+
+from teleopdesign.blocks import Body, Value
+from teleopdesign.effects import EFFECTS
+from teleopdesign.measurement.motion import motion_of
+
+#: a value of the right order for each quantity, on the device and motions of this folder
+TYPICAL = {
+    "force": 0.3,
+    "inertia": 0.1,
+    "damping": 2.0,
+    "stiffness": 2e3,
+    "velocity": 0.05,
+    "time": 2.3e-3,  # s; no whole number of samples: a delay is smooth between them
+    "dimensionless": 0.2,
+    "position": 0.01,
+    "drag": 1.0,
+    "cubic_stiffness": 1e5,
+    "angle": 0.3,
+    "frequency": 10.0,
+}
+LEVEL = 0.5  # N; above every effect that lowers it
+#: where another size shows the effect
+OTHER = {
+    "coulomb.level": LEVEL,
+    "actuator_saturation.limit": 1.5,  # N; the commands reach twice that
+    "friction_drift.time_constant": 0.4,  # s; part of a record
+    "backlash.gap": 1e-3,  # m; part of the travel
+}
+INERTIA = 0.15
+NAMES = sorted(EFFECTS)
+
+
+def declaring(claim):
+    """Names of the effects that make this claim in `always`."""
+    return [name for name in NAMES if claim in EFFECTS[name].always]
+
+
+def with_needs(name):
+    """The effect's name after the names of those that it needs."""
+    needed = [n for need in sorted(EFFECTS[name].needs) for n in with_needs(need)]
+    return list(dict.fromkeys([*needed, name]))
+
+
+def typical(name, parameter):
+    """Value of an effect's parameter in these tests."""
+    quantity = EFFECTS[name].parameters[parameter].quantity
+    return OTHER.get(f"{name}.{parameter}", TYPICAL[quantity])
+
+
+def body_of(*names, absent=(), values=(), axis="prismatic"):
+    """A body with these effects at typical values.
+
+    absent: names of effects at the values at which they are not there
+    values: {"effect.parameter": value} that replace the typical ones
+    """
+    numbers = {"inertia": INERTIA}
+    for name in names:
+        for parameter in EFFECTS[name].parameters:
+            number = typical(name, parameter)
+            if name in absent:
+                number = EFFECTS[name].absent.get(parameter, number)
+            numbers[f"{name}.{parameter}"] = number
+    parameters = {n: Value(v) for n, v in (numbers | dict(values)).items()}
+    return Body(axis, parameters, tuple(EFFECTS[n] for n in names))
+
+
+def motion_along(
+    position, command, interaction=None, *, sample_time=1e-3, bandwidth=60.0, resolution=None
+):
+    """The Motion of these readings."""
+    return motion_of(
+        body="device",
+        file="made",
+        time=np.arange(len(position)) * sample_time,
+        position=position,
+        command=command,
+        interaction=interaction,
+        sample_time=sample_time,
+        rows=slice(0, len(position)),
+        bandwidth=bandwidth,
+        resolution=resolution,
+    )
+
+
+def signals(seed=1, samples=1000, sample_time=1e-3):
+    """Position, command and interaction force: sums of sines below 18 Hz, sizes of a device."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(samples) * sample_time
+
+    def sines(size):
+        f = rng.uniform(1.5, 18.0, 5)[:, None]
+        phase = rng.uniform(0, 2 * np.pi, 5)[:, None]
+        return size * np.sum(np.sin(2 * np.pi * f * t + phase) / (1 + (f / 6) ** 2), axis=0)
+
+    return sines(0.01), sines(2.0), sines(0.5)
+
+
+def encoded(position, step=1e-6):
+    """What an encoder of that step reads."""
+    return step * np.round(position / step)

@@ -1,0 +1,174 @@
+"""The residual along a motion: against an independent simulation, and against its own tangents."""
+
+import math
+
+import numpy as np
+import pytest
+import truth_simulator
+from effects.along import (
+    INERTIA,
+    LEVEL,
+    NAMES,
+    body_of,
+    encoded,
+    motion_along,
+    signals,
+    typical,
+    with_needs,
+)
+from excitation import fit_record
+from truth_effects import PUBLIC
+
+from teleopdesign.effects import EFFECTS
+from teleopdesign.realise.along_motion import residual_along
+
+STEP = 1e-6  # m, of the encoder
+RATE = 1000.0
+INSIDE = slice(250, -250)  # 0.25 s at each end, as in the force error
+
+VALUES = {"spring.stiffness": 200.0}  # N/m; the typical one is for a bristle
+#: those that the simulator knows too
+COMMON = [n for n in NAMES if n in PUBLIC and n != "friction_memory"]
+
+
+def true_values(name):
+    """Parameters of the truth simulator for the body that `modelled` makes."""
+    values = {"inertia": INERTIA, "level": LEVEL}
+    for one in with_needs(name):
+        for parameter, (known, _) in PUBLIC[one].items():
+            values[known] = VALUES.get(f"{one}.{parameter}", typical(one, parameter))
+    values["inertia"] += values.pop("added_inertia", 0.0)
+    values["has_tip"] = float("tip_inertia" in values)
+    return values
+
+
+def modelled(*names):
+    """The body at the values that are simulated."""
+    return body_of(*names, values={n: v for n, v in VALUES.items() if n.split(".")[0] in names})
+
+
+def simulated(name):
+    """Readings of a device with that effect and Coulomb friction under a position controller.
+
+    Coulomb friction is a bristle whose give, 0.3 encoder steps, cannot be seen.
+    """
+    x, v = fit_record(np.random.default_rng(5), RATE, 6.0, "normal", 16.0)
+    drive = truth_simulator.Drive.zero(len(x))
+    drive.reference[:, 0], drive.reference_velocity[:, 0] = 0.01 * x, 0.01 * v
+    drive.direct[:, 0] = signals(3, len(x))[2]
+    values = true_values(name) | {"kp": INERTIA * 40.0**2, "kd": 1.5 * INERTIA * 40.0}
+    soft = values.pop("presliding", None)
+    hard = (LEVEL + values.get("extra_static_level", 0.0)) / (0.3 * STEP)
+    values["bristle_stiffness"] = soft or hard
+    values["bristle_damping"] = 0.0 if soft else 0.3 * math.sqrt(hard * INERTIA)
+    run = truth_simulator.simulate([truth_simulator.body(**values)], drive, RATE, 50)
+    return motion_along(
+        encoded(run.rows("x")[:, 0], STEP),
+        run.command[:, 0],
+        run.rows("interaction")[:, 0],
+        resolution=STEP,
+    )
+
+
+def relative(residual, motion):
+    """Force error of a residual."""
+    measured = motion.lowpassed(motion.at_rows(motion.command) + motion.interaction)
+    left = motion.lowpassed(residual.residual.value)
+    return float(np.linalg.norm(left[INSIDE]) / np.linalg.norm(measured[INSIDE]))
+
+
+@pytest.mark.parametrize("name", COMMON)
+def test_the_true_model_leaves_next_to_nothing_of_an_independent_simulation(name):
+    motion = simulated(name)
+    names = list(dict.fromkeys(["coulomb", *with_needs(name)]))
+    true = relative(residual_along(modelled(*names), motion), motion)
+    others = [n for n in names if n != name]
+    without = relative(residual_along(modelled(*others), motion), motion)
+    # 1 um read off leaves 0.15 kg (2 pi 60 Hz)^2 0.3 um = 6 mN rms at most, 0.3 to 0.9 % of the
+    # force with the samples at which a reversal is told
+    assert true < 0.015
+    assert without > 5 * true
+
+
+def test_the_direction_of_motion_is_told_within_a_few_steps_of_every_reversal():
+    motion = simulated("coulomb")
+    moving = np.abs(motion.velocity) > 0.02  # m/s; 20 steps a sample
+    assert moving.mean() > 0.3
+    assert np.mean(motion.direction[moving] == np.sign(motion.velocity[moving])) > 0.99
+
+
+def test_friction_of_a_body_at_rest_balances_up_to_its_level():
+    n = 1500
+    ramp = np.linspace(0.0, 2 * LEVEL, n)
+    motion = motion_along(np.zeros(n), ramp, resolution=STEP)
+    along = residual_along(body_of("coulomb"), motion)
+    stuck = slice(250, 650)  # the command is below the level until sample 750
+    np.testing.assert_allclose(along.residual.value[stuck], 0.0, atol=1e-6 * LEVEL)
+    over = slice(850, 1250)
+    np.testing.assert_allclose(along.friction.value[over], LEVEL, rtol=1e-6)
+    np.testing.assert_allclose(
+        along.residual.value[over],
+        ramp[over] - LEVEL,
+        atol=2 * (ramp[1] - ramp[0]),  # a held command is half a sample late
+    )
+
+
+def test_a_bristle_stiffer_than_the_encoder_sees_is_coulomb_friction():
+    x, u, f = signals(4)
+    motion = motion_along(encoded(x, STEP), u, f, resolution=STEP)
+    hard = residual_along(
+        body_of("coulomb", "presliding", values={"presliding.stiffness": 1e7}), motion
+    )
+    plain = residual_along(body_of("coulomb"), motion)
+    told = motion.direction != 0
+    # bristle length 0.05 um: it slides within a sample wherever the motion is told, except at
+    # the first sample after a reversal
+    assert np.mean(np.abs(hard.friction.value - plain.friction.value)[told] < 1e-3 * LEVEL) > 0.97
+
+
+PARAMETERS = [(name, p) for name in NAMES for p in EFFECTS[name].parameters]
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize(
+    ("name", "parameter"), [*PARAMETERS, (None, "inertia")], ids=lambda v: str(v)
+)
+def test_tangents_are_the_slopes_of_the_residual(name, parameter, seed):
+    x, u, f = signals(seed)
+    motion = motion_along(encoded(x, STEP), u, f, resolution=STEP)
+    # with what makes states and levels interact, so that tangents pass through each other
+    around = ["coulomb", "viscous", "actuator_lag", *(with_needs(name) if name else ())]
+    names = list(dict.fromkeys(around))
+    full = f"{name}.{parameter}" if name else parameter
+    body = body_of(*names)
+    value = body.parameters[full].value
+    # 0.1 s: forty time constants of a state whose start is not asked for its slope
+    settled = slice(100, None)
+    # small enough that clipped samples stay clipped; large enough against rounding (1e-16/1e-6)
+    h = 1e-6 * value
+
+    def left(at):
+        return residual_along(body.with_values({full: at}), motion).residual.value[settled]
+
+    slope = (left(value + h) - left(value - h)) / (2 * h)
+    tangent = residual_along(body, motion, [full]).residual.tangent[0, settled]
+    assert np.linalg.norm(slope) > 0
+    # second order of h is 1e-12; rounding 1e-9 of the residual; a sample or two may change sides
+    assert np.linalg.norm(tangent - slope) < 1e-3 * np.linalg.norm(slope)
+
+
+@pytest.mark.parametrize("name", ["actuator_lag", "actuation_delay"])
+def test_tangents_of_friction_pass_through_presliding_and_actuation_together(name):
+    x, u, f = signals(7)
+    motion = motion_along(encoded(x, STEP), u, f, resolution=STEP)
+    body = body_of("coulomb", "presliding", "viscous", name)
+    names = [n for n, _ in body.declared()]
+    tangents = residual_along(body, motion, names).residual.tangent
+    for full, tangent in zip(names, tangents, strict=True):
+        value = body.parameters[full].value
+        sides = [
+            residual_along(body.with_values({full: value * (1 + e)}), motion).residual.value
+            for e in (1e-6, -1e-6)
+        ]
+        slope = (sides[0] - sides[1]) / (2e-6 * value)
+        assert np.linalg.norm(tangent - slope) < 1e-3 * np.linalg.norm(slope), full

@@ -1,0 +1,289 @@
+"""The command: what it prints and writes, its exit status, and one line for every mistake."""
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from diagnose.contract import violations
+
+import teleopdesign
+from teleopdesign import EFFECTS
+from teleopdesign.cli import main
+
+ROD = Path(teleopdesign.__file__).parent / "examples" / "rod"
+FEW = ("coulomb", "viscous", "stribeck", "presliding", "bias", "spring")
+
+OWN = '''"""Own drag: a force in proportion to the square of velocity.
+
+    F = D v abs(v)
+"""
+
+from teleopdesign import Effect, Parameter
+
+
+def law(now, p):
+    return p.drag * now.velocity * abs(now.velocity)
+
+
+EFFECT = Effect(
+    role="force",
+    law=law,
+    parameters={"drag": Parameter("drag", "D: force per velocity squared")},
+    absent={"drag": 0.0},
+    source="made for a test",
+)
+'''
+
+
+@pytest.fixture
+def rod(tmp_path):
+    """A copy of the experiment that ships with the package."""
+    return Path(shutil.copytree(ROD, tmp_path / "rod"))
+
+
+@pytest.fixture
+def few(monkeypatch):
+    """A catalogue of few effects, so that a diagnosis takes a second."""
+    from teleopdesign import effects
+
+    known = effects.catalogue
+    monkeypatch.setattr(
+        effects,
+        "catalogue",
+        lambda extra=(): {n: e for n, e in known(extra).items() if n in FEW or n not in EFFECTS},
+    )
+
+
+def run(*arguments):
+    """The command in a process of its own."""
+    return subprocess.run(
+        [sys.executable, "-m", "teleopdesign.cli", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+
+
+def refused(capsys, *arguments):
+    """The one line on stderr of a command that is refused with exit status 2."""
+    assert main([str(a) for a in arguments]) == 2
+    out = capsys.readouterr()
+    lines = out.err.splitlines()
+    assert len(lines) == 1
+    assert lines[0].startswith("teleopdesign: ")
+    return lines[0]
+
+
+def edited(folder, old, new, file="experiment.toml"):
+    path = folder / file
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    return folder
+
+
+# help and lists
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["diagnose", "--help"], ["--version"]])
+def test_help_answers_without_loading_anything_heavy(arguments):
+    code = (
+        "import sys\n"
+        "from teleopdesign.cli import main\n"
+        f"try:\n    main({arguments})\nexcept SystemExit as end:\n    assert not end.code\n"
+        "heavy = [m for m in ('numba', 'control', 'matplotlib', 'scipy') if m in sys.modules]\n"
+        "sys.exit(f'loaded {heavy}' if heavy else 0)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert "teleopdesign" in done.stdout
+
+
+def test_help_names_every_command():
+    text = run("--help").stdout
+    assert all(c in text for c in ("diagnose", "effects", "fetch", "demo"))
+
+
+def test_no_command_and_an_unknown_one_exit_with_2():
+    for arguments in ([], ["diagnos"]):
+        done = run(*arguments)
+        assert done.returncode == 2 and not done.stdout
+        assert "Traceback" not in done.stderr
+
+
+def test_the_list_of_effects_has_a_line_for_each(capsys):
+    assert main(["effects"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(EFFECTS)
+    assert all(EFFECTS[n].title in line for n, line in zip(EFFECTS, lines, strict=True))
+
+
+@pytest.mark.parametrize("name", sorted(EFFECTS))
+def test_an_effects_page_has_its_text_parameters_and_source(name, capsys):
+    assert main(["effects", name]) == 0
+    out = capsys.readouterr().out
+    effect = EFFECTS[name]
+    assert effect.text.strip() in out and effect.source in out
+    for parameter, declared in effect.parameters.items():
+        assert parameter in out and declared.meaning in out
+
+
+def test_a_users_effect_has_a_page(tmp_path, capsys):
+    file = tmp_path / "own_drag.py"
+    file.write_text(OWN)
+    assert main(["effects", "own_drag", "--effect", str(file)]) == 0
+    assert "F = D v abs(v)" in capsys.readouterr().out
+
+
+# mistakes
+
+
+def test_a_missing_folder_is_one_line_also_in_a_process_of_its_own(tmp_path):
+    done = run("diagnose", tmp_path / "nothing")
+    assert done.returncode == 2
+    assert done.stderr.splitlines() == [f"teleopdesign: {'nothing'}: no such folder"]
+    assert done.stdout == ""
+
+
+IN_THE_TOML = {
+    "column": ('column = "x"', 'column = "pos"', 'fit.csv.gz: channels.position: no column "pos"'),
+    "unit": ('"x", unit = "m"', '"x", unit = "N"', 'found "N", expected a length'),
+    "key": ("[comparison]", "[comparsion]", 'unknown key "comparsion".*"comparison"'),
+    "syntax": ("[channels]", "[channels", "not valid TOML"),
+    "effect": ("viscous =", "viscus =", 'no effect "viscus"; did you mean "viscous"'),
+    "parameter": ("{ damping", "{ dampng", 'no parameter "dampng"'),
+    "bandwidth": ("value = 60", "value = 450", "450 Hz is too high"),
+    "file": ('"check.csv.gz"', '"chek.csv.gz"', 'no file "chek.csv.gz"'),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("mistake", IN_THE_TOML)
+def test_a_mistake_in_the_toml_is_one_line_and_status_2(mistake, rod, capsys):
+    import re
+
+    old, new, expected = IN_THE_TOML[mistake]
+    line = refused(capsys, "diagnose", edited(rod, old, new))
+    assert "rod/" in line
+    assert re.search(expected, line), line
+
+
+def with_plain_record(folder, change):
+    """The experiment with its fit record as plain text, changed line by line."""
+    import gzip
+
+    lines = gzip.decompress((folder / "fit.csv.gz").read_bytes()).decode().splitlines()
+    (folder / "fit.csv").write_text("\n".join(change(lines)) + "\n")
+    return edited(folder, "fit.csv.gz", "fit.csv")
+
+
+def cell(text, row=500):
+    """Replaces the third cell of a row."""
+
+    def change(lines):
+        parts = lines[row].split(",")
+        parts[2] = text
+        return [*lines[:row], ",".join(parts), *lines[row + 1 :]]
+
+    return change
+
+
+IN_A_RECORD = {
+    "nan": cell("nan"),
+    "text": cell("here"),
+    "gap": cell(""),
+    "samples left out": lambda lines: [*lines[:500], *lines[700:]],
+    "not uniform": lambda lines: [lines[0], *(
+        f"{float(line.split(',')[0]) ** 1.5:.6f},{line.split(',', 1)[1]}" for line in lines[1:]
+    )],
+    "too short": lambda lines: lines[:400],
+    "only a header": lambda lines: lines[:1],
+    "nothing": lambda lines: [],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("mistake", IN_A_RECORD)
+def test_a_mistake_in_a_record_is_one_line_and_status_2(mistake, rod, capsys):
+    line = refused(capsys, "diagnose", with_plain_record(rod, IN_A_RECORD[mistake]))
+    assert "rod/fit.csv" in line
+
+
+@pytest.mark.parametrize(
+    ("option", "path", "expected"),
+    [
+        ("--json", "answer.txt", "found '.txt', expected .json"),
+        ("--json", "there/is/no/answer.json", "there is no folder"),
+        ("--predictions", "predictions.json", "expected .csv or .csv.gz"),
+        ("--figure", "figure.bmp", "expected .png or .pdf or .svg"),
+    ],
+)
+def test_a_result_that_cannot_be_written_is_refused_before_the_work(
+    option, path, expected, rod, tmp_path, capsys
+):
+    line = refused(capsys, "diagnose", rod, option, tmp_path / path)
+    assert expected in line
+
+
+def test_a_folder_in_place_of_a_result_is_refused(rod, tmp_path, capsys):
+    (tmp_path / "answer.json").mkdir()
+    line = refused(capsys, "diagnose", rod, "--json", tmp_path / "answer.json")
+    assert "is a folder" in line
+
+
+@pytest.mark.parametrize("command", [["effects"], ["diagnose", str(ROD)]])
+def test_a_bad_effect_file_is_one_line(command, tmp_path, capsys):
+    file = tmp_path / "own_drag.py"
+    file.write_text(OWN.replace("EFFECT =", "OTHER ="))
+    assert "found no EFFECT" in refused(capsys, *command, "--effect", file)
+    assert "no such effect file" in refused(capsys, *command, "--effect", tmp_path / "none.py")
+
+
+def test_an_unknown_effect_page_and_recording_are_one_line(tmp_path, capsys):
+    assert 'did you mean "stribeck"' in refused(capsys, "effects", "stribek")
+    assert 'did you mean "emps"' in refused(capsys, "fetch", "emsp", "--folder", tmp_path)
+
+
+def test_a_demo_folder_that_cannot_be_made_is_one_line(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    assert str(tmp_path / "file") in refused(capsys, "demo", "--output", tmp_path / "file" / "demo")
+
+
+# results
+
+
+def test_a_diagnosis_prints_the_ladder_and_writes_what_was_asked_for(rod, few, tmp_path, capsys):
+    files = [tmp_path / n for n in ("answer.json", "predictions.csv", "figure.png")]
+    options = [
+        *("--json", str(files[0])),
+        *("--predictions", str(files[1])),
+        *("--figure", str(files[2])),
+    ]
+    assert main(["diagnose", str(rod), *options]) == 0
+    out = capsys.readouterr()
+    assert "verdict: " in out.out and "noise floor" in out.out
+    assert out.err == "", "progress is for terminals"
+    assert violations(json.loads(files[0].read_text())) == []
+    assert files[1].read_text().startswith("record,t,device.measured,")
+    assert files[2].read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_users_effect_takes_part_in_a_diagnosis(rod, few, tmp_path):
+    file = tmp_path / "own_drag.py"
+    file.write_text(OWN)
+    result = tmp_path / "answer.json"
+    assert main(["diagnose", str(rod), "--effect", str(file), "--json", str(result)]) == 0
+    tried = {c["effect"] for c in json.loads(result.read_text())["candidates"]}
+    assert "own_drag" in tried
+
+
+@pytest.mark.slow
+def test_the_demo_names_the_effect_and_writes_its_files(tmp_path, capsys):
+    assert main(["demo", "--output", str(tmp_path / "demo")]) == 0
+    assert "written: " in capsys.readouterr().out
+    files = {p.name for p in (tmp_path / "demo").iterdir()}
+    assert files == {"answer.json", "predictions.csv.gz", "ladder.png"}
+    found = json.loads((tmp_path / "demo" / "answer.json").read_text())
+    assert violations(found) == []
+    assert found["verdict"] == "effects_missing"

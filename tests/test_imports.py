@@ -1,0 +1,79 @@
+"""`import teleopdesign` is instant, and every name that it promises is there and documented."""
+
+import ast
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import teleopdesign as td
+
+HEAVY = ("numpy", "scipy", "sympy", "numba", "control", "matplotlib", "xarray", "pooch")
+SOURCES = sorted(Path(td.__file__).parent.rglob("*.py"))
+
+
+def modules_after(code):
+    """Heavy modules that a fresh interpreter holds after running this."""
+    code += f"\nimport sys; print(*[m for m in {HEAVY} if m in sys.modules])"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return set(run.stdout.split())
+
+
+def test_the_import_alone_loads_nothing_heavy():
+    assert modules_after("import teleopdesign") == set()
+
+
+def test_reading_an_experiment_needs_neither_kernels_nor_figures():
+    loaded = modules_after("import teleopdesign; teleopdesign.load_experiment")
+    assert loaded.isdisjoint({"numba", "control", "matplotlib", "xarray"})
+
+
+@pytest.mark.parametrize("name", td.__all__)
+def test_a_public_name_resolves_and_is_documented(name):
+    value = getattr(td, name)
+    if inspect.isclass(value) or inspect.isfunction(value):
+        assert inspect.getdoc(value), f"{name} has no docstring"
+        assert value.__module__.startswith("teleopdesign")
+    assert name in dir(td)
+
+
+def test_the_names_are_those_that_type_checkers_see():
+    """The lazy names and the imports for type checkers are the same."""
+    tree = ast.parse(Path(td.__file__).read_text())
+    (block,) = [n for n in tree.body if isinstance(n, ast.If)]
+    seen = [a.name for f in block.body for a in f.names]
+    assert sorted(seen) == sorted(td.__all__)
+
+
+def test_an_unknown_name_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="no attribute 'find_mising'"):
+        td.find_mising  # noqa: B018
+
+
+def test_the_map_of_folders_is_that_of_the_package():
+    """Every folder or module named in the package's docstring exists."""
+    block = td.__doc__.split("The folders")[1]
+    named = [line.split()[0] for line in block.splitlines() if line.startswith("    ")]
+    root = Path(td.__file__).parent
+    assert len(named) > 8
+    for name in named:
+        assert (root / name).is_dir() or (root / f"{name}.py").is_file(), name
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda p: p.stem)
+def test_every_module_and_public_function_has_a_docstring(source):
+    tree = ast.parse(source.read_text())
+    assert ast.get_docstring(tree), f"{source.name} has no docstring"
+    if source.parent.name in ("effects", "controllers") and source.name[0] != "_":
+        return  # the law's meaning is the file's docstring
+    bare = [
+        node.name
+        for node in tree.body
+        if isinstance(node, ast.FunctionDef | ast.ClassDef)
+        and not node.name.startswith("_")
+        and not ast.get_docstring(node)
+        and len(node.body) > 1  # one line says itself
+    ]
+    assert not bare

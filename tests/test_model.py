@@ -1,0 +1,155 @@
+"""A model: bodies with effects at places, read from an experiment, changed by making a new one."""
+
+import pytest
+from measurement.rod_example import write_rod
+
+from teleopdesign import EFFECTS, Effect, ExperimentError, Model, ModelError, Parameter, Value
+from teleopdesign import load_experiment as load
+
+
+@pytest.fixture
+def experiment(tmp_path):
+    return load(write_rod(tmp_path / "rod"))
+
+
+@pytest.fixture
+def model(experiment):
+    return Model.from_experiment(experiment)
+
+
+def test_a_model_reads_values_in_si_units_and_keeps_what_is_fixed(tmp_path):
+    folder = write_rod(tmp_path / "rod")
+    file = folder / "experiment.toml"
+    text = file.read_text().replace(
+        'value = 0.15, unit = "kg", fixed = false', 'value = 150, unit = "g", fixed = true'
+    )
+    file.write_text(text.replace("viscous = {}", "stribeck = {}\nviscous = {}"))
+    model = Model.from_experiment(load(folder))
+    assert model.parameters["device.inertia"].value == pytest.approx(0.15)
+    assert model.parameters["device.inertia"].fixed
+    assert model.parameters["device.coulomb.level"].value == 0.5
+    assert not model.parameters["device.coulomb.level"].fixed
+    assert model.parameters["device.viscous.damping"].value == 0.0, "absent until it is fitted"
+    assert model.parameters["device.stribeck.extra_static_level"].value == 0.0
+    assert model.effects == (("coulomb", "device"), ("stribeck", "device"), ("viscous", "device"))
+    assert model.unit("device.coulomb.level") == "N"
+    assert model.declared("device.coulomb.level") == EFFECTS["coulomb"].parameters["level"]
+
+
+def test_a_model_never_changes(model):
+    more = model.with_effect("stribeck")
+    assert more.body("device").has("stribeck") and not model.body("device").has("stribeck")
+    other = model.with_values({"device.coulomb.level": 0.7})
+    assert other.parameters["device.coulomb.level"].value == 0.7
+    assert model.parameters["device.coulomb.level"].value == 0.5
+    with pytest.raises(TypeError):
+        model.body("device").parameters["coulomb.level"] = Value(1.0)
+    with pytest.raises(AttributeError):
+        model.bodies = {}
+
+
+@pytest.mark.parametrize("name", sorted(EFFECTS))
+def test_an_effect_added_and_taken_away_leaves_the_model_as_it_was(name, model):
+    base = model if not model.body("device").has(name) else model.without_effect(name)
+    for need in sorted(EFFECTS[name].needs, key=lambda n: len(EFFECTS[n].needs)):
+        if not base.body("device").has(need):
+            base = base.with_effect(need)
+    more = base.with_effect(name, at="device")
+    assert {f"device.{name}.{p}" for p in EFFECTS[name].parameters} <= set(more.parameters)
+    for parameter, value in EFFECTS[name].absent.items():
+        assert more.parameters[f"device.{name}.{parameter}"].value == value
+    less = more.without_effect(name)
+    assert less.parameters == base.parameters and less.effects == base.effects
+
+
+def test_an_effect_of_ones_own_takes_part(model):
+    own = Effect(
+        role="force",
+        law=lambda now, p: p.drag * now.velocity,
+        parameters={"drag": Parameter("damping", "any")},
+        absent={"drag": 0.0},
+    ).named("own", "Own.")
+    more = model.with_effect(own, values={"drag": 2.0})
+    assert more.parameters["device.own.drag"].value == 2.0
+    assert "device.own.drag = 2 N*s/m" in repr(more)
+
+
+def test_plain_numbers_keep_what_is_fixed(model):
+    fixed = model.with_values({"device.inertia": Value(0.2, fixed=True)})
+    assert fixed.with_values({"device.inertia": 0.3}).parameters["device.inertia"].fixed
+    assert "(fixed)" in repr(fixed)
+
+
+MISTAKES = {
+    "unknown effect": (
+        lambda m: m.with_effect("stribek"),
+        r'with_effect: no effect "stribek"; did you mean "stribeck"\?',
+    ),
+    "unknown place": (
+        lambda m: m.with_effect("stribeck", at="devise"),
+        r'no body "devise", has device; did you mean "device"\?',
+    ),
+    "unknown parameter": (
+        lambda m: m.with_effect("stribeck", values={"static_level": 1.0}),
+        'stribeck: no parameter "static_level"',
+    ),
+    "there already": (lambda m: m.with_effect("coulomb"), 'effect "coulomb" is there twice'),
+    "needs another": (
+        lambda m: m.without_effect("coulomb").with_effect("stribeck"),
+        '"stribeck" needs "coulomb" beside it',
+    ),
+    "taken away under another": (
+        lambda m: m.with_effect("stribeck").without_effect("coulomb"),
+        '"stribeck" needs "coulomb"',
+    ),
+    "not there": (lambda m: m.without_effect("spring"), 'has no effect "spring"'),
+    "value at an unknown place": (
+        lambda m: m.with_values({"slave.inertia": 1.0}),
+        'no parameter "slave.inertia"',
+    ),
+    "out of bounds": (
+        lambda m: m.with_values({"device.coulomb.level": -1.0}),
+        "coulomb.level = -1 N is outside 0 .. inf",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_is_one_line(mistake, model):
+    change, expected = MISTAKES[mistake]
+    with pytest.raises(ModelError, match=expected) as caught:
+        change(model)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+IN_THE_TOML = {
+    "unknown effect": ("viscous", "viscus", 'effects: no effect "viscus"; did you mean "viscous"'),
+    "unknown parameter": ("{ level =", "{ levl =", 'coulomb: no parameter "levl".*"level"'),
+    "wrong unit": ('0.50, unit = "N"', '0.50, unit = "kg"', 'found "kg", expected a force'),
+    "no unit": ('0.50, unit = "N"', "0.50", "level.*no unit"),
+    "out of bounds": ("value = 0.50", "value = -0.50", "outside 0 .. inf"),
+    "needs another": ("coulomb = {", "stribeck = {}\nspring = { stiffness = { value = 1, unit"
+                      ' = "N/m" } } #', 'model.device.*"stribeck" needs "coulomb"'),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("mistake", IN_THE_TOML)
+def test_a_mistake_in_the_model_of_an_experiment_is_one_line(mistake, tmp_path):
+    folder = write_rod(tmp_path / "rod")
+    old, new, expected = IN_THE_TOML[mistake]
+    file = folder / "experiment.toml"
+    assert old in file.read_text()
+    file.write_text(file.read_text().replace(old, new, 1))
+    with pytest.raises(ExperimentError, match=expected) as caught:
+        Model.from_experiment(load(folder))
+    assert str(caught.value).startswith("rod/experiment.toml: ")
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_two_bodies_need_a_place(model):
+    pair = Model({"master": model.body("device"), "slave": model.body("device")})
+    with pytest.raises(ModelError, match="at = one of master, slave must be given"):
+        pair.with_effect("spring")
+    more = pair.with_effect("spring", at="slave")
+    assert more.effects[-1] == ("spring", "slave")
+    assert not more.body("master").has("spring")
