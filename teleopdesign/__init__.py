@@ -2,7 +2,7 @@
 
     import teleopdesign as td
 
-    experiment = td.load_experiment("rod")              # a folder with experiment.toml and records
+    experiment = td.load_experiment(td.example("rod"))  # a folder: experiment.toml and records
     model = td.fit(td.Model.from_experiment(experiment), experiment)
     td.compare(model, experiment)                       # see where it fails
     td.rank(model, experiment)                          # which effect would explain it
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from .diagnose import Comparison, Diagnosis, Ranking, compare, find_missing, fit, rank
     from .effects import EFFECTS, Effect, Parameter, State, load_effect
     from .errors import ExperimentError, ModelError, TeleopDesignError
+    from .examples import example
     from .measurement import Experiment, Record, load_experiment
     from .measurement.recordings import fetch
     from .model import Model
@@ -58,6 +59,7 @@ __all__ = [
     "TeleopDesignError",
     "Value",
     "compare",
+    "example",
     "fetch",
     "find_missing",
     "fit",
@@ -68,6 +70,7 @@ __all__ = [
 
 #: where a public name is looked up when it is first used, so that `import teleopdesign` is instant
 _HOMES = (
+    "examples",
     "errors",
     "effects",
     "blocks",

@@ -148,14 +148,18 @@ def _fetch(options: argparse.Namespace) -> int:
 
 def _demo(options: argparse.Namespace) -> int:
     """Diagnose the shipped experiment; answer, predictions and figure go into one folder."""
-    folder = Path(__file__).parent / "examples" / "rod"
+    from .examples import example
+
+    folder = example("rod")
     output: Path = options.output
     try:
         output.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ExperimentError(f"{output}: {error.strerror}") from error
     written = [output / n for n in ("answer.json", "predictions.csv.gz", "ladder.png")]
-    print(f"$ teleopdesign diagnose {folder}")
+    print(
+        "The experiment that ships with the package, held against a model that lacks an effect:\n"
+    )
     status = main(
         [
             "diagnose",

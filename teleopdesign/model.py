@@ -77,6 +77,9 @@ class Model:
 
     def with_values(self, values: Mapping[str, float | Value]) -> Model:
         """The model with other parameter values, by full names such as "device.coulomb.level"."""
+        if unknown := set(values) - set(self.parameters):
+            name = min(unknown)
+            raise ModelError(f'model: no parameter "{name}"{did_you_mean(name, self.parameters)}')
         model = self
         for place, body in self.bodies.items():
             own = {
@@ -86,9 +89,6 @@ class Model:
             }
             if own:
                 model = model._with_body(place, body.with_values(own))
-        if unknown := set(values) - set(self.parameters):
-            name = min(unknown)
-            raise ModelError(f'model: no parameter "{name}"{did_you_mean(name, self.parameters)}')
         return model
 
     @property
@@ -109,6 +109,16 @@ class Model:
         """Unit of the parameter of that full name."""
         place, _, own = name.partition(".")
         return self.body(place).unit(own)
+
+    def canonical(self) -> Model:
+        """The same model with the parameter values to report (see `Effect.canonical`)."""
+        values: dict[str, float] = {}
+        for place, body in self.bodies.items():
+            for effect in body.effects:
+                prefix = f"{place}.{effect.name}."
+                own = {p: self.parameters[prefix + p].value for p in effect.parameters}
+                values |= {prefix + p: v for p, v in effect.canonical(own).items()}
+        return self.with_values(values)
 
     @property
     def absent(self) -> tuple[tuple[str, str], ...]:

@@ -198,11 +198,11 @@ def _number(value: float, error: float, unit: str) -> str:
 
 def ladder_text(diagnosis: Diagnosis) -> str:
     """The ladder as a table, with parameters, noise floor and verdict."""
-    lines = [f"{'added':<34}{'fit error':>10}{'check error':>13}"]
+    lines = [f"{'added':<42}{'fit error':>10}{'check error':>13}"]
     for rung in diagnosis.rungs:
         name = "(your model, re-estimated)" if rung.added is None else f"+ {rung.added}"
         lines.append(
-            f"{name:<34}{100 * rung.fit.fit_error:>9.2f}%{100 * rung.fit.check_error:>12.2f}%"
+            f"{name:<42}{100 * rung.fit.fit_error:>9.2f}%{100 * rung.fit.check_error:>12.2f}%"
         )
         if rung.added is None:
             continue
@@ -218,7 +218,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
             others = ", ".join(map(str, rung.equals))
             lines.append(f"      no different on these records: {others}")
     lines.append(
-        f"{'noise floor':<34}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
+        f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
         f"  ({diagnosis.floor.source})"
     )
     lines.append("")
@@ -233,8 +233,15 @@ def sentence(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "model_adequate":
         return f"verdict: model_adequate. What is left is noise ({left:.2f} noise floors)."
     if diagnosis.verdict == "effects_missing":
-        names = ", ".join(map(str, diagnosis.missing))
+        equals = {r.added: r.equals for r in diagnosis.rungs if r.added is not None}
+        names = ", ".join(" or ".join(map(str, (c, *equals[c]))) for c in diagnosis.missing)
         return f"verdict: effects_missing: {names}.{rest}"
+    if len(diagnosis.rungs) > 1 and any(r.added and not r.equals for r in diagnosis.rungs):
+        names = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)
+        return (
+            f"verdict: undecided. {names} help, but explain less than half of what is missing: "
+            f"{left:.1f} noise floors are left."
+        )
     if diagnosis.groups:
         names = "; ".join(" or ".join(map(str, g)) for g in diagnosis.groups)
         return f"verdict: undecided between {names}: these records cannot tell.{rest}"

@@ -26,7 +26,8 @@ class Comparison:
 
     fit_error, check_error: relative force errors (NaN where there is no such record)
     data: per sample of every record and body (dimension "sample"): record, body, segment, time,
-        position, velocity, direction, measured, model and residual force, the three low-passed
+        position, velocity, direction, measured, model and residual force, the three low-passed,
+        and whether the sample counts in the error (the ends do not)
     """
 
     model: Model
@@ -83,6 +84,8 @@ def residual_data(model: Model, prepared: Prepared) -> Dataset:
         measured = motion.lowpassed(motion.at_rows(motion.command) + motion.interaction)
         residual = motion.lowpassed(along.residual.value)
         n = len(motion.time)
+        counts = np.zeros(n, dtype=bool)
+        counts[stretch.keep[0] : stretch.keep[-1] + 1] = True
         for name, values in {
             "record": np.full(n, motion.file),
             "use": np.full(n, stretch.use),
@@ -95,6 +98,7 @@ def residual_data(model: Model, prepared: Prepared) -> Dataset:
             "measured": measured,
             "model": measured - residual,
             "residual": residual,
+            "counts": counts,
         }.items():
             columns.setdefault(name, []).append(values)
     axis = next(iter(model.bodies.values())).axis

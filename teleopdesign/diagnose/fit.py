@@ -42,6 +42,11 @@ class Fit:
     jacobian: Array
 
 
+def fit_squares(found: Fit) -> float:
+    """Sum of squares on the fit records, relative to the force that acts by the model."""
+    return float(found.fit_residual @ found.fit_residual)
+
+
 def free_parameters(model: Model) -> tuple[str, ...]:
     """Names of the parameters that are not fixed."""
     return tuple(n for n, v in model.parameters.items() if not v.fixed)
@@ -75,7 +80,7 @@ class Effort:
 AT_BOUND = 1e-6
 #: decades to either side of the record's scale in which a logarithmic parameter is searched
 DECADES = 8.0
-ROUGH, FINE = Effort(1e-4, 12), Effort(1e-7, 60)
+ROUGH, FINE, HELD_OUT = Effort(1e-4, 12), Effort(1e-7, 60), Effort(1e-3, 5)
 
 
 @dataclass(frozen=True)
@@ -106,6 +111,7 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = FINE) -> Fit:
             for n, v, e in zip(free, solution.values, errors, strict=True)
         }
     )
+    fitted = fitted.canonical()
     check = prepared.of("check")
     if check:
         parts = [v for v, _ in referred(fitted, check)]
@@ -134,7 +140,7 @@ def _held_out(
     parts: list[Array] = []
     squares = 0.0
     for seen, unseen in folds(prepared.of("fit")):
-        solution = solve(fitted, free, prepared, seen, ROUGH)
+        solution = solve(fitted, free, prepared, seen, HELD_OUT)
         model = _at(fitted, free, solution.values)
         held += unseen
         parts += [v for v, _ in referred(model, unseen)]
@@ -155,9 +161,10 @@ def solve(
     scale = np.array([unit[d.scale or d.quantity] for d in declared])
     over_decades = np.array([_over_decades(model, n) for n in free], dtype=bool)
     lower = np.array([d.lower for d in declared]) / scale
-    upper = np.array([d.upper for d in declared]) / scale
+    upper = np.array([min(d.upper / s, d.within) for d, s in zip(declared, scale, strict=True)])
     start = np.array([model.parameters[n].value for n in free]) / scale
-    lower[over_decades], upper[over_decades] = -DECADES * np.log(10), DECADES * np.log(10)
+    lower[over_decades] = -DECADES * np.log(10)
+    upper[over_decades] = np.log(np.minimum(upper[over_decades], 10.0**DECADES))
     start[over_decades] = np.log(np.maximum(start[over_decades], 1e-300))
     # a law may divide by a parameter whose bound is zero: stay a trifle inside
     lower, upper = lower + 0.1 * AT_BOUND, upper - 0.1 * AT_BOUND

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,14 @@ from .evidence import chance
 from .fit import Fit, estimate
 from .force_error import Prepared, prepare
 from .noise_floor import NoiseFloor, noise_floor
-from .rank import Ranked, Ranking, check_score, check_squares, rank_candidates
+from .rank import (
+    Ranked,
+    Ranking,
+    check_score,
+    check_squares,
+    rank_candidates,
+    whole_score,
+)
 from .search import estimate_from_starts
 
 if TYPE_CHECKING:
@@ -33,7 +40,9 @@ RELEVANT = 0.03
 #: candidates that lie closer than this (standard deviations) explain the record equally well
 CLOSE = 3.0
 #: what is left counts as noise up to this many noise floors
-ADEQUATE = 1.5
+ADEQUATE = 1.6
+#: what is named must explain this part of the squares above the noise floor
+MOSTLY = 0.5
 #: most effects that one diagnosis adds
 MOST = 6
 
@@ -139,7 +148,7 @@ def find_missing(
         supported = [r for r in ranking.ranked if is_supported(here, r, floor)]
         if not supported or len(rungs) > MOST:
             break
-        equals = [r for r in supported if r.behind < CLOSE and _close(r, supported[0])]
+        equals = [r for r in supported if r is supported[0] or _equal(r, supported[0])]
         best = min(equals, key=_simplicity)
         # one that needs more parameters to do as well explains nothing that the simpler does not
         others = tuple(
@@ -179,8 +188,10 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
     )
 
 
-def _close(one: Ranked, other: Ranked) -> bool:
-    return abs(one.fit.check_error - other.fit.check_error) < 0.02 * other.fit.check_error
+def _equal(one: Ranked, best: Ranked) -> bool:
+    """Whether the records do not tell a candidate from the best one."""
+    near = abs(one.fit.check_error - best.fit.check_error) < 0.02 * best.fit.check_error
+    return near and whole_score(one.fit, best.fit) < CLOSE
 
 
 def _simplicity(ranked: Ranked) -> tuple[int, int]:
@@ -189,7 +200,7 @@ def _simplicity(ranked: Ranked) -> tuple[int, int]:
 
 
 def _pruned(rungs: list[Rung], prepared: Prepared, floor: NoiseFloor) -> list[Rung]:
-    """Without the effects that those added later have made superfluous."""
+    """Without an effect that those added later have made superfluous; the rest fitted again."""
     last = rungs[-1]
     for rung in rungs[1:-1]:
         assert rung.added is not None
@@ -197,11 +208,21 @@ def _pruned(rungs: list[Rung], prepared: Prepared, floor: NoiseFloor) -> list[Ru
         try:
             without = estimate(last.fit.model.without_effect(name, at=at), prepared)
         except ModelError:
-            continue
+            continue  # another effect needs it
         if not is_better(without, last.fit, floor):
-            kept = [r for r in rungs if r is not rung]
-            return [*kept[:-1], Rung(last.added, without, last.ranking, last.equals)]
+            return _refitted([r for r in rungs if r is not rung], without, prepared)
     return rungs
+
+
+def _refitted(rungs: list[Rung], last: Fit, prepared: Prepared) -> list[Rung]:
+    """The rungs with each fit made again, from the values of the last, without what comes later."""
+    found = [replace(rungs[-1], fit=last)]
+    model = last.model
+    for later, rung in zip(rungs[:0:-1], rungs[-2:0:-1], strict=False):
+        assert later.added is not None
+        model = model.without_effect(later.added.effect.name, at=later.added.at)
+        found.append(replace(rung, fit=estimate(model, prepared)))
+    return [rungs[0], *reversed(found)]
 
 
 def _verdict(rungs: list[Rung], floor: NoiseFloor) -> str:
@@ -209,6 +230,8 @@ def _verdict(rungs: list[Rung], floor: NoiseFloor) -> str:
     if not added:
         left = rungs[-1].fit.check_error
         return "model_adequate" if left <= ADEQUATE * floor.value else "undecided"
-    if all(r.equals for r in added):
+    before, after = rungs[0].fit.check_error ** 2, rungs[-1].fit.check_error ** 2
+    explained = (before - after) / max(before - floor.value**2, 1e-300)
+    if explained < MOSTLY or all(r.equals for r in added):
         return "undecided"
     return "effects_missing"

@@ -33,6 +33,8 @@ def minimise(
     squares, damping, quiet = float(residual @ residual), 1e-3, 0
     for _ in range(evaluations - 1):
         step = _step(jacobian, residual, lower - x, upper - x, damping)
+        if not np.isfinite(step).all():
+            break
         trial = np.clip(x + step, lower, upper)
         expected = squares - float(np.sum((residual + jacobian @ (trial - x)) ** 2))
         if expected <= 1e-3 * tolerance * squares:
@@ -56,6 +58,8 @@ def minimise(
 def _step(jacobian: Array, residual: Array, below: Array, above: Array, damping: float) -> Array:
     """Damped Gauss-Newton step within the bounds, scaled by the columns of the jacobian."""
     size = np.linalg.norm(jacobian, axis=0)
+    if not np.isfinite(size).all():
+        return np.full(len(size), np.nan)
     size = np.where(size > 0, size, 1.0)
     scaled = jacobian / size
     normal = scaled.T @ scaled + damping * np.eye(len(size))

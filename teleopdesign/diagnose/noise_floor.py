@@ -1,9 +1,9 @@
 """What sensors alone would leave in the force error of a model that is right.
 
-The records are made anew: along the smoothed motion the interaction force is set to what the model
-needs exactly, positions are read off by an encoder of the stated step with a random zero, and the
-stated noise is drawn. What the comparison then finds is the floor. Where nothing is stated, step
-and noise are estimated from the readings themselves, and the answer says so.
+The readings are made anew: the smoothed motion is read off by an encoder of the stated step with a
+random zero, and the stated noise is drawn. By how much that changes the residual is the floor.
+Where no resolution is stated, steps and noise of all channels are estimated from the readings, from
+their content near the Nyquist frequency, and the answer says so.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motion_of, reading_noise, reading_step
 from ..model import Model
-from ..realise.along_motion import residual_along
 from .force_error import Prepared, Stretch, error_of, residuals
 
 #: records drawn anew per floor; its spread from draw to draw is a few percent
@@ -36,56 +36,44 @@ def noise_floor(
     stretches = prepared.of(use) or prepared.of("fit")
     channels = prepared.experiment.channels
     stated = all(channels[f"{s.motion.body}.position"].resolution is not None for s in stretches)
-    errors = []
+    errors, before = [], residuals(model, stretches)
     for _ in range(DRAWS):
-        drawn = [replace(s, motion=_drawn(model, s, prepared, generator)) for s in stretches]
-        errors.append(error_of(drawn, [r for r, _ in residuals(model, drawn)]))
+        drawn = [replace(s, motion=_drawn(s, prepared, generator)) for s in stretches]
+        pairs = zip(residuals(model, drawn), before, strict=True)
+        errors.append(error_of(drawn, [r - r0 for (r, _), (r0, _) in pairs]))
     source = "stated resolution and noise" if stated else "step and noise seen in the readings"
     return NoiseFloor(float(np.sqrt(np.mean(np.square(errors)))), source)
 
 
-def _drawn(
-    model: Model, stretch: Stretch, prepared: Prepared, generator: np.random.Generator
-) -> Motion:
+def _drawn(stretch: Stretch, prepared: Prepared, generator: np.random.Generator) -> Motion:
+    """The stretch's motion as its sensors would read it once more."""
     motion, channels = stretch.motion, prepared.experiment.channels
-    position, force = (
-        channels[f"{motion.body}.position"],
-        channels.get(f"{motion.body}.interaction_force"),
-    )
-    record = next(r for r in prepared.experiment.records if r.file == motion.file)
-    reading = record.signals[f"{motion.body}.position"][motion.rows]
-    left = residual_along(model.body(motion.body), motion).residual.value
-    x = motion.position
-    n = len(x)
-    step = position.resolution or reading_step(reading)
-    noise = position.noise or 0.0
-    if position.resolution is None:
-        noise = max(noise, reading_noise(reading))
-    x = x + noise * generator.standard_normal(n)
-    if step > 0:
-        x = step * np.round(x / step + generator.uniform(-0.5, 0.5))
-    interaction = motion.interaction - left
-    if force is not None and force.noise:
-        interaction = interaction + force.noise * generator.standard_normal(n)
-    if force is not None and force.resolution:
-        interaction = force.resolution * np.round(interaction / force.resolution)
-    command = channels[f"{motion.body}.actuator_force"]
-    acting = motion.command
-    if command.noise:
-        acting = acting + command.noise * generator.standard_normal(n)
-    if command.resolution:
-        acting = command.resolution * np.round(acting / command.resolution)
+    signals = next(r for r in prepared.experiment.records if r.file == motion.file).signals
+    blind = channels[f"{motion.body}.position"].resolution is None
+
+    def read(quantity: str, signal: Array) -> Array:
+        name = f"{motion.body}.{quantity}"
+        if name not in signals:
+            return signal
+        readings = signals[name][motion.rows]
+        noise = channels[name].noise or (reading_noise(readings) if blind else 0.0)
+        step = channels[name].resolution or (reading_step(readings) if blind else 0.0)
+        signal = signal + noise * generator.standard_normal(len(signal))
+        if step > 0:
+            signal = step * np.round(signal / step + generator.uniform(-0.5, 0.5))
+        return signal
+
     drawn = motion_of(
         body=motion.body,
         file=motion.file,
         time=motion.time,
-        position=x,
-        command=acting,
-        interaction=interaction,
+        position=read("position", motion.position),
+        command=read("actuator_force", motion.command),
+        interaction=read("interaction_force", motion.interaction),
         sample_time=motion.sample_time,
         rows=motion.rows,
         bandwidth=prepared.bandwidth,
-        resolution=position.resolution,
+        resolution=channels[f"{motion.body}.position"].resolution,
     )
     # when the drawn readings tell the direction a sample earlier or later is no sensor noise
     return replace(drawn, direction=motion.direction)

@@ -11,7 +11,7 @@ import numpy as np
 
 from .candidates import Candidate, candidates
 from .evidence import gain_score
-from .fit import Fit
+from .fit import Fit, estimate, fit_squares
 from .force_error import Prepared
 from .search import estimate_from_starts
 
@@ -22,7 +22,7 @@ class Ranked:
 
     score: how surely it lowers the error on the check records (standard deviations)
     behind: how surely the best candidate has the smaller error on all records; 0 for the best
-    told: its parameters can be told from those of the model it was added to
+    told: its parameters are determined, and told from those of the model it was added to
     """
 
     candidate: Candidate
@@ -45,14 +45,15 @@ class Ranking:
         return self.ranked[0]
 
     def __repr__(self) -> str:
-        lines = [f"{'candidate':<32}{'fit error':>10}{'check error':>13}{'score':>8}{'behind':>8}"]
+        lines = [f"{'candidate':<40}{'fit error':>10}{'check error':>13}{'score':>8}{'behind':>8}"]
         lines.append(
-            f"{'(the model)':<32}{self.base.fit_error:>10.4f}{self.base.check_error:>13.4f}"
+            f"{'(the model)':<40}{self.base.fit_error:>10.4f}{self.base.check_error:>13.4f}"
         )
         for r in self.ranked:
-            note = "" if r.told else "  cannot be told from the model's own parameters"
+            absent = r.candidate.key in r.fit.model.absent
+            note = "  gains nothing" if absent else "" if r.told else "  not determined"
             lines.append(
-                f"{r.candidate!s:<32}{r.fit.fit_error:>10.4f}{r.fit.check_error:>13.4f}{r.score:>8.1f}{r.behind:>8.1f}{note}"
+                f"{r.candidate!s:<40}{r.fit.fit_error:>10.4f}{r.fit.check_error:>13.4f}{r.score:>8.1f}{r.behind:>8.1f}{note}"
             )
         return "\n".join(lines)
 
@@ -82,8 +83,17 @@ TOLD = 0.02
 
 
 def is_told(found: Fit, base: Fit) -> bool:
-    """Whether some new parameter changes the residual in a way that the base's cannot imitate."""
+    """Whether the new parameters are determined and do what the base's cannot imitate.
+
+    Each must be larger than its standard error (an angle within half a turn), and some must change
+    the residual in a way of its own.
+    """
     new = [i for i, n in enumerate(found.free) if n not in base.free]
+    for i in new:
+        value = found.model.parameters[found.free[i]]
+        angle = found.model.declared(found.free[i]).quantity == "angle"
+        if not value.stderr < (np.pi if angle else abs(value.value)):
+            return False
     old = [i for i, n in enumerate(found.free) if n in base.free]
     for i in new:
         column = found.jacobian[:, i]
@@ -97,6 +107,20 @@ def is_told(found: Fit, base: Fit) -> bool:
         if float(np.linalg.norm(rest)) > TOLD * size:
             return True
     return False
+
+
+#: squares on the fit records above the best candidate's up to which another is fitted finely too
+CONTENDING = 0.5
+
+
+def _refined(
+    tried: tuple[Candidate, Fit], leading: float, prepared: Prepared
+) -> tuple[Candidate, Fit]:
+    candidate, rough = tried
+    present = (candidate.effect.name, candidate.at) not in rough.model.absent
+    if present and fit_squares(rough) <= leading:
+        return candidate, estimate(rough.model, prepared)
+    return tried
 
 
 def rank_candidates(
@@ -120,6 +144,8 @@ def rank_candidates(
     # transforms and kernels release the interpreter's lock, so threads share the cores
     with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
         fits = list(pool.map(tried, candidates(base.model)))
+        leading = (1.0 + CONTENDING) * min((fit_squares(f) for _, f in fits), default=0.0)
+        fits = list(pool.map(lambda cf: _refined(cf, leading, prepared), fits))
     told = {c.key: is_told(f, base) for c, f in fits}
     fits.sort(key=lambda cf: (not told[cf[0].key], check_squares(cf[1])))
     ranked = [

@@ -1,8 +1,8 @@
 """The best fit of a model with new effects, from many starting values.
 
 Few survive each round: first one linear step is predicted from every start, and where none promises
-a gain the search ends; then a few real steps are made from the best, then rough fits, then a fine
-one.
+a gain the search ends; then a few real steps are made from the best, then rough fits. A fine one is
+made of what ranks first.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ import numpy as np
 from ..measurement.filtering import Array
 from ..model import Model
 from .candidates import started
-from .fit import FINE, ROUGH, Effort, Fit, estimate, free_parameters, solve
+from .fit import FINE, ROUGH, Effort, Fit, estimate, fit_squares, free_parameters, solve
 from .force_error import Prepared, referred
 from .scales import scales
 
-#: gain in squares on the fit records from which a fit from rough starts is driven on
-WORTH = 0.005
+#: gain in squares on the fit records from which a start is worth a step
+WORTH = 0.01
 #: starts kept after the prediction, and after the first steps
 PREDICTED, STEPPED = 2, 1
 FIRST_STEPS = Effort(1e-3, 4)
@@ -28,7 +28,7 @@ FIRST_STEPS = Effort(1e-3, 4)
 def estimate_from_starts(model: Model, prepared: Prepared, base: Fit | None = None) -> Fit:
     """The best fit of a model, from every starting value of the effects that are still absent.
 
-    base: a fit of the model without them; one that gains next to nothing on it stays rough
+    base: a fit of the model without them: then the best stays rough, to be ranked first
     """
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     models = started(model, unit)
@@ -41,19 +41,13 @@ def estimate_from_starts(model: Model, prepared: Prepared, base: Fit | None = No
     if len(models) > STEPPED + 1:
         models = _best_stepped(models, prepared)
     rough = [estimate(m, prepared, effort=ROUGH) for m in models]
-    best = min(rough, key=_squares)
-    if base is not None and _squares(best) > (1.0 - WORTH) * _squares(base):
-        return best
-    return estimate(best.model, prepared, effort=FINE)
+    best = min(rough, key=fit_squares)
+    return best if base is not None else estimate(best.model, prepared, effort=FINE)
 
 
 def unchanged(model: Model, base: Fit) -> Fit:
     """The fit of a model whose new effects stay absent: what the base leaves, all of it."""
     return replace(base, model=model.with_values(dict(base.model.parameters)))
-
-
-def _squares(found: Fit) -> float:
-    return float(found.fit_residual @ found.fit_residual)
 
 
 def _promising(
@@ -69,7 +63,7 @@ def _promising(
     first = {n: models[0].parameters[n].value for n in angles}
     alike = [m for m in models if all(m.parameters[n].value == v for n, v in first.items())]
     promised = sorted((_promise(m, new, prepared, base, unit), i) for i, m in enumerate(alike))
-    if promised[0][0] > (1.0 - WORTH) * _squares(base):
+    if promised[0][0] > (1.0 - WORTH) * fit_squares(base):
         return []
     chosen = [alike[i] for _, i in promised[:PREDICTED]]
     others = [n for n in new if n not in angles]

@@ -15,6 +15,7 @@ is derived from that law.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
@@ -42,10 +43,21 @@ ACTUATION_ORDER = (
 )
 
 #: starts for the period of something that repeats along the travel (multiples of rms travel) and
-#: for its phase: even in 1/period and close enough that one falls into the right period, as the
-#: whole travel is about four times its rms
-PERIODS = tuple(8.0 / k for k in range(1, 61))
-PHASES = (0.0, 1.5708, 3.1416, 4.7124)
+#: for its phase: even in 1/period and close enough that a step in the period reaches the right one,
+#: as the whole travel is about four times its rms
+PERIODS = (8.0, *(4.0 / k for k in range(1, 31)))
+PHASES = (0.0, 1.5708)
+
+
+def positive_amplitude(values: Mapping[str, float]) -> dict[str, float]:
+    """The same sinusoid with an amplitude >= 0 and a phase in [0, 2 pi)."""
+    turned = values["phase"] + (math.pi if values["amplitude"] < 0 else 0.0)
+    return {
+        **values,
+        "amplitude": abs(values["amplitude"]),
+        "phase": turned % (2 * math.pi),
+    }
+
 
 #: symbols that a law may use; `direction` is sgn(velocity), `command` the input of an actuation
 #: stage, `acting_force` the output of the last, `level` the friction level, `interaction_force`
@@ -67,6 +79,7 @@ class Parameter:
 
     starts: where a search begins, as multiples of the record's own scale of that quantity
     scale: another scale of the record than the quantity's: "duration" for times as long as it
+    within: upper bound of a search in that scale, where a larger value would mean something else
     """
 
     quantity: str
@@ -75,6 +88,7 @@ class Parameter:
     upper: float = float("inf")
     starts: tuple[float, ...] = (0.1,)
     scale: str = ""
+    within: float = float("inf")
 
 
 @dataclass(frozen=True)
@@ -101,6 +115,7 @@ class Effect:
     is that law at (position, velocity, acceleration) = (1, s, s^2); False: the LTI form leaves the
     effect out, and says so. It is never found by differentiating sgn.
     absent: parameter values at which the effect is not there at all.
+    canonical: of parameter values that mean the same, those to report.
     needs: effects that the model must have for this one to mean anything.
     """
 
@@ -112,6 +127,7 @@ class Effect:
     linear: bool = False
     needs: frozenset[str] = frozenset()
     always: frozenset[str] = frozenset()
+    canonical: Callable[[Mapping[str, float]], dict[str, float]] = dict
     source: str = ""
     name: str = ""
     text: str = ""

@@ -8,7 +8,7 @@ Magnets against iron teeth, ball screws, gear meshing. It does not depend on the
 
 from sympy import pi, sin
 
-from ._effect import PERIODS, PHASES, Effect, Parameter
+from ._effect import PERIODS, PHASES, Effect, Parameter, positive_amplitude
 
 
 def law(now, p):
@@ -19,10 +19,11 @@ EFFECT = Effect(
     role="force",
     law=law,
     parameters={
-        "amplitude": Parameter("force", "A: amplitude"),
-        "period": Parameter("position", "p: travel of one period", starts=PERIODS),
+        "amplitude": Parameter("force", "A: amplitude", lower=-float("inf")),
+        "period": Parameter("position", "p: travel of one period", starts=PERIODS[1:], within=4.0),
         "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=PHASES),
     },
     absent={"amplitude": 0.0},
+    canonical=positive_amplitude,
     source="periodic detent force of a slotted machine, first harmonic",
 )

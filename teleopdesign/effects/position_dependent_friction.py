@@ -8,7 +8,7 @@ round with the direction, which tells it from `cogging` and `spring`.
 
 from sympy import pi, sin
 
-from ._effect import PERIODS, PHASES, Effect, Parameter
+from ._effect import PERIODS, PHASES, Effect, Parameter, positive_amplitude
 
 
 def law(now, p):
@@ -19,11 +19,14 @@ EFFECT = Effect(
     role="friction_factor",
     law=law,
     parameters={
-        "amplitude": Parameter("dimensionless", "e: half of its range, over the mean", upper=1.0),
+        "amplitude": Parameter(
+            "dimensionless", "e: half of its range over the mean", lower=-1.0, upper=1.0
+        ),
         "period": Parameter("position", "p: travel of one period", starts=PERIODS),
         "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=PHASES),
     },
     absent={"amplitude": 0.0},
+    canonical=positive_amplitude,
     needs=frozenset({"coulomb"}),
     always=frozenset({"even in velocity", "non-negative", "dissipates"}),
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",

@@ -8,7 +8,7 @@ that tells it from `cogging`.
 
 from sympy import pi, sin
 
-from ._effect import PERIODS, PHASES, Effect, Parameter
+from ._effect import PERIODS, PHASES, Effect, Parameter, positive_amplitude
 
 
 def law(now, p):
@@ -19,10 +19,11 @@ EFFECT = Effect(
     role="actuation",
     law=law,
     parameters={
-        "amplitude": Parameter("dimensionless", "r: relative amplitude", upper=1.0),
-        "period": Parameter("position", "p: travel of one period", starts=PERIODS),
+        "amplitude": Parameter("dimensionless", "r: relative amplitude", lower=-1.0, upper=1.0),
+        "period": Parameter("position", "p: travel of one period", starts=PERIODS[1:], within=4.0),
         "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=PHASES),
     },
     absent={"amplitude": 0.0},
+    canonical=positive_amplitude,
     source="torque constant of a commutated motor, first harmonic",
 )

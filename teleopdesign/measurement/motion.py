@@ -28,7 +28,7 @@ class Motion:
     command: as commanded, held until the next row;  interaction: smoothed (zeros if not measured)
     direction: +1, -1, or 0 where the reading cannot tell a motion
     step: what one reading leaves open of the position (encoder step, or twice its noise)
-    rows: the samples' place in the record
+    rows: the samples' place in the record;  bandwidth: of the comparison, Hz
     """
 
     body: str
@@ -44,7 +44,7 @@ class Motion:
     rows: slice
     spectrum: Spectrum
     smoothing: Array
-    lowpass: Array
+    bandwidth: float
 
     @property
     def sample_time(self) -> float:
@@ -57,7 +57,9 @@ class Motion:
 
     def lowpassed(self, y: Array) -> Array:
         """Signals (..., n) through the comparison's zero-phase low-pass."""
-        return self.spectrum.multiply(y, self.lowpass)
+        from .zero_phase import zero_phase  # numba: only where something is filtered
+
+        return zero_phase(y, self.bandwidth, self.sample_time)
 
 
 def reading_noise(position: Array) -> float:
@@ -73,7 +75,7 @@ def reading_step(position: Array) -> float:
     if len(values) < 2:
         return 0.0
     gaps = np.diff(values)
-    return float(np.quantile(gaps[gaps > 1e-9 * np.ptp(values)], 0.05))
+    return float(np.quantile(gaps[gaps > 1e-9 * np.ptp(values)], 0.002))
 
 
 def told_direction(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:
@@ -134,10 +136,10 @@ def motion_of(
     smoothing = s.lowpass(min(SMOOTHING * bandwidth, 0.45 / sample_time), order=8)
     transformed = s.transform(position) * smoothing
     noise = reading_noise(position)
-    if resolution is not None and noise < resolution:
-        step, reading = resolution, position
-    else:
-        step = max(resolution or reading_step(position), 4.0 * noise)
+    # rounding to a step looks like noise of 0.29 steps: more than that is noise of its own
+    step, reading = resolution or reading_step(position), position
+    if noise > 0.6 * step:
+        step = max(step, 4.0 * noise)
         reading = play(position, step)
     patience = max(2, round(DWELL / bandwidth / sample_time))
     change = step if reading is position else 1e-9 * step
@@ -155,7 +157,7 @@ def motion_of(
         rows=rows,
         spectrum=s,
         smoothing=smoothing,
-        lowpass=s.lowpass(bandwidth),
+        bandwidth=bandwidth,
     )
 
 

@@ -23,10 +23,10 @@ POINTS = 6000
 
 
 def _check_rows(data: Any) -> Any:
-    """The samples of the check records, or of all where there are none; first body only."""
+    """The samples that count of the check records (of all where there are none), first body."""
     first = data["body"].values == data["body"].values[0]
     check = first & (data["use"].values == "check")
-    chosen = data.isel(sample=check if check.any() else first)
+    chosen = data.isel(sample=(check if check.any() else first) & data["counts"].values)
     return chosen.isel(sample=slice(None, None, max(1, chosen.sizes["sample"] // POINTS)))
 
 

@@ -25,11 +25,9 @@ from ..blocks import Body
 from ..effects import SIGNALS, Effect, Role, delayed, ordered
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
+from .balance import balanced
 from .ode_scan import ode_scan
 from .scan import driven_scan, shape_bounds, stage_scan
-
-#: projected steps towards the friction that balances; the error moves by under 5 % after these
-BALANCE_STEPS = 4
 
 
 @dataclass(frozen=True)
@@ -38,6 +36,10 @@ class Traced:
 
     value: Array
     tangent: Array
+
+    def rows(self) -> Array:
+        """Value and tangents as rows of one array (1 + p, n)."""
+        return np.vstack([self.value[None], self.tangent])
 
     def __add__(self, other: Traced) -> Traced:
         return Traced(self.value + other.value, self.tangent + other.tangent)
@@ -253,7 +255,14 @@ def _friction(
         low, high = shape_bounds(shapes[0], motion, given, forward, backward, values, columns)
     else:
         low, high = _sliding_bounds(motion, forward, backward)
-    return _balanced(motion, needed, low, high)
+    both = balanced(
+        needed.rows(),
+        low.rows(),
+        high.rows(),
+        bandwidth=motion.bandwidth,
+        sample_time=motion.sample_time,
+    )
+    return Traced(both[0], both[1:])
 
 
 def _sliding_bounds(motion: Motion, forward: Traced, backward: Traced) -> tuple[Traced, Traced]:
@@ -268,22 +277,3 @@ def _sliding_bounds(motion: Motion, forward: Traced, backward: Traced) -> tuple[
         np.where(back, -backward.tangent, forward.tangent),
     )
     return low, high
-
-
-def _balanced(motion: Motion, needed: Traced, low: Traced, high: Traced) -> Traced:
-    """Friction between its bounds that leaves least to balance within the bandwidth.
-
-    Minimises the low-passed difference to what is needed, by projected steps: clipping what is
-    needed itself would turn its noise above the bandwidth into a bias below it.
-    """
-
-    def clipped(trial: Traced) -> Traced:
-        value = np.clip(trial.value, low.value, high.value)
-        tangent = np.where(trial.value >= high.value, high.tangent, trial.tangent)
-        tangent = np.where(trial.value <= low.value, low.tangent, tangent)
-        return Traced(value, tangent)
-
-    friction = clipped(needed)
-    for _ in range(BALANCE_STEPS):
-        friction = clipped(friction + through(motion.lowpassed, needed - friction))
-    return friction

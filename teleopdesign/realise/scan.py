@@ -102,8 +102,9 @@ def stage(h, columns, {", ".join(names.values())}, {", ".join(f"{n}_" for n in u
 {_indented([f"{n} = {n}_[k]" for n in used], 8)}
         a = {_code(a)}
         b = {_code(b)}
-        if k == 0:
-            {z.name} = -b / a if a != 0.0 else 0.0
+        starting = k == 0 and a != 0.0
+        if starting:
+            {z.name} = -b / a  # settled
 {_indented(_gradient_lines("a", a, by) + _gradient_lines("b", b, by), 8)}
         x = a * h
         e = exp(x)
@@ -114,6 +115,8 @@ def stage(h, columns, {", ".join(names.values())}, {", ".join(f"{n}_" for n in u
         for j in range(p):
             da = {sum_of["a"]}
             db = {sum_of["b"]}
+            if starting:
+                dz[j] = (b * da / a - db) / a
             dmean[j, k] = dz[j] * p1 + z * s1 * h * da + h * p2 * db + b * h * s2 * h * da
             dend[j, k] = dz[j]
             dz[j] = dz[j] * e + z * e * h * da + h * p1 * db + b * h * s1 * h * da
@@ -148,10 +151,16 @@ def driven_scan(
     columns: list[Any],
     step: float,
 ) -> dict[sp.Symbol, Traced]:
-    """State that the measured motion drives, at the rows, with tangents."""
+    """State that the measured motion drives, at the rows, with tangents.
+
+    The motion at a row stands for the sample before it: without a lag the state is in step with it.
+    """
+    from .along_motion import Traced
+
     (end, _) = _advanced(effect, given, given[SIGNALS["velocity"]], values, columns, step)
     (symbol,) = effect.state_symbols().values()
-    return {symbol: end}
+    later = np.minimum(np.arange(1, len(end.value) + 1), len(end.value) - 1)
+    return {symbol: Traced(end.value[later], end.tangent[:, later])}
 
 
 def _advanced(
@@ -221,8 +230,8 @@ def shape(h, half_step, columns, position, direction, {", ".join(arguments)},
         free = half_step if direction[k] == 0 else 0.0
         below = force - free * abs(slope)
         above = force + free * abs(slope)
-        low[k] = max(below, -backward[k])
-        high[k] = min(above, forward[k])
+        low[k] = below if direction[k] != 0 else max(below, -backward[k])
+        high[k] = above if direction[k] != 0 else min(above, forward[k])
         for j in range(p):
             dlevel = dforward[j, k] if ahead else dbackward[j, k]
             da = a_level * dlevel + {own.format("a")}
@@ -230,8 +239,8 @@ def shape(h, half_step, columns, position, direction, {", ".join(arguments)},
             dz[j] = dz[j] * e + before * e * h * da + h * p1 * db + b * h * s1 * h * da
             df = slope * dz[j] + {own.format("f")}
             dg = free * copysign(1.0, slope) * ({own.format("g")})
-            dlow[j, k] = df - dg if below > -backward[k] else -dbackward[j, k]
-            dhigh[j, k] = df + dg if above < forward[k] else dforward[j, k]
+            dlow[j, k] = df - dg if low[k] == below else -dbackward[j, k]
+            dhigh[j, k] = df + dg if high[k] == above else dforward[j, k]
 """
 
 

@@ -1,0 +1,17 @@
+"""Experiments that ship with the package."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..errors import ExperimentError, did_you_mean
+
+
+def example(name: str = "rod") -> Path:
+    """Folder of the shipped experiment of that name; raises ExperimentError with the nearest."""
+    folders = {p.parent.name: p.parent for p in Path(__file__).parent.glob("*/experiment.toml")}
+    if name not in folders:
+        raise ExperimentError(
+            f'examples: no example "{name}", has {", ".join(folders)}{did_you_mean(name, folders)}'
+        )
+    return folders[name]
