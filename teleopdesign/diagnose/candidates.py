@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
+import numpy as np
+
 from ..blocks.body import ONE_ONLY
-from ..effects import Effect
+from ..effects import SIGNALS, Effect
+from ..measurement.motion import Motion
 from ..model import Model
 
 
@@ -26,17 +30,34 @@ class Candidate:
         return f"{self.effect.name} at {self.at}"
 
 
-def candidates(model: Model) -> tuple[Candidate, ...]:
-    """Effects that the model lacks and could take, at each of its bodies."""
+#: path over travel from which a motion counts as one that comes back to where it was
+COMES_BACK = 1.5
+
+
+def candidates(model: Model, motions: Sequence[Motion] = ()) -> tuple[Candidate, ...]:
+    """Effects that the model lacks and could take, at each of its bodies.
+
+    motions: those that decide; where a body only ever goes on, place and time are one, and no
+    effect of the place can be told from a drift: it is no candidate there
+    """
     found = []
     for place, body in model.bodies.items():
         taken = {e.role for e in body.effects} & set(ONE_ONLY)
         for effect in model.known.values():
             if body.has(effect.name) or effect.role in taken:
                 continue
+            if effect.expression().has(SIGNALS["position"]) and not _comes_back(place, motions):
+                continue
             if all(body.has(need) for need in effect.needs):
                 found.append(Candidate(effect, place))
     return tuple(found)
+
+
+def _comes_back(place: str, motions: Sequence[Motion]) -> bool:
+    own = [m.position for m in motions if m.body == place]
+    return not own or any(
+        float(np.sum(np.abs(np.diff(x)))) > COMES_BACK * float(np.ptp(x)) for x in own
+    )
 
 
 def started(model: Model, scale: dict[str, float]) -> list[Model]:

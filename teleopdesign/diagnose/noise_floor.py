@@ -57,7 +57,9 @@ def _drawn(stretch: Stretch, prepared: Prepared, generator: np.random.Generator)
             return signal
         readings = signals[name][motion.rows]
         noise = channels[name].noise or (reading_noise(readings) if blind else 0.0)
-        step = channels[name].resolution or (reading_step(readings) if blind else 0.0)
+        # levels of a force may be commanded ones; those of a position are its encoder's
+        seen = blind and quantity == "position"
+        step = channels[name].resolution or (reading_step(readings) if seen else 0.0)
         signal = signal + noise * generator.standard_normal(len(signal))
         if step > 0:
             signal = step * np.round(signal / step + generator.uniform(-0.5, 0.5))

@@ -143,7 +143,7 @@ def rank_candidates(
 
     # transforms and kernels release the interpreter's lock, so threads share the cores
     with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
-        fits = list(pool.map(tried, candidates(base.model)))
+        fits = list(pool.map(tried, candidates(base.model, [s.motion for s in prepared.of("fit")])))
         leading = (1.0 + CONTENDING) * min((fit_squares(f) for _, f in fits), default=0.0)
         fits = list(pool.map(lambda cf: _refined(cf, leading, prepared), fits))
     told = {c.key: is_told(f, base) for c, f in fits}

@@ -70,12 +70,19 @@ def reading_noise(position: Array) -> float:
 
 
 def reading_step(position: Array) -> float:
-    """Smallest step between neighbouring values that the readings take: the encoder's, if any."""
+    """Smallest step between neighbouring values that the readings take: the encoder's, if any.
+
+    In a motion that never comes back to a place, values lie apart by the travel of a sample: then
+    the step is the one whose rounding looks like the noise that is seen.
+    """
     values = np.unique(position)
     if len(values) < 2:
         return 0.0
     gaps = np.diff(values)
-    return float(np.quantile(gaps[gaps > 1e-9 * np.ptp(values)], 0.002))
+    step = float(np.quantile(gaps[gaps > 1e-9 * np.ptp(values)], 0.002))
+    rounding = float(np.sqrt(12.0)) * reading_noise(position)
+    moving = float(np.mean(np.diff(position) != 0)) > 0.5
+    return min(step, rounding) if moving and step > 3.0 * rounding else step
 
 
 def told_direction(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:

@@ -1,0 +1,28 @@
+"""Soft end stop: beyond some position a rubber buffer pushes back.
+
+    F = K max(0, x - x_0)
+
+Damping of the rubber is left out. Where all strokes reach far into it, it is mistaken for `spring`.
+"""
+
+from sympy import Max
+
+from teleopdesign.effects import Effect, Parameter
+
+
+def law(now, p):
+    return p.stiffness * Max(0, now.position - p.start)
+
+
+EFFECT = Effect(
+    role="force",
+    law=law,
+    parameters={
+        "stiffness": Parameter("stiffness", "K: of the buffer"),
+        "start": Parameter(
+            "position", "x_0: where it begins", lower=-float("inf"), starts=(0.5, 1.0, 2.0)
+        ),
+    },
+    absent={"stiffness": 0.0},
+    source="Hooke's law, one-sided",
+)
