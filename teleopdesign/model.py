@@ -9,10 +9,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
-from .blocks import Body, Value
+from .blocks import CONTACT, Body, Value
+from .blocks.body import INERTIA
 from .effects import EFFECTS, Effect, Parameter, find_effect
 from .errors import ExperimentError, ModelError, did_you_mean
-from .measurement.description import BodyDescription, ModelValue
+from .measurement.description import BodyDescription, EnvironmentDescription, ModelValue
 from .measurement.experiment import Experiment
 from .quantity import to_si
 
@@ -33,12 +34,11 @@ class Model:
         known: the effects by name, for those who add their own
         raises ExperimentError: unknown effect or parameter, wrong unit, value out of bounds
         """
-        if experiment.environment is not None:
-            raise ExperimentError(
-                f"{experiment.folder.name}/experiment.toml: model.environment: a modelled "
-                "environment is not supported yet; measure slave.interaction_force and leave it out"
-            )
-        bodies = {n: _body(b, experiment, known) for n, b in experiment.bodies.items()}
+        bodies = {n: _body(b, known) for n, b in experiment.bodies.items()}
+        touching = list(bodies)[-1]
+        measured = f"{touching}.interaction_force" in experiment.channels
+        if experiment.environment is not None and not measured:
+            bodies[touching] = _touching(bodies[touching], experiment.environment)
         return cls(MappingProxyType(bodies), known)
 
     def body(self, at: str) -> Body:
@@ -82,11 +82,8 @@ class Model:
             raise ModelError(f'model: no parameter "{name}"{did_you_mean(name, self.parameters)}')
         model = self
         for place, body in self.bodies.items():
-            own = {
-                name.removeprefix(f"{place}."): v
-                for name, v in values.items()
-                if name.startswith(f"{place}.")
-            }
+            located = {self.locate(name): v for name, v in values.items()}
+            own = {name: v for (at, name), v in located.items() if at == place}
             if own:
                 model = model._with_body(place, body.with_values(own))
         return model
@@ -95,19 +92,29 @@ class Model:
     def parameters(self) -> dict[str, Value]:
         """Every parameter by its full name, "device.coulomb.level" -> Value (SI)."""
         return {
-            f"{place}.{name}": body.parameters[name]
+            _full(place, name): body.parameters[name]
             for place, body in self.bodies.items()
             for name, _ in body.declared()
         }
 
+    def locate(self, name: str) -> tuple[str, str]:
+        """Body, and name within it, of the parameter of that full name.
+
+        Parameters of the environment belong to the body that touches it.
+        """
+        place, _, own = name.partition(".")
+        if place == CONTACT.name:
+            return next(p for p, b in self.bodies.items() if b.has(CONTACT.name)), name
+        return place, own
+
     def declared(self, name: str) -> Parameter:
         """Declaration of the parameter of that full name."""
-        place, _, own = name.partition(".")
+        place, own = self.locate(name)
         return self.body(place).parameter(own)
 
     def unit(self, name: str) -> str:
         """Unit of the parameter of that full name."""
-        place, _, own = name.partition(".")
+        place, own = self.locate(name)
         return self.body(place).unit(own)
 
     def canonical(self) -> Model:
@@ -115,7 +122,7 @@ class Model:
         values: dict[str, float] = {}
         for place, body in self.bodies.items():
             for effect in body.effects:
-                prefix = f"{place}.{effect.name}."
+                prefix = _full(place, f"{effect.name}.")
                 own = {p: self.parameters[prefix + p].value for p in effect.parameters}
                 values |= {prefix + p: v for p, v in effect.canonical(own).items()}
         return self.with_values(values)
@@ -127,7 +134,7 @@ class Model:
             (effect.name, place)
             for place, body in self.bodies.items()
             for effect in body.effects
-            if effect.is_absent(body.numbers())
+            if effect is not CONTACT and effect.is_absent(body.numbers())
         )
 
     @property
@@ -169,15 +176,34 @@ def _number(value: ModelValue, parameter: Parameter, axis: str) -> Value:
     return Value(number, value.fixed)
 
 
-def _body(
-    description: BodyDescription, experiment: Experiment, known: Mapping[str, Effect]
-) -> Body:
-    from .blocks.body import INERTIA
+def _full(place: str, own: str) -> str:
+    """Full name of a body's parameter; those of the environment go by the environment's name."""
+    return own if own.startswith(f"{CONTACT.name}.") else f"{place}.{own}"
 
+
+def _touching(body: Body, description: EnvironmentDescription) -> Body:
+    """The body with the environment that it runs into; damping is none unless one is given."""
+    if description.effects:
+        raise ExperimentError(
+            f"{description.where}.effects: effects of the environment are not supported yet"
+        )
+    if "stiffness" not in description.values:
+        raise ExperimentError(f"{description.where}: no stiffness given")
+    values = {
+        f"{CONTACT.name}.damping": Value(0.0, fixed=True),
+        f"{CONTACT.name}.contact_position": Value(0.0, fixed=True),
+    }
+    for name, value in description.values.items():
+        values[f"{CONTACT.name}.{name}"] = _number(value, CONTACT.parameters[name], body.axis)
+    return body.with_effect(CONTACT).with_values(values)
+
+
+def _body(description: BodyDescription, known: Mapping[str, Effect]) -> Body:
     effects: list[Effect] = []
     parameters: dict[str, Value] = {}
-    if description.inertia is not None:
-        parameters["inertia"] = _number(description.inertia, INERTIA, description.axis)
+    if description.inertia is None:
+        raise ExperimentError(f"{description.where}: no inertia given")
+    parameters["inertia"] = _number(description.inertia, INERTIA, description.axis)
     for name, given in description.effects.items():
         where = f"{description.where}.effects"
         try:

@@ -1,5 +1,6 @@
 """Blocks of a diagram: equations only."""
 
 from .body import Body, BodyEquation, Value
+from .environment import CONTACT
 
-__all__ = ["Body", "BodyEquation", "Value"]
+__all__ = ["CONTACT", "Body", "BodyEquation", "Value"]

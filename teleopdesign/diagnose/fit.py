@@ -201,7 +201,7 @@ def _over_decades(model: Model, name: str) -> bool:
     A strength that may vanish is searched on a linear one, so that it can reach zero.
     """
     declared = model.declared(name)
-    place, _, own = name.partition(".")
+    place, own = model.locate(name)
     effect, _, parameter = own.partition(".")
     if not parameter or declared.lower < 0 or np.isfinite(declared.upper):
         return False

@@ -137,21 +137,26 @@ def referred(
     """Residuals relative to the force that acts by the model, at the scale of the measured force.
 
     A model whose actuator passes next to nothing leaves next to no residual force; relative to
-    what it lets act, nothing is gained. Equal to `residuals` where nothing stands between command
-    and force.
+    what it lets act on each body, nothing is gained. Equal to `residuals` where nothing stands
+    between command and force.
     """
     parts = _with_acting(model, stretches, wrt)
-    if not any(e.role == "actuation" for b in model.bodies.values() for e in b.effects):
-        return [(r, d) for r, d, _, _ in parts]
-    whole = sum(s.measured for s in stretches)
-    acting = sum(s.weight * float(a @ a) for s, (_, _, a, _) in zip(stretches, parts, strict=True))
-    acting = max(acting, 1e-12 * whole)
-    slope = sum(
-        (s.weight * (da @ a) for s, (_, _, a, da) in zip(stretches, parts, strict=True)),
-        np.zeros(len(wrt)),
-    )
-    factor = float(np.sqrt(whole / acting))
-    return [(factor * r, factor * (d - np.outer(slope / acting, r))) for r, d, _, _ in parts]
+    found = [(r, d) for r, d, _, _ in parts]
+    for place, body in model.bodies.items():
+        mine = [i for i, s in enumerate(stretches) if s.motion.body == place]
+        if not mine or not any(e.role == "actuation" for e in body.effects):
+            continue
+        whole = sum(stretches[i].measured for i in mine)
+        acting = sum(stretches[i].weight * float(parts[i][2] @ parts[i][2]) for i in mine)
+        acting = max(acting, 1e-12 * whole)
+        slope = sum(
+            (stretches[i].weight * (parts[i][3] @ parts[i][2]) for i in mine), np.zeros(len(wrt))
+        )
+        factor = float(np.sqrt(whole / acting))
+        for i in mine:
+            r, d = found[i]
+            found[i] = factor * r, factor * (d - np.outer(slope / acting, r))
+    return found
 
 
 def _with_acting(
@@ -161,9 +166,9 @@ def _with_acting(
     found = []
     for stretch in stretches:
         motion, rows = stretch.motion, stretch.keep
-        prefix = f"{motion.body}."
-        mine = [i for i, name in enumerate(wrt) if name.startswith(prefix)]
-        own = [wrt[i].removeprefix(prefix) for i in mine]
+        located = [model.locate(name) for name in wrt]
+        mine = [i for i, (place, _) in enumerate(located) if place == motion.body]
+        own = [located[i][1] for i in mine]
         along = residual_along(model.body(motion.body), motion, own)
         signals = []
         for traced, offset in ((along.residual, 0.0), (along.acting, motion.interaction)):

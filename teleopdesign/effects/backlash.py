@@ -7,14 +7,13 @@ Gears and worn joints. Told from `transmission_compliance` by small motion, in w
 not follow at all.
 """
 
-from typing import Any
-
 from sympy import Piecewise
 
-from ._effect import Effect, Parameter, State
+from ._effect import Effect, Parameter
+from ._tip import behind
 
 
-def coupling(now: Any, p: Any) -> Any:
+def coupling(now, p):
     apart, closing = now.position - now.tip_position, now.velocity - now.tip_velocity
     return Piecewise(
         (p.stiffness * (apart - p.gap / 2) + p.damping * closing, apart > p.gap / 2),
@@ -23,25 +22,11 @@ def coupling(now: Any, p: Any) -> Any:
     )
 
 
-def law(now, p):
-    return coupling(now, p) + now.interaction_force
-
-
-def tip_position(now, p):
-    return now.tip_velocity
-
-
-def tip_velocity(now, p):
-    return (coupling(now, p) + now.interaction_force) / p.tip_inertia
-
-
+LAW, TIP = behind(coupling)
 EFFECT = Effect(
     role="structure",
-    law=law,
-    states={
-        "tip_position": State("position", tip_position, "position"),
-        "tip_velocity": State("velocity", tip_velocity, "velocity"),
-    },
+    law=LAW,
+    states=TIP,
     parameters={
         "tip_inertia": Parameter("inertia", "m_t: inertia of the tip side", starts=(0.3,)),
         "stiffness": Parameter(

@@ -7,38 +7,22 @@ interaction force acts on the tip. Below the resonance it looks like `added_iner
 nothing at all where the inertia is free.
 """
 
-from typing import Any
+from ._effect import Effect, Parameter
+from ._tip import behind
 
-from ._effect import Effect, Parameter, State
 
-
-def coupling(now: Any, p: Any) -> Any:
+def coupling(now, p):
     return p.stiffness * (now.position - now.tip_position) + p.damping * (
         now.velocity - now.tip_velocity
     )
 
 
-def law(now, p):
-    # what the actuator side feels in place of the interaction force
-    return coupling(now, p) + now.interaction_force
-
-
-def tip_position(now, p):
-    return now.tip_velocity
-
-
-def tip_velocity(now, p):
-    return (coupling(now, p) + now.interaction_force) / p.tip_inertia
-
-
+LAW, TIP = behind(coupling)
 EFFECT = Effect(
     role="structure",
-    law=law,
+    law=LAW,
     linear=True,
-    states={
-        "tip_position": State("position", tip_position, "position"),
-        "tip_velocity": State("velocity", tip_velocity, "velocity"),
-    },
+    states=TIP,
     parameters={
         "tip_inertia": Parameter("inertia", "m_t: inertia of the tip side", starts=(0.1, 0.5)),
         "stiffness": Parameter(

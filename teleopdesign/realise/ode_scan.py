@@ -15,20 +15,13 @@ import sympy as sp
 
 from ..effects import SIGNALS, Effect
 from .compiled import compiled
+from .scan import code_of, columns_of, indented
 
 if TYPE_CHECKING:
     from .along_motion import Traced
 
 #: part of a radian of the fastest mode that one sub-step may cover, and the most sub-steps
 MODE_STEP, MOST_STEPS = 1.0, 16
-
-
-def _lines(lines: list[str], depth: int) -> str:
-    return "\n".join(" " * depth + line for line in lines)
-
-
-def _code(expression: sp.Expr) -> str:
-    return str(sp.pycode(expression, fully_qualified_modules=False))
 
 
 def _drivers(effect: Effect) -> list[str]:
@@ -45,11 +38,11 @@ def _source(effect: Effect) -> str:
     unpack = [f"{s} = z[{i}]" for i, s in enumerate(states)]
     unpack += [f"{s} = p[{i}]" for i, s in enumerate(parameters)]
     unpack += [f"{d} = u[{i}]" for i, d in enumerate(drivers)]
-    slopes = [f"f[{i}] = {_code(r)}" for i, r in enumerate(rates)]
+    slopes = [f"f[{i}] = {code_of(r)}" for i, r in enumerate(rates)]
     for i, rate in enumerate(rates):
-        by_state = [f"({_code(sp.diff(rate, s))}) * d[{j}, c]" for j, s in enumerate(states)]
+        by_state = [f"({code_of(sp.diff(rate, s))}) * d[{j}, c]" for j, s in enumerate(states)]
         by_parameter = [
-            f"({_code(sp.diff(rate, s))}) * (columns[{j}] == c)" for j, s in enumerate(parameters)
+            f"({code_of(sp.diff(rate, s))}) * (columns[{j}] == c)" for j, s in enumerate(parameters)
         ]
         slopes_of_tangent = " + ".join(by_state + by_parameter)
         unpack_tangent = f"g[{i}, c] = {slopes_of_tangent}"
@@ -63,8 +56,8 @@ from numba import njit
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def rate(z, d, u, p, columns, f, g):
-{_lines(unpack, 4)}
-{_lines(slopes, 4)}
+{indented(unpack, 4)}
+{indented(slopes, 4)}
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -133,7 +126,7 @@ def ode_scan(
 
     own = effect.symbols()
     parameters = np.array([values[s] for s in own.values()], dtype=float)
-    places = np.array([columns.index(s) if s in columns else -1 for s in own.values()], dtype=int)
+    places = columns_of(effect, columns)
     modes = np.linalg.eigvals(np.nan_to_num(np.array(_fastest(effect)(*parameters), dtype=float)))
     needed = step * float(np.abs(modes).max()) / MODE_STEP
     steps = int(np.clip(np.ceil(needed), 1, MOST_STEPS))

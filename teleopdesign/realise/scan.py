@@ -60,15 +60,17 @@ def _affine(effect: Effect) -> tuple[sp.Symbol, sp.Expr, sp.Expr]:
     return z, slope, rate.subs(z, 0)
 
 
-def _code(expression: sp.Expr) -> str:
+def code_of(expression: sp.Expr) -> str:
+    """The expression as Python source."""
     return str(sp.pycode(expression, fully_qualified_modules=False))
 
 
 def _gradient_lines(what: str, expression: sp.Expr, by: dict[str, sp.Symbol]) -> list[str]:
-    return [f"{what}_{name} = {_code(sp.diff(expression, s))}" for name, s in by.items()]
+    return [f"{what}_{name} = {code_of(sp.diff(expression, s))}" for name, s in by.items()]
 
 
-def _indented(lines: list[str], depth: int) -> str:
+def indented(lines: list[str], depth: int) -> str:
+    """Lines of source at a depth."""
     return "\n".join(" " * depth + line for line in lines)
 
 
@@ -99,13 +101,13 @@ def stage(h, columns, {", ".join(names.values())}, {", ".join(f"{n}_" for n in u
     dz = np.zeros(p)
     {z.name} = 0.0
     for k in range(n):
-{_indented([f"{n} = {n}_[k]" for n in used], 8)}
-        a = {_code(a)}
-        b = {_code(b)}
+{indented([f"{n} = {n}_[k]" for n in used], 8)}
+        a = {code_of(a)}
+        b = {code_of(b)}
         starting = k == 0 and a != 0.0
         if starting:
             {z.name} = -b / a  # settled
-{_indented(_gradient_lines("a", a, by) + _gradient_lines("b", b, by), 8)}
+{indented(_gradient_lines("a", a, by) + _gradient_lines("b", b, by), 8)}
         x = a * h
         e = exp(x)
         p1, p2, s1, s2 = phi(x)
@@ -124,7 +126,8 @@ def stage(h, columns, {", ".join(names.values())}, {", ".join(f"{n}_" for n in u
 """
 
 
-def _columns_of(effect: Effect, columns: list[Any]) -> Array:
+def columns_of(effect: Effect, columns: list[Any]) -> Array:
+    """Row of the tangents that belongs to each parameter of the effect; -1 where none does."""
     own = effect.symbols()
     return np.array(
         [columns.index(own[n]) if own[n] in columns else -1 for n in effect.parameters], dtype=int
@@ -179,7 +182,7 @@ def _advanced(
     mean, dmean = np.empty_like(command.value), np.empty_like(command.tangent)
     scan(
         step,
-        _columns_of(effect, columns),
+        columns_of(effect, columns),
         *[values[s] for s in effect.symbols().values()],
         *[given[SIGNALS[n]].value for n in _used(effect)],
         command.tangent,
@@ -212,20 +215,20 @@ def shape(h, half_step, columns, position, direction, {", ".join(arguments)},
         velocity = (position[k] - position[max(k - 1, 0)]) / h
         ahead = velocity >= 0.0
         level = max(forward[k] if ahead else backward[k], 1e-12)
-{_indented([f"{n} = {n}_[k]" for n in used], 8)}
-        a = {_code(a)}
-        b = {_code(b)}
-{_indented(_gradient_lines("a", a, by) + _gradient_lines("b", b, by), 8)}
+{indented([f"{n} = {n}_[k]" for n in used], 8)}
+        a = {code_of(a)}
+        b = {code_of(b)}
+{indented(_gradient_lines("a", a, by) + _gradient_lines("b", b, by), 8)}
         x = a * h
         e = exp(x)
         p1, p2, s1, s2 = phi(x)
         before = z
         z = before * e + b * h * p1
         {z.name} = z
-        force = {_code(law)}
-        slope = {_code(slope)}
-{_indented(_gradient_lines("f", law, effect.symbols()), 8)}
-{_indented(_gradient_lines("g", slope, effect.symbols()), 8)}
+        force = {code_of(law)}
+        slope = {code_of(slope)}
+{indented(_gradient_lines("f", law, effect.symbols()), 8)}
+{indented(_gradient_lines("g", slope, effect.symbols()), 8)}
         # where the reading cannot tell a motion, the position is open by half a step
         free = half_step if direction[k] == 0 else 0.0
         below = force - free * abs(slope)
@@ -267,7 +270,7 @@ def shape_bounds(
     scan(
         motion.sample_time,
         0.5 * motion.step,
-        _columns_of(effect, columns),
+        columns_of(effect, columns),
         motion.position,
         motion.direction,
         *[values[s] for s in effect.symbols().values()],

@@ -1,0 +1,110 @@
+"""A modelled environment: a one-sided spring and damper that the slave runs into."""
+
+import json
+
+import numpy as np
+import pytest
+from measurement.rod_example import COUNT, rows
+from shared_data import shared_folder
+
+from teleopdesign import ExperimentError, Model, load_experiment
+from teleopdesign.blocks import CONTACT
+from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.force_error import prepare
+
+TEXT = """\
+title = "Master and slave"
+sample_rate = { value = 100, unit = "Hz" }
+
+[model.master]
+axis = "prismatic"
+inertia = { value = 0.3, unit = "kg" }
+[model.slave]
+axis = "prismatic"
+inertia = { value = 0.2, unit = "kg" }
+[model.environment]
+stiffness = { value = 0.5, unit = "N/mm" }
+contact_position = { value = 3, unit = "mm" }
+
+[channels]
+"master.position" = { column = "x_m", unit = "m" }
+"master.actuator_force" = { column = "u_m", unit = "N" }
+"slave.position" = { column = "x_s", unit = "m" }
+"slave.actuator_force" = { column = "u_s", unit = "N" }
+
+[[records]]
+file = "fit.csv"
+use = "fit"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A teleoperator whose model has an environment; one record of ramps."""
+    (tmp_path / "experiment.toml").write_text(TEXT)
+    columns = {name: np.arange(COUNT) for name in ("x_m", "u_m", "x_s", "u_s", "f_s")}
+    (tmp_path / "fit.csv").write_text(rows(columns))
+    return tmp_path
+
+
+def edited(folder, old, new):
+    file = folder / "experiment.toml"
+    assert old in file.read_text()
+    file.write_text(file.read_text().replace(old, new, 1))
+    return Model.from_experiment(load_experiment(folder))
+
+
+@pytest.mark.parametrize(
+    ("depth", "force"), [(-1e-3, 0.0), (0.0, 0.0), (2e-3, 100 * 2e-3 + 3 * 0.5)]
+)
+def test_it_pushes_only_beyond_the_contact_position(depth, force):
+    law = CONTACT.expression(
+        {"position": 0.01 + depth, "velocity": 0.5},
+        {"stiffness": 100.0, "damping": 3.0, "contact_position": 0.01},
+    )
+    assert float(law) == pytest.approx(force, abs=1e-12)
+
+
+def test_its_parameters_go_by_its_own_name_and_belong_to_the_slave(folder):
+    model = Model.from_experiment(load_experiment(folder))
+    assert model.locate("environment.stiffness") == ("slave", "environment.stiffness")
+    assert "slave.environment.stiffness" not in model.parameters
+    other = model.with_values({"environment.stiffness": 123.0})
+    assert other.body("slave").parameters["environment.stiffness"].value == 123.0
+    assert other.canonical().parameters["environment.stiffness"].value == 123.0
+    assert model.parameters["environment.stiffness"].value == 500.0
+    assert model.parameters["environment.damping"].fixed
+
+
+def test_a_measured_force_takes_its_place(folder):
+    measured = '"slave.interaction_force" = { column = "f_s", unit = "N" }\n"slave.position"'
+    assert not edited(folder, '"slave.position"', measured).body("slave").has("environment")
+
+
+def test_an_environment_without_stiffness_is_named(folder):
+    with pytest.raises(ExperimentError, match=r"model\.environment: no stiffness given"):
+        edited(folder, 'stiffness = { value = 0.5, unit = "N/mm" }\n', "")
+
+
+def test_effects_of_the_environment_are_refused_for_now(folder):
+    more = "[model.environment.effects]\ncontact_damping = {}\n\n[channels]"
+    with pytest.raises(ExperimentError, match="effects of the environment are not supported yet"):
+        edited(folder, "[channels]", more)
+
+
+def test_a_body_without_inertia_is_named(folder):
+    with pytest.raises(ExperimentError, match=r"model\.slave: no inertia given"):
+        edited(folder, 'inertia = { value = 0.2, unit = "kg" }\n', "")
+
+
+@pytest.mark.parametrize("case", ["018", "025"])
+def test_a_right_model_in_contact_leaves_what_the_reference_leaves(case):
+    """Two teleoperators in soft contact with nothing missing; figures of the cases' own truth."""
+    hidden = shared_folder("hidden")
+    truth = json.loads((hidden / "truth" / f"{case}.json").read_text())
+    experiment = load_experiment(hidden / "cases" / case)
+    found = estimate(Model.from_experiment(experiment), prepare(experiment))
+    # 10 %: the reference knows the true motion, the comparison an encoder's
+    assert found.check_error == pytest.approx(truth["check_error_base"], rel=0.1)
+    true = truth["model_parameters"]["environment.stiffness"]
+    assert found.model.parameters["environment.stiffness"].value == pytest.approx(true, rel=0.1)
