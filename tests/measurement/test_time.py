@@ -64,8 +64,8 @@ def test_jitter_below_a_tenth_of_a_sample_does_not_change_the_rate(rod, rate, st
     count = 300 if rate < 200 else 2500
     jitter = np.random.default_rng(seed).uniform(-0.09, 0.09, count)  # two make one step's error
     record = with_stamps(rod, start + (np.arange(count) + jitter) / rate)
-    # the slope's error: jitter / count^1.5, with room for a rare draw
-    assert record.sample_time * rate == pytest.approx(1, abs=0.6 / count**1.5)
+    # the slope has a standard deviation of 0.18 / count^1.5: nearly seven of them
+    assert record.sample_time * rate == pytest.approx(1, abs=1.2 / count**1.5)
     np.testing.assert_allclose(np.diff(record.time), 1 / rate, rtol=1e-3)
 
 
