@@ -107,8 +107,8 @@ class State:
 class Effect:
     """A physical effect: one law in one role; see the package's folder for examples.
 
-    law(now, p) returns the force it adds (role force; role structure: in place of the interaction
-    force, which acts on a tip of its own), its share of the friction level
+    law(now, p) returns the force it adds (role force; role structure: the same, the interaction
+    force with it, for that acts on a tip of its own), its share of the friction level
     (friction_level), a factor of that level (friction_factor), the speed that the level follows
     (friction_speed), the friction force (friction_shape), or the stage's output (actuation).
     linear: declares that the law is linear in the motion (or in the command), so that the LTI form

@@ -1,8 +1,9 @@
 """A tip: a second body behind the actuator side, which the interaction force acts on.
 
-    m_t dv_t/dt = coupling + interaction force
+    m_t dv_t/dt = coupling + interaction force,   (m - m_t) a = acting force - coupling - ...
 
-Needs a parameter `tip_inertia`; the actuator side feels the coupling in place of the interaction.
+The inertia m of the body counts both sides, as what moves together where nothing gives: a stiff
+coupling is the rigid body. Needs a parameter `tip_inertia`.
 """
 
 from collections.abc import Callable
@@ -17,7 +18,7 @@ def behind(coupling: Expression) -> tuple[Expression, dict[str, State]]:
     """Law and hidden states of a structure whose coupling(now, p) joins it to its tip."""
 
     def law(now: Any, p: Any) -> Any:
-        return coupling(now, p) + now.interaction_force
+        return coupling(now, p) + now.interaction_force - p.tip_inertia * now.acceleration
 
     def tip_position(now: Any, p: Any) -> Any:
         return now.tip_velocity

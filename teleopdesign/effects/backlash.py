@@ -1,7 +1,7 @@
 """Backlash: actuator side and tip side are two bodies joined through a gap.
 
     F = K (d -+ g/2) + C (v - v_t) outside the gap, abs(d) > g/2, else 0;   d = x - x_t
-    m_t dv_t/dt = F + interaction force
+    m_t dv_t/dt = F + interaction force;   the body's inertia counts both sides
 
 Gears and worn joints. Told from `transmission_compliance` by small motion, in which the tip does
 not follow at all.

@@ -24,7 +24,9 @@ EFFECT = Effect(
     states={"bristle": State("position", bristle)},
     parameters={
         "stiffness": Parameter(
-            "stiffness", "sigma: bristle stiffness before sliding", starts=(3.0, 30.0, 300.0)
+            "stiffness",
+            "sigma: bristle stiffness before sliding",
+            starts=(3.0, 10.0, 30.0, 100.0, 300.0),
         )
     },
     absent={"stiffness": float("inf")},

@@ -1,6 +1,7 @@
 """Transmission compliance: actuator side and tip side are two bodies on a spring and damper.
 
     F = K (x - x_t) + C (v - v_t),   m_t dv_t/dt = F + interaction force
+    the body's inertia counts both sides
 
 Cables, belts, harmonic drives. Position and friction are those of the actuator side; the
 interaction force acts on the tip. Below the resonance it looks like `added_inertia`, or like

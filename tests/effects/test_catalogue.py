@@ -290,10 +290,12 @@ def test_the_linear_form_is_the_law_along_a_sine(name, frequency):
         impedance = impedance + form
     hold = np.sinc(frequency * 1e-3) * np.exp(-1j * np.pi * frequency * 1e-3)
     expected = ((transfer * hold - 0.01 * impedance) * wave).imag
+    most = 3e-3 if effect.role == "structure" else 1e-3
     inside = slice(700, -700)  # s; ends feel the continuation of the record
-    # a staircase has images about the sample rate, of relative size (w h)^2/12 < 1e-3 at 15 Hz
+    # a staircase has images about the sample rate, of relative size (w h)^2/12 < 1e-3 at 15 Hz; a
+    # tip's drive is linear between rows, and its resonance near by triples that
     np.testing.assert_allclose(
-        along.residual.value[inside], expected[inside], rtol=0, atol=1e-3 * np.abs(expected).max()
+        along.residual.value[inside], expected[inside], rtol=0, atol=most * np.abs(expected).max()
     )
 
 

@@ -26,7 +26,9 @@ STEP = 1e-6  # m, of the encoder
 RATE = 1000.0
 INSIDE = slice(250, -250)  # 0.25 s at each end, as in the force error
 
-VALUES = {"spring.stiffness": 200.0}  # N/m; the typical one is for a bristle
+#: N/m, the typical one is for a bristle; kg, a tip lighter than the rest, for impacts of one that
+#: is heavier amplify every difference
+VALUES = {"spring.stiffness": 200.0, "backlash.tip_inertia": 0.03}
 #: those that the simulator knows too
 COMMON = [n for n in NAMES if n in PUBLIC and n != "friction_memory"]
 
@@ -38,6 +40,7 @@ def true_values(name):
         for parameter, (known, _) in PUBLIC[one].items():
             values[known] = VALUES.get(f"{one}.{parameter}", typical(one, parameter))
     values["inertia"] += values.pop("added_inertia", 0.0)
+    values["inertia"] -= values.get("tip_inertia", 0.0)  # the package counts both sides
     values["has_tip"] = float("tip_inertia" in values)
     return values
 

@@ -162,6 +162,8 @@ def simulator_body(values: Values) -> np.ndarray:
     """Parameter vector: a stiff bristle of a give far below the encoder step, unless it is soft."""
     known = {k: v for k, v in values.items() if k in NAMES}
     known["inertia"] = values["inertia"] + values.get("added_inertia", 0.0)
+    # "inertia" is what the user knows of the whole: with a tip, that of both sides
+    known["inertia"] -= values.get("tip_inertia", 0.0)
     if values.get("presliding"):
         known["bristle_stiffness"] = values["presliding"]
     else:
