@@ -95,7 +95,7 @@ def _force_axes(ax: Axes, data: Any) -> None:
     ax.set(
         xlabel=_label(data, "time"), ylabel=_label(data, "measured").replace("measured", "force")
     )
-    ax.legend(loc="upper right", ncols=3)
+    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=3)
 
 
 def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
@@ -126,13 +126,13 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
         if changed:
             _over_time(ax, after, "model", AFTER, "with what was missing", 0.6)
         _force_axes(ax, before)
-        ax.set_title(diagnosis.experiment.title, loc="left")
+        figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left")
         ax = axes["time"]
         _over_time(ax, before, "residual", BEFORE, "before", 0.7)
         if changed:
             _over_time(ax, after, "residual", AFTER, "after", 0.7)
         ax.set(xlabel=_label(before, "time"), ylabel=_label(before, "residual"))
-        ax.legend(loc="upper right", ncols=2)
+        ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=2)
         _residual_maps(axes, before, after, changed=changed)
         _ladder(axes["ladder"], diagnosis)
     return figure
@@ -141,14 +141,22 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
 def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None:
     for over, first, second in (("velocity", "v0", "v1"), ("position", "x0", "x1")):
         _by_direction(axes[first], before, over)
-        axes[first].set_title("residual before", loc="left")
+        axes[first].set_ylabel(_label(before, "residual").replace("residual", "residual before"))
         if changed:
             _by_direction(axes[second], after, over)
             axes[second].set_ylim(axes[first].get_ylim())
-            axes[second].set_title("after, same scale", loc="left")
+            axes[second].set_ylabel(_label(after, "residual").replace("residual", "residual after"))
         else:
             axes[second].set_axis_off()
-    axes["v0"].legend(markerscale=6, loc="upper left", ncols=3, columnspacing=0.8)
+    axes["v0"].legend(
+        markerscale=6,
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        borderaxespad=0.1,
+        ncols=3,
+        columnspacing=0.8,
+        handletextpad=0.1,
+    )
 
 
 def _ladder(ax: Axes, diagnosis: Diagnosis) -> None:
@@ -159,11 +167,13 @@ def _ladder(ax: Axes, diagnosis: Diagnosis) -> None:
     rows = np.arange(len(names))
     colors = [BEFORE] + [AFTER] * (len(names) - 1)
     ax.barh(rows, errors, height=0.62, color=colors)
-    for y, error in zip(rows, errors, strict=True):
-        ax.annotate(
-            f"{error:.2f} %", (error, y), xytext=(3, 0), textcoords="offset points", va="center"
-        )
     floor = 100 * diagnosis.floor.value
+    for y, error in zip(rows, errors, strict=True):
+        # the label stands clear of the floor's line
+        end = max(error, floor) if error > floor - 0.12 * max(errors) else error
+        ax.annotate(
+            f"{error:.2f} %", (end, y), xytext=(3, 0), textcoords="offset points", va="center"
+        )
     ax.axvline(floor, color="k", lw=0.8, ls="--")
     ax.annotate(
         f"noise floor {floor:.2f} %",
