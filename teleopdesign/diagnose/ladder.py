@@ -40,7 +40,7 @@ RELEVANT = 0.03
 #: candidates that lie closer than this (standard deviations) explain the record equally well
 CLOSE = 3.0
 #: what is left counts as noise up to this many noise floors
-ADEQUATE = 1.6
+ADEQUATE = 1.8
 #: what is named must explain this part of the squares above the noise floor
 MOSTLY = 0.5
 #: most effects that one diagnosis adds

@@ -86,7 +86,7 @@ class Parameter:
     meaning: str
     lower: float = 0.0
     upper: float = float("inf")
-    starts: tuple[float, ...] = (0.1,)
+    starts: tuple[float, ...] = (0.01, 0.1)
     scale: str = ""
     within: float = float("inf")
 

@@ -19,7 +19,7 @@ EFFECT = Effect(
     role="force",
     law=law,
     parameters={
-        "amplitude": Parameter("force", "A: amplitude", lower=-float("inf")),
+        "amplitude": Parameter("force", "A: amplitude", lower=-float("inf"), starts=(0.03,)),
         "period": Parameter("position", "p: travel of one period", starts=PERIODS[1:], within=4.0),
         "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=PHASES),
     },

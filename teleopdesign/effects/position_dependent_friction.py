@@ -20,7 +20,11 @@ EFFECT = Effect(
     law=law,
     parameters={
         "amplitude": Parameter(
-            "dimensionless", "e: half of its range over the mean", lower=-1.0, upper=1.0
+            "dimensionless",
+            "e: half of its range over the mean",
+            lower=-1.0,
+            upper=1.0,
+            starts=(0.05,),
         ),
         "period": Parameter("position", "p: travel of one period", starts=PERIODS),
         "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=PHASES),
