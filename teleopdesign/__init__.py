@@ -13,6 +13,7 @@
 The folders, each importing only from those before it:
 
     quantity      force, velocity ... -> unit on a prismatic or a revolute axis
+    finding       a sentence, its numbers, and a graph that shows it
     effects       what physics does: one effect = one file
     blocks        bodies, hand: equations only
     controllers   chosen, not found: one control law = one file
@@ -25,6 +26,7 @@ The folders, each importing only from those before it:
     measurement   experiment, record, motion
     diagnose      residual, noise floor, candidates, ladder, answer
     plot          draws result objects, computes nothing
+    commands      what `teleopdesign COMMAND` does: one file each
 """
 
 from __future__ import annotations

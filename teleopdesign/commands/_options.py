@@ -1,0 +1,42 @@
+"""Arguments and messages that several commands share."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from ..errors import ExperimentError
+
+
+def add_folder(parser: argparse.ArgumentParser) -> None:
+    """The experiment's folder."""
+    parser.add_argument("folder", type=Path, help="folder with experiment.toml and its records")
+
+
+def add_effect_files(parser: argparse.ArgumentParser) -> None:
+    """The user's own effect files."""
+    parser.add_argument(
+        "--effect",
+        action="append",
+        default=[],
+        type=Path,
+        metavar="FILE",
+        help="an effect file of your own that takes part (may be repeated)",
+    )
+
+
+def check_output(path: Path, endings: tuple[str, ...]) -> None:
+    """Say before the work, not after it, that a result could not be written."""
+    if not path.name.endswith(endings):
+        raise ExperimentError(f"{path}: found {path.suffix!r}, expected {' or '.join(endings)}")
+    if not path.parent.is_dir():
+        raise ExperimentError(f"{path}: there is no folder {str(path.parent)!r}")
+    if path.is_dir():
+        raise ExperimentError(f"{path}: is a folder, expected a file")
+
+
+def say(text: str) -> None:
+    """Progress on one line of the terminal; nothing where nobody watches."""
+    if sys.stderr.isatty():
+        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)

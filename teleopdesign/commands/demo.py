@@ -1,0 +1,42 @@
+"""diagnose the experiment that ships with the package"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ..errors import ExperimentError
+from . import diagnose
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument(
+        "--output", type=Path, default=Path("demo"), help="folder for what it writes"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Diagnose the shipped experiment; answer, predictions and figure go into one folder."""
+    from ..examples import example
+
+    output: Path = options.output
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ExperimentError(f"{output}: {error.strerror}") from error
+    written = {
+        "json": output / "answer.json",
+        "predictions": output / "predictions.csv.gz",
+        "figure": output / "ladder.png",
+    }
+    print(
+        "The experiment that ships with the package, held against a model that lacks an effect:\n"
+    )
+    parser = argparse.ArgumentParser()
+    diagnose.add(parser)
+    asked = [f"--{name}={path}" for name, path in written.items()]
+    status = diagnose.run(parser.parse_args([str(example("rod")), *asked]))
+    if status == 0:
+        print("\nwritten: " + ", ".join(map(str, written.values())))
+    return status

@@ -1,0 +1,20 @@
+"""download a public recording of a real device"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument("name", help="emps, psm_insertion, mtm_wrist or hsm150")
+    parser.add_argument("--folder", type=Path, help="where to put it; default: the user's cache")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the folder of the experiment."""
+    from ..measurement.recordings import fetch
+
+    print(fetch(options.name, options.folder))
+    return 0

@@ -1,0 +1,60 @@
+"""A finding: a plain sentence, the numbers that it was made from, and a graph that shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Series:
+    """One set of points or one line of a graph.
+
+    x, y: (n,);  low, high: a band around y, (n,)
+    kind: "measured" and "rest" are drawn as points, "model" and "trend" as lines, "limit" dashed
+    """
+
+    name: str
+    x: Array
+    y: Array
+    kind: Literal["measured", "rest", "model", "trend", "limit"] = "measured"
+    low: Array | None = None
+    high: Array | None = None
+
+
+@dataclass(frozen=True)
+class Graph:
+    """What a graph shows; labels carry quantity and unit: "velocity (mm/s)"."""
+
+    x_label: str
+    y_label: str
+    series: tuple[Series, ...]
+    logarithmic: bool = False
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was found about a recording, or about what a model leaves unexplained.
+
+    topic: what was looked at ("sample clock", "dependence on velocity")
+    concern: "fine" says that all is well, "note" is worth knowing, "warning" needs care
+    sentence: in plain words, made from the numbers;  numbers: name -> value (SI)
+    where: record or body that it is about; "" for all;  graph: what shows it
+    """
+
+    topic: str
+    concern: Literal["fine", "note", "warning"]
+    sentence: str
+    numbers: Mapping[str, float] = field(default_factory=dict)
+    where: str = ""
+    graph: Graph | None = None
+
+    def __str__(self) -> str:
+        place = f"{self.where}: " if self.where else ""
+        return f"{self.concern:<8}{place}{self.sentence}"
