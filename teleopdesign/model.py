@@ -221,7 +221,7 @@ def _body(description: BodyDescription, known: Mapping[str, Effect]) -> Body:
             if key in given:
                 number = _number(given[key], parameter, description.axis)
             else:
-                number = Value(effect.absent.get(key, 1.0))
+                number = Value(effect.default(key))
             parameters[f"{name}.{key}"] = number
     try:
         return Body(description.axis, parameters, tuple(effects))

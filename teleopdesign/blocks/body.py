@@ -84,16 +84,18 @@ class Body:
                     f'body: no parameter "{name}", has {", ".join(expected)}'
                     f"{did_you_mean(name, expected)}"
                 )
+        optional = {name: Value(0.0) for name, p in self.declared() if p.optional}
+        parameters = {**optional, **self.parameters}
         for name, parameter in self.declared():
-            if name not in self.parameters:
+            if name not in parameters:
                 raise ModelError(f'body: parameter "{name}" has no value')
-            value = self.parameters[name].value
+            value = parameters[name].value
             if not parameter.lower <= value <= parameter.upper:
                 raise ModelError(
                     f"body: {name} = {value:g} {self.unit(name)} is outside "
                     f"{parameter.lower:g} .. {parameter.upper:g}"
                 )
-        object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
+        object.__setattr__(self, "parameters", MappingProxyType(parameters))
 
     def declared(self) -> list[tuple[str, Parameter]]:
         """Every parameter of the body by its name in answers, with its declaration."""
@@ -131,7 +133,7 @@ class Body:
                 f'{effect.name}: no parameter "{min(unknown)}"'
                 f"{did_you_mean(min(unknown), effect.parameters)}"
             )
-        start = {n: effect.absent.get(n, 1.0) for n in effect.parameters} | given
+        start = {n: effect.default(n) for n in effect.parameters} | given
         kept = self
         if effect.role in ONE_ONLY:
             for other in self.effects:
@@ -150,6 +152,12 @@ class Body:
             effects=tuple(e for e in self.effects if e.name != name),
             parameters={k: v for k, v in self.parameters.items() if not k.startswith(f"{name}.")},
         )
+
+    def without_parameter(self, effect: str, parameter: str) -> Body:
+        """The body with an optional parameter of an effect left out."""
+        effects = [e.without(parameter) if e.name == effect else e for e in self.effects]
+        kept = {k: v for k, v in self.parameters.items() if k != f"{effect}.{parameter}"}
+        return replace(self, effects=tuple(effects), parameters=kept)
 
     def with_values(self, values: Mapping[str, float | Value]) -> Body:
         """The body with other parameter values; `fixed` is kept where a plain number is given."""

@@ -2,8 +2,9 @@
 
     F = sigma z,   dz/dt = v - (sigma / F_D) abs(v) z
 
-The law is that of the effect `presliding`. Sampled, the travel of the last sample moves the bristle
-exactly, with the sign of the travel: F stays within F_D for any sequence of positions.
+The law is that of the effect `presliding` without bristle damping. Sampled, the travel of the last
+sample moves the bristle exactly, with the sign of the travel: F stays within F_D for any sequence
+of positions.
 """
 
 from types import SimpleNamespace
@@ -11,16 +12,19 @@ from types import SimpleNamespace
 from ..effects import EFFECTS, Parameter, State
 from ._controller import ControlLaw
 
-_PRESLIDING = EFFECTS["presliding"]
+_DAHL = EFFECTS["presliding"].without("bristle_damping")
+
+
+def _here(now, p):
+    return SimpleNamespace(velocity=now.travel_rate, level=p.level, bristle=now.bristle)
 
 
 def law(now, p):
-    return _PRESLIDING.law(now, p)
+    return _DAHL.law(_here(now, p), p)
 
 
 def bristle(now, p):
-    here = SimpleNamespace(velocity=now.travel_rate, level=p.level, bristle=now.bristle)
-    return _PRESLIDING.states["bristle"].rate(here, p)
+    return _DAHL.states["bristle"].rate(_here(now, p), p)
 
 
 CONTROLLER = ControlLaw(
@@ -28,7 +32,7 @@ CONTROLLER = ControlLaw(
     states={"bristle": State("position", bristle)},
     parameters={
         "level": Parameter("force", "F_D: level that is cancelled"),
-        "stiffness": _PRESLIDING.parameters["stiffness"],
+        "stiffness": _DAHL.parameters["stiffness"],
     },
     source="Mahvash, Okamura, ICRA 2006, eq (9), with the sign of the travel",
 )

@@ -85,13 +85,17 @@ TOLD = 0.02
 def is_told(found: Fit, base: Fit) -> bool:
     """Whether the new parameters are determined and do what the base's cannot imitate.
 
-    Each must be larger than its standard error (an angle within half a turn), and some must change
-    the residual in a way of its own.
+    Each must be larger than its standard error (an angle within half a turn) unless the effect is
+    there without it, and some must change the residual in a way of its own.
     """
     new = [i for i, n in enumerate(found.free) if n not in base.free]
     for i in new:
-        value = found.model.parameters[found.free[i]]
-        angle = found.model.declared(found.free[i]).quantity == "angle"
+        value, declared = (
+            of(found.free[i]) for of in (found.model.parameters.get, found.model.declared)
+        )
+        if declared.optional:
+            continue
+        angle = declared.quantity == "angle"
         if not value.stderr < (np.pi if angle else abs(value.value)):
             return False
     old = [i for i, n in enumerate(found.free) if n in base.free]

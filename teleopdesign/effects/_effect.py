@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any, Literal, get_args
 
@@ -80,6 +81,7 @@ class Parameter:
     starts: where a search begins, as multiples of the record's own scale of that quantity
     scale: another scale of the record than the quantity's: "duration" for times as long as it
     within: upper bound of a search in that scale, where a larger value would mean something else
+    optional: the effect is there where this is zero too, which it is unless a value is given
     """
 
     quantity: str
@@ -89,6 +91,7 @@ class Parameter:
     starts: tuple[float, ...] = (0.01, 0.1)
     scale: str = ""
     within: float = float("inf")
+    optional: bool = False
 
 
 @dataclass(frozen=True)
@@ -141,6 +144,15 @@ class Effect:
         """First line of the file's docstring."""
         return self.text.strip().split("\n")[0]
 
+    def default(self, parameter: str) -> float:
+        """Value of a parameter that none is given for: where the effect is absent, if that says."""
+        plain = 0.0 if self.parameters[parameter].optional else 1.0
+        return self.absent.get(parameter, plain)
+
+    def without(self, parameter: str) -> Effect:
+        """The effect with an optional parameter left out: zero, for good."""
+        return _without(self, parameter)
+
     def symbols(self) -> dict[str, sp.Symbol]:
         """Parameter name -> sympy symbol NAME_PARAMETER, one per effect."""
         return {p: sp.Symbol(f"{self.name}_{p}", real=True) for p in self.parameters}
@@ -190,6 +202,19 @@ class Effect:
         law = law.subs(settled) if rates else law
         law = law.replace(delayed, lambda signal, delay: signal * sp.exp(-s * delay))
         return sp.simplify(law / drive)
+
+
+@lru_cache(maxsize=64)
+def _without(effect: Effect, parameter: str) -> Effect:
+    def given(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
+        return lambda now, p: law(now, SimpleNamespace(**{**vars(p), parameter: sp.S(0)}))
+
+    return replace(
+        effect,
+        law=given(effect.law),
+        states={n: replace(s, rate=given(s.rate)) for n, s in effect.states.items()},
+        parameters={n: p for n, p in effect.parameters.items() if n != parameter},
+    )
 
 
 def ordered(effects: tuple[Effect, ...], role: Role) -> list[Effect]:

@@ -1,17 +1,19 @@
-"""Presliding: friction is a hysteretic spring before it slides (Dahl).
+"""Presliding: friction is a hysteretic spring before it slides (Dahl, LuGre).
 
-    F = sigma z,   dz/dt = v - (sigma / level) abs(v) z
+    F = sigma z + sigma_1 dz/dt,   dz/dt = v - (sigma / level) abs(v) z
 
-The contact gives by level/sigma before it slides; with `stribeck` and `viscous` beside it this is
-LuGre. Seen only in motion of a few bristle lengths that the encoder resolves; in larger motion it
-is mistaken for `actuation_delay`, for both round the corners of the friction loop.
+The contact gives by level/sigma before it slides. Without bristle damping sigma_1 this is Dahl's
+law; with it, and `stribeck` and `viscous` beside it, LuGre. Seen only in motion of a few bristle
+lengths that the encoder resolves; in larger motion it is mistaken for `actuation_delay`, for both
+round the corners of the friction loop.
 """
 
 from ._effect import Effect, Parameter, State
 
 
 def law(now, p):
-    return p.stiffness * now.bristle
+    spring = p.stiffness * now.bristle
+    return spring + p.bristle_damping * bristle(now, p) if p.bristle_damping != 0 else spring
 
 
 def bristle(now, p):
@@ -27,10 +29,14 @@ EFFECT = Effect(
             "stiffness",
             "sigma: bristle stiffness before sliding",
             starts=(3.0, 10.0, 30.0, 100.0, 300.0),
-        )
+        ),
+        "bristle_damping": Parameter(
+            "damping", "sigma_1: damping of the bristle", starts=(0.1,), optional=True
+        ),
     },
     absent={"stiffness": float("inf")},
     needs=frozenset({"coulomb"}),
     always=frozenset({"dissipates"}),
-    source="Mahvash, Okamura, ICRA 2006, eq (2); Dahl, AIAA J. 14 (1976) 1675",
+    source="Mahvash, Okamura, ICRA 2006, eq (2); Dahl, AIAA J. 14 (1976) 1675; Canudas de Wit, "
+    "Olsson, Astrom, Lischinsky, IEEE TAC 40 (1995) 419",
 )

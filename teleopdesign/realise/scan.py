@@ -194,19 +194,24 @@ def _advanced(
     return Traced(end, dend), Traced(mean, dmean)
 
 
+def _used_by_shape(effect: Effect) -> list[str]:
+    """Signals of a shape's laws besides those that its scan has in any case."""
+    return [n for n in _used(effect) if n not in ("velocity", "level")]
+
+
 @lru_cache(maxsize=64)
 def _shape_source(effect: Effect) -> str:
     z, a, b = _affine(effect)
     law = effect.expression()
     slope = sp.diff(law, z)
-    used = [n for n in _used(effect) if n not in ("velocity", "level")]
+    used = _used_by_shape(effect)
     by = {"level": SIGNALS["level"], **effect.symbols()}
     names = list(effect.parameters)
     own = " + ".join(f"{{0}}_{c} * (columns[{i}] == j)" for i, c in enumerate(names))
     arguments = [s.name for s in effect.symbols().values()] + [f"{n}_" for n in used]
     return f"""{_HEAD}
 @njit(cache=True, nogil=True, error_model="numpy")
-def shape(h, half_step, columns, position, direction, {", ".join(arguments)},
+def shape(h, half_step, columns, position, velocity_, direction, {", ".join(arguments)},
           forward, dforward, backward, dbackward, low, dlow, high, dhigh):
     p, n = dforward.shape
     dz = np.zeros(p)
@@ -225,10 +230,11 @@ def shape(h, half_step, columns, position, direction, {", ".join(arguments)},
         before = z
         z = before * e + b * h * p1
         {z.name} = z
+        velocity = velocity_[k]
         force = {code_of(law)}
         slope = {code_of(slope)}
-{indented(_gradient_lines("f", law, effect.symbols()), 8)}
-{indented(_gradient_lines("g", slope, effect.symbols()), 8)}
+{indented(_gradient_lines("f", law, by), 8)}
+{indented(_gradient_lines("g", slope, by), 8)}
         # where the reading cannot tell a motion, the position is open by half a step
         free = half_step if direction[k] == 0 else 0.0
         below = force - free * abs(slope)
@@ -240,8 +246,8 @@ def shape(h, half_step, columns, position, direction, {", ".join(arguments)},
             da = a_level * dlevel + {own.format("a")}
             db = b_level * dlevel + {own.format("b")}
             dz[j] = dz[j] * e + before * e * h * da + h * p1 * db + b * h * s1 * h * da
-            df = slope * dz[j] + {own.format("f")}
-            dg = free * copysign(1.0, slope) * ({own.format("g")})
+            df = slope * dz[j] + f_level * dlevel + {own.format("f")}
+            dg = free * copysign(1.0, slope) * (g_level * dlevel + {own.format("g")})
             dlow[j, k] = df - dg if low[k] == below else -dbackward[j, k]
             dhigh[j, k] = df + dg if high[k] == above else dforward[j, k]
 """
@@ -264,7 +270,7 @@ def shape_bounds(
     from .along_motion import Traced
 
     scan = compiled(_shape_source(effect), "shape")
-    used = [n for n in _used(effect) if n not in ("velocity", "level")]
+    used = _used_by_shape(effect)
     low, high = np.empty_like(forward.value), np.empty_like(forward.value)
     dlow, dhigh = np.empty_like(forward.tangent), np.empty_like(forward.tangent)
     scan(
@@ -272,6 +278,7 @@ def shape_bounds(
         0.5 * motion.step,
         columns_of(effect, columns),
         motion.position,
+        motion.velocity,
         motion.direction,
         *[values[s] for s in effect.symbols().values()],
         *[given[SIGNALS[n]].value for n in used],

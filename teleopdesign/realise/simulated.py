@@ -10,7 +10,10 @@ from ..errors import ModelError
 
 
 def without_absent(body: Body) -> Body:
-    """The body without the effects that are absent at their values, and what needs those."""
+    """The body without effects that are absent at their values, what needs those, and zeros.
+
+    An optional parameter at zero is left out too, for the equations are simpler without it.
+    """
     values = body.parameters
     gone = {
         e.name
@@ -23,6 +26,10 @@ def without_absent(body: Body) -> Body:
     needed = {n for e in body.effects if e.name not in gone for n in e.needs}
     for name in gone - needed:
         body = body.without_effect(name)
+    for effect in body.effects:
+        for name, parameter in effect.parameters.items():
+            if parameter.optional and body.parameters[f"{effect.name}.{name}"].value == 0.0:
+                body = body.without_parameter(effect.name, name)
     return body
 
 
@@ -33,7 +40,8 @@ def with_give(body: Body, give: float) -> Body:
         return body
     at_rest = dict.fromkeys(SIGNALS.values(), 0) | dict.fromkeys(body.equation().rates, 0)
     level = float(body.equation().level.subs(at_rest).subs(body.numbers()))
-    return body.with_effect(EFFECTS["presliding"], {"stiffness": level / give})
+    dahl = EFFECTS["presliding"].without("bristle_damping")
+    return body.with_effect(dahl, {"stiffness": level / give})
 
 
 def simulated(diagram: Diagram, give: float) -> Diagram:

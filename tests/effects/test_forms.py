@@ -63,7 +63,7 @@ def simulated(name):
     soft = values.pop("presliding", None)
     hard = (LEVEL + values.get("extra_static_level", 0.0)) / (0.3 * STEP)
     values["bristle_stiffness"] = soft or hard
-    values["bristle_damping"] = 0.0 if soft else 0.3 * math.sqrt(hard * INERTIA)
+    values["bristle_damping"] = values.get("bristle_damping", 0.0) if soft else 0.3 * math.sqrt(hard * INERTIA)
     run = truth_simulator.simulate([truth_simulator.body(**values)], drive, RATE, 50)
     return motion_along(
         encoded(run.rows("x")[:, 0], STEP),

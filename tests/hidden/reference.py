@@ -30,14 +30,19 @@ def lowpass(y: np.ndarray, cutoff: float, rate: float) -> np.ndarray:
 
 
 @njit(cache=True)
-def _bristle(dx, level, sigma, out):
+def _bristle(dx, level, sigma, viscous, out):
+    """viscous: damping of the bristle over the time between two points."""
     z = 0.0
     for k in range(len(dx)):
         lev = level[k]
         if lev > 0.0 and dx[k] != 0.0:
             g = math.copysign(lev / sigma, dx[k])
+            before = z
             z = g + (z - g) * math.exp(-sigma * abs(dx[k]) / lev)
-        out[k] = sigma * z if lev > 0.0 else 0.0
+            out[k] = viscous * (z - before)
+        else:
+            out[k] = 0.0
+        out[k] = sigma * z + out[k] if lev > 0.0 else 0.0
 
 
 def triangle(fine: np.ndarray, sub: int) -> np.ndarray:
@@ -139,7 +144,8 @@ class Track:
         level = np.maximum(level, 0.0)
         soft = p.get("presliding", 0.0)
         friction = np.empty_like(x)
-        _bristle(self.dx, level, soft or p["bristle_stiffness"], friction)
+        viscous = p.get("bristle_damping", 0.0) * sub / self.motion.period if soft else 0.0
+        _bristle(self.dx, level, soft or p["bristle_stiffness"], viscous, friction)
         force = v * (p.get("damping", 0.0) + p.get("drag", 0.0) * np.abs(v))
         force = force + p.get("damping_difference", 0.0) * np.abs(v)
         force = (

@@ -46,7 +46,10 @@ PUBLIC: dict[str, dict[str, tuple[str, str]]] = {
         "extra_static_level": ("extra_static_level", "force"),
         "stribeck_velocity": ("stribeck_velocity", "velocity"),
     },
-    "presliding": {"stiffness": ("presliding", "stiffness")},
+    "presliding": {
+        "stiffness": ("presliding", "stiffness"),
+        "bristle_damping": ("bristle_damping", "damping"),
+    },
     "bias": {"force": ("bias", "force")},
     "spring": {"stiffness": ("spring", "stiffness")},
     "added_inertia": {"inertia": ("added_inertia", "inertia")},
@@ -136,7 +139,10 @@ def draw(effect: str, base: Values, scale: Scale, strength: float, q: Values) ->
     if effect == "stribeck":
         return {"extra_static_level": 1.2 * s * level, "stribeck_velocity": v * 0.03 * 10**a}
     if effect == "presliding":
-        return {"presliding": level / max(0.5 * s * d, 1.5 * scale.resolution)}
+        stiffness = level / max(0.5 * s * d, 1.5 * scale.resolution)
+        # Dahl for one half of the draws, LuGre with up to half its critical damping for the other
+        damping = max(2.0 * b - 1.0, 0.0) * math.sqrt(stiffness * inertia)
+        return {"presliding": stiffness, "bristle_damping": damping}
     if effect == "bias":
         return {"bias": q["sign"] * 0.8 * s * f}
     if effect == "spring":
