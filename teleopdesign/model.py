@@ -11,7 +11,7 @@ from types import MappingProxyType
 
 from .blocks import CONTACT, Body, Value
 from .blocks.body import INERTIA
-from .effects import EFFECTS, Effect, Parameter, find_effect
+from .effects import CONTACT_ROLES, EFFECTS, Effect, Parameter, find_effect
 from .errors import ExperimentError, ModelError, did_you_mean
 from .measurement.description import BodyDescription, EnvironmentDescription, ModelValue
 from .measurement.experiment import Experiment
@@ -38,17 +38,15 @@ class Model:
         touching = list(bodies)[-1]
         measured = f"{touching}.interaction_force" in experiment.channels
         if experiment.environment is not None and not measured:
-            bodies[touching] = _touching(bodies[touching], experiment.environment)
+            bodies[touching] = _touching(bodies[touching], experiment.environment, known)
         return cls(MappingProxyType(bodies), known)
 
     def body(self, at: str) -> Body:
-        """The body at that place; ModelError with the nearest place where there is none."""
-        if at not in self.bodies:
-            raise ModelError(
-                f'model: no body "{at}", has {", ".join(self.bodies)}'
-                f"{did_you_mean(at, self.bodies)}"
-            )
-        return self.bodies[at]
+        """The body at that place; ModelError with the nearest place where there is none.
+
+        The environment's is the body that touches it.
+        """
+        return self.bodies[self._holder(at)]
 
     def with_effect(
         self,
@@ -67,12 +65,16 @@ class Model:
         found = (
             find_effect(effect, self.known, "with_effect") if isinstance(effect, str) else effect
         )
-        place = self._place(at)
+        place = self._place(at, found.role)
+        if (place == CONTACT.name) != (found.role in CONTACT_ROLES):
+            words = "the environment" if found.role in CONTACT_ROLES else "a body"
+            raise ModelError(f'with_effect: "{found.name}" acts at {words}, found at = "{place}"')
         return self._with_body(place, self.body(place).with_effect(found, values))
 
     def without_effect(self, effect: str, *, at: str | None = None) -> Model:
         """The model without that effect."""
-        place = self._place(at)
+        found = self.known.get(effect)
+        place = self._place(at, found.role if found else "")
         return self._with_body(place, self.body(place).without_effect(effect))
 
     def with_values(self, values: Mapping[str, float | Value]) -> Model:
@@ -92,7 +94,7 @@ class Model:
     def parameters(self) -> dict[str, Value]:
         """Every parameter by its full name, "device.coulomb.level" -> Value (SI)."""
         return {
-            _full(place, name): body.parameters[name]
+            f"{self._place_of(place, name)}{name}": body.parameters[name]
             for place, body in self.bodies.items()
             for name, _ in body.declared()
         }
@@ -104,7 +106,7 @@ class Model:
         """
         place, _, own = name.partition(".")
         if place == CONTACT.name:
-            return next(p for p, b in self.bodies.items() if b.has(CONTACT.name)), name
+            return self._holder(place), own if "." in own else name
         return place, own
 
     def declared(self, name: str) -> Parameter:
@@ -117,21 +119,34 @@ class Model:
         place, own = self.locate(name)
         return self.body(place).unit(own)
 
+    def from_absence(self, name: str) -> float:
+        """How far the parameter of that full name is from where its effect is absent, or from 0."""
+        place, own = self.locate(name)
+        effect, _, parameter = own.partition(".")
+        value = abs(self.parameters[name].value)
+        if not parameter:
+            return value
+        absent = self.body(place).effect(effect).absent.get(parameter, 0.0)
+        return abs(self.parameters[name].value - absent) if abs(absent) < float("inf") else value
+
     def canonical(self) -> Model:
         """The same model with the parameter values to report (see `Effect.canonical`)."""
         values: dict[str, float] = {}
         for place, body in self.bodies.items():
             for effect in body.effects:
-                prefix = _full(place, f"{effect.name}.")
-                own = {p: self.parameters[prefix + p].value for p in effect.parameters}
-                values |= {prefix + p: v for p, v in effect.canonical(own).items()}
+                own = {p: body.parameters[f"{effect.name}.{p}"].value for p in effect.parameters}
+                full = {p: f"{effect.name}.{p}" for p in own}
+                values |= {
+                    f"{self._place_of(place, full[p])}{full[p]}": v
+                    for p, v in effect.canonical(own).items()
+                }
         return self.with_values(values)
 
     @property
     def absent(self) -> tuple[tuple[str, str], ...]:
         """(effect, place) of the effects whose values say that they are not there."""
         return tuple(
-            (effect.name, place)
+            (effect.name, CONTACT.name if effect.role in CONTACT_ROLES else place)
             for place, body in self.bodies.items()
             for effect in body.effects
             if effect is not CONTACT and effect.is_absent(body.numbers())
@@ -140,17 +155,49 @@ class Model:
     @property
     def effects(self) -> tuple[tuple[str, str], ...]:
         """(effect, place) of every effect in the model."""
-        return tuple((e.name, place) for place, b in self.bodies.items() for e in b.effects)
+        return tuple(
+            (e.name, CONTACT.name if e.role in CONTACT_ROLES else place)
+            for place, b in self.bodies.items()
+            for e in b.effects
+        )
 
-    def _place(self, at: str | None) -> str:
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Where effects may be: the bodies, and "environment" where one is modelled."""
+        touched = any(b.has(CONTACT.name) for b in self.bodies.values())
+        return (*self.bodies, CONTACT.name) if touched else tuple(self.bodies)
+
+    def _holder(self, at: str) -> str:
+        """The body that holds what is at a place."""
+        if at not in self.places:
+            raise ModelError(
+                f'model: no body "{at}", has {", ".join(self.places)}'
+                f"{did_you_mean(at, self.places)}"
+            )
+        if at in self.bodies:
+            return at
+        return next(p for p, b in self.bodies.items() if b.has(CONTACT.name))
+
+    def _place_of(self, holder: str, own: str) -> str:
+        """What stands before a body's parameter in its full name, with its dot."""
+        effect, _, parameter = own.partition(".")
+        if effect == CONTACT.name:
+            return ""
+        if parameter and self.bodies[holder].effect(effect).role in CONTACT_ROLES:
+            return f"{CONTACT.name}."
+        return f"{holder}."
+
+    def _place(self, at: str | None, role: str) -> str:
         if at is not None:
             return at
+        if role in CONTACT_ROLES:
+            return CONTACT.name
         if len(self.bodies) > 1:
             raise ModelError(f"model: at = one of {', '.join(self.bodies)} must be given")
         return next(iter(self.bodies))
 
     def _with_body(self, place: str, body: Body) -> Model:
-        return replace(self, bodies=MappingProxyType({**self.bodies, place: body}))
+        return replace(self, bodies=MappingProxyType({**self.bodies, self._holder(place): body}))
 
     def __repr__(self) -> str:
         lines = []
@@ -176,17 +223,8 @@ def _number(value: ModelValue, parameter: Parameter, axis: str) -> Value:
     return Value(number, value.fixed)
 
 
-def _full(place: str, own: str) -> str:
-    """Full name of a body's parameter; those of the environment go by the environment's name."""
-    return own if own.startswith(f"{CONTACT.name}.") else f"{place}.{own}"
-
-
-def _touching(body: Body, description: EnvironmentDescription) -> Body:
+def _touching(body: Body, description: EnvironmentDescription, known: Mapping[str, Effect]) -> Body:
     """The body with the environment that it runs into; damping is none unless one is given."""
-    if description.effects:
-        raise ExperimentError(
-            f"{description.where}.effects: effects of the environment are not supported yet"
-        )
     if "stiffness" not in description.values:
         raise ExperimentError(f"{description.where}: no stiffness given")
     values = {
@@ -195,17 +233,43 @@ def _touching(body: Body, description: EnvironmentDescription) -> Body:
     }
     for name, value in description.values.items():
         values[f"{CONTACT.name}.{name}"] = _number(value, CONTACT.parameters[name], body.axis)
-    return body.with_effect(CONTACT).with_values(values)
+    body = body.with_effect(CONTACT).with_values(values)
+    where = f"{description.where}.effects"
+    effects, parameters = _effects(description.effects, where, body.axis, known)
+    for effect in effects:
+        if effect.role not in CONTACT_ROLES:
+            raise ExperimentError(f'{where}: "{effect.name}" acts at a body, not at an environment')
+        body = body.with_effect(effect)
+    return body.with_values(parameters)
 
 
 def _body(description: BodyDescription, known: Mapping[str, Effect]) -> Body:
-    effects: list[Effect] = []
-    parameters: dict[str, Value] = {}
     if description.inertia is None:
         raise ExperimentError(f"{description.where}: no inertia given")
+    where = f"{description.where}.effects"
+    effects, parameters = _effects(description.effects, where, description.axis, known)
+    for effect in effects:
+        if effect.role in CONTACT_ROLES:
+            raise ExperimentError(
+                f'{where}: "{effect.name}" acts at an environment: see [model.environment.effects]'
+            )
     parameters["inertia"] = _number(description.inertia, INERTIA, description.axis)
-    for name, given in description.effects.items():
-        where = f"{description.where}.effects"
+    try:
+        return Body(description.axis, parameters, tuple(effects))
+    except ModelError as error:
+        raise ExperimentError(f"{description.where}: {error}") from error
+
+
+def _effects(
+    written: Mapping[str, Mapping[str, ModelValue]],
+    where: str,
+    axis: str,
+    known: Mapping[str, Effect],
+) -> tuple[list[Effect], dict[str, Value]]:
+    """Effects of a table of an experiment, and their parameters by name within the body."""
+    effects: list[Effect] = []
+    parameters: dict[str, Value] = {}
+    for name, given in written.items():
         try:
             effect = find_effect(name, known, where)
         except ModelError as error:
@@ -219,11 +283,8 @@ def _body(description: BodyDescription, known: Mapping[str, Effect]) -> Body:
                 )
         for key, parameter in effect.parameters.items():
             if key in given:
-                number = _number(given[key], parameter, description.axis)
+                number = _number(given[key], parameter, axis)
             else:
-                number = Value(effect.default(key))
+                number = Value(effect.default(key), fixed=parameter.chosen)
             parameters[f"{name}.{key}"] = number
-    try:
-        return Body(description.axis, parameters, tuple(effects))
-    except ModelError as error:
-        raise ExperimentError(f"{description.where}: {error}") from error
+    return effects, parameters

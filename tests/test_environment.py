@@ -7,10 +7,13 @@ import pytest
 from measurement.rod_example import COUNT, rows
 from shared_data import shared_folder
 
-from teleopdesign import ExperimentError, Model, load_experiment
+from teleopdesign import ExperimentError, Model, ModelError, load_experiment
 from teleopdesign.blocks import CONTACT
+from teleopdesign.blocks.environment import contact_force
+from teleopdesign.diagnose.candidates import candidates
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.effects import SIGNALS
 
 TEXT = """\
 title = "Master and slave"
@@ -58,10 +61,10 @@ def edited(folder, old, new):
     ("depth", "force"), [(-1e-3, 0.0), (0.0, 0.0), (2e-3, 100 * 2e-3 + 3 * 0.5)]
 )
 def test_it_pushes_only_beyond_the_contact_position(depth, force):
-    law = CONTACT.expression(
-        {"position": 0.01 + depth, "velocity": 0.5},
-        {"stiffness": 100.0, "damping": 3.0, "contact_position": 0.01},
-    )
+    numbers = {"stiffness": 100.0, "damping": 3.0, "contact_position": 0.01}
+    symbols = CONTACT.symbols()
+    here = {SIGNALS["position"]: 0.01 + depth, SIGNALS["velocity"]: 0.5}
+    law = contact_force([CONTACT]).subs(here | {symbols[n]: v for n, v in numbers.items()})
     assert float(law) == pytest.approx(force, abs=1e-12)
 
 
@@ -86,10 +89,47 @@ def test_an_environment_without_stiffness_is_named(folder):
         edited(folder, 'stiffness = { value = 0.5, unit = "N/mm" }\n', "")
 
 
-def test_effects_of_the_environment_are_refused_for_now(folder):
-    more = "[model.environment.effects]\ncontact_damping = {}\n\n[channels]"
-    with pytest.raises(ExperimentError, match="effects of the environment are not supported yet"):
+def test_its_effects_stand_in_its_own_table_and_at_its_own_place(folder):
+    more = """[model.environment.effects]
+contact_damping = { damping = { value = 2, unit = "N*s/m" } }
+
+[channels]"""
+    model = edited(folder, "[channels]", more)
+    assert model.parameters["environment.contact_damping.damping"].value == 2.0
+    assert model.locate("environment.contact_damping.damping") == (
+        "slave",
+        "contact_damping.damping",
+    )
+    assert ("contact_damping", "environment") in model.effects
+    assert model.places == ("master", "slave", "environment")
+    bare = model.without_effect("contact_damping")
+    again = bare.with_effect("contact_damping", values={"damping": 2.0})
+    assert again.parameters == model.parameters
+
+
+@pytest.mark.parametrize(
+    ("effect", "table", "message"),
+    [
+        ("viscous", "environment", "acts at a body, not at an environment"),
+        ("contact_damping", "slave", r"see \[model\.environment\.effects\]"),
+        ("contact_dumping", "environment", 'did you mean "contact_damping"'),
+    ],
+)
+def test_an_effect_in_the_wrong_table_is_named(folder, effect, table, message):
+    more = f"[model.{table}.effects]\n{effect} = {{}}\n\n[channels]"
+    with pytest.raises(ExperimentError, match=message):
         edited(folder, "[channels]", more)
+
+
+def test_effects_of_a_contact_are_candidates_where_one_is_modelled_only(folder):
+    model = Model.from_experiment(load_experiment(folder))
+    found = {c.key for c in candidates(model)}
+    assert {("contact_damping", "environment"), ("contact_hardening", "environment")} <= found
+    assert not {("viscous", "environment"), ("contact_damping", "slave")} & found
+    with pytest.raises(ModelError, match="acts at the environment"):
+        model.with_effect("contact_damping", at="slave")
+    with pytest.raises(ModelError, match="acts at a body"):
+        model.with_effect("viscous", at="environment")
 
 
 def test_a_body_without_inertia_is_named(folder):

@@ -58,6 +58,8 @@ ROLE_TEXTS = {
     "friction_factor": "multiplies the friction level",
     "friction_speed": "the speed that the friction level follows, in place of the body's own",
     "friction_shape": "sets how friction follows the motion; sgn v unless one is given",
+    "contact": "a force of a modelled environment while it is touched; they add up and never pull",
+    "contact_shape": "takes the place of the penetration in the spring of a modelled environment",
 }
 S = sp.Symbol("s")
 

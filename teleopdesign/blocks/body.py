@@ -17,12 +17,14 @@ import sympy as sp
 from ..effects import SIGNALS, Effect, Parameter, ordered
 from ..errors import ModelError, did_you_mean
 from ..quantity import unit_of
+from .environment import contact_force
 
 #: roles that one effect of a body can have, in the words of messages
 ONE_ONLY = {
     "friction_shape": "friction shapes",
     "friction_speed": "speeds of the friction level",
     "structure": "structures",
+    "contact_shape": "shapes of the contact force",
 }
 INERTIA = Parameter("inertia", "inertia of the body", lower=0.0)
 
@@ -139,7 +141,10 @@ class Body:
             for other in self.effects:
                 if other.role == effect.role:
                     kept = kept.without_effect(other.name)
-        added = {f"{effect.name}.{n}": Value(v) for n, v in start.items()}
+        added = {
+            f"{effect.name}.{n}": Value(v, fixed=effect.parameters[n].chosen)
+            for n, v in start.items()
+        }
         return replace(
             kept, effects=(*kept.effects, effect), parameters={**kept.parameters, **added}
         )
@@ -186,6 +191,10 @@ class Body:
             level = level.subs(SIGNALS["velocity"], effect.expression())
         return level
 
+    def contact(self) -> sp.Expr:
+        """Force that a modelled environment takes from the body; 0 where there is none."""
+        return contact_force(self.effects)
+
     def equation(self) -> BodyEquation:
         """Compose the effects by role into the body's equation."""
         acceleration, velocity = SIGNALS["acceleration"], SIGNALS["velocity"]
@@ -212,7 +221,7 @@ class Body:
             stages += symbols.values()
         return BodyEquation(
             inertia=self.symbols()["inertia"] + share,
-            force=sp.expand(force - share * acceleration),
+            force=sp.expand(force - share * acceleration) + self.contact(),
             level=level,
             friction=friction,
             acting=acting,

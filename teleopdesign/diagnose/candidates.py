@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 
 from ..blocks.body import ONE_ONLY
-from ..effects import SIGNALS, Effect
+from ..effects import CONTACT_ROLES, SIGNALS, Effect
 from ..measurement.motion import Motion
 from ..model import Model
 
@@ -35,15 +35,18 @@ COMES_BACK = 1.5
 
 
 def candidates(model: Model, motions: Sequence[Motion] = ()) -> tuple[Candidate, ...]:
-    """Effects that the model lacks and could take, at each of its bodies.
+    """Effects that the model lacks and could take, at each of its places.
 
     motions: those that decide; where a body only ever goes on, place and time are one, and no
     effect of the place can be told from a drift: it is no candidate there
     """
     found = []
-    for place, body in model.bodies.items():
+    for place in model.places:
+        body = model.body(place)
         taken = {e.role for e in body.effects} & set(ONE_ONLY)
         for effect in model.known.values():
+            if (place in model.bodies) == (effect.role in CONTACT_ROLES):
+                continue
             if body.has(effect.name) or effect.role in taken:
                 continue
             if effect.expression().has(SIGNALS["position"]) and not _comes_back(place, motions):
@@ -69,7 +72,11 @@ def started(model: Model, scale: dict[str, float]) -> list[Model]:
     models = [model]
     for name, place in model.absent:
         parameters = model.body(place).effect(name).parameters
-        free = [n for n in parameters if not model.parameters[f"{place}.{name}.{n}"].fixed]
+        free = [
+            n
+            for n, p in parameters.items()
+            if p.chosen or not model.parameters[f"{place}.{name}.{n}"].fixed
+        ]
         grids = [
             [m * scale[parameters[n].scale or parameters[n].quantity] for m in parameters[n].starts]
             for n in free

@@ -85,18 +85,17 @@ TOLD = 0.02
 def is_told(found: Fit, base: Fit) -> bool:
     """Whether the new parameters are determined and do what the base's cannot imitate.
 
-    Each must be larger than its standard error (an angle within half a turn) unless the effect is
-    there without it, and some must change the residual in a way of its own.
+    Each must be further from absence than its standard error (an angle within half a turn) unless
+    the effect is there without it, and some must change the residual in a way of its own.
     """
     new = [i for i, n in enumerate(found.free) if n not in base.free]
     for i in new:
-        value, declared = (
-            of(found.free[i]) for of in (found.model.parameters.get, found.model.declared)
-        )
+        name = found.free[i]
+        value, declared = found.model.parameters[name], found.model.declared(name)
         if declared.optional:
             continue
-        angle = declared.quantity == "angle"
-        if not value.stderr < (np.pi if angle else abs(value.value)):
+        away = np.pi if declared.quantity == "angle" else found.model.from_absence(name)
+        if not value.stderr < away:
             return False
     old = [i for i, n in enumerate(found.free) if n in base.free]
     for i in new:

@@ -12,9 +12,10 @@ from pathlib import Path
 from types import MappingProxyType, ModuleType
 
 from ..errors import ModelError, did_you_mean
-from ._effect import ROLES, SIGNALS, Effect, Parameter, Role, State, delayed, ordered
+from ._effect import CONTACT_ROLES, ROLES, SIGNALS, Effect, Parameter, Role, State, delayed, ordered
 
 __all__ = [
+    "CONTACT_ROLES",
     "EFFECTS",
     "SIGNALS",
     "Effect",

@@ -7,6 +7,8 @@ A body is a chain of roles:
     friction    = friction_shape (sgn v unless one is given) of the friction level
     level       = sum of the friction_level laws, times all friction_factor laws;
                   where a friction_speed law is there, at that speed instead of the body's own
+    contact     = sum of the contact laws where the environment is touched, and no pull: among the
+                  forces; a contact_shape law takes the place of the penetration in them
 
 An effect file states its law once, with sympy, on the symbols of `now`; every form of it (transfer
 function, python-control system, compiled kernel, residual along a measured motion, catalogue page)
@@ -32,6 +34,8 @@ Role = Literal[
     "friction_factor",
     "friction_speed",
     "friction_shape",
+    "contact",
+    "contact_shape",
 ]
 ROLES: tuple[Role, ...] = get_args(Role)
 #: the order in which actuation stages act, where an effect of that name is there; others come last
@@ -42,6 +46,9 @@ ACTUATION_ORDER = (
     "actuation_delay",
     "actuator_saturation",
 )
+
+#: roles of what belongs to a modelled environment, not to the body that touches it
+CONTACT_ROLES = frozenset({"contact", "contact_shape"})
 
 #: starts for the period of something that repeats along the travel (multiples of rms travel) and
 #: for its phase: even in 1/period and close enough that a step in the period reaches the right one,
@@ -62,12 +69,12 @@ def positive_amplitude(values: Mapping[str, float]) -> dict[str, float]:
 
 #: symbols that a law may use; `direction` is sgn(velocity), `command` the input of an actuation
 #: stage, `acting_force` the output of the last, `level` the friction level, `interaction_force`
-#: the force of hand or environment on the body
+#: the force of hand or environment on the body, `penetration` the depth in a modelled environment
 SIGNALS = {
     name: sp.Symbol(name, real=True)
     for name in (
         "time position velocity acceleration direction command acting_force interaction_force "
-        "level".split()
+        "level penetration".split()
     )
 }
 #: delayed(signal, delay): the signal a fixed time earlier
@@ -81,6 +88,7 @@ class Parameter:
     starts: where a search begins, as multiples of the record's own scale of that quantity
     scale: another scale of the record than the quantity's: "duration" for times as long as it
     within: upper bound of a search in that scale, where a larger value would mean something else
+    chosen: set at its first start, not estimated: others are meant relative to it
     optional: the effect is there where this is zero too, which it is unless a value is given
     """
 
@@ -91,6 +99,7 @@ class Parameter:
     starts: tuple[float, ...] = (0.01, 0.1)
     scale: str = ""
     within: float = float("inf")
+    chosen: bool = False
     optional: bool = False
 
 
@@ -113,7 +122,9 @@ class Effect:
     law(now, p) returns the force it adds (role force; role structure: the same, the interaction
     force with it, for that acts on a tip of its own), its share of the friction level
     (friction_level), a factor of that level (friction_factor), the speed that the level follows
-    (friction_speed), the friction force (friction_shape), or the stage's output (actuation).
+    (friction_speed), the friction force (friction_shape), the stage's output (actuation), a share
+    of the force that a modelled environment takes (contact), or the penetration that its spring
+    feels (contact_shape).
     linear: declares that the law is linear in the motion (or in the command), so that the LTI form
     is that law at (position, velocity, acceleration) = (1, s, s^2); False: the LTI form leaves the
     effect out, and says so. It is never found by differentiating sgn.

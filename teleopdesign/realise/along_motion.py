@@ -146,6 +146,9 @@ def residual_along(body: Body, motion: Motion, wrt: Sequence[str] = ()) -> Resid
     needed = acting + plain(motion.interaction) - inertia(given, values, columns)
     for effect in (*_present(body, "force", values), *_present(body, "structure", values)):
         needed = needed - _force(effect, given, values, columns, motion.sample_time)
+    contact = body.contact()
+    if contact != 0:
+        needed = needed - law_of(contact)(given, values, columns)
     friction = _friction(body, motion, given, needed, values, columns)
     return Residual(motion, needed - friction, friction, acting)
 

@@ -4,10 +4,11 @@ import control
 import numpy as np
 import pytest
 from design.devices import CANCELLATION, FEEDBACK, body
+from effects.along import KNOWN
 
 from teleopdesign.blocks import Body, Value
 from teleopdesign.diagrams import four_cases, haptic_interface
-from teleopdesign.effects import EFFECTS
+from teleopdesign.effects import CONTACT_ROLES, EFFECTS
 from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, transfer_function
 from teleopdesign.realise.iosystem import to_iosystem
@@ -37,17 +38,18 @@ LINEAR = [n for n in NAMES if EFFECTS[n].linear]
 def device(*names, absent=False):
     """A body with these effects and what they need, at typical values or absent."""
     wanted = dict.fromkeys(names)
-    while missing := {n for w in wanted for n in EFFECTS[w].needs} - set(wanted):
+    while missing := {n for w in wanted for n in KNOWN[w].needs} - set(wanted):
         wanted |= dict.fromkeys(sorted(missing))
     values = {"inertia": Value(0.15)}
     for name in wanted:
-        effect = EFFECTS[name]
+        effect = KNOWN[name]
         for parameter, declared in effect.parameters.items():
             value = LEVEL if name == "coulomb" else TYPICAL[declared.quantity]
+            value = max(value, declared.lower)
             if absent and name in names:
                 value = effect.absent.get(parameter, value)
             values[f"{name}.{parameter}"] = Value(value)
-    return Body("prismatic", values, tuple(EFFECTS[n] for n in wanted))
+    return Body("prismatic", values, tuple(KNOWN[n] for n in wanted))
 
 
 def push(t):
@@ -84,8 +86,11 @@ def test_kernel_and_python_control_move_alike(name):
         solve_ivp_kwargs={"rtol": 1e-9, "atol": 1e-12, "max_step": 1e-3},
     )
     x = response.outputs[system.output_labels.index("L")]
-    # 1e-5: inputs linear over 25 us leave 5e-8, LSODA at kinks of abs(v) some 1e-6
-    assert np.abs(x - kernel["L"].values).max() < 1e-5 * np.abs(x).max()
+    # 1e-5: inputs linear over 25 us leave 5e-8, LSODA at kinks of abs(v) some 1e-6. A touch falls
+    # within a step of the kernel, 1e-4 s: half a step of the damper's first force, 2 N s/m at
+    # 0.3 m/s on 0.15 kg, moves 1e-5 m of 0.015 m in the time left
+    most = 5e-4 if EFFECTS[name].role in CONTACT_ROLES else 1e-5
+    assert np.abs(x - kernel["L"].values).max() < most * np.abs(x).max()
 
 
 @pytest.mark.parametrize("name", LINEAR)

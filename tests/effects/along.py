@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from teleopdesign.blocks import Body, Value
+from teleopdesign.blocks import CONTACT, Body, Value
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.motion import motion_of
 
@@ -28,9 +28,14 @@ OTHER = {
     "actuator_saturation.limit": 1.5,  # N; the commands reach twice that
     "friction_drift.time_constant": 0.4,  # s; part of a record
     "backlash.gap": 1e-3,  # m; part of the travel
+    "contact_hardening.power": 1.5,
+    "environment.damping": 0.0,
+    "environment.contact_position": 2e-3,  # m; part of the travel
 }
 INERTIA = 0.15
 NAMES = sorted(EFFECTS)
+#: the catalogue, and the environment that effects of a contact need
+KNOWN = {**EFFECTS, CONTACT.name: CONTACT}
 
 
 def declaring(claim):
@@ -40,13 +45,13 @@ def declaring(claim):
 
 def with_needs(name):
     """The effect's name after the names of those that it needs."""
-    needed = [n for need in sorted(EFFECTS[name].needs) for n in with_needs(need)]
+    needed = [n for need in sorted(KNOWN[name].needs) for n in with_needs(need)]
     return list(dict.fromkeys([*needed, name]))
 
 
 def typical(name, parameter):
     """Value of an effect's parameter in these tests."""
-    quantity = EFFECTS[name].parameters[parameter].quantity
+    quantity = KNOWN[name].parameters[parameter].quantity
     return OTHER.get(f"{name}.{parameter}", TYPICAL[quantity])
 
 
@@ -58,13 +63,13 @@ def body_of(*names, absent=(), values=(), axis="prismatic"):
     """
     numbers = {"inertia": INERTIA}
     for name in names:
-        for parameter in EFFECTS[name].parameters:
+        for parameter in KNOWN[name].parameters:
             number = typical(name, parameter)
             if name in absent:
-                number = EFFECTS[name].absent.get(parameter, number)
+                number = KNOWN[name].absent.get(parameter, number)
             numbers[f"{name}.{parameter}"] = number
     parameters = {n: Value(v) for n, v in (numbers | dict(values)).items()}
-    return Body(axis, parameters, tuple(EFFECTS[n] for n in names))
+    return Body(axis, parameters, tuple(KNOWN[n] for n in names))
 
 
 def motion_along(

@@ -36,9 +36,18 @@ COMMON = [n for n in NAMES if n in PUBLIC and n != "friction_memory"]
 def true_values(name):
     """Parameters of the truth simulator for the body that `modelled` makes."""
     values = {"inertia": INERTIA, "level": LEVEL}
+    if "environment" in with_needs(name):
+        values |= {
+            "has_contact": 1.0,
+            "contact_stiffness": typical("environment", "stiffness"),
+            "contact_position": typical("environment", "contact_position"),
+        }
     for one in with_needs(name):
-        for parameter, (known, _) in PUBLIC[one].items():
+        for parameter, (known, _) in PUBLIC.get(one, {}).items():
             values[known] = VALUES.get(f"{one}.{parameter}", typical(one, parameter))
+    if "contact_power" in values:  # there the stiffness is per metre to the power
+        depth = typical(name, "depth")
+        values["contact_stiffness"] *= depth ** (1.0 - values["contact_power"])
     values["inertia"] += values.pop("added_inertia", 0.0)
     values["inertia"] -= values.get("tip_inertia", 0.0)  # the package counts both sides
     values["has_tip"] = float("tip_inertia" in values)
@@ -63,7 +72,9 @@ def simulated(name):
     soft = values.pop("presliding", None)
     hard = (LEVEL + values.get("extra_static_level", 0.0)) / (0.3 * STEP)
     values["bristle_stiffness"] = soft or hard
-    values["bristle_damping"] = values.get("bristle_damping", 0.0) if soft else 0.3 * math.sqrt(hard * INERTIA)
+    values["bristle_damping"] = (
+        values.get("bristle_damping", 0.0) if soft else 0.3 * math.sqrt(hard * INERTIA)
+    )
     run = truth_simulator.simulate([truth_simulator.body(**values)], drive, RATE, 50)
     return motion_along(
         encoded(run.rows("x")[:, 0], STEP),
