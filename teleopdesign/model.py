@@ -46,7 +46,7 @@ class Model:
 
         The environment's is the body that touches it.
         """
-        return self.bodies[self._holder(at)]
+        return self.bodies[self.holder(at)]
 
     def with_effect(
         self,
@@ -106,7 +106,7 @@ class Model:
         """
         place, _, own = name.partition(".")
         if place == CONTACT.name:
-            return self._holder(place), own if "." in own else name
+            return self.holder(place), own if "." in own else name
         return place, own
 
     def declared(self, name: str) -> Parameter:
@@ -167,8 +167,8 @@ class Model:
         touched = any(b.has(CONTACT.name) for b in self.bodies.values())
         return (*self.bodies, CONTACT.name) if touched else tuple(self.bodies)
 
-    def _holder(self, at: str) -> str:
-        """The body that holds what is at a place."""
+    def holder(self, at: str) -> str:
+        """The body that holds what is at a place: of the environment, the one that touches it."""
         if at not in self.places:
             raise ModelError(
                 f'model: no body "{at}", has {", ".join(self.places)}'
@@ -197,7 +197,7 @@ class Model:
         return next(iter(self.bodies))
 
     def _with_body(self, place: str, body: Body) -> Model:
-        return replace(self, bodies=MappingProxyType({**self.bodies, self._holder(place): body}))
+        return replace(self, bodies=MappingProxyType({**self.bodies, self.holder(place): body}))
 
     def __repr__(self) -> str:
         lines = []

@@ -20,7 +20,7 @@ from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motions
 from ..model import Model
-from ..realise.along_motion import residual_along
+from ..realise.along_motion import Probe, residual_along
 
 #: seconds at each end of a stretch where the low-pass has not settled
 TRIM = 0.25
@@ -122,17 +122,17 @@ def _stretch(motion: Motion, use: str, bandwidth: float, *, own_zero: bool) -> S
 
 
 def residuals(
-    model: Model, stretches: Sequence[Stretch], wrt: Sequence[str] = ()
+    model: Model, stretches: Sequence[Stretch], wrt: Sequence[str | Probe] = ()
 ) -> list[tuple[Array, Array]]:
     """Low-passed residual force and its tangents (p, rows) on the rows that count, per stretch.
 
-    wrt: full parameter names ("device.coulomb.level")
+    wrt: full parameter names ("device.coulomb.level"), or probes
     """
     return [(r, d) for r, d, _, _ in _with_acting(model, stretches, wrt)]
 
 
 def referred(
-    model: Model, stretches: Sequence[Stretch], wrt: Sequence[str] = ()
+    model: Model, stretches: Sequence[Stretch], wrt: Sequence[str | Probe] = ()
 ) -> list[tuple[Array, Array]]:
     """Residuals relative to the force that acts by the model, at the scale of the measured force.
 
@@ -160,13 +160,13 @@ def referred(
 
 
 def _with_acting(
-    model: Model, stretches: Sequence[Stretch], wrt: Sequence[str]
+    model: Model, stretches: Sequence[Stretch], wrt: Sequence[str | Probe]
 ) -> list[tuple[Array, Array, Array, Array]]:
     """Residual and acting plus interaction force, low-passed, on the rows that count; tangents."""
     found = []
     for stretch in stretches:
         motion, rows = stretch.motion, stretch.keep
-        located = [model.locate(name) for name in wrt]
+        located = [_located(model, name) for name in wrt]
         mine = [i for i, (place, _) in enumerate(located) if place == motion.body]
         own = [located[i][1] for i in mine]
         along = residual_along(model.body(motion.body), motion, own)
@@ -182,6 +182,10 @@ def _with_acting(
             signals[0], signals[1] = _without_zero(model, stretch, signals[0], signals[1])
         found.append((signals[0], signals[1], signals[2], signals[3]))
     return found
+
+
+def _located(model: Model, name: str | Probe) -> tuple[str, str | Probe]:
+    return (model.holder(name.at), name) if isinstance(name, Probe) else model.locate(name)
 
 
 def _without_zero(

@@ -14,7 +14,7 @@ from ..measurement.experiment import Experiment
 from ..model import Model
 from .candidates import Candidate
 from .evidence import chance
-from .fit import Fit, estimate
+from .fit import Fit, estimate, fit_squares
 from .force_error import Prepared, prepare
 from .noise_floor import NoiseFloor, noise_floor
 from .rank import (
@@ -45,6 +45,8 @@ ADEQUATE = 1.8
 MOSTLY = 0.5
 #: most effects that one diagnosis adds
 MOST = 6
+#: candidates that are added on trial where none is supported alone: each may mask another
+TRIED = 3
 
 
 @dataclass(frozen=True)
@@ -146,19 +148,69 @@ def find_missing(
         step = len(rungs)
         ranking = rank_candidates(here, prepared, progress=partial(_said, say, f"step {step}: "))
         supported = [r for r in ranking.ranked if is_supported(here, r, floor)]
-        if not supported or len(rungs) > MOST:
+        if len(rungs) > MOST:
             break
-        equals = [r for r in supported if r is supported[0] or _equal(r, supported[0])]
-        best = min(equals, key=_simplicity)
-        # one that needs more parameters to do as well explains nothing that the simpler does not
-        others = tuple(
-            r.candidate
-            for r in equals
-            if r is not best and _simplicity(r)[0] == _simplicity(best)[0]
-        )
-        rungs.append(Rung(best.candidate, best.fit, ranking, others))
+        if not supported:
+            pair = _pair(rungs[-1], ranking, prepared, floor, partial(_said, say, f"step {step}: "))
+            if not pair:
+                break
+            rungs += pair
+            continue
+        best = min(_alike(supported), key=_simplicity)
+        rungs.append(Rung(best.candidate, best.fit, ranking, _equals(best, ranking, here, floor)))
         rungs = _pruned(rungs, prepared, floor)
     return Diagnosis(experiment, prepared, _verdict(rungs, floor), tuple(rungs), ranking, floor)
+
+
+def _pair(
+    base: Rung,
+    ranking: Ranking,
+    prepared: Prepared,
+    floor: NoiseFloor,
+    say: Callable[[str], None],
+) -> list[Rung]:
+    """Two effects that are supported together though neither is alone; none where there are none.
+
+    Each of two effects can mask the other. The best few are added on trial, and everything is
+    ranked anew beside each; a pair counts where it explains most of what is missing and neither of
+    the two can be left out.
+    """
+    here = base.fit
+    if here.check_error <= ADEQUATE * floor.value:
+        return []
+    found: list[list[Rung]] = []
+    trials = [r for r in ranking.ranked if r.told and fit_squares(r.fit) < fit_squares(here)]
+    for first in trials[:TRIED]:
+        again = rank_candidates(first.fit, prepared, progress=say)
+        second = next((r for r in again.ranked if is_supported(first.fit, r, floor)), None)
+        if second is None:
+            continue
+        rungs = [
+            Rung(first.candidate, first.fit, ranking),
+            Rung(second.candidate, second.fit, again, _equals(second, again, first.fit, floor)),
+        ]
+        if _stands(here, rungs, prepared, floor):
+            found.append(rungs)
+    return min(found, key=lambda rungs: check_squares(rungs[-1].fit), default=[])
+
+
+def _stands(base: Fit, rungs: list[Rung], prepared: Prepared, floor: NoiseFloor) -> bool:
+    """Whether two effects together explain most of what is missing and both are needed."""
+    both, first = rungs[-1].fit, rungs[0].added
+    assert first is not None
+    if not is_better(base, both, floor) or _explained(base, both, floor) < MOSTLY:
+        return False
+    try:
+        without = estimate(both.model.without_effect(first.effect.name, at=first.at), prepared)
+    except ModelError:
+        return True  # the second needs the first
+    return is_better(without, both, floor)
+
+
+def _explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
+    """Part of the squares above the noise floor that the effects between the two explain."""
+    whole, left = before.check_error**2, after.check_error**2
+    return (whole - left) / max(whole - floor.value**2, 1e-300)
 
 
 def _said(say: Callable[[str], None], before: str, text: str) -> None:
@@ -188,6 +240,24 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
     )
 
 
+def _alike(supported: list[Ranked]) -> list[Ranked]:
+    """Those of the supported candidates that explain the records as well as the best."""
+    return [r for r in supported if r is supported[0] or _equal(r, supported[0])]
+
+
+def _equals(best: Ranked, ranking: Ranking, base: Fit, floor: NoiseFloor) -> tuple[Candidate, ...]:
+    """Candidates that the records do not tell from this one.
+
+    One that needs more parameters to do as well explains nothing that the simpler does not.
+    """
+    supported = [r for r in ranking.ranked if is_supported(base, r, floor)]
+    return tuple(
+        r.candidate
+        for r in _alike(supported)
+        if r is not best and _simplicity(r)[0] == _simplicity(best)[0]
+    )
+
+
 def _equal(one: Ranked, best: Ranked) -> bool:
     """Whether the records do not tell a candidate from the best one."""
     near = abs(one.fit.check_error - best.fit.check_error) < 0.02 * best.fit.check_error
@@ -196,7 +266,7 @@ def _equal(one: Ranked, best: Ranked) -> bool:
 
 def _simplicity(ranked: Ranked) -> tuple[int, int]:
     effect = ranked.candidate.effect
-    return len(effect.parameters), len(effect.needs)
+    return sum(not p.optional for p in effect.parameters.values()), len(effect.needs)
 
 
 def _pruned(rungs: list[Rung], prepared: Prepared, floor: NoiseFloor) -> list[Rung]:
@@ -230,8 +300,6 @@ def _verdict(rungs: list[Rung], floor: NoiseFloor) -> str:
     if not added:
         left = rungs[-1].fit.check_error
         return "model_adequate" if left <= ADEQUATE * floor.value else "undecided"
-    before, after = rungs[0].fit.check_error ** 2, rungs[-1].fit.check_error ** 2
-    explained = (before - after) / max(before - floor.value**2, 1e-300)
-    if explained < MOSTLY or all(r.equals for r in added):
+    if _explained(rungs[0].fit, rungs[-1].fit, floor) < MOSTLY or all(r.equals for r in added):
         return "undecided"
     return "effects_missing"

@@ -11,11 +11,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..effects import Effect
 from ..measurement.filtering import Array
 from ..model import Model
 from .candidates import started
 from .fit import FINE, ROUGH, Effort, Fit, estimate, fit_squares, free_parameters, solve
 from .force_error import Prepared, referred
+from .linear_start import linear_starts
 from .scales import scales
 
 #: gain in squares on the fit records from which a start is worth a step
@@ -53,25 +55,32 @@ def unchanged(model: Model, base: Fit) -> Fit:
 def _promising(
     model: Model, models: list[Model], prepared: Prepared, base: Fit, unit: dict[str, float]
 ) -> list[Model]:
-    """The starts from which one linear step promises most; none where none promises a gain.
-
-    The tangents by amplitude and phase span every phase: one phase of each start is predicted, and
-    those that differ from it in phase alone are kept with it.
-    """
+    """The starts from which one linear step promises most; none where none promises a gain."""
     new = [n for n in free_parameters(model) if n not in base.free]
-    angles = [n for n in new if model.declared(n).quantity == "angle"]
-    first = {n: models[0].parameters[n].value for n in angles}
-    alike = [m for m in models if all(m.parameters[n].value == v for n, v in first.items())]
-    promised = sorted((_promise(m, new, prepared, base, unit), i) for i, m in enumerate(alike))
+    effects = {model.body(place).effect(name): place for name, place in model.absent}
+    if len(effects) == 1:
+        ((effect, place),) = effects.items()
+        if effect.strength is not None and f"{place}.{effect.name}.{effect.strength}" in new:
+            return _by_strength(models, effect, place, prepared, base)
+    promised = sorted((_promise(m, new, prepared, base, unit), i) for i, m in enumerate(models))
     if promised[0][0] > (1.0 - WORTH) * fit_squares(base):
         return []
-    chosen = [alike[i] for _, i in promised[:PREDICTED]]
-    others = [n for n in new if n not in angles]
-    return [
-        m
-        for m in models
-        if any(all(m.parameters[n] == c.parameters[n] for n in others) for c in chosen)
-    ]
+    return [models[i] for _, i in promised[:PREDICTED]]
+
+
+def _by_strength(
+    models: list[Model], effect: Effect, at: str, prepared: Prepared, base: Fit
+) -> list[Model]:
+    """The best starts of an effect that is linear in its strength; none where none is worth it."""
+    strength = f"{at}.{effect.name}.{effect.strength}"
+    distinct: dict[tuple[float, ...], Model] = {}
+    for model in models:
+        others = {n: v.value for n, v in model.parameters.items() if n != strength}
+        distinct.setdefault(tuple(others.values()), model)
+    starts = linear_starts(list(distinct.values()), effect, at, prepared, base)
+    if starts[0].promised > (1.0 - WORTH) * fit_squares(base):
+        return []
+    return [s.model for s in starts[:PREDICTED]]
 
 
 def _promise(

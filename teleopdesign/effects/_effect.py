@@ -50,11 +50,10 @@ ACTUATION_ORDER = (
 #: roles of what belongs to a modelled environment, not to the body that touches it
 CONTACT_ROLES = frozenset({"contact", "contact_shape"})
 
-#: starts for the period of something that repeats along the travel (multiples of rms travel) and
-#: for its phase: even in 1/period and close enough that a step in the period reaches the right one,
-#: as the whole travel is about four times its rms
-PERIODS = (8.0, *(4.0 / k for k in range(1, 31)))
-PHASES = (0.0, 1.5708)
+#: starts for the period of something that repeats along the travel (multiples of rms travel): even
+#: in 1/period, a cycle and a half over the whole travel (four to six times its rms) from one to the
+#: next, so that steps reach the right one
+PERIODS = (8.0, *(4.0 / k for k in range(1, 101)))
 
 
 def positive_amplitude(values: Mapping[str, float]) -> dict[str, float]:
@@ -151,6 +150,19 @@ class Effect:
         return replace(self, name=name, text=text)
 
     @property
+    def strength(self) -> str | None:
+        """The parameter that is zero where the effect is absent and that its law is linear in.
+
+        None where there is no such parameter, or where hidden states depend on it.
+        """
+        return _strength(self)
+
+    @property
+    def phase(self) -> str | None:
+        """The angle phi of a law that is strength times sin(... + phi); None where none is."""
+        return _phase(self)
+
+    @property
     def title(self) -> str:
         """First line of the file's docstring."""
         return self.text.strip().split("\n")[0]
@@ -213,6 +225,25 @@ class Effect:
         law = law.subs(settled) if rates else law
         law = law.replace(delayed, lambda signal, delay: signal * sp.exp(-s * delay))
         return sp.simplify(law / drive)
+
+
+@lru_cache(maxsize=256)
+def _strength(effect: Effect) -> str | None:
+    if len(effect.absent) != 1 or effect.states:
+        return None
+    ((name, value),) = effect.absent.items()
+    linear = sp.diff(effect.expression(), effect.symbols()[name], 2) == 0
+    return name if value == 0.0 and linear else None
+
+
+@lru_cache(maxsize=256)
+def _phase(effect: Effect) -> str | None:
+    angles = [n for n, p in effect.parameters.items() if p.quantity == "angle"]
+    if effect.strength is None or len(angles) != 1:
+        return None
+    wave = sp.diff(effect.expression(), effect.symbols()[effect.strength])
+    turned = sp.diff(wave, effect.symbols()[angles[0]], 2)
+    return angles[0] if sp.simplify(wave + turned) == 0 else None
 
 
 @lru_cache(maxsize=64)

@@ -9,6 +9,9 @@ from sympy import Max, Min
 
 from ._effect import Effect, Parameter
 
+#: multiples of the rms force, from a command that is nearly always cut to one that seldom is
+LIMITS = tuple(0.7 * 1.25**k for k in range(9))
+
 
 def law(now, p):
     return Max(-p.limit, Min(p.limit, now.command))
@@ -17,7 +20,7 @@ def law(now, p):
 EFFECT = Effect(
     role="actuation",
     law=law,
-    parameters={"limit": Parameter("force", "F_max: largest acting force", starts=(0.7, 1.2, 2.0))},
+    parameters={"limit": Parameter("force", "F_max: largest acting force", starts=LIMITS)},
     absent={"limit": float("inf")},
     source="current limit of an amplifier",
 )

@@ -8,7 +8,7 @@ Magnets against iron teeth, ball screws, gear meshing. It does not depend on the
 
 from sympy import pi, sin
 
-from ._effect import PERIODS, PHASES, Effect, Parameter, positive_amplitude
+from ._effect import PERIODS, Effect, Parameter, positive_amplitude
 
 
 def law(now, p):
@@ -21,7 +21,7 @@ EFFECT = Effect(
     parameters={
         "amplitude": Parameter("force", "A: amplitude", lower=-float("inf"), starts=(0.03,)),
         "period": Parameter("position", "p: travel of one period", starts=PERIODS[1:], within=4.0),
-        "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=PHASES),
+        "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=(0.0,)),
     },
     absent={"amplitude": 0.0},
     canonical=positive_amplitude,

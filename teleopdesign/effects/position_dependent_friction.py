@@ -8,7 +8,7 @@ round with the direction, which tells it from `cogging` and `spring`.
 
 from sympy import pi, sin
 
-from ._effect import PERIODS, PHASES, Effect, Parameter, positive_amplitude
+from ._effect import PERIODS, Effect, Parameter, positive_amplitude
 
 
 def law(now, p):
@@ -27,7 +27,7 @@ EFFECT = Effect(
             starts=(0.05,),
         ),
         "period": Parameter("position", "p: travel of one period", starts=PERIODS),
-        "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=PHASES),
+        "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=(0.0,)),
     },
     absent={"amplitude": 0.0},
     canonical=positive_amplitude,

@@ -57,6 +57,18 @@ def through(filtered: Callable[[Array], Array], signal: Traced) -> Traced:
     return Traced(both[0], tangent)
 
 
+@dataclass(frozen=True, eq=False)
+class Probe:
+    """A direction in which a model may be changed: the strength of an effect that it has at zero.
+
+    at: place;  symbol: of the strength;  values: parameter symbol -> value, of the effect's others
+    """
+
+    at: str
+    symbol: sp.Symbol
+    values: Mapping[sp.Symbol, float]
+
+
 @dataclass(frozen=True)
 class Law:
     """A sympy expression as a numpy function of signals and parameters, with its derivatives."""
@@ -80,10 +92,23 @@ class Law:
         for p, d in zip(self.parameters, out[1 + len(arrays) :], strict=True):
             if p in wrt:
                 tangent[list(wrt).index(p)] += d
+        for j, column in enumerate(wrt):
+            if isinstance(column, Probe) and column.symbol in self.parameters:
+                tangent[j] += self._slope(column, arrays, values)
         for s, d in zip(self.signals, out[1 : 1 + len(arrays)], strict=True):
             if given[s].tangent.any():
                 tangent += d * given[s].tangent
         return Traced(value.copy(), tangent)
+
+
+    def _slope(
+        self, probe: Probe, arrays: Sequence[Array], values: Mapping[sp.Symbol, float]
+    ) -> Any:
+        """Derivative by the probe's strength, at the probe's values of the other parameters."""
+        own = [np.float64(probe.values.get(p, values[p])) for p in self.parameters]
+        with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
+            out = self.call(*arrays, *own)
+        return out[1 + len(arrays) + self.parameters.index(probe.symbol)]
 
 
 #: signals that depend on parameters themselves
@@ -125,14 +150,14 @@ class Residual:
     acting: Traced
 
 
-def residual_along(body: Body, motion: Motion, wrt: Sequence[str] = ()) -> Residual:
+def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) -> Residual:
     """Residual force of the body's model along the motion.
 
-    wrt: parameters ("coulomb.level") whose tangents are carried along
+    wrt: parameters ("coulomb.level") or probes whose tangents are carried along
     returns: n samples smoothed as the motion is, not yet through the comparison's low-pass
     """
     symbols, values = body.symbols(), body.numbers()
-    columns = [symbols[name] for name in wrt]
+    columns = [name if isinstance(name, Probe) else symbols[name] for name in wrt]
     n = len(motion.time)
 
     def plain(y: Array) -> Traced:
@@ -220,7 +245,7 @@ def _shifted(
     tangent = (1 - part) * signal.tangent[:, late] + part * signal.tangent[:, later]
     slope = (signal.value[later] - signal.value[late]) / step
     for i, column in enumerate(columns):
-        if delay.has(column):
+        if isinstance(column, sp.Symbol) and delay.has(column):
             tangent[i] += slope * float(sp.diff(delay, column).subs(values))
     return Traced(value, tangent)
 

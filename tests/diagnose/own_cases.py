@@ -15,11 +15,11 @@ FEW = {name: EFFECTS[name] for name in TEN}
 
 
 def write_own(folder, effect, *, seed=SEED, level=None):
-    """A case that hides this effect (None: nothing is missing) in a folder.
+    """A case that hides this effect, or two ("bias+spring"; None: nothing is missing) in a folder.
 
     Every effect of the user's own model has its values: none is left to defaults.
     """
-    names = [effect] if effect else None
+    names = effect.split("+") if effect else None
     rng = np.random.default_rng(seed)
     case = make_case(rng, level or ("clear" if effect else "null"), names)
     # an even seed: the writer gives every effect of the model its starting values

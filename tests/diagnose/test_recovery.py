@@ -76,6 +76,16 @@ def test_a_planted_effect_is_found_among_all_of_the_catalogue(effect, tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(
+    "pair", ["actuator_gain+load_dependent_friction", "actuation_delay+friction_drift"]
+)
+def test_two_effects_are_both_named_though_each_masks_the_other(pair, tmp_path):
+    folder = write_own(tmp_path / pair, pair, seed=12, level="double")
+    found = diagnosed(folder, EFFECTS)
+    assert {c.effect.name for c in found.missing} == set(pair.split("+"))
+
+
+@pytest.mark.slow
 def test_no_effect_is_named_on_records_that_lack_none(tmp_path):
     named = []
     for seed in (41, 42, 43):

@@ -1,0 +1,112 @@
+"""Where the search of an effect begins: at its least-squares strength, for every form of it.
+
+An effect whose law is linear in its strength (an amplitude, a damping, an extra level) is tried at
+zero strength: one column of tangents for each combination of its other parameters, or two where a
+phase turns a sine into a cosine. No steps are needed, so forms by the hundred can be tried.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import sympy as sp
+
+from ..effects import Effect
+from ..measurement.filtering import Array
+from ..model import Model
+from ..realise.along_motion import Probe
+from .fit import Fit
+from .force_error import Prepared, referred
+
+#: columns that are carried through the friction balance at once: bounds the memory
+AT_ONCE = 48
+
+
+@dataclass(frozen=True)
+class LinearStart:
+    """A model with the new effect at its best strength, and the squares that one step leaves."""
+
+    model: Model
+    promised: float
+
+
+def linear_starts(
+    models: list[Model], effect: Effect, at: str, prepared: Prepared, base: Fit
+) -> list[LinearStart]:
+    """Each model with the strength (and phase) that leaves least, to first order; best first.
+
+    models: the same model with the effect's other parameters at different values
+    base: the fit without the effect; its parameters take part in the step
+    raises ValueError: the effect has no strength that its law is linear in
+    """
+    if effect.strength is None:
+        raise ValueError(f"{effect.name}: the law is not linear in a strength")
+    phases = (0.0, math.pi / 2) if effect.phase else (0.0,)
+    symbols = effect.symbols()
+    probes = [
+        Probe(at, symbols[effect.strength], _others(model, effect, at, symbols, phase))
+        for model in models
+        for phase in phases
+    ]
+    absent = models[0].with_values(
+        {f"{at}.{effect.name}.{effect.strength}": 0.0, **dict(base.model.parameters)}
+    )
+    own, _ = np.linalg.qr(base.jacobian / _size(base.jacobian))
+    left = base.fit_residual - own @ (own.T @ base.fit_residual)
+    found = []
+    edges = list(range(0, len(probes), AT_ONCE)) + [len(probes)]
+    for first, last in pairwise(edges):
+        columns = _columns(absent, probes[first:last], prepared)
+        columns -= own @ (own.T @ columns)
+        for i in range(0, last - first, len(phases)):
+            start = models[(first + i) // len(phases)]
+            found.append(_start(start, effect, at, left, columns[:, i : i + len(phases)]))
+    return sorted(found, key=lambda s: s.promised)
+
+
+def _others(
+    model: Model, effect: Effect, at: str, symbols: dict[str, sp.Symbol], phase: float
+) -> dict[sp.Symbol, float]:
+    values = {
+        symbols[n]: model.parameters[f"{at}.{effect.name}.{n}"].value for n in effect.parameters
+    }
+    if effect.phase:
+        values[symbols[effect.phase]] = phase
+    return values
+
+
+def _size(columns: Array) -> Array:
+    size = np.linalg.norm(columns, axis=0)
+    return np.where(size > 0, size, 1.0)
+
+
+def _columns(model: Model, probes: list[Probe], prepared: Prepared) -> Array:
+    stretches = prepared.of("fit")
+    parts = referred(model, stretches, probes)
+    return np.concatenate(
+        [np.sqrt(s.weight) * d.T for s, (_, d) in zip(stretches, parts, strict=True)]
+    )
+
+
+def _start(model: Model, effect: Effect, at: str, left: Array, columns: Array) -> LinearStart:
+    """The strength, and phase, that takes most away from what is left."""
+    assert effect.strength is not None
+    size = _size(columns)
+    by = -np.linalg.lstsq(columns / size, left, rcond=1e-10)[0] / size
+    values = {effect.strength: float(by[0])}
+    if effect.phase:
+        values = {
+            effect.strength: float(np.hypot(*by)),
+            effect.phase: float(np.arctan2(by[1], by[0])),
+        }
+    declared = effect.parameters[effect.strength]
+    most = min(declared.upper, float("inf"))
+    inside = float(np.clip(values[effect.strength], declared.lower, most))
+    part = inside / values[effect.strength] if values[effect.strength] else 0.0
+    values[effect.strength] = inside
+    rest = left + part * (columns @ by)
+    full = {f"{at}.{effect.name}.{n}": v for n, v in values.items()}
+    return LinearStart(model.with_values(full), float(rest @ rest))

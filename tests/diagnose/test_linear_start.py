@@ -1,0 +1,92 @@
+"""The start of a search: every form of an effect at its least-squares strength, without a step."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.diagnose.candidates import started
+from teleopdesign.diagnose.fit import estimate, fit_squares
+from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.diagnose.linear_start import linear_starts
+from teleopdesign.diagnose.scales import scales
+from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.effects import EFFECTS
+from teleopdesign.measurement.experiment import Experiment
+
+PERIOD, AMPLITUDE, PHASE = 7.3e-4, 0.08, 2.0  # m: travel of some fifty periods; N; rad
+
+
+@pytest.fixture(scope="module")
+def cogged() -> Experiment:
+    """The shipped rod, Stribeck friction in its model, and a fine cogging added to its motor."""
+    experiment = td.load_experiment(td.example("rod"))
+    wave = 2 * np.pi / PERIOD
+
+    def driven(record):
+        force = AMPLITUDE * np.sin(wave * record.signals["device.position"] + PHASE)
+        signals = dict(record.signals)
+        # a command that overcomes the cogging; held for a sample of a thousandth of a second
+        signals["device.actuator_force"] = signals["device.actuator_force"] + force
+        return replace(record, signals=signals)
+
+    return replace(experiment, records=tuple(driven(r) for r in experiment.records))
+
+
+@pytest.fixture(scope="module")
+def base(cogged):
+    model = td.Model.from_experiment(cogged).with_effect(
+        "stribeck", values={"extra_static_level": 0.2, "stribeck_velocity": 0.022}
+    )
+    return estimate(model, prepare(cogged))
+
+
+def test_a_fine_period_is_found_among_a_hundred(cogged, base):
+    prepared = prepare(cogged)
+    model = base.model.with_effect("cogging")
+    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
+    starts = linear_starts(started(model, unit), EFFECTS["cogging"], "device", prepared, base)
+    best = starts[0].model.parameters
+    # the grid is a cycle and a half apart over the travel: within one of fifty is the nearest
+    assert best["device.cogging.period"].value == pytest.approx(PERIOD, rel=0.03)
+    assert starts[0].promised < fit_squares(base)
+    assert [s.promised for s in starts] == sorted(s.promised for s in starts)
+    found = estimate_from_starts(model, prepared).model.parameters
+    assert found["device.cogging.period"].value == pytest.approx(PERIOD, rel=1e-3)
+    # encoder steps of 7 um turn the wave by 0.06 rad at most, which takes 1 % of its mean
+    assert found["device.cogging.amplitude"].value == pytest.approx(AMPLITUDE, rel=0.03)
+    assert found["device.cogging.phase"].value == pytest.approx(PHASE, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("name", "strength", "phase"),
+    [
+        ("cogging", "amplitude", "phase"),
+        ("torque_ripple", "amplitude", "phase"),
+        ("viscous", "damping", None),
+        ("stribeck", "extra_static_level", None),
+        ("actuation_delay", None, None),
+        ("presliding", None, None),
+        ("contact_hardening", None, None),
+    ],
+)
+def test_a_strength_is_what_the_law_is_linear_in(name, strength, phase):
+    assert EFFECTS[name].strength == strength
+    assert EFFECTS[name].phase == phase
+
+
+def test_the_start_of_a_linear_effect_is_where_the_search_ends(cogged, base):
+    """Bias and damping enter the residual linearly but for friction that balances."""
+    prepared = prepare(cogged)
+    model = base.model.with_effect("bias")
+    (start,) = linear_starts([model], EFFECTS["bias"], "device", prepared, base)
+    exact = estimate_from_starts(model, prepared).model.parameters["device.bias.force"]
+    assert start.model.parameters["device.bias.force"].value == pytest.approx(
+        exact.value, abs=3 * exact.stderr
+    )
+
+
+def test_an_effect_without_a_strength_is_refused(cogged, base):
+    with pytest.raises(ValueError, match="actuation_delay: the law is not linear"):
+        linear_starts([base.model], EFFECTS["actuation_delay"], "device", prepare(cogged), base)
