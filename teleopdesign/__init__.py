@@ -26,6 +26,7 @@ The folders, each importing only from those before it:
     measurement   experiment, record, motion
     diagnose      residual, noise floor, candidates, ladder, answer
     plot          draws result objects, computes nothing
+    report        the diagnosis as one page that needs nothing else
     commands      what `teleopdesign COMMAND` does: one file each
 """
 

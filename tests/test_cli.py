@@ -217,6 +217,8 @@ def test_a_mistake_in_a_record_is_one_line_and_status_2(mistake, rod, capsys):
         ("--json", "there/is/no/answer.json", "there is no folder"),
         ("--predictions", "predictions.json", "expected .csv or .csv.gz"),
         ("--figure", "figure.bmp", "expected .png or .pdf or .svg"),
+        ("--report", "report.pdf", "found '.pdf', expected .html"),
+        ("--report", "there/is/no/report.html", "there is no folder"),
     ],
 )
 def test_a_result_that_cannot_be_written_is_refused_before_the_work(
@@ -254,11 +256,13 @@ def test_a_demo_folder_that_cannot_be_made_is_one_line(tmp_path, capsys):
 
 
 def test_a_diagnosis_prints_the_ladder_and_writes_what_was_asked_for(rod, few, tmp_path, capsys):
-    files = [tmp_path / n for n in ("answer.json", "predictions.csv", "figure.png")]
+    names = ("answer.json", "predictions.csv", "figure.png", "report.html")
+    files = [tmp_path / n for n in names]
     options = [
         *("--json", str(files[0])),
         *("--predictions", str(files[1])),
         *("--figure", str(files[2])),
+        *("--report", str(files[3])),
     ]
     assert main(["diagnose", str(rod), *options]) == 0
     out = capsys.readouterr()
@@ -267,6 +271,8 @@ def test_a_diagnosis_prints_the_ladder_and_writes_what_was_asked_for(rod, few, t
     assert violations(json.loads(files[0].read_text())) == []
     assert files[1].read_text().startswith("record,t,device.measured,")
     assert files[2].read_bytes().startswith(b"\x89PNG")
+    page = files[3].read_text(encoding="utf-8")
+    assert page.startswith("<!DOCTYPE html>") and "Rod of a one-axis haptic interface" in page
 
 
 def test_a_users_effect_takes_part_in_a_diagnosis(rod, few, tmp_path):
@@ -283,7 +289,7 @@ def test_the_demo_names_the_effect_and_writes_its_files(tmp_path, capsys):
     assert main(["demo", "--output", str(tmp_path / "demo")]) == 0
     assert "written: " in capsys.readouterr().out
     files = {p.name for p in (tmp_path / "demo").iterdir()}
-    assert files == {"answer.json", "predictions.csv.gz", "ladder.png"}
+    assert files == {"answer.json", "predictions.csv.gz", "ladder.png", "report.html"}
     found = json.loads((tmp_path / "demo" / "answer.json").read_text())
     assert violations(found) == []
     assert found["verdict"] == "effects_missing"

@@ -17,7 +17,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Diagnose the shipped experiment; answer, predictions and figure go into one folder."""
+    """Diagnose the shipped experiment; everything that can be written goes into one folder."""
     from ..examples import example
 
     output: Path = options.output
@@ -29,6 +29,7 @@ def run(options: argparse.Namespace) -> int:
         "json": output / "answer.json",
         "predictions": output / "predictions.csv.gz",
         "figure": output / "ladder.png",
+        "report": output / "report.html",
     }
     print(
         "The experiment that ships with the package, held against a model that lacks an effect:\n"

@@ -21,6 +21,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
     )
+    parser.add_argument(
+        "--report", type=Path, metavar="F", help="write a page with everything (.html)"
+    )
     add_effect_files(parser)
 
 
@@ -30,6 +33,7 @@ def run(options: argparse.Namespace) -> int:
         (options.json, (".json",)),
         (options.predictions, (".csv", ".csv.gz")),
         (options.figure, (".png", ".pdf", ".svg")),
+        (options.report, (".html",)),
     ):
         if path is not None:
             check_output(path, endings)
@@ -52,4 +56,8 @@ def run(options: argparse.Namespace) -> int:
         write_predictions(diagnosis, options.predictions)
     if options.figure is not None:
         diagnosis.plot().savefig(options.figure)
+    if options.report is not None:
+        from ..report import write_report
+
+        write_report(diagnosis, options.report)
     return 0

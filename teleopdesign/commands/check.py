@@ -1,0 +1,70 @@
+"""check a recording before fitting, and say which effects it can show"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ._options import add_effect_files, add_folder, check_output
+
+if TYPE_CHECKING:
+    from ..finding import Finding
+
+#: columns of the terminal; what a line goes on with stands under its sentence
+WIDTH, INDENT = 100, 9
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    add_folder(parser)
+    parser.add_argument("--json", type=Path, metavar="F", help="write the findings there")
+    add_effect_files(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the findings, warnings first; write what was asked for."""
+    if options.json is not None:
+        check_output(options.json, (".json",))
+    from ..diagnose.soundness_check import check_experiment
+    from ..effects import catalogue
+    from ..measurement import load_experiment
+    from ..model import Model
+
+    experiment = load_experiment(options.folder)
+    model = Model.from_experiment(experiment, catalogue(options.effect))
+    print(experiment)
+    print()
+    findings = check_experiment(experiment, model)
+    print(text_of(findings))
+    if options.json is not None:
+        content = {"findings": [plain(f) for f in findings]}
+        options.json.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+def text_of(findings: Sequence[Finding]) -> str:
+    """Warnings, then notes, then what is fine, each in the order found, and a count."""
+    order = ("warning", "note", "fine")
+    lines = [
+        textwrap.fill(str(f), WIDTH, subsequent_indent=" " * INDENT, break_on_hyphens=False)
+        for f in sorted(findings, key=lambda f: order.index(f.concern))
+    ]
+    count = sum(f.concern == "warning" for f in findings)
+    lines.append(f"\n{count or 'no'} warning{'s' if count != 1 else ''}.")
+    return "\n".join(lines)
+
+
+def plain(finding: Finding) -> dict[str, Any]:
+    """A finding as plain data; numbers in SI, null where there is none or it is infinite."""
+    return {
+        "topic": finding.topic,
+        "concern": finding.concern,
+        "where": finding.where,
+        "sentence": finding.sentence,
+        "numbers": {n: v if math.isfinite(v) else None for n, v in finding.numbers.items()},
+    }

@@ -1,0 +1,138 @@
+"""run the proof or check of every statement of the two papers"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+import textwrap
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ._options import check_output, say
+
+if TYPE_CHECKING:
+    from ..papers import Result
+
+_CLAIM = "(no code)"
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument(
+        "statement", nargs="*", help="P1 to P65: these only, with every step and number"
+    )
+    parser.add_argument("--json", type=Path, metavar="F", help="write the results there")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the table; exit status 1 where a statement is no longer what it says to be."""
+    if options.json is not None:
+        check_output(options.json, (".json",))
+    from ..papers import STATEMENTS, check, find_statement
+
+    chosen = [find_statement(name) for name in options.statement] or list(STATEMENTS.values())
+    results = []
+    for done, statement in enumerate(chosen):
+        say(f"{statement.name}: {done} of {len(chosen)} done")
+        results.append(check(statement))
+    say("")
+    width = max(72, min(shutil.get_terminal_size().columns, 120))
+    print(
+        "\n".join(_full(r, width) for r in results) if options.statement else _table(results, width)
+    )
+    print(_summary(results))
+    if options.json is not None:
+        text = json.dumps([as_json(r) for r in results], indent=2)
+        options.json.write_text(f"{text}\n", encoding="utf-8")
+    return 0 if all(r.as_stated for r in results) else 1
+
+
+def _table(results: list[Result], width: int) -> str:
+    """One row for each statement: name, outcome, what it says, where the code is."""
+    first, second = 5, 20
+    third = width - first - second - 2
+    lines = []
+    for r in results:
+        s = r.statement
+        told = [*textwrap.wrap(s.words, third)]
+        for head, text in (("", s.formula), ("printed: ", s.printed), ("given: ", s.assumes)):
+            told += textwrap.wrap(f"{head}{text}", third, subsequent_indent="  ") if text else []
+        told += textwrap.wrap(f"{s.paper.short}, {s.place}; {s.code or _CLAIM}", third)
+        named = [s.name, *[""] * len(told)]
+        known = textwrap.wrap(r.outcome, second - 1) + [""] * len(told)
+        rows = zip(named, known, told, strict=False)
+        lines += [f"{a:<{first}}{b:<{second}}{c}".rstrip() for a, b, c in rows]
+        lines += [f"{'':<{first + second}}{why}" for why in _why_failed(r)]
+        lines.append("")
+    head = f"{'':<{first}}{'outcome':<{second}}statement; source; code that shows it"
+    return "\n".join([head, "-" * width, *lines])
+
+
+def _why_failed(result: Result) -> list[str]:
+    if result.outcome != "failed":
+        return []
+    return [*result.found, *(str(f) for f in result.figures if not f.margin >= 0)]
+
+
+def _full(result: Result, width: int) -> str:
+    """Everything about one statement."""
+    s = result.statement
+    lines = [f"{s.name}  {result.outcome}", ""]
+    for text in (s.words, s.formula and f"    {s.formula}"):
+        lines += textwrap.wrap(text, width, subsequent_indent="    ") if text else []
+    lines.append("")
+    for head, text in (
+        ("printed: ", s.printed),
+        ("given:   ", s.assumes),
+        ("source:  ", f"{s.paper.full}; {s.place}"),
+        ("code:    ", s.code and f"teleopdesign.papers.{s.code}" or _CLAIM),
+        ("see:     ", ", ".join(f"P{n}" for n in s.see)),
+    ):
+        lines += textwrap.wrap(head + text, width, subsequent_indent=" " * 9) if text else []
+    lines += [f"  {i}. {step}" for i, step in enumerate(result.found, 1)]
+    lines += [f"  {figure}" for figure in result.figures]
+    return "\n".join([*lines, ""])
+
+
+def _summary(results: list[Result]) -> str:
+    counts = Counter(r.outcome for r in results)
+    seconds = sum(r.seconds for r in results)
+    told = ", ".join(f"{n} {outcome}" for outcome, n in counts.most_common())
+    return f"{len(results)} statements in {seconds:.0f} s: {told}."
+
+
+def as_json(result: Result) -> dict[str, Any]:
+    """A result as plain data; figures with the range that they must lie in and their margin."""
+    s = result.statement
+
+    def number(x: float) -> float | None:
+        return x if abs(x) != float("inf") else None
+
+    return {
+        "statement": s.name,
+        "outcome": result.outcome,
+        "as_stated": result.as_stated,
+        "words": s.words,
+        "formula": s.formula,
+        "printed": s.printed,
+        "assumes": s.assumes,
+        "paper": s.paper.full,
+        "place": s.place,
+        "code": s.code and f"teleopdesign.papers.{s.code}",
+        "see": [f"P{n}" for n in s.see],
+        "found": list(result.found),
+        "figures": [
+            {
+                "what": f.what.strip(),
+                "found": f.found,
+                "low": number(f.low),
+                "high": number(f.high),
+                "unit": f.unit,
+                "margin": number(f.margin),
+            }
+            for f in result.figures
+        ],
+        "seconds": round(result.seconds, 3),
+    }

@@ -1,0 +1,129 @@
+"""Draw the graph of a finding on given axes; computes nothing but which points to leave out."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..finding import Array, Graph, Series
+from .diagnosis import AFTER, BACKWARD, BEFORE, FORWARD, MEASURED
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+INK = "k"
+#: of two series of one kind the first is before, the second after, in the colours of every figure
+PAIR = (BEFORE, AFTER, FORWARD, BACKWARD, "#E69F00", "#56B4E9")
+#: colours of each kind, in the order of its series
+COLOURS = {
+    "measured": (MEASURED, *PAIR),
+    "rest": PAIR,
+    "model": PAIR,
+    "trend": (INK, *PAIR),
+    "limit": (INK, MEASURED),
+}
+POINTS = ("measured", "rest")
+#: most points drawn of one series; more are not seen on a panel of a few inches
+MOST = 1000
+#: up to so many points are drawn large enough to be seen under a line
+FEW = 300
+
+
+def draw_graph(
+    graph: Graph, axes: Axes, *, most: int = MOST, colours: Mapping[str, str] | None = None
+) -> None:
+    """Draw every series of a graph with labels and, for more than one, a legend above.
+
+    most: points drawn of one series; of a longer one each bucket keeps its lowest and highest
+    colours: name of a series -> its colour, where it is not that of its kind
+    Texts are drawn as they are: a name from a file may hold a dollar sign.
+    """
+    totals: Counter[str] = Counter(s.kind for s in graph.series)
+    if graph.logarithmic:
+        _logarithmic(graph, axes)
+    seen: Counter[str] = Counter()
+    for series in graph.series:
+        own = _colour(series.kind, seen[series.kind], totals)
+        _draw(thinned(series, most), axes, (colours or {}).get(series.name, own))
+        seen[series.kind] += 1
+    axes.set_xlabel(graph.x_label, parse_math=False)
+    axes.set_ylabel(graph.y_label, parse_math=False)
+    if len(graph.series) > 1:
+        _legend(axes)
+
+
+def thinned(series: Series, most: int) -> Series:
+    """The series with at most `most` points: the lowest and the highest of each bucket of them."""
+    n = len(series.x)
+    if n <= most:
+        return series
+    kept = extremes(series.y, most // 2)
+    cut = [None if b is None else b[kept] for b in (series.low, series.high)]
+    return Series(series.name, series.x[kept], series.y[kept], series.kind, cut[0], cut[1])
+
+
+def extremes(values: Array, buckets: int) -> NDArray[np.intp]:
+    """Indices of the lowest and highest value in each of so many buckets, in order."""
+    filled = np.where(np.isfinite(values), values, 0.0)
+    edges = np.linspace(0, len(values), max(buckets, 1) + 1).astype(int)
+    pairs = zip(edges[:-1], edges[1:], strict=True)
+    found = [(a + f(filled[a:b])) for a, b in pairs if b > a for f in (np.argmin, np.argmax)]
+    return np.unique(np.array(found, dtype=np.intp))
+
+
+def _colour(kind: str, number: int, totals: Counter[str]) -> str:
+    colours = COLOURS[kind]
+    if kind == "model" and totals[kind] == 1:
+        return AFTER
+    return colours[number % len(colours)]
+
+
+def _draw(series: Series, axes: Axes, colour: str) -> None:
+    if series.low is not None and series.high is not None:
+        axes.fill_between(series.x, series.low, series.high, color=colour, alpha=0.22, lw=0)
+    style: dict[str, Any]
+    if series.kind in POINTS:
+        size = 3.6 if len(series.x) <= FEW else 2.4
+        style = {"linestyle": "none", "marker": ".", "markersize": size}
+    elif series.kind == "limit":
+        style = {"linestyle": "--", "linewidth": 0.8}
+    else:
+        style = {"linestyle": "-", "linewidth": 1.0}
+    # a series of one point is a level; a line through one point would not be seen
+    if series.kind not in POINTS and len(series.x) == 1:
+        axes.axhline(float(series.y[0]), color=colour, label=_label(series), **style)
+        return
+    axes.plot(series.x, series.y, color=colour, label=_label(series), **style)
+
+
+def _label(series: Series) -> str:
+    # matplotlib leaves labels with a leading underscore out of the legend
+    return f"\u200b{series.name}" if series.name.startswith("_") else series.name
+
+
+def _logarithmic(graph: Graph, axes: Axes) -> None:
+    """Logarithmic y; x too where it is positive and spans more than a decade, as frequencies do."""
+    axes.set_yscale("log")
+    x = np.concatenate([s.x for s in graph.series]) if graph.series else np.zeros(1)
+    x = x[np.isfinite(x)]
+    if x.size and x.min() > 0 and x.max() > 10 * x.min():
+        axes.set_xscale("log")
+
+
+def _legend(axes: Axes) -> None:
+    longest = max(len(str(label)) for label in axes.get_legend_handles_labels()[1])
+    legend = axes.legend(
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        borderaxespad=0.1,
+        ncols=3 if longest < 14 else 1 if longest > 30 else 2,
+        columnspacing=1.2,
+        handletextpad=0.5,
+        markerscale=2.5,
+    )
+    for text in legend.get_texts():
+        text.set_parse_math(False)

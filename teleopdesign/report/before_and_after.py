@@ -1,0 +1,122 @@
+"""Two graphs of one body before and after: the residual over velocity, and the force in time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..finding import Array, Graph, Series
+from ..quantity import unit_of
+from .scaled import Scaled, scaled, size_of
+
+#: points of a profile over velocity in each direction, and samples that each needs
+PROFILE, FEWEST = 24, 3
+#: part of the samples that a band leaves out on each side
+TAIL = 0.1
+#: periods at the bandwidth that an excerpt shows, and longest part of a stretch that it takes
+PERIODS, PART = 60.0, 0.25
+#: points of each line of an excerpt
+EXCERPT_POINTS = 240
+#: part of the record's mean square force below which a window counts as quiet
+QUIET = 0.03
+#: name of the only model of a graph
+YOURS = "your model"
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Samples that count, of one body: (n,) each; residual: one for each rung."""
+
+    time: Array
+    clock: Array
+    stretch: NDArray[np.intp]
+    position: Array
+    velocity: Array
+    direction: NDArray[np.int8]
+    measured: Array
+    residual: tuple[Array, ...]
+
+    def only(self, rungs: list[int]) -> Rows:
+        """The same samples on these rungs."""
+        return replace(self, residual=tuple(self.residual[i] for i in rungs))
+
+
+def over_velocity(rows: Rows, axis: str, force: Scaled) -> Graph:
+    """Mean residual over velocity on the first and the last rung, with the band of most samples."""
+    speed = scaled(unit_of("velocity", axis), size_of(rows.velocity))
+    series = [
+        Series(
+            name=name,
+            x=speed.factor * np.array([p[0] for p in profile]),
+            y=force.factor * np.array([p[1] for p in profile]),
+            kind="model",
+            low=force.factor * np.array([p[2] for p in profile]),
+            high=force.factor * np.array([p[3] for p in profile]),
+        )
+        for name, r in _first_and_last(rows.residual)
+        if (profile := _profile(rows, r))
+    ]
+    label = f"residual force ({force.unit})"
+    return Graph(f"velocity ({speed.unit})", label, tuple(series))
+
+
+def _first_and_last(residual: tuple[Array, ...]) -> list[tuple[str, Array]]:
+    if len(residual) == 1:
+        return [(YOURS, residual[0])]
+    return [("before", residual[0]), ("after", residual[-1])]
+
+
+def _profile(rows: Rows, residual: Array) -> list[tuple[float, float, float, float]]:
+    """Velocity, mean, low and high residual of groups of equally many samples in each direction."""
+    found = []
+    for way in (-1, 1):
+        own = np.flatnonzero(rows.direction == way)
+        if len(own) < 10 * FEWEST:
+            continue
+        own = own[np.argsort(rows.velocity[own], kind="stable")]
+        for group in np.array_split(own, min(PROFILE, len(own) // FEWEST)):
+            low, high = np.quantile(residual[group], (TAIL, 1.0 - TAIL))
+            mean = float(np.mean(residual[group]))
+            found.append((float(np.mean(rows.velocity[group])), mean, float(low), float(high)))
+        found.append((float("nan"),) * 4)  # the line breaks where the motion turns
+    return found
+
+
+def excerpt(rows: Rows, axis: str, bandwidth: float) -> Graph:
+    """Measured and modelled force where most was taken away (or is left) of the force there."""
+    window = _window(rows, bandwidth)
+    kept = window[:: max(1, len(window) // EXCERPT_POINTS)]  # low-passed: neighbours are alike
+    force = scaled(unit_of("force", axis), size_of(rows.measured[window]))
+    series = [Series("measured", rows.clock[kept], force.factor * rows.measured[kept])]
+    for name, r in _first_and_last(rows.residual):
+        model = force.factor * (rows.measured[kept] - r[kept])
+        series.append(Series(name, rows.clock[kept], model, "model"))
+    return Graph("time (s)", f"force ({force.unit})", tuple(series))
+
+
+def _window(rows: Rows, bandwidth: float) -> NDArray[np.intp]:
+    gain = rows.residual[0] ** 2
+    if len(rows.residual) > 1:
+        gain = gain - rows.residual[-1] ** 2
+    force = rows.measured**2
+    least = QUIET * float(np.mean(force))
+    best, found = -np.inf, np.arange(len(rows.time))
+    for number in np.unique(rows.stretch):
+        own = np.flatnonzero(rows.stretch == number)
+        step = float(np.median(np.diff(rows.time[own]))) if len(own) > 1 else 1.0
+        length = max(2, int(min(PERIODS / bandwidth, PART * len(own) * step) / step))
+        if len(own) < length:
+            continue
+        share = _moving(gain[own], length) / (_moving(force[own], length) + least)
+        if share.max() > best:
+            start = int(np.argmax(share))
+            best, found = float(share.max()), own[start : start + length]
+    return found
+
+
+def _moving(values: Array, length: int) -> Array:
+    """Mean of each window of that length."""
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    return np.asarray((sums[length:] - sums[:-length]) / length)

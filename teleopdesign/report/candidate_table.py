@@ -1,0 +1,96 @@
+"""The ladder's rungs, and every candidate that was tried with how it did on each of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..diagnose import Diagnosis
+from ..diagnose.answer import answer
+from ..diagnose.ladder import Rung
+from ..diagnose.rank import Ranked, Ranking
+from .words import step_name
+
+
+@dataclass(frozen=True)
+class LadderRow:
+    """One rung; errors are relative to the measured force, floors are noise floors."""
+
+    name: str
+    brief: str
+    fit_error: float
+    check_error: float
+    floors: float
+    alike: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Tried:
+    """How a candidate did on one step; outcome: what of `_outcome` holds, or ""."""
+
+    check_error: float
+    score: float
+    outcome: str
+
+
+@dataclass(frozen=True)
+class CandidateRow:
+    """A candidate with its probability, and how it did on each step (None: not tried there)."""
+
+    effect: str
+    at: str
+    probability: float
+    steps: tuple[Tried | None, ...]
+
+
+def ladder_rows(diagnosis: Diagnosis) -> tuple[LadderRow, ...]:
+    """Every rung of the ladder, the user's model first."""
+    floor = diagnosis.floor.value
+    return tuple(
+        LadderRow(
+            name=step_name(r),
+            brief="your model" if r.added is None else r.added.effect.name,
+            fit_error=r.fit.fit_error,
+            check_error=r.fit.check_error,
+            floors=r.fit.check_error / floor if floor else float("inf"),
+            alike=tuple(map(str, r.equals)),
+        )
+        for r in diagnosis.rungs
+    )
+
+
+def candidate_rows(diagnosis: Diagnosis) -> tuple[CandidateRow, ...]:
+    """Every effect tried, with its check error on each step: those added, then by probability."""
+    steps = [(r, r.ranking) for r in diagnosis.rungs if r.ranking is not None]
+    rankings = [*((r, k) for r, k in steps), (None, diagnosis.last)]
+    done: dict[tuple[str, str], list[Tried | None]] = {}
+    for i, (rung, ranking) in enumerate(rankings):
+        for ranked in ranking.ranked:
+            tried = Tried(ranked.fit.check_error, ranked.score, _outcome(rung, ranking, ranked))
+            done.setdefault(ranked.candidate.key, [None] * len(rankings))[i] = tried
+    accepted = [r.added.key for r, _ in steps if r.added is not None]
+    rows = [
+        CandidateRow(c["effect"], c["at"], c["probability"], tuple(done[(c["effect"], c["at"])]))
+        for c in answer(diagnosis)["candidates"]
+    ]
+
+    def place(row: CandidateRow) -> tuple[int, float, float]:
+        key = (row.effect, row.at)
+        order = accepted.index(key) if key in accepted else len(accepted)
+        best = min(t.check_error for t in row.steps if t is not None)
+        return order, -round(row.probability, 2), best
+
+    return tuple(sorted(rows, key=place))
+
+
+def _outcome(rung: Rung | None, ranking: Ranking, ranked: Ranked) -> str:
+    """What became of a candidate on a step, where its error alone does not say it."""
+    key = ranked.candidate.key
+    if rung is not None and rung.added is not None and rung.added.key == key:
+        return "added"
+    if rung is not None and key in {c.key for c in rung.equals}:
+        return "as good"
+    if key in ranked.fit.model.absent:
+        return "no gain"
+    if not ranked.told:
+        return "open"
+    return "displaces" if set(ranked.fit.at_bound) - set(ranking.base.at_bound) else ""

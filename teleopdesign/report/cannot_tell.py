@@ -1,0 +1,202 @@
+"""What the records of a diagnosis cannot tell, each with the numbers that say so."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..diagnose.fit import Fit
+from ..diagnose.ladder import CLOSE, Diagnosis, Rung
+from ..diagnose.rank import Ranked, whole_score
+from ..effects import CONTACT_ROLES
+from ..finding import Finding
+from .words import listed, number, percent, unit_text, with_error
+
+#: correlation of two estimates from which they are called known only together: the standard error
+#: of either is then 1/sqrt(1 - r^2) = 3.2 times what it would be if the other were known
+TOGETHER = 0.95
+#: most pairs of parameters that are listed
+PAIRS = 6
+
+
+def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
+    """Effects, parameters and candidates that these records leave open; may be empty."""
+    groups = [_group(r) for r in diagnosis.rungs if r.added is not None and r.equals]
+    rest = [
+        *_at_bound(diagnosis),
+        *_open_parameters(diagnosis),
+        *_together(diagnosis.after),
+        *_open_candidates(diagnosis),
+        *_not_tried(diagnosis),
+        *_unchecked(diagnosis),
+    ]
+    return (*groups, *rest)
+
+
+def _group(rung: Rung) -> Finding:
+    assert rung.added is not None and rung.ranking is not None
+    ranked = {r.candidate.key: r for r in rung.ranking.ranked}
+    names = [str(c) for c in (rung.added, *rung.equals)]
+    found = [ranked[c.key] for c in (rung.added, *rung.equals)]
+    likeness = min(_likeness(rung.ranking.base, found[0], r) for r in found[1:])
+    apart = max(abs(whole_score(r.fit, found[0].fit)) for r in found[1:])
+    errors = listed([percent(r.fit.check_error) for r in found])
+    numbers = {f"check_error of {n}": r.fit.check_error for n, r in zip(names, found, strict=True)}
+    return Finding(
+        topic="effects that look alike",
+        concern="warning",
+        sentence=(
+            f"{listed(names)} explain these records equally well: added at the same step they "
+            f"leave {errors}, at most {number(apart, 2)} standard deviations of chance apart (from "
+            f"{CLOSE:g} on they would be told apart). Along this motion they change the model's "
+            f"force in the same way: the correlation is {number(likeness, 4)}."
+        ),
+        numbers=numbers | {"standard_deviations_apart": apart, "correlation": likeness},
+    )
+
+
+def _likeness(base: Fit, one: Ranked, other: Ranked) -> float:
+    """Correlation of what two candidates take away from the residual of the check records."""
+    a = base.check_residual - one.fit.check_residual
+    b = base.check_residual - other.fit.check_residual
+    size = float(np.linalg.norm(a) * np.linalg.norm(b))
+    return float(a @ b) / size if size > 0 else float("nan")
+
+
+def _at_bound(diagnosis: Diagnosis) -> list[Finding]:
+    found = []
+    for name in diagnosis.after.at_bound:
+        value = diagnosis.model.parameters[name].value
+        found.append(
+            Finding(
+                topic="a parameter at its bound",
+                concern="warning",
+                sentence=(
+                    f"{name} ended at the bound of what is physical, {number(value)}: its standard "
+                    "error does not hold there, and the records may not need what it stands for."
+                ),
+                numbers={name: value},
+            )
+        )
+    return found
+
+
+def _open_parameters(diagnosis: Diagnosis) -> list[Finding]:
+    found = []
+    model = diagnosis.model
+    for name in diagnosis.after.free:
+        value = model.parameters[name]
+        if name in diagnosis.after.at_bound or value.stderr < abs(value.value):
+            continue
+        if math.isfinite(value.stderr):
+            angle = model.declared(name).quantity == "angle"
+            if angle and value.stderr < math.pi:
+                continue
+            best, error = with_error(value.value, value.stderr)
+            why = f"{best} ± {error} {unit_text(model.unit(name))}: it may be zero."
+        else:
+            why = "its effect on the force cannot be told from that of the other parameters."
+        found.append(
+            Finding(
+                topic="a parameter left open",
+                concern="note",
+                sentence=f"{name} is not determined: {why}",
+                numbers={"value": value.value, "stderr": value.stderr},
+            )
+        )
+    return found
+
+
+def _together(fit: Fit) -> list[Finding]:
+    """Pairs of parameters whose estimates are so correlated that only a combination is known."""
+    size = np.linalg.norm(fit.jacobian, axis=0)
+    told = [i for i in range(len(fit.free)) if size[i] > 0]
+    columns = fit.jacobian[:, told] / size[told]
+    covariance = np.linalg.pinv(columns.T @ columns, rcond=1e-12, hermitian=True)
+    spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    correlation = covariance / np.outer(spread, spread)
+    pairs = [
+        (float(correlation[i, j]), fit.free[told[i]], fit.free[told[j]])
+        for i in range(len(told))
+        for j in range(i)
+        if abs(correlation[i, j]) > TOGETHER
+    ]
+    pairs.sort(key=lambda p: (-abs(p[0]), p[1:]))
+    return [
+        Finding(
+            topic="parameters known only together",
+            concern="note",
+            sentence=(
+                f"{other} and {one} are known only together: their estimates have a correlation of "
+                f"{number(r, 3)}, so a change of one is made up by the other."
+            ),
+            numbers={"correlation": r},
+        )
+        for r, one, other in pairs[:PAIRS]
+    ]
+
+
+def _open_candidates(diagnosis: Diagnosis) -> list[Finding]:
+    names = [
+        str(r.candidate)
+        for r in diagnosis.last.ranked
+        if not r.told and r.candidate.key not in r.fit.model.absent
+    ]
+    if not names:
+        return []
+    return [
+        Finding(
+            topic="effects that may be there unseen",
+            concern="note",
+            sentence=(
+                f"These records do not determine {listed(names, 'or')}: with such an effect added, "
+                "its parameters could take many values, or others of the model would make up for "
+                "it."
+            ),
+        )
+    ]
+
+
+def _not_tried(diagnosis: Diagnosis) -> list[Finding]:
+    """Effects of the catalogue that could not be candidates on the last step."""
+    model = diagnosis.model
+    tried = {r.candidate.key for r in diagnosis.last.ranked}
+    reasons = []
+    for place in model.places:
+        body = model.body(place)
+        for name, effect in model.known.items():
+            elsewhere = (place in model.bodies) == (effect.role in CONTACT_ROLES)
+            if elsewhere or body.has(name) or (name, place) in tried:
+                continue
+            needs = sorted(n for n in effect.needs if not body.has(n))
+            because = f" (needs {listed(needs)} beside it)" if needs else ""
+            reasons.append(f"{name} at {place}{because}")
+    if not reasons:
+        return []
+    return [
+        Finding(
+            topic="effects that were not tried",
+            concern="note",
+            sentence=(
+                f"Not tried on the last step: {listed(reasons)}. An effect is left out where "
+                "another stands in its place, where it needs one that the model lacks, or where "
+                "the motion never comes back to a place and so cannot tell place from time."
+            ),
+        )
+    ]
+
+
+def _unchecked(diagnosis: Diagnosis) -> list[Finding]:
+    if diagnosis.experiment.check_records:
+        return []
+    return [
+        Finding(
+            topic="no check record",
+            concern="warning",
+            sentence=(
+                "No record was kept for checking: blocks of the fit records were held out in turn. "
+                "That is no test of another motion, day or load."
+            ),
+        )
+    ]

@@ -1,0 +1,148 @@
+"""The data of a report's page: everything that it shows, as plain numbers and texts."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib import metadata
+from typing import Any
+
+import numpy as np
+
+from ..diagnose import Diagnosis
+from ..diagnose.answer import answer
+from ..finding import Finding, Graph
+from ..plot.graph import thinned
+from .candidate_table import CandidateRow, LadderRow, candidate_rows, ladder_rows
+from .cannot_tell import cannot_tell
+from .parameter_table import AddedEffect, ParameterRow, added_effects, parameter_rows
+from .provenance import ChannelRow, RecordRow, channel_rows, record_rows
+from .residuals import BodyView, body_views
+from .words import judged_on, verdict
+
+#: most points of one series of a finding's graph, drawn and in the page's data
+POINTS = 400
+#: significant digits of arrays in the page's data: finer than any figure shows
+DIGITS = 5
+
+
+@dataclass(frozen=True)
+class Page:
+    """What a report shows, top to bottom. Errors are relative, everything else is SI."""
+
+    title: str
+    folder: str
+    verdict: str
+    judged_on: str
+    shown: str
+    before: float
+    after: float
+    floor: float
+    floor_source: str
+    left: float
+    ladder: tuple[LadderRow, ...]
+    added: tuple[AddedEffect, ...]
+    views: tuple[BodyView, ...]
+    parameters: tuple[ParameterRow, ...]
+    candidates: tuple[CandidateRow, ...]
+    cannot_tell: tuple[Finding, ...]
+    soundness: tuple[Finding, ...]
+    unexplained: tuple[Finding, ...]
+    next_steps: tuple[Finding, ...]
+    records: tuple[RecordRow, ...]
+    channels: tuple[ChannelRow, ...]
+    bandwidth: float
+    bandwidth_stated: bool
+    version: str
+
+
+def page_of(
+    diagnosis: Diagnosis,
+    *,
+    soundness: Sequence[Finding] = (),
+    unexplained: Sequence[Finding] = (),
+    next_steps: Sequence[Finding] = (),
+) -> Page:
+    """The page of a diagnosis.
+
+    soundness: about the recording itself;  unexplained: about what the last model leaves
+    next_steps: what to measure next; each section is left out where there is nothing to say
+    """
+    experiment, rows = diagnosis.experiment, parameter_rows(diagnosis)
+    ladder = ladder_rows(diagnosis)
+    return Page(
+        title=experiment.title,
+        folder=experiment.folder.name,
+        verdict=verdict(diagnosis),
+        judged_on=judged_on(diagnosis),
+        shown="check records" if experiment.check_records else "fit records",
+        before=diagnosis.before.check_error,
+        after=diagnosis.after.check_error,
+        floor=diagnosis.floor.value,
+        floor_source=diagnosis.floor.source,
+        left=diagnosis.left,
+        ladder=ladder,
+        added=added_effects(diagnosis, rows),
+        views=body_views(diagnosis, tuple(r.name for r in ladder)),
+        parameters=rows,
+        candidates=candidate_rows(diagnosis),
+        cannot_tell=cannot_tell(diagnosis),
+        soundness=_bounded(soundness),
+        unexplained=_bounded(unexplained),
+        next_steps=_bounded(next_steps),
+        records=record_rows(experiment),
+        channels=channel_rows(experiment),
+        bandwidth=diagnosis.prepared.bandwidth,
+        bandwidth_stated=experiment.bandwidth is not None,
+        version=_version(),
+    )
+
+
+def _version() -> str:
+    """Version of the package as installed."""
+    try:
+        return metadata.version("teleopdesign")
+    except metadata.PackageNotFoundError:  # used from its folder, without an installation
+        return "(not installed)"
+
+
+def _bounded(findings: Sequence[Finding]) -> tuple[Finding, ...]:
+    """The findings with graphs of so few points that the page stays small."""
+    return tuple(
+        f if f.graph is None else dataclasses.replace(f, graph=_thinned(f.graph)) for f in findings
+    )
+
+
+def _thinned(graph: Graph) -> Graph:
+    series = tuple(thinned(s, POINTS) for s in graph.series)
+    return dataclasses.replace(graph, series=series)
+
+
+def plain(value: Any) -> Any:
+    """Dataclasses, arrays and mappings as what JSON knows; a number that is not finite is None."""
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
+    if isinstance(value, Mapping):
+        return {str(k): plain(v) for k, v in value.items()}
+    if isinstance(value, np.ndarray):
+        return [plain(_rounded(v)) if np.ndim(v) == 0 else plain(v) for v in value]
+    if isinstance(value, list | tuple):
+        return [plain(v) for v in value]
+    if isinstance(value, bool | np.bool_):
+        return bool(value)
+    if isinstance(value, int | np.integer):
+        return int(value)
+    if isinstance(value, float | np.floating):
+        return float(value) if math.isfinite(value) else None
+    return value
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else float("nan")
+
+
+def page_data(page: Page, diagnosis: Diagnosis) -> dict[str, Any]:
+    """What is embedded in the page: the answer, and every number that the page shows."""
+    return {"answer": plain(answer(diagnosis)), "report": plain(page)}

@@ -1,0 +1,133 @@
+"""Parameters of a diagnosis: as stated, before and after; and the effects that were added."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..blocks import CONTACT, Value
+from ..diagnose import Diagnosis
+from ..errors import ExperimentError
+from ..model import Model
+
+#: standard errors to either side of a value that hold it 95 times in 100 (normal)
+NINETY_FIVE = 1.96
+
+
+@dataclass(frozen=True)
+class ParameterRow:
+    """A parameter in SI: as written in the experiment, re-estimated before, and after.
+
+    stated: None where the experiment leaves it open;  before: None where its effect was added
+    low, high: 95 % interval, cut at the physical bounds
+    """
+
+    name: str
+    at: str
+    effect: str
+    parameter: str
+    meaning: str
+    unit: str
+    stated: float | None
+    before: float | None
+    before_stderr: float | None
+    after: float
+    stderr: float | None
+    low: float | None
+    high: float | None
+    fixed: bool
+    at_bound: bool
+    added: bool
+
+
+@dataclass(frozen=True)
+class AddedEffect:
+    """An effect that was added: what it is, and its parameters' rows by name."""
+
+    effect: str
+    at: str
+    alike: tuple[str, ...]
+    title: str
+    law: str
+    source: str
+    parameters: tuple[ParameterRow, ...]
+
+
+def parameter_rows(diagnosis: Diagnosis) -> tuple[ParameterRow, ...]:
+    """Every parameter of the model that the diagnosis ends with."""
+    stated, before = _stated(diagnosis), diagnosis.before.model.parameters
+    added = {r.added.key for r in diagnosis.rungs if r.added is not None}
+    rows = []
+    for name, value in diagnosis.model.parameters.items():
+        place, _, own = name.partition(".")
+        effect, _, parameter = own.rpartition(".")
+        declared = diagnosis.model.declared(name)
+        first = before.get(name)
+        low, high = _interval(value, declared.lower, declared.upper)
+        rows.append(
+            ParameterRow(
+                name=name,
+                at=place,
+                effect=effect,
+                parameter=parameter,
+                meaning=declared.meaning,
+                unit=diagnosis.model.unit(name),
+                stated=stated.get(name),
+                before=None if first is None else first.value,
+                before_stderr=None if first is None else _finite(first.stderr),
+                after=value.value,
+                stderr=None if value.fixed else _finite(value.stderr),
+                low=low,
+                high=high,
+                fixed=value.fixed,
+                at_bound=name in diagnosis.after.at_bound,
+                added=(effect, place) in added,
+            )
+        )
+    return tuple(rows)
+
+
+def added_effects(diagnosis: Diagnosis, rows: tuple[ParameterRow, ...]) -> tuple[AddedEffect, ...]:
+    """What each added effect is, from its own file."""
+    return tuple(
+        AddedEffect(
+            effect=r.added.effect.name,
+            at=r.added.at,
+            alike=tuple(map(str, r.equals)),
+            title=r.added.effect.title,
+            law=r.added.effect.text.strip(),
+            source=r.added.effect.source,
+            parameters=tuple(p for p in rows if (p.effect, p.at) == r.added.key),
+        )
+        for r in diagnosis.rungs
+        if r.added is not None
+    )
+
+
+def _stated(diagnosis: Diagnosis) -> dict[str, float]:
+    """Values that the experiment's own file gives, by full name (SI)."""
+    experiment = diagnosis.experiment
+    try:
+        model = Model.from_experiment(experiment, diagnosis.model.known)
+    except ExperimentError:  # diagnosed with a model of its own: the file's cannot be built
+        return {}
+    given = {f"{place}.inertia" for place in experiment.bodies}
+    for place, body in experiment.bodies.items():
+        given |= {f"{place}.{e}.{p}" for e, values in body.effects.items() for p in values}
+    if experiment.environment is not None:
+        at = CONTACT.name
+        given |= {f"{at}.{p}" for p in experiment.environment.values}
+        effects = experiment.environment.effects.items()
+        given |= {f"{at}.{e}.{p}" for e, values in effects for p in values}
+    return {n: v.value for n, v in model.parameters.items() if n in given}
+
+
+def _interval(value: Value, lower: float, upper: float) -> tuple[float | None, float | None]:
+    if value.fixed or not math.isfinite(value.stderr):
+        return None, None
+    half = NINETY_FIVE * value.stderr
+    return max(value.value - half, lower), min(value.value + half, upper)
+
+
+def _finite(x: float) -> float | None:
+    return x if math.isfinite(x) else None

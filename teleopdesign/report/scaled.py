@@ -1,0 +1,42 @@
+"""The prefix in which a quantity reads well on an axis: 0.012 m as 12 mm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..finding import Array
+from .words import unit_text
+
+#: SI unit -> (what it is shown in, factor to that), from small to large; others stay as they are
+_SHOWN = {
+    "m": (("µm", 1e6), ("mm", 1e3), ("m", 1.0)),
+    "m/s": (("µm/s", 1e6), ("mm/s", 1e3), ("m/s", 1.0)),
+    "N": (("mN", 1e3), ("N", 1.0)),
+    "N*m": (("mN·m", 1e3), ("N·m", 1.0)),
+    "rad": (("mrad", 1e3), ("rad", 1.0)),
+    "rad/s": (("mrad/s", 1e3), ("rad/s", 1.0)),
+}
+
+
+@dataclass(frozen=True)
+class Scaled:
+    """A unit to show a quantity in, and the factor from SI to it."""
+
+    unit: str
+    factor: float
+
+
+def scaled(unit: str, size: float) -> Scaled:
+    """The prefix in which values up to `size` (SI) are at least 0.5, or the smallest there is."""
+    choices = _SHOWN.get(unit, ((unit_text(unit), 1.0),))
+    for shown, factor in reversed(choices):
+        if size * factor >= 0.5:
+            return Scaled(shown, factor)
+    return Scaled(*choices[0])
+
+
+def size_of(values: Array) -> float:
+    """How large values are, but for the largest two in a hundred."""
+    return float(np.quantile(np.abs(values), 0.98))

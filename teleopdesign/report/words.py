@@ -1,0 +1,115 @@
+"""Numbers, units and verdicts in words, as a report prints them."""
+
+from __future__ import annotations
+
+import math
+
+from ..diagnose.ladder import ADEQUATE, Diagnosis, Rung
+
+_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+MINUS = "\u2212"
+NONE = "–"
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """A number with so many significant digits: 0.1972, −12 300, 1.2·10⁻⁶; a dash for none."""
+    if value is None or not math.isfinite(value):
+        return NONE
+    if value == 0:
+        return "0"
+    exponent = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
+    if -4 < exponent < 5:
+        text = f"{value:.{max(digits - 1 - exponent, 0)}f}"
+    else:
+        text = f"{value / 10.0**exponent:.{digits - 1}f}·10{str(exponent).translate(_SUPERSCRIPT)}"
+    return text.replace("-", MINUS)
+
+
+def short(value: float | None, digits: int = 4) -> str:
+    """A number without the zeros at its end: 60, 58.9, 7.2·10⁻⁶."""
+    text, times, power = number(value, digits).partition("·")
+    return (text.rstrip("0").rstrip(".") if "." in text else text) + times + power
+
+
+def with_error(value: float, error: float | None) -> tuple[str, str]:
+    """A value and its standard error to the same decimal, the error's second significant one."""
+    if error is None or not math.isfinite(error) or error <= 0:
+        return number(value), NONE
+    decimals = 1 - math.floor(math.log10(error))
+    if 0 <= decimals <= 6 and abs(value) < 1e5:
+        return f"{value:.{decimals}f}".replace("-", MINUS), f"{error:.{decimals}f}"
+    if value == 0:
+        return "0", number(error, 2)
+    digits = math.floor(math.log10(abs(value))) + decimals + 1
+    return number(value, min(max(digits, 2), 7)), number(error, 2)
+
+
+def percent(value: float | None) -> str:
+    """A relative error as 7.07 %."""
+    if value is None or not math.isfinite(value):
+        return NONE
+    return f"{100 * value:.2f}\u202f%"
+
+
+def unit_text(unit: str) -> str:
+    """An SI unit as printed: N*s/m as N·s/m, m^2 as m²; nothing for a plain number."""
+    if unit == "1":
+        return ""
+    return unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
+
+
+def listed(names: list[str], last: str = "and") -> str:
+    """Names as a person lists them: a, b and c."""
+    if len(names) < 2:
+        return "".join(names)
+    return f"{', '.join(names[:-1])} {last} {names[-1]}"
+
+
+def step_name(rung: Rung) -> str:
+    """What a rung adds, with those that do as well: "stribeck at device"."""
+    if rung.added is None:
+        return "your model, re-estimated"
+    return " or ".join(map(str, (rung.added, *rung.equals)))
+
+
+def judged_on(diagnosis: Diagnosis) -> str:
+    """What the errors are reported on."""
+    if diagnosis.experiment.check_records:
+        return "records that were not fitted"
+    return "blocks of the records that were held out of the fit"
+
+
+def verdict(diagnosis: Diagnosis) -> str:
+    """The verdict in a sentence or two."""
+    before, after = diagnosis.before.check_error, diagnosis.after.check_error
+    floor, left = percent(diagnosis.floor.value), number(diagnosis.left, 2)
+    fell = f"the force error on {judged_on(diagnosis)} falls from {percent(before)}"
+    fell += f" to {percent(after)}"
+    added = [step_name(r) for r in diagnosis.rungs if r.added is not None]
+    more = diagnosis.left > ADEQUATE
+    rest = (
+        f"What is left is {left} times what sensor noise alone would leave: more is missing."
+        if more
+        else f"What is left is near what sensor noise alone would leave, {floor}."
+    )
+    if diagnosis.verdict == "model_adequate":
+        return (
+            f"Your model is adequate: it leaves {percent(after)} of the force unexplained, and "
+            f"sensor noise alone would leave {floor}."
+        )
+    if diagnosis.verdict == "effects_missing":
+        return f"Your model lacks {listed(added)}. With {_it(added)}, {fell}. {rest}"
+    if not added:
+        return (
+            f"Undecided: something is missing, but no effect that was tried explains it. The force "
+            f"error is {percent(after)}, {left} times what sensor noise alone would leave."
+        )
+    if all(r.equals for r in diagnosis.rungs[1:]):
+        names = listed(added)
+        return f"Undecided between {names}: these records cannot tell. Either way {fell}. {rest}"
+    helps = "helps, but explains" if len(added) == 1 else "help, but explain"
+    return f"Undecided: {listed(added)} {helps} less than half of what is missing: {fell}. {rest}"
+
+
+def _it(added: list[str]) -> str:
+    return "it" if len(added) == 1 else "them"

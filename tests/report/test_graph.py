@@ -1,0 +1,139 @@
+"""Graphs of findings, drawn on axes and as elements of a page."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.figure import Figure
+from report.html_page import HtmlPage
+
+from teleopdesign.finding import Graph, Series
+from teleopdesign.plot.graph import draw_graph, extremes, thinned
+from teleopdesign.report.scaled import scaled
+from teleopdesign.report.svg import inline_svg
+
+X = np.linspace(0.0, 1.0, 50)
+
+
+def axes_with(*series, **options):
+    axes = Figure().subplots()
+    draw_graph(Graph("velocity (mm/s)", "force (N)", series, **options), axes)
+    return axes
+
+
+def test_labels_and_names_are_drawn_as_they_are():
+    axes = axes_with(Series("$a", X, X), Series("_b", X, X, "trend"))
+    assert axes.get_xlabel() == "velocity (mm/s)" and axes.get_ylabel() == "force (N)"
+    shown = [t.get_text().strip("\u200b") for t in axes.get_legend().get_texts()]
+    assert shown == ["$a", "_b"]
+
+
+def test_one_series_needs_no_legend():
+    assert axes_with(Series("force", X, X)).get_legend() is None
+
+
+@pytest.mark.parametrize(
+    ("kind", "marker", "line"),
+    [
+        ("measured", ".", "None"),
+        ("rest", ".", "None"),
+        ("model", "None", "-"),
+        ("trend", "None", "-"),
+        ("limit", "None", "--"),
+    ],
+)
+def test_measured_is_drawn_as_points_and_a_model_as_a_line(kind, marker, line):
+    (drawn,) = axes_with(Series("s", X, X, kind)).lines
+    assert (drawn.get_marker(), drawn.get_linestyle()) == (marker, line)
+
+
+def test_of_two_models_the_first_is_before_and_the_second_after():
+    first, second = axes_with(Series("a", X, X, "model"), Series("b", X, X, "model")).lines
+    assert (first.get_color(), second.get_color()) == ("#D55E00", "#0072B2")
+
+
+def test_a_band_is_drawn_behind_its_series():
+    axes = axes_with(Series("a", X, X, "model", X - 1, X + 1))
+    assert len(axes.collections) == 1
+
+
+def test_a_limit_of_one_point_is_a_level_across_the_graph():
+    (line,) = axes_with(Series("noise", X[:1], X[:1], "limit")).lines
+    assert list(line.get_xdata()) == [0, 1]
+
+
+@pytest.mark.parametrize(("x", "scale"), [(np.geomspace(0.1, 100, 50), "log"), (X, "linear")])
+def test_a_logarithmic_graph_has_both_axes_so_where_x_spans_decades(x, scale):
+    axes = axes_with(Series("a", x, 1 + X), logarithmic=True)
+    assert (axes.get_yscale(), axes.get_xscale()) == ("log", scale)
+
+
+def test_a_graph_without_series_or_with_gaps_is_drawn():
+    axes_with()
+    axes_with(Series("a", X, np.where(X > 0.5, np.nan, X), "model"), logarithmic=True)
+
+
+@given(st.integers(1, 2000), st.integers(2, 300))
+def test_a_thinned_series_keeps_its_extremes_and_its_order(n, most):
+    y = np.sin(np.arange(n) ** 1.3)
+    found = thinned(Series("a", np.arange(float(n)), y, low=y - 1, high=y + 1), most)
+    assert len(found.x) <= max(most, 2)
+    assert found.y.min() == y.min() and found.y.max() == y.max()
+    assert np.all(np.diff(found.x) > 0)
+    assert np.array_equal(found.low, found.y - 1)
+
+
+def test_gaps_do_not_hide_an_extreme():
+    y = np.array([np.nan, 3.0, np.nan, -2.0])
+    assert {1, 3} <= set(extremes(y, 1).tolist())
+
+
+def drawn(draw, name="one"):
+    return inline_svg(draw, size=(3, 2), name=name, alt='a "figure" & more')
+
+
+def test_an_svg_has_texts_as_text_and_the_pages_colours():
+    def draw(figure):
+        axes = figure.subplots()
+        axes.plot(X, X, color="#D55E00")
+        axes.set_title("F < $m$ & x", parse_math=False)
+
+    text = drawn(draw)
+    read = HtmlPage(text)
+    assert "F < $m$ & x" in [e.text for e in read.all("text")]
+    assert "var(--before)" in text and "var(--ink)" in text
+    assert "#d55e00" not in text and "font-family" not in text and "<style" not in text
+    assert read.elements[0].attributes["aria-label"] == 'a "figure" & more'
+
+
+def test_many_points_are_one_path():
+    text = drawn(lambda f: f.subplots().plot(X, X, ".", color="0.55"))
+    assert text.count("h0") == len(X)
+    assert "stroke: var(--measured)" in text
+
+
+def test_two_figures_share_no_identifier():
+    def draw(figure):
+        figure.subplots().plot(X, X)
+
+    names = [
+        {e.attributes["id"] for e in HtmlPage(drawn(draw, n)).elements if "id" in e.attributes}
+        for n in ("one", "two")
+    ]
+    assert names[0] and names[0].isdisjoint(names[1])
+
+
+@pytest.mark.parametrize(
+    ("unit", "size", "shown"),
+    [
+        ("m", 0.012, "mm"),
+        ("m", 2.0, "m"),
+        ("m", 3e-5, "µm"),
+        ("N", 0.08, "mN"),
+        ("N*m", 0.7, "N·m"),
+        ("rad/s", 1e-9, "mrad/s"),
+        ("kg*m^2", 1.0, "kg·m²"),
+    ],
+)
+def test_a_quantity_is_shown_in_the_prefix_that_reads_well(unit, size, shown):
+    assert scaled(unit, size).unit == shown
