@@ -14,10 +14,9 @@ import numpy as np
 
 from ..model import Model
 from ..realise.along_motion import residual_along
-from .evidence import chance
 from .fit import Fit
-from .ladder import ADEQUATE, Diagnosis, Rung
-from .rank import Ranked, Ranking
+from .ladder import ADEQUATE, Diagnosis
+from .probability import CandidateEvidence, evidence_of
 
 
 def answer(diagnosis: Diagnosis) -> dict[str, Any]:
@@ -43,6 +42,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "model_parameters": _parameters(diagnosis.after, _added(diagnosis)),
         "left_over_noise_floors": _finite(diagnosis.left),
         "at_bound": list(diagnosis.after.at_bound),
+        "evidence": [_evidence(one) for one in evidence_of(diagnosis) if one.share > 0],
     }
 
 
@@ -76,58 +76,33 @@ def _parameters(found: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
     }
 
 
-def shares(ranking: Ranking) -> dict[tuple[str, str], float]:
-    """Share of each candidate in what the ranking cannot tell apart; they sum to one."""
-    weights = {
-        r.candidate.key: math.exp(-0.5 * max(r.behind, 0.0) ** 2) if r.told else 0.0
-        for r in ranking.ranked
-    }
-    total = sum(weights.values()) or 1.0
-    return {k: w / total for k, w in weights.items()}
-
-
 def _candidates(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """Every effect tried, most probable first: with its best step's fit and probability.
-
-    An accepted effect: the chance that its gain is real times its share among its equals. Others:
-    their share in the last ranking times the chance that this ranking's best is real.
-    """
+    """Every effect tried, most probable first: with its best step's fit and probability."""
     found: dict[tuple[str, str], dict[str, Any]] = {}
-    steps: list[tuple[Rung | None, Ranking]] = [
-        (r, r.ranking) for r in diagnosis.rungs if r.ranking is not None
-    ]
-    steps.append((None, diagnosis.last))
-    for rung, ranking in steps:
-        share = shares(ranking)
-        for ranked in ranking.ranked:
-            key = ranked.candidate.key
-            probability = _probability(diagnosis, rung, ranking, ranked, share[key])
-            if key not in found or probability > found[key]["probability"]:
-                found[key] = _row(diagnosis, rung, ranked, probability)
+    for one in evidence_of(diagnosis):
+        key = one.ranked.candidate.key
+        probability = one.probability()
+        if key not in found or probability > found[key]["probability"]:
+            found[key] = _row(diagnosis, one, probability)
     return sorted(found.values(), key=lambda c: -c["probability"])
 
 
-def _probability(
-    diagnosis: Diagnosis, rung: Rung | None, ranking: Ranking, ranked: Ranked, share: float
-) -> float:
-    if rung is None:
-        # nothing was accepted here: what is left over would have to be this effect after all
-        gain = 1.0 - (ranked.fit.check_error / max(ranking.base.check_error, 1e-300)) ** 2
-        real = (1.0 - chance(ranked.score)) * min(max(gain, 0.0), 1.0)
-        return float(np.clip(0.3 * share * real, 0.0, 0.3))
-    gain = ranking.base.check_error**2 - ranked.fit.check_error**2
-    excess = ranking.base.check_error**2 - min(diagnosis.floor.value, ranked.fit.check_error) ** 2
-    explained = min(max(gain / excess, 0.0), 1.0) if excess > 0 else 0.0
-    return float(np.clip(share * (0.5 + 0.49 * explained) * (1.0 - chance(ranked.score)), 0, 0.99))
+def _evidence(one: CandidateEvidence) -> dict[str, Any]:
+    """What the probability of a candidate rests on, a row a step that took it seriously."""
+    return _place(one.ranked.candidate.key) | {
+        "accepted": one.accepted,
+        "as_good": one.as_good,
+        "score": _finite(one.ranked.score),
+        "share": one.share,
+        "explained": one.explained,
+    }
 
 
-def _row(
-    diagnosis: Diagnosis, rung: Rung | None, ranked: Ranked, probability: float
-) -> dict[str, Any]:
+def _row(diagnosis: Diagnosis, one: CandidateEvidence, probability: float) -> dict[str, Any]:
+    ranked = one.ranked
     effect, at = ranked.candidate.key
-    accepted = rung is not None and rung.added is not None and rung.added.key == (effect, at)
     model = ranked.fit.model
-    if accepted and diagnosis.model.body(at).has(effect):
+    if one.accepted and diagnosis.model.body(at).has(effect):
         model = diagnosis.model  # all parameters are re-estimated with each effect that follows
     return {
         "effect": effect,

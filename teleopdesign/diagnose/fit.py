@@ -27,7 +27,8 @@ class Fit:
     fit_residual, check_residual: low-passed residuals on the rows that count, weighted, relative to
         the force that acts by the model (`referred`): what models are compared by
     fit_blocks, check_blocks: number of the block of each of these rows
-    jacobian: (rows, p) of fit_residual by `free`, in units of the record's scales
+    jacobian: (rows, p) of fit_residual by `free`, in units of `scale`
+    scale: (p,) SI value of the unit of each free parameter in `jacobian`
     """
 
     model: Model
@@ -40,6 +41,7 @@ class Fit:
     fit_blocks: NDArray[np.intp]
     check_blocks: NDArray[np.intp]
     jacobian: Array
+    scale: Array
 
 
 def fit_squares(found: Fit) -> float:
@@ -129,6 +131,7 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = FINE) -> Fit:
         fit_blocks=blocks,
         check_blocks=block_numbers(check),
         jacobian=solution.jacobian,
+        scale=solution.scale,
     )
 
 

@@ -25,6 +25,7 @@ from .rank import (
     rank_candidates,
     whole_score,
 )
+from .reading_error import widened
 from .search import estimate_from_starts
 
 if TYPE_CHECKING:
@@ -140,18 +141,19 @@ def find_missing(
     say = progress or (lambda _: None)
     prepared = prepare(experiment)
     say("re-estimating the model")
-    base = estimate_from_starts(model or Model.from_experiment(experiment), prepared)
-    rungs = [Rung(None, base)]
+    stated = model or Model.from_experiment(experiment)
+    rungs = [Rung(None, estimate_from_starts(stated, prepared))]
     while True:
         here = rungs[-1].fit
         floor = noise_floor(here.model, prepared, np.random.default_rng(seed))
         step = len(rungs)
-        ranking = rank_candidates(here, prepared, progress=partial(_said, say, f"step {step}: "))
+        saying = partial(_said, say, f"step {step}: ")
+        ranking = rank_candidates(here, prepared, stated=stated, progress=saying)
         supported = [r for r in ranking.ranked if is_supported(here, r, floor)]
         if len(rungs) > MOST:
             break
         if not supported:
-            pair = _pair(rungs[-1], ranking, prepared, floor, partial(_said, say, f"step {step}: "))
+            pair = _pair(rungs[-1], ranking, prepared, floor, stated, saying)
             if not pair:
                 break
             rungs += pair
@@ -159,6 +161,8 @@ def find_missing(
         best = min(_alike(supported), key=_simplicity)
         rungs.append(Rung(best.candidate, best.fit, ranking, _equals(best, ranking, here, floor)))
         rungs = _pruned(rungs, prepared, floor)
+    generator = np.random.default_rng(seed)
+    rungs = [replace(r, fit=widened(r.fit, prepared, generator)) for r in rungs]
     return Diagnosis(experiment, prepared, _verdict(rungs, floor), tuple(rungs), ranking, floor)
 
 
@@ -167,6 +171,7 @@ def _pair(
     ranking: Ranking,
     prepared: Prepared,
     floor: NoiseFloor,
+    stated: Model,
     say: Callable[[str], None],
 ) -> list[Rung]:
     """Two effects that are supported together though neither is alone; none where there are none.
@@ -181,7 +186,7 @@ def _pair(
     found: list[list[Rung]] = []
     trials = [r for r in ranking.ranked if r.told and fit_squares(r.fit) < fit_squares(here)]
     for first in trials[:TRIED]:
-        again = rank_candidates(first.fit, prepared, progress=say)
+        again = rank_candidates(first.fit, prepared, stated=stated, progress=say)
         second = next((r for r in again.ranked if is_supported(first.fit, r, floor)), None)
         if second is None:
             continue

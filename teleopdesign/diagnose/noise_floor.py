@@ -38,14 +38,21 @@ def noise_floor(
     stated = all(channels[f"{s.motion.body}.position"].resolution is not None for s in stretches)
     errors, before = [], residuals(model, stretches)
     for _ in range(DRAWS):
-        drawn = [replace(s, motion=_drawn(s, prepared, generator)) for s in stretches]
+        # when the drawn readings tell the direction a sample earlier or later is no sensor noise
+        drawn = [
+            replace(s, motion=_keeping(s, read_again(s, prepared, generator))) for s in stretches
+        ]
         pairs = zip(residuals(model, drawn), before, strict=True)
         errors.append(error_of(drawn, [r - r0 for (r, _), (r0, _) in pairs]))
     source = "stated resolution and noise" if stated else "step and noise seen in the readings"
     return NoiseFloor(float(np.sqrt(np.mean(np.square(errors)))), source)
 
 
-def _drawn(stretch: Stretch, prepared: Prepared, generator: np.random.Generator) -> Motion:
+def _keeping(stretch: Stretch, motion: Motion) -> Motion:
+    return replace(motion, direction=stretch.motion.direction)
+
+
+def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Generator) -> Motion:
     """The stretch's motion as its sensors would read it once more."""
     motion, channels = stretch.motion, prepared.experiment.channels
     signals = next(r for r in prepared.experiment.records if r.file == motion.file).signals
@@ -65,7 +72,7 @@ def _drawn(stretch: Stretch, prepared: Prepared, generator: np.random.Generator)
             signal = step * np.round(signal / step + generator.uniform(-0.5, 0.5))
         return signal
 
-    drawn = motion_of(
+    return motion_of(
         body=motion.body,
         file=motion.file,
         time=motion.time,
@@ -77,5 +84,3 @@ def _drawn(stretch: Stretch, prepared: Prepared, generator: np.random.Generator)
         bandwidth=prepared.bandwidth,
         resolution=channels[f"{motion.body}.position"].resolution,
     )
-    # when the drawn readings tell the direction a sample earlier or later is no sensor noise
-    return replace(drawn, direction=motion.direction)

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..model import Model
 from .candidates import Candidate, candidates
 from .evidence import gain_score
-from .fit import Fit, estimate, fit_squares
+from .fit import ROUGH, Fit, estimate, fit_squares
 from .force_error import Prepared
 from .search import estimate_from_starts
 
@@ -117,24 +118,32 @@ CONTENDING = 0.5
 
 
 def _refined(
-    tried: tuple[Candidate, Fit], leading: float, prepared: Prepared
+    tried: tuple[Candidate, Fit], leading: float, prepared: Prepared, stated: Model | None
 ) -> tuple[Candidate, Fit]:
     candidate, rough = tried
     present = (candidate.effect.name, candidate.at) not in rough.model.absent
-    if present and fit_squares(rough) <= leading:
-        return candidate, estimate(rough.model, prepared)
-    return tried
+    if not present or fit_squares(rough) > leading:
+        return tried
+    if stated is not None:
+        # without the effect the other parameters may have gone where no step leads back from
+        own = {n: v.value for n, v in stated.parameters.items() if n in rough.free}
+        again = estimate(rough.model.with_values(own), prepared, effort=ROUGH)
+        if fit_squares(again) < fit_squares(rough):
+            rough = again
+    return candidate, estimate(rough.model, prepared)
 
 
 def rank_candidates(
     base: Fit,
     prepared: Prepared,
     *,
+    stated: Model | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Ranking:
     """Try every candidate on top of a fitted model.
 
     base: the fitted model that something may be missing in
+    stated: the model as its user gave it; its values are starts too
     progress: called with a line of text before each candidate
     """
 
@@ -148,7 +157,7 @@ def rank_candidates(
     with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
         fits = list(pool.map(tried, candidates(base.model, [s.motion for s in prepared.of("fit")])))
         leading = (1.0 + CONTENDING) * min((fit_squares(f) for _, f in fits), default=0.0)
-        fits = list(pool.map(lambda cf: _refined(cf, leading, prepared), fits))
+        fits = list(pool.map(lambda cf: _refined(cf, leading, prepared, stated), fits))
     told = {c.key: is_told(f, base) for c, f in fits}
     fits.sort(key=lambda cf: (not told[cf[0].key], check_squares(cf[1])))
     ranked = [

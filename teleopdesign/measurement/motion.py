@@ -82,7 +82,9 @@ def reading_step(position: Array) -> float:
     step = float(np.quantile(gaps[gaps > 1e-9 * np.ptp(values)], 0.002))
     rounding = float(np.sqrt(12.0)) * reading_noise(position)
     moving = float(np.mean(np.diff(position) != 0)) > 0.5
-    return min(step, rounding) if moving and step > 3.0 * rounding else step
+    # readings that are all alike in their fourth difference show no noise at all
+    seen = rounding > 1e-9 * float(np.ptp(position))
+    return min(step, rounding) if seen and moving and step > 3.0 * rounding else step
 
 
 def told_direction(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:

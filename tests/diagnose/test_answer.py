@@ -14,10 +14,10 @@ from teleopdesign import Model, compare, find_missing
 from teleopdesign.diagnose.answer import (
     answer,
     ladder_text,
-    shares,
     write_answer,
     write_predictions,
 )
+from teleopdesign.diagnose.probability import shares
 
 EVERY_KEY = {
     "verdict", "missing", "ladder", "noise_floor", "candidates", "indistinguishable",
@@ -57,7 +57,7 @@ def test_every_effect_tried_is_a_candidate(written, diagnosis):
 
 
 def test_shares_of_a_ranking_sum_to_one(diagnosis):
-    found = shares(diagnosis.rungs[1].ranking)
+    found = shares(diagnosis.rungs[1].ranking, diagnosis.rungs[1])
     assert sum(found.values()) == pytest.approx(1.0)
     assert max(found, key=found.get) == ("stribeck", "device")
 

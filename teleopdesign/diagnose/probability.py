@@ -1,0 +1,91 @@
+"""How probable it is that a candidate is what is missing, from what the ladder found of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .evidence import chance
+from .ladder import Diagnosis, Rung
+from .rank import Ranked, Ranking
+
+
+@dataclass(frozen=True)
+class CandidateEvidence:
+    """What one step of a ladder says of a candidate.
+
+    accepted: it was added on this step;  as_good: it explains the records as well as the added one
+    share: its part among the candidates that this step cannot tell apart; they sum to one
+    explained: part of the squares above the noise floor that it takes away on this step
+    left: error after the last step, in noise floors
+    """
+
+    ranked: Ranked
+    accepted: bool
+    as_good: bool
+    share: float
+    explained: float
+    left: float
+
+    def probability(self) -> float:
+        """Probability that the effect is missing, 0 to 1."""
+        real = 1.0 - chance(self.ranked.score)
+        if not (self.accepted or self.as_good):
+            # nothing was accepted here: what is left over would have to be this effect after all
+            return float(np.clip(0.3 * self.share * real * self.explained, 0.0, 0.3))
+        return float(np.clip(self.share * (0.5 + 0.49 * self.explained) * real, 0.0, 0.99))
+
+
+def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
+    """The evidence for every candidate on every step."""
+    steps: list[tuple[Rung | None, Ranking]] = [
+        (r, r.ranking) for r in diagnosis.rungs if r.ranking is not None
+    ]
+    steps.append((None, diagnosis.last))
+    found = []
+    for rung, ranking in steps:
+        share = shares(ranking, rung)
+        for ranked in ranking.ranked:
+            key = ranked.candidate.key
+            found.append(
+                CandidateEvidence(
+                    ranked=ranked,
+                    accepted=rung is not None and rung.added is not None and rung.added.key == key,
+                    as_good=rung is not None and key in {c.key for c in rung.equals},
+                    share=share[key],
+                    explained=_explained(diagnosis, ranking, ranked),
+                    left=diagnosis.left,
+                )
+            )
+    return found
+
+
+def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
+    """Share of each candidate in what the ranking cannot tell apart; they sum to one.
+
+    What was accepted shares with those as good as it; a candidate that takes the place of an effect
+    that is there has no part.
+    """
+    if rung is not None and rung.added is not None:
+        alike = {c.key for c in (rung.added, *rung.equals)}
+        first = next(r.behind for r in ranking.ranked if r.candidate.key == rung.added.key)
+    else:
+        alike = {r.candidate.key for r in ranking.ranked}
+        first = 0.0
+    bound = set(ranking.base.at_bound)
+    weights = {}
+    for r in ranking.ranked:
+        serious = r.told and r.candidate.key in alike and not set(r.fit.at_bound) - bound
+        weights[r.candidate.key] = (
+            math.exp(-0.5 * max(r.behind - first, 0.0) ** 2) if serious else 0.0
+        )
+    total = sum(weights.values()) or 1.0
+    return {k: w / total for k, w in weights.items()}
+
+
+def _explained(diagnosis: Diagnosis, ranking: Ranking, ranked: Ranked) -> float:
+    before, after = ranking.base.check_error, ranked.fit.check_error
+    excess = before**2 - min(diagnosis.floor.value, after) ** 2
+    return min(max((before**2 - after**2) / excess, 0.0), 1.0) if excess > 0 else 0.0
