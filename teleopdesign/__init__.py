@@ -37,7 +37,16 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .blocks import Body, Value
-    from .diagnose import Comparison, Diagnosis, Ranking, compare, find_missing, fit, rank
+    from .diagnose import (
+        Comparison,
+        Diagnosis,
+        Ranking,
+        check_experiment,
+        compare,
+        find_missing,
+        fit,
+        rank,
+    )
     from .effects import EFFECTS, Effect, Parameter, State, load_effect
     from .errors import ExperimentError, ModelError, TeleopDesignError
     from .examples import example
@@ -61,6 +70,7 @@ __all__ = [
     "State",
     "TeleopDesignError",
     "Value",
+    "check_experiment",
     "compare",
     "example",
     "fetch",

@@ -10,6 +10,7 @@ from .force_error import prepare
 from .ladder import Diagnosis, Rung, find_missing
 from .rank import Ranked, Ranking, rank_candidates
 from .search import estimate_from_starts
+from .soundness_check import check_experiment
 
 __all__ = [
     "Comparison",
@@ -18,6 +19,7 @@ __all__ = [
     "Ranked",
     "Ranking",
     "Rung",
+    "check_experiment",
     "compare",
     "find_missing",
     "fit",

@@ -1,0 +1,62 @@
+"""Slips of units: one unit given as another, told by what it makes of the model's parameters."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from ..quantity import unit_of
+
+#: decades that strengths may lie from where a slip of units puts them: the user's own are guesses
+NEAR = 0.5
+#: power of (force, position) in each quantity's unit
+POWERS = {
+    "force": (1, 0),
+    "inertia": (1, -1),
+    "damping": (1, -1),
+    "stiffness": (1, -1),
+    "drag": (1, -2),
+    "cubic_stiffness": (1, -3),
+}
+#: factors that come from one unit given as another, by axis: on the position ...
+_POSITION_SLIPS = {
+    "prismatic": {"mm": 1e3, "cm": 1e2, "km": 1e-3},
+    "revolute": {"deg": 180 / math.pi, "mrad": 1e3, "turns": 1 / (2 * math.pi)},
+}
+#: ... and on the forces
+_FORCE_SLIPS = {
+    "prismatic": {"mN": 1e3, "kN": 1e-3},
+    "revolute": {"N*mm": 1e3, "kN*m": 1e-3},
+}
+#: ... and on the model's inertia
+_INERTIA_SLIPS = {
+    "prismatic": {"g": 1e-3},
+    "revolute": {"kg*cm^2": 1e-4, "g*cm^2": 1e-7, "g*m^2": 1e-3},
+}
+
+
+def slips(axis: str, ratios: Mapping[str, float], quantities: Mapping[str, str]) -> list[str]:
+    """The slips of units that put every strength near the model's, best first, in words.
+
+    ratios: strength -> what the motion asks for over what the model says;  quantities: of each
+    """
+    position, force, inertia = (unit_of(q, axis) for q in ("position", "force", "inertia"))
+    tried: dict[str, dict[str, float]] = {}
+    for unit, factor in _POSITION_SLIPS[axis].items():
+        tried[f"the position is in {unit}, given as {position}"] = {
+            n: factor ** POWERS[q][1] for n, q in quantities.items()
+        }
+    for unit, factor in _FORCE_SLIPS[axis].items():
+        tried[f"the forces are in {unit}, given as {force}"] = {
+            n: factor ** POWERS[q][0] for n, q in quantities.items()
+        }
+    for unit, factor in _INERTIA_SLIPS[axis].items():
+        tried[f"the model's inertia is meant in {unit}, given as {inertia}"] = {
+            n: factor if n == "inertia" else 1.0 for n in quantities
+        }
+    worst = {
+        text: max(abs(math.log10(ratios[n] / expected[n])) for n in ratios)
+        for text, expected in tried.items()
+    }
+    near = [t for t in sorted(worst, key=lambda t: worst[t]) if worst[t] < NEAR]
+    return [t for t in near if worst[t] < worst[near[0]] + 0.1]

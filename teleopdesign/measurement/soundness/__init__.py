@@ -1,0 +1,73 @@
+"""Is a recording sound? Clock, gaps, outliers, stuck and clipped channels, steps, noise, shifts.
+
+    from teleopdesign.measurement.soundness import check_signals
+    for finding in check_signals(experiment):
+        print(finding)
+
+Needs no model: what forces and motion say about each other is in `teleopdesign.diagnose`. What
+reading an experiment refuses already (gaps, missing numbers, unknown units) is not looked for.
+"""
+
+from __future__ import annotations
+
+from ...finding import Finding
+from ..experiment import Experiment
+from .clipping import check_clipped
+from .clock import check_clock, clock_in_order
+from .encoder_steps import check_steps
+from .held_samples import check_constant, check_repeats, check_stuck, check_update
+from .noise import check_noise
+from .outliers import check_jumps, check_outliers
+from .segments import check_segments
+from .signal import Signal, signals
+from .time_shift import check_velocity
+
+__all__ = ["check_signals"]
+
+
+def check_signals(experiment: Experiment) -> tuple[Finding, ...]:
+    """Plain findings about clock and channels of every record, warnings and notes before "fine"."""
+    read = signals(experiment)
+    found: list[Finding] = []
+    for record in experiment.records:
+        own = [s for s in read if s.record is record]
+        found += check_clock(experiment, record, own)
+        found += check_segments(record)
+        for signal in own:
+            found += _of_a_channel(signal, [s for s in own if s is not signal])
+        for position, velocity in _pairs(own):
+            found += check_velocity(position, velocity)
+    if not any(f.topic == "sample clock" for f in found):
+        found.append(clock_in_order(experiment))
+    if not any(f.concern == "warning" and f.topic != "sample clock" for f in found):
+        found.append(_channels_in_order(read))
+    return tuple(found)
+
+
+def _of_a_channel(signal: Signal, others: list[Signal]) -> list[Finding]:
+    constant = check_constant(signal)
+    if constant or signal.channel.quantity == "velocity":
+        return constant  # a velocity is held against the position, and used for nothing else
+    found = [*check_stuck(signal), *check_clipped(signal), *check_outliers(signal)]
+    found += [*check_jumps(signal), *check_repeats(signal), *check_update(signal)]
+    return found + check_steps(signal, others) + check_noise(signal, others)
+
+
+def _pairs(own: list[Signal]) -> list[tuple[Signal, Signal]]:
+    """Position and velocity channel of each body that has both."""
+    by = {(s.channel.body, s.channel.quantity): s for s in own}
+    return [
+        (s, by[(body, "velocity")])
+        for (body, quantity), s in by.items()
+        if quantity == "position" and (body, "velocity") in by
+    ]
+
+
+def _channels_in_order(read: list[Signal]) -> Finding:
+    names = ", ".join(dict.fromkeys(s.name for s in read))
+    return Finding(
+        "channels",
+        "fine",
+        f"{names}: no outliers, no stuck or clipped stretches; steps and noise as stated.",
+        {"samples": float(sum(len(s.values) for s in read))},
+    )

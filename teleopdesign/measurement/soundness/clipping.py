@@ -1,0 +1,75 @@
+"""Clipped channels: a signal that would go on runs flat against one value.
+
+A sine that is sampled often enough rests near its peak too, and a body rests where it was put: it
+counts as clipped only where the signal arrives with speed, again and again, and stops dead.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...finding import Finding
+from ..filtering import Array
+from ..motion import reading_noise
+from .held_samples import STEPS, runs_of
+from .signal import Signal
+
+#: arrivals with speed at the same value from which it counts as a limit
+VISITS = 3
+#: samples that one of them lasts at least
+LASTS = 3
+#: slowing on arrival, relative to the speed, above which it came to rest by itself
+SLOWING = 0.5
+
+
+def visits(x: Array, limit: float, step: float, *, noisy: bool) -> tuple[int, int]:
+    """Stays at the value `limit` that the signal ran into with speed, and samples spent there.
+
+    noisy: readings scatter, so that no two stay the same: every stay counts
+    """
+    first, past = runs_of(x == limit)
+    lasting = (past - first >= LASTS) & (first >= 4)
+    if noisy:
+        return int(lasting.sum()), int((past - first)[lasting].sum())
+    count = spent = 0
+    for a, b in zip(first[lasting].tolist(), past[lasting].tolist(), strict=True):
+        coming = np.diff(x[a - 4 : a])  # the last change is cut short, and does not count
+        arrived = abs(float(coming[-1]))
+        slowing = abs(float(coming[-1] - coming[0])) / 2
+        towards = np.all(np.sign(coming) == np.sign(limit - x[a - 1]))
+        if towards and arrived >= STEPS * step and slowing < SLOWING * arrived:
+            count, spent = count + 1, spent + b - a
+    return count, spent
+
+
+def check_clipped(signal: Signal) -> list[Finding]:
+    """Largest and smallest value of a channel, where it runs flat against them."""
+    found = []
+    noisy = reading_noise(signal.values) > STEPS * signal.step > 0
+    for name, value in (("largest", signal.values.max()), ("smallest", signal.values.min())):
+        count = spent = 0
+        for _, x in signal.stretches:
+            c, s = visits(x, float(value), signal.step, noisy=noisy)
+            count, spent = count + c, spent + s
+        if count < VISITS:
+            continue
+        at = np.flatnonzero(signal.values == value)
+        part = len(at) / len(signal.values)
+        commanded = signal.channel.quantity == "actuator_force"
+        why = (
+            "fine if the command itself is limited there, wrong if only the log is"
+            if commanded
+            else "the channel is clipped: cut these out, or record with a larger range"
+        )
+        found.append(
+            Finding(
+                "clipped channels",
+                "note" if commanded else "warning",
+                f"{signal.name} runs flat against its {name} value {value:.4g} {signal.unit}, "
+                f"{count} times, {100 * part:.2g} % of the samples: {why}.",
+                {"value": float(value), "count": float(count), "part": part},
+                signal.record.file,
+                signal.around(int(at[0]), at, name=f"at the {name} value"),
+            )
+        )
+    return found

@@ -1,0 +1,106 @@
+"""Sample clock: rate, rounding and jitter of the time stamps, and jitter that they do not show.
+
+Gaps, time that steps back and stamps more than a fifth of a sample off are refused when the record
+is read; here is what is left, and what it costs.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...errors import ExperimentError
+from ...finding import Finding, Graph, Series
+from ..channel import factor_of
+from ..experiment import Experiment
+from ..filtering import Array
+from ..record import Record
+from ..tables import read_columns
+from .noise import sampling_jitter
+from .signal import Signal
+
+#: part of a sample time that stamps may be off and still count as uniform
+UNIFORM = 0.01
+#: part of a sample time that readings may be early or late and still count as in time
+IN_TIME = 0.02
+#: points of a graph
+POINTS = 1000
+
+
+def stamps_of(experiment: Experiment, record: Record) -> Array | None:
+    """The record's time stamps as written (s); None where it has none or the file is gone."""
+    channel = experiment.channels.get("time")
+    path = experiment.folder / record.file
+    if channel is None or not path.is_file():
+        return None
+    try:
+        columns = read_columns(path, record.file, {channel.column: "channels.time"})
+    except ExperimentError:
+        return None
+    stamps = columns[channel.column] * factor_of(channel, experiment.bodies, "channels.time")
+    return stamps if len(stamps) == len(record.time) else None
+
+
+def check_clock(experiment: Experiment, record: Record, read: list[Signal]) -> list[Finding]:
+    """Stamps against the uniform time that the record was given; positions against their speed.
+
+    read: the record's channels
+    """
+    h = record.sample_time
+    found = []
+    stamps = stamps_of(experiment, record)
+    off = np.zeros(1) if stamps is None else stamps - record.time
+    rms = float(np.sqrt(np.mean(off**2)))
+    numbers = {"rate": 1 / h, "jitter": rms, "worst": float(np.abs(off).max())}
+    if rms > UNIFORM * h:
+        some = slice(None, None, max(1, len(off) // POINTS))
+        graph = Graph(
+            "time (s)",
+            "stamp less uniform time (ms)",
+            (Series("stamps", record.time[some], 1e3 * off[some]),),
+        )
+        found.append(
+            Finding(
+                "sample clock",
+                "note" if rms < 5 * UNIFORM * h else "warning",
+                f"the time stamps are {1e3 * rms:.3g} ms rms off a uniform clock of {1 / h:.6g} Hz "
+                f"({100 * rms / h:.2g} % of a sample, {1e3 * numbers['worst']:.3g} ms at worst): "
+                "the samples are used as if they were uniform.",
+                numbers,
+                record.file,
+                graph,
+            )
+        )
+    for signal in read:
+        if signal.channel.quantity == "position":
+            found += _scatter(signal, stamped=stamps is not None)
+    return found
+
+
+def _scatter(signal: Signal, *, stamped: bool) -> list[Finding]:
+    h = signal.record.sample_time
+    longest = max((x for _, x in signal.stretches), key=len)
+    step = signal.channel.resolution or signal.step
+    jitter = sampling_jitter(longest, step, h)
+    if jitter < IN_TIME * h:
+        return []
+    speed = float(np.sqrt(np.mean((np.diff(longest) / h) ** 2)))
+    return [
+        Finding(
+            "sample clock",
+            "warning",
+            f"{signal.name} scatters the more the faster it moves, as if its samples were taken "
+            f"{1e3 * jitter:.2g} ms rms early or late ({100 * jitter / h:.2g} % of a sample), "
+            f"{jitter * speed:.2g} {signal.unit} at its usual speed: compare at low frequency.",
+            {"jitter": jitter, "part": jitter / h, "position": jitter * speed},
+            signal.record.file,
+        )
+    ]
+
+
+def clock_in_order(experiment: Experiment) -> Finding:
+    """What is said of clocks without a flaw."""
+    rates = sorted({1 / r.sample_time for r in experiment.records})
+    rate = " and ".join(f"{r:.6g}" for r in rates)
+    counted = "time" not in experiment.channels
+    how = "samples are counted at the stated rate" if counted else "the time stamps are uniform"
+    return Finding("sample clock", "fine", f"{how}, {rate} Hz.", {"rate": rates[0]})

@@ -1,0 +1,79 @@
+"""Encoder steps: the steps that the readings move in, against the resolution that is stated."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+
+from ...finding import Finding
+from ..filtering import Array
+from .signal import Signal, smallest_step
+
+#: how close the readings lie to a grid: mean of exp(2 pi i x/step), 1 on it, 0 anywhere
+ON_GRID = 0.9
+#: multiples of the stated step that are tried as the true one
+MULTIPLES = range(2, 65)
+#: readings that are looked at
+ENOUGH = 20_000
+
+
+def gridded(x: Array, step: float) -> float:
+    """How close readings lie to whole multiples of a step, from any zero: 0 to 1."""
+    thinned = x[:: max(1, len(x) // ENOUGH)]
+    return float(np.abs(np.mean(np.exp(2j * np.pi * (thinned - thinned[0]) / step))))
+
+
+def true_step(x: Array, stated: float) -> float | None:
+    """The step that the readings move in: the stated one or a multiple; None: neither."""
+    if gridded(x, stated) < ON_GRID:
+        return None
+    reached, seen = float(np.ptp(x)), round(smallest_step(x) / stated)
+    tried = [k for k in (*MULTIPLES, seen) if k > 1 and k * stated < 0.1 * reached]
+    on = [k for k in tried if gridded(x, k * stated) > ON_GRID]
+    return stated * max(on, default=1)
+
+
+def check_steps(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
+    """Stated resolution of a channel against its readings.
+
+    others: channels of the same record, one of which may lie on the stated steps instead
+    """
+    stated, seen = signal.channel.resolution, signal.step
+    if stated is None or seen == 0.0:
+        return []
+    step = true_step(signal.values, stated)
+    if step == stated:
+        return []
+    concern: Literal["note", "warning"] = "warning"
+    if step is not None:
+        text = (
+            f"moves in steps of {step:.4g} {signal.unit}, {step / stated:.0f} times the stated "
+            f"{stated:.4g}: the encoder leaves more open than is stated."
+        )
+    else:
+        swapped = [o.name for o in others if _on_these(o, stated)]
+        text = f"is not read in steps of the stated {stated:.4g} {signal.unit}"
+        if swapped:
+            text += f", but {swapped[0]} is: are the two columns swapped?"
+        elif seen < stated:
+            concern = "note"
+            text += ", but finer: it leaves less open than is stated."
+        else:
+            text += f", but of {seen:.4g}."
+    return [
+        Finding(
+            "encoder steps",
+            concern,
+            f"{signal.name} {text}",
+            {"stated": stated, "seen": seen if step is None else step},
+            signal.record.file,
+        )
+    ]
+
+
+def _on_these(other: Signal, stated: float) -> bool:
+    """Whether another channel moves in the stated steps; a much finer one does so by chance."""
+    alike = 0.5 < other.step / stated < 2.0 * MULTIPLES.stop
+    return alike and gridded(other.values, stated) > ON_GRID

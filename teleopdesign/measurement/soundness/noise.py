@@ -1,0 +1,85 @@
+"""Noise: what is stated of a channel against what its readings scatter.
+
+Seen noise is the content near the Nyquist frequency (`reading_noise`); the median over pieces of
+the record ignores motion that is rich there. The noise floor of a diagnosis rests on these numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...finding import Finding
+from ..filtering import Array
+from ..motion import reading_noise
+from .signal import Signal
+
+#: ratio of seen to stated noise that is worth a warning; noise of a quarter of a second of record
+#: is known to 10 %, and a floor that is off by this factor moves a verdict
+FACTOR = 1.6
+#: samples of a piece
+PIECE = 500
+
+
+def seen_noise(signal: Signal) -> float:
+    """Rms noise of the readings, SI."""
+    pieces: list[float] = []
+    for _, x in signal.stretches:
+        starts = range(0, max(len(x) - PIECE, 0) + 1, max(PIECE, len(x) // 40))
+        pieces += [reading_noise(x[k : k + PIECE]) for k in starts if len(x) - k >= 16]
+    return float(np.median(pieces)) if pieces else 0.0
+
+
+def check_noise(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
+    """Stated noise of a channel against its readings; says where none is stated.
+
+    others: channels of the same record and unit, one of which may be the noisy one instead
+    """
+    stated, seen = signal.channel.noise, seen_noise(signal)
+    # rounding scatters by 0.29 steps at most
+    rounding = 0.29 * (signal.channel.resolution or signal.step)
+    numbers = {"stated": stated or float("nan"), "seen": seen}
+    if stated is None:
+        return []
+    expected = float(np.hypot(stated, rounding if signal.channel.resolution else 0.0))
+    ratio = seen / expected
+    if 1 / FACTOR < ratio < FACTOR:
+        return []
+    alike = [o for o in others if o.channel.noise is None and o.unit == signal.unit]
+    noisy = [o.name for o in alike if 1 / FACTOR < seen_noise(o) / expected < FACTOR]
+    hint = f" {noisy[0]} has it: are the two columns swapped?" if noisy and ratio < 1 else ""
+    effect = "hides effects" if ratio < 1 else "makes noise look like an effect"
+    return [
+        Finding(
+            "noise",
+            "warning",
+            f"{signal.name} scatters by {seen:.3g} {signal.unit} rms, {stated:.3g} is stated: a "
+            f"noise floor that is wrong {effect}.{hint}",
+            {**numbers, "ratio": ratio},
+            signal.record.file,
+        )
+    ]
+
+
+def sampling_jitter(x: Array, step: float, sample_time: float) -> float:
+    """Rms error of the sampling times (s), from a position that scatters the more the faster it is.
+
+    Scatter squared is that of rest and rounding, plus that of the times, times speed squared: from
+    the slowest and the fastest quarter of the pieces. 0 where the scatter does not grow with speed.
+    """
+    count = len(x) // 64
+    if count < 8:
+        return 0.0
+    pieces = x[: count * 64].reshape(count, 64)
+    speed = np.sqrt(np.mean(np.diff(pieces, axis=1) ** 2, axis=1)) / sample_time
+    scatter = np.sqrt(np.mean(np.diff(pieces, 4, axis=1) ** 2, axis=1) / 70.0)
+    fast = speed >= np.quantile(speed, 0.75)
+    slow = speed <= np.quantile(speed, 0.25)
+    rest = max(0.29 * step, float(np.median(scatter[slow])))
+    # twice the scatter of rest: less may be rounding alone
+    if np.median(scatter[fast]) < 2.0 * rest:
+        return 0.0
+    squares = np.median(speed[fast] ** 2) - np.median(speed[slow] ** 2)
+    more = np.median(scatter[fast] ** 2) - rest**2
+    return float(np.sqrt(max(float(more / squares), 0.0)))

@@ -1,0 +1,154 @@
+"""Outliers and jumps: single samples off the others' course, and positions that leap.
+
+A lone sample is what replacing it by the cubic through its four neighbours explains away; a jump is
+what shifting all that follows explains away. Steps, impacts and chatter are neither.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...finding import Finding
+from ..filtering import Array
+from .signal import Signal, limit, local_scale
+
+#: deviation left at the neighbours, in local standard deviations or relative to the outlier, up to
+#: which it counts as explained: 3 is five of the deviation's own
+EXPLAINED, RELATIVE = 3.0, 0.2
+#: a command may hold any value: one sample of it is odd where it leaves the range of all others by
+#: more than this part of it
+OUT_OF_RANGE = 0.5
+#: rms of the two statistics for readings rounded to a step: sqrt(70)/6 and sqrt(5) times 0.29
+_ROUNDED_LONE, _ROUNDED_JUMP = 0.40, 0.65
+
+
+def lone_samples(x: Array, step: float) -> tuple[NDArray[np.intp], Array, Array]:
+    """Places, sizes and standard scores of samples that lie off the course of their neighbours.
+
+    x: n samples;  step: smallest step between values
+    """
+    if len(x) < 16:
+        return np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0)
+    # x minus the cubic through its four neighbours
+    off = np.pad(np.diff(x, 4) / 6.0, 2)
+    at, size, score = _explained(off, {1: -4.0 / 6.0, 2: 1.0 / 6.0}, _ROUNDED_LONE * step)
+    # beside a lone sample both sides agree in level and slope; at a step their levels differ by
+    # twice its size, at a kink their slopes by three times
+    before, after = 0.5 * (x[at - 1] - x[at - 3]), 0.5 * (x[at + 3] - x[at + 1])
+    level = x[at + 1] - x[at - 1] - before - after
+    lone = np.maximum(np.abs(level), np.abs(after - before)) < np.abs(size)
+    return at[lone], size[lone], score[lone]
+
+
+def jumps(x: Array, step: float) -> tuple[NDArray[np.intp], Array, Array]:
+    """Places, sizes and standard scores of leaps between a sample and the next."""
+    if len(x) < 16:
+        return np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0)
+    change = np.diff(x)
+    leap = np.pad(change[1:-1] - 0.5 * (change[:-2] + change[2:]), 1)
+    return _explained(leap, {1: -0.5}, _ROUNDED_JUMP * step)
+
+
+def _explained(
+    off: Array, left: dict[int, float], floor: float
+) -> tuple[NDArray[np.intp], Array, Array]:
+    """Places where one event of the shape `left` (distance -> part of its size) explains all."""
+    reach = max(left)
+    scale = local_scale(off, floor)
+    at = np.flatnonzero(np.abs(off) > limit(len(off)) * scale)
+    at = at[(at >= 2 * reach) & (at < len(off) - 2 * reach)]
+    size = off[at]
+    tolerance = np.maximum(EXPLAINED * scale[at], RELATIVE * np.abs(size))
+    fits = np.ones(len(at), dtype=bool)
+    for distance, part in left.items():
+        for side in (-distance, distance):
+            fits &= np.abs(off[at + side] - part * size) < tolerance
+    return at[fits], size[fits], np.abs(size[fits]) / scale[at[fits]]
+
+
+def check_outliers(signal: Signal) -> list[Finding]:
+    """Lone samples of one channel; a sample that only repeats the one before is no outlier."""
+    rows: list[NDArray[np.intp]] = []
+    sizes: list[Array] = []
+    for first, x in signal.stretches:
+        at, size, _ = lone_samples(x, signal.step)
+        told = x[at] != x[at - 1]
+        if signal.channel.quantity == "actuator_force":
+            told &= _out_of_range(x, at)
+        rows.append(at[told] + first)
+        sizes.append(size[told])
+    odd, off = np.concatenate(rows), np.concatenate(sizes)
+    if not len(odd):
+        return []
+    worst = int(np.argmax(np.abs(off)))
+    row, time = int(odd[worst]), signal.time(int(odd[worst]))
+    what = (
+        f"one sample lies {abs(off[worst]):.3g} {signal.unit} off its neighbours' course"
+        if len(odd) == 1
+        else f"{len(odd)} samples lie off their neighbours' course, the worst by "
+        f"{abs(off[worst]):.3g} {signal.unit}"
+    )
+    return [
+        Finding(
+            "outliers",
+            "warning",
+            f"{signal.name}: {what}, at {time:.6g} s (row {row + 1}): repair or cut it out.",
+            {"count": float(len(odd)), "time": time, "row": row + 1.0, "size": float(off[worst])},
+            signal.record.file,
+            signal.around(row, odd, name="off their neighbours' course"),
+        )
+    ]
+
+
+def _out_of_range(x: Array, at: NDArray[np.intp]) -> NDArray[np.bool_]:
+    rest = np.delete(x, at)
+    low, high = float(rest.min()), float(rest.max())
+    margin = OUT_OF_RANGE * (high - low)
+    return np.asarray((x[at] > high + margin) | (x[at] < low - margin))
+
+
+def check_jumps(signal: Signal) -> list[Finding]:
+    """Leaps of a position, which no body can make: lost samples, lost counts, a wrapped angle."""
+    if signal.channel.quantity != "position":
+        return []
+    found: list[tuple[int, float, float]] = []
+    for first, x in signal.stretches:
+        at, size, _ = jumps(x, signal.step)
+        lone = lone_samples(x, signal.step)[0]
+        for k, leap in zip(at.tolist(), size.tolist(), strict=True):
+            held = x[k] == x[k - 1] or x[k + 1] == x[min(k + 2, len(x) - 1)]
+            if held or np.any(np.abs(lone - k) <= 2):
+                continue
+            speed = float(np.mean([x[k] - x[k - 1], x[k + 2] - x[k + 1]]))
+            found.append((first + k, leap, leap / speed if speed else np.inf))
+    if not found:
+        return []
+    row, leap, lost = max(found, key=lambda f: abs(f[1]))
+    times = "once" if len(found) == 1 else f"{len(found)} times"
+    turn = 2 * np.pi
+    if signal.unit == "rad" and abs(abs(leap) - turn) < 0.05 * turn:
+        why = "a whole turn: unwrap the angle"
+    elif 0.5 < lost < 1000:
+        why = (
+            f"as far as it moves in {lost:.0f} samples: if samples are missing, give a `segment` "
+            "column that changes there"
+        )
+    else:
+        why = "no body does that: look at the encoder or the log"
+    return [
+        Finding(
+            "jumps",
+            "warning",
+            f"{signal.name} jumps {times}, most at {signal.time(row):.6g} s (row {row + 1}), by "
+            f"{leap:.4g} {signal.unit}: {why}.",
+            {
+                "count": float(len(found)),
+                "time": signal.time(row),
+                "size": leap,
+                "samples": lost,
+            },
+            signal.record.file,
+            signal.around(row, np.array([row, row + 1]), name="before and after the jump"),
+        )
+    ]

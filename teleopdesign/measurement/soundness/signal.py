@@ -1,0 +1,120 @@
+"""One channel of one record as the checks see it, and the scale of what is ordinary in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
+from scipy.stats import norm
+
+from ...finding import Graph, Series
+from ...quantity import unit_of
+from ..channel import BODY_QUANTITIES, Channel
+from ..description import ONE_BODY
+from ..experiment import Experiment
+from ..filtering import Array
+from ..motion import reading_step
+from ..record import Record
+
+#: chance of a false warning about one channel of one record
+FALSE_ALARM = 1e-3
+#: samples from which the smallest step of a channel is read off
+ENOUGH = 200_000
+
+
+@dataclass(frozen=True, eq=False)
+class Signal:
+    """One channel of one record.
+
+    name: as the user writes it ("position", "slave.position");  unit: SI
+    values: (n,);  step: smallest step between its values, 0 where it is constant
+    """
+
+    name: str
+    unit: str
+    channel: Channel
+    record: Record
+    values: Array
+    step: float
+
+    @property
+    def stretches(self) -> Iterator[tuple[int, Array]]:
+        """(first row, samples) of each uninterrupted stretch."""
+        for rows in self.record.segments:
+            yield rows.start, self.values[rows]
+
+    def time(self, row: int) -> float:
+        """Time of a row (counted from 0), s."""
+        return float(self.record.time[row])
+
+    def around(self, row: int, odd: NDArray[np.intp], *, name: str, span: int = 100) -> Graph:
+        """The samples near a row, and those of the rows `odd` marked.
+
+        odd: row numbers;  name: what to call them
+        """
+        first, last = max(0, row - span), min(len(self.values), row + span)
+        near = odd[(odd >= first) & (odd < last)]
+        time = self.record.time
+        return Graph(
+            "time (s)",
+            f"{self.name} ({self.unit})",
+            (
+                Series("recorded", time[first:last], self.values[first:last]),
+                Series(name, time[near], self.values[near], "rest"),
+            ),
+        )
+
+
+def written(experiment: Experiment, key: str) -> str:
+    """A channel's name as the user of one body writes it, without "device."."""
+    return key.removeprefix("device.") if tuple(experiment.bodies) == ONE_BODY else key
+
+
+def signals(experiment: Experiment) -> list[Signal]:
+    """Every channel of a body in every record."""
+    found = []
+    for record in experiment.records:
+        for key, values in record.signals.items():
+            channel = experiment.channels[key]
+            assert channel.body is not None
+            unit = unit_of(BODY_QUANTITIES[channel.quantity], experiment.axis(channel.body))
+            middle = max(0, (len(values) - ENOUGH) // 2)
+            step = smallest_step(values[middle : middle + ENOUGH])
+            found.append(Signal(written(experiment, key), unit, channel, record, values, step))
+    return found
+
+
+def smallest_step(x: Array) -> float:
+    """Smallest step between values; where most readings repeat, noise says nothing about it."""
+    step, least = reading_step(x), 1e-9 * float(np.ptp(x))
+    if step > least:
+        return step
+    gaps = np.diff(np.unique(x))
+    return float(np.min(gaps[gaps > least], initial=np.inf)) if least > 0 else 0.0
+
+
+def local_scale(e: Array, floor: float) -> Array:
+    """Standard deviation that each of n values should have, from its surroundings.
+
+    The larger of what the middle and what the tail of the values nearby say, so that a signal with
+    heavy tails is judged by its tails; a few odd values do not count.
+    floor: least it can be
+    """
+    scale = np.full(len(e), max(floor, 1e-300))
+    for size, part in ((256, 0.5), (1024, 0.99)):
+        size = min(size, len(e))
+        count = len(e) // size
+        blocks = np.abs(e[: count * size]).reshape(count, size)
+        each = np.quantile(blocks, part, axis=1) / norm.ppf(0.5 + 0.5 * part)
+        each = maximum_filter1d(each, 3, mode="nearest")
+        rest = np.full(len(e) % size, each[-1])
+        scale = np.maximum(scale, np.concatenate([np.repeat(each, size), rest]))
+    return scale
+
+
+def limit(count: int) -> float:
+    """Standard deviations that one of `count` normal values exceeds by chance `FALSE_ALARM`."""
+    return float(norm.isf(0.5 * FALSE_ALARM / max(count, 1)))

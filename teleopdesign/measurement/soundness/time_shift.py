@@ -1,0 +1,86 @@
+"""Time shift and factor between a velocity channel and the position that it belongs to.
+
+The velocity channel w is held against the position's derivative v(t - shift), both low-passed
+alike: w = factor (v - shift dv/dt), solved again about each shift found. A velocity takes no part
+in a comparison, but it tells whether clock and units of the position are what they are said to be.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...finding import Finding
+from ..filtering import Array, spectrum
+from .signal import Signal
+
+#: steps about the last shift; each leaves the square of the part of a period that it was off
+STEPS = 4
+#: part of the sample rate below which both are compared
+BAND = 0.05
+#: factor beyond which units or clock are doubted
+FACTOR = 1.05
+#: samples of one stretch that are looked at
+ENOUGH = 200_000
+
+
+def shift_and_factor(
+    position: Array, velocity: Array, sample_time: float
+) -> tuple[float, float, float]:
+    """Time (s) by which the velocity lags, factor, and the part of it left unexplained (rms).
+
+    position, velocity: (n,) of one stretch
+    """
+    s = spectrum(len(position), sample_time)
+    low = s.lowpass(BAND / sample_time)
+    moved = s.transform(position) * low
+    target = s.multiply(velocity, low)
+    inside = slice(len(target) // 20, -max(1, len(target) // 20))
+    target = target[inside]
+    shift, factor, left = 0.0, 0.0, 1.0
+    for _ in range(STEPS):
+        late = moved * np.exp(-2j * np.pi * s.frequency * shift)
+        first = s.back(late * s.derivative(1))[inside]
+        second = s.back(late * s.derivative(2))[inside]
+        columns = np.stack([first, -second], axis=1)
+        (factor, both), *_ = np.linalg.lstsq(columns, target, rcond=None)
+        rest = target - columns @ np.array([factor, both])
+        left = float(np.sqrt(np.mean(rest**2) / max(float(np.mean(target**2)), 1e-300)))
+        if factor == 0.0 or abs(both / factor) > 0.5 * len(position) * sample_time:
+            break
+        shift += both / factor
+    return float(shift), float(factor), left
+
+
+def check_velocity(position: Signal, velocity: Signal) -> list[Finding]:
+    """The velocity channel of a body against its position."""
+    h = position.record.sample_time
+    rows = max(position.record.segments, key=lambda s: s.stop - s.start)
+    rows = slice(rows.start, min(rows.stop, rows.start + ENOUGH))
+    x, v = position.values[rows], velocity.values[rows]
+    if np.ptp(x) == 0 or np.ptp(v) == 0:
+        return []
+    shift, factor, left = shift_and_factor(x, v, h)
+    numbers = {"shift": shift, "factor": factor, "left": left}
+    where = position.record.file
+    if left > 0.5:
+        text = "does not follow the position's derivative: one of the two is something else"
+        return [Finding("time shift", "warning", f"{velocity.name} {text}.", numbers, where)]
+    found = []
+    if not 1 / FACTOR < factor < FACTOR:
+        text = f"is {factor:.4g} times the derivative of {position.name}: units, sign or clock"
+        found.append(
+            Finding("units", "warning", f"{velocity.name} {text} disagree.", numbers, where)
+        )
+    if abs(shift) > h:
+        way = "lags" if shift > 0 else "leads"
+        found.append(
+            Finding(
+                "time shift",
+                "note",
+                f"{velocity.name} {way} {position.name} by {1e3 * abs(shift):.3g} ms: it is "
+                "filtered or late (a velocity takes no part in comparisons).",
+                numbers,
+                where,
+            )
+        )
+    return found

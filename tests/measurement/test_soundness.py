@@ -1,0 +1,334 @@
+"""Findings about channels and clock: none on a sound record, the right one on a spoilt record."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shared_data import shared_folder
+
+from teleopdesign import example, load_experiment
+from teleopdesign.measurement.soundness import check_signals
+from teleopdesign.measurement.soundness.held_samples import repeats, stuck_stretches
+from teleopdesign.measurement.soundness.noise import sampling_jitter
+from teleopdesign.measurement.soundness.outliers import jumps, lone_samples
+from teleopdesign.measurement.soundness.time_shift import shift_and_factor
+
+RATE = 1000.0
+T = np.arange(12_000) / RATE
+STEP = 1e-5
+
+
+@pytest.fixture(scope="module")
+def rod():
+    return load_experiment(example("rod"))
+
+
+def spoilt(experiment, quantity, change):
+    """The experiment with one channel of its first record changed."""
+    first, *others = experiment.records
+    key = f"device.{quantity}"
+    values = change(first.signals[key].copy())
+    record = replace(first, signals={**first.signals, key: values})
+    return replace(experiment, records=(record, *others))
+
+
+def put(places, values):
+    def change(x):
+        x[places] = values(x) if callable(values) else values
+        return x
+
+    return change
+
+
+def warnings(experiment, topic=None):
+    found = [f for f in check_signals(experiment) if f.concern != "fine"]
+    return [f for f in found if topic is None or f.topic == topic]
+
+
+def the_only(experiment, topic):
+    found = warnings(experiment)
+    assert [f.topic for f in found] == [topic], list(map(str, found))
+    return found[0]
+
+
+def motion(seed=0):
+    """A smooth motion of several sines, as a body makes it."""
+    rng = np.random.default_rng(seed)
+    return sum(
+        rng.uniform(0.2, 1.0) * 0.01 / f * np.sin(2 * np.pi * f * T + rng.uniform(0, 6))
+        for f in (0.7, 1.9, 5.3, 11.0)
+    )
+
+
+def read(x):
+    return STEP * np.round(x / STEP)
+
+
+def test_a_sound_record_gives_no_warning_and_no_note(rod):
+    assert warnings(rod) == []
+    assert {f.concern for f in check_signals(rod)} == {"fine"}
+
+
+def test_a_lone_force_sample_of_ten_sigma_is_found_where_it_is(rod):
+    off = 10 * 0.0116  # the stated noise
+    found = the_only(
+        spoilt(rod, "interaction_force", put(4321, lambda x: x[4321] + off)), "outliers"
+    )
+    assert found.numbers["time"] == 4.321
+    assert found.numbers["row"] == 4322
+    # noise of the sample itself and of the four that its course is read from: 1.4 sigma
+    assert found.numbers["size"] == pytest.approx(off, abs=4 * 1.4 * 0.0116)
+
+
+def test_a_lone_position_sample_of_ten_sigma_is_found_where_it_is(rod):
+    off = 10 * 0.29 * 7.2e-6  # a step scatters by 0.29 of itself: three steps
+    spoiled = spoilt(rod, "position", put(5000, lambda x: x[5000] + 3 * 7.2e-6))
+    found = the_only(spoiled, "outliers")
+    assert found.numbers["row"] == 5001
+    assert found.numbers["size"] == pytest.approx(off, rel=0.7)  # rounding: 1.3 steps at most
+
+
+def test_steps_and_kinks_are_no_outliers():
+    rng = np.random.default_rng(1)
+    noise = 0.01 * rng.standard_normal(len(T))
+    step = np.where(T > 4.0, 1.0, 0.0)
+    ramp = np.where(T > 6.0, 60.0 * (T - 6.0), 0.0)
+    for shape in (step, ramp, np.convolve(step, np.full(3, 1 / 3), mode="same")):
+        inside = slice(0, -10)  # the convolution falls off at the end
+        assert len(lone_samples((shape + noise)[inside], 1e-4)[0]) == 0
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 2**31), row=st.integers(50, 11_900), size=st.floats(8.0, 1e4))
+def test_every_lone_sample_is_found_and_nothing_else(seed, row, size):
+    rng = np.random.default_rng(seed)
+    x = motion(seed) + 1e-5 * rng.standard_normal(len(T))
+    # 8 sigma beyond what makes a sample odd: 5.3 standard deviations of 1.4 sigma
+    x[row] += (size + 7.4) * 1e-5
+    at, _, _ = lone_samples(x, 1e-9)
+    assert row in at
+    assert len(at) <= 2  # one in a thousand records has another by chance
+
+
+def test_a_smooth_motion_read_in_steps_has_no_outliers_jumps_or_holds():
+    for seed in range(10):
+        x = read(motion(seed))
+        assert len(lone_samples(x, STEP)[0]) == 0
+        assert len(jumps(x, STEP)[0]) == 0
+        assert len(repeats(x, STEP)) == 0
+        assert stuck_stretches(x, STEP, "position") == []
+        assert sampling_jitter(x, STEP, 1 / RATE) == 0.0
+
+
+def test_lost_samples_are_counted_where_a_position_leaps(rod):
+    first, *others = rod.records
+    x = first.signals["device.position"]
+    fastest = int(np.argmax(np.abs(np.gradient(x))))
+    kept = np.delete(np.arange(len(x)), np.arange(fastest, fastest + 12))
+    record = replace(
+        first,
+        time=first.time[: len(kept)],
+        segments=(slice(0, len(kept)),),
+        signals={k: v[kept] for k, v in first.signals.items()},
+    )
+    found = warnings(replace(rod, records=(record, *others)), "jumps")
+    assert len(found) == 1
+    assert found[0].numbers["samples"] == pytest.approx(12, abs=1.5)  # speed before and after
+    assert found[0].numbers["time"] == pytest.approx(fastest / 1000, abs=2e-3)
+
+
+def test_a_wrapped_angle_is_called_a_whole_turn():
+    turning = load_experiment(example("rod"))
+    bodies = {n: replace(b, axis="revolute") for n, b in turning.bodies.items()}
+    unwrapped = 4.0 * T + 0.2 * np.sin(9 * T)
+    wrapped = np.angle(np.exp(1j * unwrapped))
+    spoiled = spoilt(replace(turning, bodies=bodies), "position", lambda x: wrapped)
+    found = warnings(spoiled, "jumps")
+    assert "unwrap" in found[0].sentence
+    assert abs(found[0].numbers["size"]) == pytest.approx(2 * np.pi, rel=0.01)
+
+
+def test_a_clipped_force_sensor_is_found_with_its_limit_and_share(rod):
+    x = rod.records[0].signals["device.interaction_force"]
+    limit = float(np.round(np.quantile(x, 0.97), 4))
+    spoiled = spoilt(rod, "interaction_force", lambda x: np.minimum(x, limit))
+    found = warnings(spoiled, "clipped channels")
+    assert [f.concern for f in found] == ["warning"]
+    assert found[0].numbers["value"] == limit
+    assert found[0].numbers["part"] == pytest.approx(0.03, abs=0.002)
+
+
+def test_a_clipped_position_is_found_but_a_body_that_rests_is_not(rod):
+    x = rod.records[0].signals["device.position"]
+    limit = x[np.argsort(x)[int(0.9 * len(x))]]
+    found = warnings(spoilt(rod, "position", lambda x: np.minimum(x, limit)), "clipped channels")
+    assert found[0].numbers["value"] == limit
+    resting = np.repeat(np.tile([0.0, 0.01], 6), 1000)  # held at its ends, moved gently
+    smooth = np.convolve(resting, np.hanning(400) / np.hanning(400).sum(), mode="same")
+    assert warnings(spoilt(rod, "position", lambda x: read(smooth)), "clipped channels") == []
+
+
+@pytest.mark.parametrize("quantity", ["position", "interaction_force"])
+def test_a_channel_that_sticks_is_found_from_when_to_when(rod, quantity):
+    x = rod.records[0].signals["device.position"]
+    speed = np.abs(np.gradient(x))
+    start = 2000 + int(np.argmax(speed[2000:6000]))
+    spoiled = spoilt(rod, quantity, put(slice(start, start + 600), lambda x: x[start]))
+    found = [f for f in warnings(spoiled, "stuck channels")]
+    assert len(found) == 1
+    assert found[0].numbers["from"] == pytest.approx(start / RATE, abs=2e-3)
+    assert found[0].numbers["duration"] == pytest.approx(0.6, abs=2e-3)
+
+
+def test_a_channel_that_never_changes_is_named(rod):
+    found = warnings(spoilt(rod, "interaction_force", lambda x: 0 * x), "stuck channels")
+    assert found[0].numbers["value"] == 0.0
+    assert "throughout" in found[0].sentence
+
+
+def test_samples_that_repeat_while_the_body_goes_on_are_counted():
+    rng = np.random.default_rng(3)
+    x = read(5 * motion())
+    held = np.sort(rng.choice(np.arange(20, 11_900, 5), 200, replace=False))
+    spoiled = x.copy()
+    spoiled[held] = x[held - 1]
+    found = repeats(spoiled, STEP)
+    assert set(found) <= set(held)
+    # where it moves less than six steps a sample, a repeat may be the encoder's
+    fast = held[np.abs(x[held + 8] - x[held - 8]) / 16 > 6 * STEP]
+    assert len(set(fast) - set(found)) <= 0.05 * len(fast)
+
+
+def test_a_force_sampled_at_a_tenth_of_the_rate_is_noticed(rod):
+    spoiled = spoilt(rod, "interaction_force", lambda x: np.repeat(x[::10], 10))
+    found = warnings(spoiled, "held samples")
+    assert found[0].numbers["rate"] == pytest.approx(100.0)
+
+
+def with_channel(experiment, quantity, **changes):
+    key = f"device.{quantity}"
+    channel = replace(experiment.channels[key], **changes)
+    return replace(experiment, channels={**experiment.channels, key: channel})
+
+
+def test_an_encoder_coarser_than_stated_is_found_with_its_step(rod):
+    found = warnings(with_channel(rod, "position", resolution=7.2e-6 / 4), "encoder steps")
+    assert found and all(f.concern == "warning" for f in found)
+    assert found[0].numbers["seen"] == pytest.approx(7.2e-6, rel=1e-9)
+    found = warnings(with_channel(rod, "position", resolution=7.2e-9), "encoder steps")
+    assert found[0].numbers["seen"] == pytest.approx(7.2e-6, rel=1e-9)
+
+
+@pytest.mark.parametrize("factor", [0.3, 3.0])
+def test_noise_that_is_not_the_stated_one_is_measured(rod, factor):
+    found = warnings(with_channel(rod, "interaction_force", noise=factor * 0.0116), "noise")
+    # half a second of samples tells a scatter to 6 %, the median of forty pieces better
+    assert found[0].numbers["seen"] == pytest.approx(0.0116, rel=0.1)
+    assert found[0].numbers["ratio"] == pytest.approx(1 / factor, rel=0.1)
+
+
+def test_columns_swapped_between_a_noisy_and_a_quiet_force_are_suspected(rod):
+    def swap(record):
+        u, f = "device.actuator_force", "device.interaction_force"
+        signals = {**record.signals, u: record.signals[f], f: 0.3 * np.sin(2 * np.pi * record.time)}
+        return replace(record, signals=signals)
+
+    found = warnings(replace(rod, records=tuple(map(swap, rod.records))), "noise")
+    assert "actuator_force has it: are the two columns swapped?" in found[0].sentence
+
+
+def test_positions_taken_early_or_late_show_the_jitter_of_the_clock():
+    rng = np.random.default_rng(4)
+    late = 1e-4 * rng.standard_normal(len(T))
+    x = read(np.interp(T + late, T, 10 * motion()))
+    # a median over the fast quarter of pieces of 64 samples; the pieces' own speed varies
+    assert sampling_jitter(x, STEP, 1 / RATE) == pytest.approx(1e-4, rel=0.2)
+
+
+def rewritten(folder, stamps):
+    """The rod in a folder of its own, its first record with these time stamps."""
+    import gzip
+    import shutil
+
+    shutil.copytree(example("rod"), folder, dirs_exist_ok=True)
+    path = folder / "fit.csv.gz"
+    head, *lines = gzip.open(path, "rt").read().splitlines()
+    column = head.split(",").index("t")
+    out = [head]
+    for line, stamp in zip(lines, stamps, strict=True):
+        parts = line.split(",")
+        parts[column] = f"{stamp:.7f}"
+        out.append(",".join(parts))
+    with gzip.open(path, "wt") as file:
+        file.write("\n".join(out) + "\n")
+    return load_experiment(folder)
+
+
+def test_stamps_that_jitter_are_measured(tmp_path):
+    jitter = 1e-4 * np.random.default_rng(5).uniform(-0.9, 0.9, 12_000)
+    found = the_only(rewritten(tmp_path, np.arange(12_000) / RATE + jitter), "sample clock")
+    assert found.concern == "warning"
+    assert found.numbers["jitter"] == pytest.approx(0.9e-4 / np.sqrt(3), rel=0.05)
+    assert found.numbers["rate"] == pytest.approx(RATE, rel=1e-6)
+
+
+def test_segments_and_what_is_too_short_to_be_compared_are_counted(rod):
+    first, *others = rod.records
+    time = first.time + np.where(np.arange(12_000) >= 6000, 3.0, 0.0)
+    segments = (slice(0, 6000), slice(6000, 6300), slice(6300, 12_000))
+    record = replace(first, time=time, segments=segments)
+    # in a folder without files no stamps can be read again
+    apart = replace(rod, folder=Path("nowhere"), records=(record, *others))
+    found = the_only(apart, "gaps")
+    assert found.numbers["longest_gap"] == pytest.approx(3.0, abs=1e-9)
+    assert found.numbers["too_short"] == 1
+    assert found.numbers["left_out"] == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize(("factor", "shift"), [(1.0, 0.0), (0.999, 0.004), (57.3, -0.011)])
+def test_factor_and_lag_of_a_velocity_channel_are_told(factor, shift):
+    rng = np.random.default_rng(6)
+    velocity = factor * np.interp(T - shift, T, np.gradient(motion(), T))
+    found = shift_and_factor(read(motion()), velocity + 1e-3 * rng.standard_normal(len(T)), 1e-3)
+    assert found[0] == pytest.approx(shift, abs=2e-4)  # a fifth of a sample
+    assert found[1] == pytest.approx(factor, rel=2e-3)
+
+
+@pytest.mark.slow
+def test_an_hour_at_a_kilohertz_is_checked_in_bounded_time(rod):
+    import time
+
+    n = 3_600_000
+    first = rod.records[0]
+    signals = {k: np.resize(np.concatenate([v, v[::-1]]), n) for k, v in first.signals.items()}
+    record = replace(
+        first, file="long", time=np.arange(n) / RATE, segments=(slice(0, n),), signals=signals
+    )
+    start = time.perf_counter()
+    check_signals(replace(rod, records=(record,)))
+    assert time.perf_counter() - start < 60.0  # about 6 s on a free core
+
+
+def test_the_known_oddities_of_real_recordings_are_found_and_no_others():
+    """What their READMEs say: held samples and jitter of psm and mtm, a finer second emps file."""
+    data = shared_folder("data")
+    found = {
+        name: {(f.topic, f.where) for f in warnings(load_experiment(data / name))}
+        for name in ("emps", "hsm150", "mtm_wrist", "psm_insertion")
+    }
+    assert found["emps"] == {("encoder steps", "emps_pulses.csv.gz")}
+    assert found["hsm150"] == set()
+    assert found["mtm_wrist"] == {("held samples", "mtm_joint4_sweep.csv.gz")}
+    runs = [f"psm1_fourier{k}.csv.gz" for k in (1, 2, 3)]
+    assert found["psm_insertion"] == {
+        (topic, run) for topic in ("held samples", "sample clock") for run in runs
+    }
+
+
+@pytest.mark.slow
+def test_simulated_measurements_raise_no_warning():
+    cases = shared_folder("hidden/cases")
+    assert {f.name: w for f in sorted(cases.iterdir()) if (w := warnings(load_experiment(f)))} == {}
