@@ -64,7 +64,7 @@ docs: $(VENV)/installed-docs  ## documentation in docs/_build/html, warnings are
 	@echo "docs/_build/html/index.html"
 
 studies: $(VENV)/installed-core  ## every study, figures and numbers into STUDY_OUTPUT (STUDY_ARGS=--quick)
-	@set -e; for study in studies/*.py; do \
+	@set -e; for study in studies/[!_]*.py; do \
 		echo "== $$study"; \
 		$(BIN)/python "$$study" $(STUDY_ARGS) --output "$(STUDY_OUTPUT)"; \
 	done

@@ -25,6 +25,7 @@ The folders, each importing only from those before it:
     simulate      time
     measurement   experiment, record, motion
     diagnose      residual, noise floor, candidates, ladder, answer
+    papers        statements of the two papers, each with its proof or check
     plot          draws result objects, computes nothing
     report        the diagnosis as one page that needs nothing else
     commands      what `teleopdesign COMMAND` does: one file each

@@ -13,9 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ._options import check_output, say
 
 if TYPE_CHECKING:
-    from ..papers import Result
-
-_CLAIM = "(no code)"
+    from ..papers import Result, Statement
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -59,7 +57,7 @@ def _table(results: list[Result], width: int) -> str:
         told = [*textwrap.wrap(s.words, third)]
         for head, text in (("", s.formula), ("printed: ", s.printed), ("given: ", s.assumes)):
             told += textwrap.wrap(f"{head}{text}", third, subsequent_indent="  ") if text else []
-        told += textwrap.wrap(f"{s.paper.short}, {s.place}; {s.code or _CLAIM}", third)
+        told += textwrap.wrap(f"{s.paper.short}, {s.place}; {_code(s)}", third)
         named = [s.name, *[""] * len(told)]
         known = textwrap.wrap(r.outcome, second - 1) + [""] * len(told)
         rows = zip(named, known, told, strict=False)
@@ -68,6 +66,12 @@ def _table(results: list[Result], width: int) -> str:
         lines.append("")
     head = f"{'':<{first}}{'outcome':<{second}}statement; source; code that shows it"
     return "\n".join([head, "-" * width, *lines])
+
+
+def _code(statement: Statement) -> str:
+    if statement.code:
+        return statement.code
+    return f"no code, see {', '.join(f'P{n}' for n in statement.see)}"
 
 
 def _why_failed(result: Result) -> list[str]:
@@ -87,12 +91,13 @@ def _full(result: Result, width: int) -> str:
         ("printed: ", s.printed),
         ("given:   ", s.assumes),
         ("source:  ", f"{s.paper.full}; {s.place}"),
-        ("code:    ", s.code and f"teleopdesign.papers.{s.code}" or _CLAIM),
-        ("see:     ", ", ".join(f"P{n}" for n in s.see)),
+        ("code:    ", f"teleopdesign.papers.{s.code}" if s.code else _code(s)),
     ):
         lines += textwrap.wrap(head + text, width, subsequent_indent=" " * 9) if text else []
-    lines += [f"  {i}. {step}" for i, step in enumerate(result.found, 1)]
-    lines += [f"  {figure}" for figure in result.figures]
+    for i, step in enumerate(result.found, 1):
+        lines += textwrap.wrap(f"{i:>3}. {step}", width, subsequent_indent=" " * 5)
+    for figure in result.figures:
+        lines += textwrap.wrap(f"   - {figure}", width, subsequent_indent=" " * 5)
     return "\n".join([*lines, ""])
 
 

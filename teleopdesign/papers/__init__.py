@@ -1,0 +1,58 @@
+"""The statements of the two papers, P1 to P65, each with the code that shows how far it is known.
+
+Every file that does not begin with `_` holds the statements of one topic, which are found here.
+"""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from ..errors import ModelError, did_you_mean
+from ._proof import NotProved, Proof, Refutation
+from ._statement import HOW, Figure, Numbers, Paper, Result, Statement, check
+
+__all__ = [
+    "HOW",
+    "STATEMENTS",
+    "Figure",
+    "NotProved",
+    "Numbers",
+    "Paper",
+    "Proof",
+    "Refutation",
+    "Result",
+    "Statement",
+    "check",
+    "find_statement",
+]
+
+
+def _statements() -> Mapping[str, Statement]:
+    found: dict[int, Statement] = {}
+    for module in pkgutil.iter_modules(__path__):
+        if module.name.startswith("_"):
+            continue
+        for thing in vars(importlib.import_module(f"{__name__}.{module.name}")).values():
+            if isinstance(thing, Statement):
+                if thing.number in found:
+                    raise ModelError(f"papers: {thing.name} is there twice, in {module.name} too")
+                found[thing.number] = thing
+    return MappingProxyType({found[n].name: found[n] for n in sorted(found)})
+
+
+#: name, P1 to P65 -> statement, in order
+STATEMENTS: Mapping[str, Statement] = _statements()
+
+
+def find_statement(name: str) -> Statement:
+    """The statement of that name; raises ModelError with the nearest one."""
+    if name not in STATEMENTS:
+        known = list(STATEMENTS)
+        raise ModelError(
+            f'check-papers: no statement "{name}", expected {known[0]} to {known[-1]}'
+            f"{did_you_mean(name, known)}"
+        )
+    return STATEMENTS[name]

@@ -1,0 +1,257 @@
+"""What counts as a proof: steps of sympy expressions, each checked exactly, none with a float.
+
+A callable only writes steps down; whether they hold is decided here. What a step may use is what
+the proof assumes, what the symbols assume (positive, real) and what an earlier step established.
+How the steps make up the statement stands in their words.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from ..derive import counterexample, proved_equal
+
+_LONGEST = 48  # characters of an expression that a line of a proof shows
+
+
+class NotProved(Exception):
+    """A step does not hold, or could not be shown to hold; the message says which and why."""
+
+
+def vanishes(expression: sp.Expr) -> bool:
+    """Whether sympy shows exactly that the expression is 0; False says only that it did not."""
+    expression = sp.sympify(expression)
+    if expression == 0 or sp.expand(expression) == 0:
+        return True
+    if _plainly_not_zero(expression):
+        return False
+    return bool(
+        sp.simplify(expression) == 0 or sp.simplify(sp.expand(expression.rewrite(sp.exp))) == 0
+    )
+
+
+def _plainly_not_zero(expression: sp.Expr) -> bool:
+    """Whether a point shows that the expression is not 0: saves the search for a proof."""
+    symbols = sorted(expression.free_symbols, key=str)
+    point = {x: sp.Rational(7 + 3 * i, 11 + 2 * i) for i, x in enumerate(symbols)}
+    value = sp.N(expression.subs(point), 30)
+    return bool(value.is_number and value.is_finite and sp.Abs(value) > sp.Float("1e-20"))
+
+
+def _without_floats(*expressions: sp.Basic) -> None:
+    for expression in expressions:
+        if sp.sympify(expression).has(sp.Float):
+            raise NotProved(f"a float in {expression}: a number proves nothing")
+
+
+def _shown(sign: str, expression: sp.Expr) -> str:
+    text = str(expression).replace("**", "^")
+    return f"  [{sign} {text}]" if len(text) <= _LONGEST else ""
+
+
+@dataclass(frozen=True)
+class Step:
+    """One exact fact; words: what it says in the chain of the proof."""
+
+    words: str
+
+    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """Expressions shown not to be negative, given those in `known`; raises NotProved."""
+        raise NotImplementedError
+
+    def told(self) -> str:
+        """The words, and what is short enough to print of the expressions."""
+        return self.words
+
+
+@dataclass(frozen=True)
+class Equal(Step):
+    """left = right for all values of the symbols (commuting)."""
+
+    left: sp.Expr
+    right: sp.Expr
+
+    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """Both zero test and refusal are sympy's exact ones."""
+        _without_floats(self.left, self.right)
+        if not vanishes(sp.sympify(self.left) - self.right):
+            raise NotProved(f"{self.words}: no proof that {self.left} = {self.right}")
+        return []
+
+    def told(self) -> str:
+        """With the right side."""
+        return self.words + _shown("=", self.right)
+
+
+@dataclass(frozen=True)
+class NotNegative(Step):
+    """expression >= 0: it equals `form`, whose sign shows by itself.
+
+    form: built from symbols whose sign sympy knows, and from the symbols of `given`
+    given: symbol >= 0 -> expression that the proof assumes, or showed before, not to be negative
+    """
+
+    expression: sp.Expr
+    form: sp.Expr
+    given: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    strictly: bool = False
+
+    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """Sign from sympy's assumptions, equality exactly."""
+        form = sp.sympify(self.form)
+        _without_floats(self.expression, form, *self.given.values())
+        for symbol, used in self.given.items():
+            if not symbol.is_nonnegative:
+                raise NotProved(f"{self.words}: {symbol} is not declared >= 0")
+            if not any(vanishes(used - k) for k in known):
+                raise NotProved(f"{self.words}: {used} >= 0 is neither assumed nor shown")
+        if not (form.is_positive if self.strictly else form.is_nonnegative):
+            raise NotProved(f"{self.words}: the sign of {form} does not show")
+        if not vanishes(self.expression - form.subs(dict(self.given))):
+            raise NotProved(f"{self.words}: no proof that {self.expression} = {form}")
+        return [sp.sympify(self.expression)]
+
+
+@dataclass(frozen=True)
+class Grows(Step):
+    """expression >= 0 for variable > 0: it starts at a value >= 0 and its derivative is `slope`.
+
+    slope: form of the derivative whose sign shows by itself, as in NotNegative
+    """
+
+    expression: sp.Expr
+    variable: sp.Symbol
+    slope: sp.Expr
+    given: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+
+    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """Start by an exact limit from the right, derivative as in NotNegative."""
+        start = sp.limit(self.expression, self.variable, 0, "+")
+        if not start.is_nonnegative:
+            raise NotProved(f"{self.words}: starts at {start}")
+        derivative = sp.diff(self.expression, self.variable)
+        NotNegative(self.words, derivative, self.slope, self.given).check(known)
+        return [sp.sympify(self.expression)]
+
+
+@dataclass(frozen=True)
+class Limit(Step):
+    """expression -> value as variable -> at (from the right where at is finite)."""
+
+    expression: sp.Expr
+    variable: sp.Symbol
+    at: sp.Expr
+    value: sp.Expr
+
+    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """By sympy's limit."""
+        _without_floats(self.expression, self.value)
+        found = sp.limit(self.expression, self.variable, self.at, "+")
+        if found != self.value and not vanishes(found - self.value):
+            raise NotProved(f"{self.words}: the limit is {found}, not {self.value}")
+        return []
+
+    def told(self) -> str:
+        """With the value."""
+        return self.words + _shown("->", self.value)
+
+
+@dataclass(frozen=True)
+class Holds(Step):
+    """A relation between exact numbers is true: a witness, an example that something can happen.
+
+    relation: "==", "!=", "<", "<=", ">" or ">="
+    """
+
+    left: sp.Expr
+    relation: str
+    right: sp.Expr
+
+    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """Decided by sympy."""
+        left, right = sp.sympify(self.left), sp.sympify(self.right)
+        _without_floats(left, right)
+        if left.free_symbols or right.free_symbols:
+            raise NotProved(f"{self.words}: {left} or {right} is no number")
+        relation = sp.Rel(left, right, self.relation)
+        if sp.simplify(relation) != sp.true:
+            raise NotProved(f"{self.words}: {relation} is not true")
+        return []
+
+
+@dataclass(frozen=True)
+class BlocksEqual(Step):
+    """left = right for blocks that need not commute."""
+
+    left: sp.Expr
+    right: sp.Expr
+
+    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """By exact rewriting, see `derive.proved_equal`."""
+        _without_floats(self.left, self.right)
+        if not proved_equal(self.left, self.right):
+            raise NotProved(f"{self.words}: no proof that {self.left} = {self.right}")
+        return []
+
+
+@dataclass(frozen=True)
+class BlocksDiffer(Step):
+    """left != right for some blocks: rational matrices on which they differ exactly."""
+
+    left: sp.Expr
+    right: sp.Expr
+
+    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """By a counterexample, see `derive.counterexample`."""
+        _without_floats(self.left, self.right)
+        if counterexample(self.left, self.right) is None:
+            raise NotProved(f"{self.words}: no counterexample found")
+        return []
+
+
+@dataclass(frozen=True)
+class Proof:
+    """Steps in order.
+
+    assuming: expressions that the statement supposes not to be negative, beyond what symbols assume
+    """
+
+    steps: tuple[Step, ...]
+    assuming: tuple[sp.Expr, ...] = ()
+
+    def verify(self) -> tuple[str, ...]:
+        """The words of every step, once all of them hold; raises NotProved at the first not."""
+        if not self.steps:
+            raise NotProved("a proof without steps")
+        known: list[sp.Expr] = [sp.sympify(a) for a in self.assuming]
+        _without_floats(*known)
+        for step in self.steps:
+            known += step.check(known)
+        return tuple(step.told() for step in self.steps)
+
+
+def proof(*steps: Step | Iterable[Step], assuming: Iterable[sp.Expr] = ()) -> Proof:
+    """A proof of these steps; several may be given as one iterable."""
+    flat: list[Step] = []
+    for step in steps:
+        flat += [step] if isinstance(step, Step) else list(step)
+    return Proof(tuple(flat), tuple(assuming))
+
+
+@dataclass(frozen=True)
+class Refutation:
+    """What is printed fails, exactly, and the corrected form is proved.
+
+    printed: steps that show the failure;  corrected: proof of what holds instead
+    """
+
+    printed: Proof
+    corrected: Proof
+
+    def verify(self) -> tuple[str, ...]:
+        """The words of all steps; raises NotProved."""
+        against = tuple(f"against the print: {w}" for w in self.printed.verify())
+        return against + self.corrected.verify()

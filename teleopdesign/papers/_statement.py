@@ -1,0 +1,188 @@
+"""A numbered statement of the papers, how far it is known, and the code that shows it."""
+
+from __future__ import annotations
+
+import inspect
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from ._proof import NotProved, Proof, Refutation
+
+How = Literal["proved", "checked numerically", "refuted", "claim of the paper"]
+HOW: tuple[How, ...] = ("proved", "checked numerically", "refuted", "claim of the paper")
+
+
+@dataclass(frozen=True)
+class Paper:
+    """Where a statement comes from; short: as the table cites it."""
+
+    short: str
+    full: str
+
+
+BERNSTEIN = Paper(
+    "Bernstein 2005",
+    "N. L. Bernstein, D. A. Lawrence, L. Y. Pao, Friction modeling and compensation for haptic "
+    "interfaces, Proc. World Haptics 2005",
+)
+MAHVASH = Paper(
+    "Mahvash 2006",
+    "M. Mahvash, A. M. Okamura, Friction compensation for a force-feedback telerobotic system, "
+    "Proc. IEEE ICRA 2006",
+)
+DERIVED = Paper("derived here", "derived in this project from the models of the two papers")
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A computed number and the range that it must lie in (SI unless `unit` says otherwise)."""
+
+    what: str
+    found: float
+    low: float = -math.inf
+    high: float = math.inf
+    unit: str = ""
+
+    @property
+    def margin(self) -> float:
+        """Distance to the nearest end of the range; negative outside of it."""
+        return min(self.found - self.low, self.high - self.found)
+
+    def __str__(self) -> str:
+        unit = f" {self.unit}" if self.unit else ""
+        if math.isinf(self.low) or math.isinf(self.high):
+            bound = (
+                f"at most {self.high:.4g}" if math.isinf(self.low) else f"at least {self.low:.4g}"
+            )
+            return f"{self.what}: {self.found:.4g}{unit}, must be {bound}"
+        return f"{self.what}: {self.found:.4g}{unit}, must be {self.low:.4g} to {self.high:.4g}"
+
+
+def near(what: str, found: float, expected: float, within: float, unit: str = "") -> Figure:
+    """A number that must lie within `within` of `expected`."""
+    return Figure(what, float(found), expected - within, expected + within, unit)
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """What a computation gave, number by number."""
+
+    figures: tuple[Figure, ...]
+
+    def worst(self) -> Figure:
+        """The number with the smallest margin."""
+        return min(self.figures, key=lambda f: f.margin)
+
+
+Evidence = Proof | Refutation | Numbers
+
+
+@dataclass(frozen=True)
+class Statement:
+    """One statement.
+
+    number: that of P1 to P65;  paper, place: source and equation or section in it
+    words: what it says;  formula: the form that holds;  printed: what the paper prints or says
+    where that is wrong, damaged or ambiguous
+    assumes: a theorem of others that the proof uses without proving it
+    how: how far it is known; `shown_by` must show just that, None for a claim of the paper
+    numbers: a computation beside a proof, for what is stated in numbers
+    see: statements that bear on a claim
+    """
+
+    number: int
+    paper: Paper
+    place: str
+    words: str
+    formula: str
+    how: How
+    shown_by: Callable[[], Evidence] | None
+    printed: str = ""
+    assumes: str = ""
+    numbers: Callable[[], Numbers] | None = None
+    see: tuple[int, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """ "P16"."""
+        return f"P{self.number}"
+
+    @property
+    def code(self) -> str:
+        """File and function that show it; "" for a claim."""
+        if self.shown_by is None:
+            return ""
+        return f"{self.shown_by.__module__.rpartition('.')[2]}.{self.shown_by.__name__}"
+
+
+@dataclass(frozen=True)
+class Result:
+    """What checking a statement found.
+
+    outcome: how far it is known now; "failed": less than the statement says
+    found: one line for each exact step, or why it failed;  figures: computed numbers
+    """
+
+    statement: Statement
+    outcome: How | Literal["failed"]
+    found: tuple[str, ...]
+    figures: tuple[Figure, ...]
+    seconds: float
+
+    @property
+    def as_stated(self) -> bool:
+        """Whether the outcome is what the statement says."""
+        return self.outcome == self.statement.how
+
+
+def shows(
+    number: int,
+    *,
+    paper: Paper,
+    place: str,
+    formula: str,
+    how: How = "proved",
+    printed: str = "",
+    assumes: str = "",
+    numbers: Callable[[], Numbers] | None = None,
+) -> Callable[[Callable[[], Evidence]], Statement]:
+    """The function below it shows this statement; its docstring is the statement's words."""
+
+    def made(function: Callable[[], Evidence]) -> Statement:
+        words = " ".join((inspect.getdoc(function) or "").split())
+        return Statement(
+            number, paper, place, words, formula, how, function, printed, assumes, numbers
+        )
+
+    return made
+
+
+def claim(number: int, *, paper: Paper, place: str, words: str, see: tuple[int, ...]) -> Statement:
+    """A statement that only the paper's own experiment or text can support."""
+    return Statement(number, paper, place, words, "", "claim of the paper", None, see=see)
+
+
+def check(statement: Statement) -> Result:
+    """Run what shows the statement; the outcome follows from what kind of evidence holds."""
+    start = time.perf_counter()
+    outcome: How | Literal["failed"] = "claim of the paper"
+    found: tuple[str, ...] = ()
+    figures: tuple[Figure, ...] = ()
+    try:
+        evidence = None if statement.shown_by is None else statement.shown_by()
+        if isinstance(evidence, Numbers):
+            outcome, figures = "checked numerically", evidence.figures
+        elif isinstance(evidence, Refutation):
+            outcome, found = "refuted", evidence.verify()
+        elif isinstance(evidence, Proof):
+            outcome, found = "proved", evidence.verify()
+        if statement.numbers is not None:
+            figures += statement.numbers().figures
+    except NotProved as error:
+        outcome, found = "failed", (str(error),)
+    if any(not f.margin >= 0 for f in figures):
+        outcome = "failed"
+    return Result(statement, outcome, found, figures, time.perf_counter() - start)

@@ -1,0 +1,61 @@
+"""Master and slave joined by a position-position spring, wired from the package's blocks."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..blocks import Body, Value
+from ..controllers import controller
+from ..diagrams import Control, Diagram, Junction, Moving
+from ..effects import EFFECTS
+from ..simulate import Simulation, simulate, sine
+
+FRICTION = 1.0  # N, at the slave
+STIFFNESS = 1000.0  # P, N/m
+SLAVE_DAMPING = 2.0  # N s/m; settles the slave on the coupling spring
+AMPLITUDE, FREQUENCY = 5e-3, 0.1  # of the master: up to 3 mm/s, inertial forces below 1 mN
+GIVE = 1e-5  # m; presliding of what stands for ideal Coulomb friction
+
+
+def two_sides(*, cancelled: float, environment: float = 0.0) -> Diagram:
+    """Master without friction, slave with Coulomb friction and a Dahl compensator.
+
+    cancelled: f_D, N;  environment: stiffness that holds the slave, N/m
+    """
+    master = Body("prismatic", {"inertia": Value(0.1)})
+    slave = master.with_effect(EFFECTS["coulomb"], {"level": FRICTION})
+    slave = slave.with_effect(EFFECTS["viscous"], {"damping": SLAVE_DAMPING})
+    slave = slave.with_effect(EFFECTS["spring"], {"stiffness": environment})
+    spring = controller("lead", {"gain": STIFFNESS, "zero": 1.0, "pole": 1.0})
+    cancelled = max(cancelled, 1e-9)  # a level of zero leaves the bristle without a length
+    # as soft as the plant's presliding: (sigma_D/sigma_p)^2 = (f_D/f_C)^2 <= f_D/f_C
+    dahl = controller("dahl", {"level": cancelled, "stiffness": cancelled / GIVE})
+    return Diagram(
+        "teleoperator",
+        (
+            Moving("master", master, "x_m", "u_m", {"f_u": 1}, "f_u"),
+            Moving("slave", slave, "x_s", "u_s", {}, "f_e"),
+            Control("coupling", spring, "x_e", "f_c", "x_m"),
+            Control("compensator", dahl, "x_s", "f_d", "x_s"),
+        ),
+        (
+            Junction("x_e", {"x_m": 1, "x_s": -1}),
+            Junction("u_m", {"f_c": -1}),
+            Junction("u_s", {"f_c": 1, "f_d": 1}),
+        ),
+        {"f_u": "force"},
+        measured=("x_m", "x_s"),
+    )
+
+
+def slow_cycle(*, cancelled: float, environment: float = 0.0) -> Simulation:
+    """The second of two slow cycles of the master; its user force f_u is what the motion takes."""
+    found = simulate(
+        two_sides(cancelled=cancelled, environment=environment),
+        duration=2 / FREQUENCY,
+        motion={"x_m": sine(amplitude=AMPLITUDE, frequency=FREQUENCY)},
+        computer="continuous",
+        give=GIVE,
+    )
+    kept = found.data["time"].values >= 1 / FREQUENCY
+    return Simulation(found.diagram, found.data.isel(time=np.flatnonzero(kept)))

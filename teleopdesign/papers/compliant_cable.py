@@ -1,0 +1,209 @@
+"""Motor and link with a friction contact each, joined by a compliant cable: P53 to P58 less P56.
+
+m_1 a_1 = u + f_dahl - f_1 sgn v_1 - coupling        motor: measured and compensated
+m_2 a_2 = coupling - f_2 sgn v_2 + f_env             link
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from ..effects import EFFECTS
+from ._laws import coulomb
+from ._proof import Equal, Grows, Limit, NotNegative, Proof, Step, proof
+from ._statement import DERIVED, MAHVASH, claim, shows
+from .dahl_loop import ENERGY
+from .dahl_loop import A as LOOP_AMPLITUDE
+from .dahl_loop import f_c as LOOP_LEVEL
+from .dahl_loop import sigma as LOOP_STIFFNESS
+
+f_D, sigma, f_1, f_2, k, c, A, u = sp.symbols("f_D sigma_D f_1 f_2 k c A u", positive=True)
+U = sigma * A / f_D
+W = 4 * f_D * (A - f_D / sigma * sp.tanh(U))  # of a cycle; shown to be the loop's in `rising_gain`
+SHARE = 1 - sp.tanh(u) / u
+CLAMPED = W - 4 * f_1 * A  # given out a cycle, link stuck: the cable returns what it takes
+FREE = CLAMPED - 4 * f_2 * (A - f_2 / k)  # link sliding, A > f_2/k
+
+
+def coupling(x: tuple[sp.Expr, sp.Expr], v: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
+    """Force of the effect `transmission_compliance` between motor and tip."""
+    signals = {
+        "position": x[0],
+        "velocity": v[0],
+        "tip_position": x[1],
+        "tip_velocity": v[1],
+        "acceleration": 0,
+        "interaction_force": 0,
+    }
+    values = {"stiffness": k, "damping": c, "tip_inertia": 0}
+    return EFFECTS["transmission_compliance"].expression(signals, values)
+
+
+@shows(
+    53,
+    paper=DERIVED,
+    place="extension announced in Mahvash 2006",
+    formula="f_D <= f_1 is enough, whatever k, f_2, masses and environment",
+)
+def motor_side() -> Proof:
+    """Compensation within the friction of the measured contact keeps the two-body joint passive
+    for any environment.
+    """
+    x1, x2, force = sp.symbols("x_1 x_2 f_dahl", real=True)
+    push, env, w1, w2 = sp.symbols("u f_env w_1 w_2", positive=True)
+    size, spare, inside = sp.symbols("size spare inside", nonnegative=True)
+    steps: list[Step] = []
+    for one in (1, -1):
+        for two in (1, -1):
+            v = (one * w1, two * w2)
+            joint = coupling((x1, x2), v)
+            pushed = push + force - coulomb(v[0], f_1) - joint  # m_1 a_1
+            pulled = joint - coulomb(v[1], f_2) + env  # m_2 a_2
+            stored = pushed * v[0] + pulled * v[1] + k * (x1 - x2) * (v[0] - v[1])
+            lost = f_1 * w1 + f_2 * w2 + c * (v[0] - v[1]) ** 2 - force * v[0]
+            steps.append(
+                Equal(
+                    f"supply less rate of kinetic and cable energy, v_1 {one:+d}, v_2 {two:+d}",
+                    push * v[0] + env * v[1] - stored,
+                    lost,
+                )
+            )
+    for way in (1, -1):
+        steps.append(
+            NotNegative(
+                f"f_1 abs(v_1) covers the compensator, direction {way:+d}",
+                f_1 * w1 - way * size * w1,
+                w1 * (spare + inside + size * (1 - way)),
+                {spare: f_1 - f_D, inside: f_D - size},
+            )
+        )
+    return proof(steps, assuming=[f_1 - f_D, f_D - size])
+
+
+def rising_gain() -> list[Step]:
+    """The compensator's energy per travel, f_D (1 - tanh(u)/u), rises with u, to f_D."""
+    rest = sp.Symbol("rest", nonnegative=True)
+    bend = sp.tanh(u) - u / sp.cosh(u) ** 2
+    loop = ENERGY.subs({LOOP_LEVEL: f_D, LOOP_STIFFNESS: sigma, LOOP_AMPLITUDE: A})
+    return [
+        Equal("energy of a cycle, from the loop", loop, W),
+        Equal("per travel", W.subs(A, u * f_D / sigma) / (u * f_D / sigma), 4 * f_D * SHARE),
+        Grows("u/cosh^2 u <= tanh u", bend, u, 2 * u * sp.tanh(u) / sp.cosh(u) ** 2),
+        NotNegative("gain rises", sp.diff(SHARE, u), rest / u**2, {rest: bend}),
+        Limit("to f_D", SHARE, u, sp.oo, sp.S(1)),
+    ]
+
+
+@shows(
+    54,
+    paper=DERIVED,
+    place="extends P53",
+    formula="clamped link: unlimited stroke needs f_D <= f_1; a stroke between -A and A at least "
+    "f_D (1 - tanh(u)/u) <= f_1, u = sigma_D A/f_D",
+)
+def clamped_link() -> Proof:
+    """What is necessary where the environment may clamp the link; for a limited stroke, of plain
+    cycles: see P56.
+    """
+    given_out = CLAMPED.subs(A, u * f_D / sigma)
+    return proof(
+        rising_gain(),
+        Equal(
+            "given out a cycle of stroke A, cable energy returns",
+            given_out,
+            4 * (u * f_D / sigma) * (f_D * SHARE - f_1),
+        ),
+    )
+
+
+@shows(
+    55,
+    paper=DERIVED,
+    place="extends P53",
+    formula="no cycle between -A and A gives energy out iff f_D <= f_1 + f_2 and "
+    "f_D (1 - tanh(u_2)/u_2) <= f_1, u_2 = sigma_D f_2/(k f_D); for these enough: "
+    "sigma_D <= k sqrt(3 f_1 f_D)/f_2",
+)
+def free_link() -> Proof:
+    """Free link held by its own friction only, plain quasi-static cycles of the motor of any
+    amplitude: the cable's stiffness limits the compensator's. Other motions: see P56.
+    """
+    spare, more, soft, over = sp.symbols("spare more soft over", nonnegative=True)
+    bound = k * sp.sqrt(3 * f_1 * f_D) / f_2
+    u_2 = sigma * f_2 / (k * f_D)
+    return proof(
+        rising_gain(),
+        Equal("sliding joins stuck at A = f_2/k", FREE.subs(A, f_2 / k), CLAMPED.subs(A, f_2 / k)),
+        Equal("there u is u_2", U.subs(A, f_2 / k), u_2),
+        NotNegative(
+            "beyond it the energy given out falls: its slope is 4 (f_D tanh^2 u - f_1 - f_2)",
+            -sp.diff(FREE, A) / 4,
+            spare + f_D / sp.cosh(U) ** 2,
+            {spare: f_1 + f_2 - f_D},
+        ),
+        Limit(
+            "necessary: large cycles give out 4 A (f_D - f_1 - f_2)",
+            FREE.subs({f_D: 2, sigma: 2}) / A,
+            A,
+            sp.oo,
+            4 * (2 - f_1 - f_2),
+        ),
+        Grows("u >= tanh u", u - sp.tanh(u), u, sp.tanh(u) ** 2),
+        Grows(
+            "1 - tanh(u)/u <= u^2/3, times u",
+            u**3 / 3 - u + sp.tanh(u),
+            u,
+            more * (u + sp.tanh(u)),
+            {more: u - sp.tanh(u)},
+        ),
+        Equal("at the bound f_D u_2^2/3 = f_1", f_D * u_2.subs(sigma, bound) ** 2 / 3, f_1),
+        NotNegative(
+            "and below it less",
+            f_1 - f_D * u_2**2 / 3,
+            f_2**2 / (3 * f_D * k**2) * soft * (bound + sigma),
+            {soft: bound - sigma},
+        ),
+        assuming=[f_1 + f_2 - f_D, bound - sigma],
+    )
+
+
+@shows(
+    57,
+    paper=DERIVED,
+    place="consequence of P54, P55",
+    formula="f_1 < f_D <= f_1 + f_2: P55 can hold with sigma_D = k sqrt(3 f_1 f_D)/f_2, a "
+    "clamped link breaks it",
+)
+def relieving_the_far_contact() -> Proof:
+    """Over-compensating the motor's contact to relieve the far one works only with a soft
+    compensator, and only against environments that do not clamp the link.
+    """
+    excess = sp.Symbol("excess", positive=True)
+    soft = k * sp.sqrt(3 * f_1 * f_D) / f_2
+    per_travel = (CLAMPED / A).subs({sigma: 1, f_D: 1, f_1: 1 - excess})
+    return proof(
+        NotNegative("a compensator that P55 allows exists", soft, soft, strictly=True),
+        Equal(
+            "its u_2",
+            f_D * (soft * f_2 / (k * f_D)) ** 2 / 3,
+            f_1,
+        ),
+        Limit(
+            "clamped, f_D = f_1 + excess: long strokes give out 4 A excess",
+            per_travel,
+            A,
+            sp.oo,
+            4 * excess,
+        ),
+    )
+
+
+journal_version = claim(
+    58,
+    paper=MAHVASH,
+    place="later version: IEEE Trans. Robotics 23 (2007) 1240",
+    words="Passivity conditions for a feedforward Dahl compensator with a compliant "
+    "transmission; their exact "
+    "inequalities could not be read, and P53 to P57 are not theirs.",
+    see=(53, 54, 55),
+)

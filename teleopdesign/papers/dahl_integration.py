@@ -1,0 +1,166 @@
+"""The exact step of the Dahl model over a travel: P31 and P32."""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from ..blocks import Body, Value
+from ..controllers import controller
+from ..diagrams import haptic_interface
+from ..simulate import Motion, simulate
+from ._laws import dahl_rate, dahl_step
+from ._proof import Equal, Grows, NotNegative, Proof, Refutation, Step, proof
+from ._statement import MAHVASH, Numbers, near, shows
+from .dahl_euler import ABOVE, BELOW, INSIDE, LEVELS, T, d, e, f, f_c, sigma
+
+SHARE = sp.exp(-sigma * d / f_c)  # of the distance to the level that is left after the travel d
+
+
+def in_parts(direction: int) -> Step:
+    """Travel in two parts is travel at once."""
+    once = dahl_step(f, d + e, direction, f_c, sigma)
+    twice = dahl_step(dahl_step(f, d, direction, f_c, sigma), e, direction, f_c, sigma)
+    return Equal(f"two parts in direction {direction:+d} are the whole", twice, once)
+
+
+def sampled_compensator() -> Numbers:
+    """The compensator as the package runs it, sample by sample, against the step of the proof."""
+    positions = 1e-4 * np.array([0.0, 0.3, 0.9, 0.9, 0.5, -0.4, -3.0, 2.0, 2.0, 2.1])
+    level, stiffness, period = 0.5, 5e3, 1e-3
+
+    def held(t: np.ndarray) -> np.ndarray:
+        sample = np.clip(np.round(t / period).astype(int), 0, len(positions) - 1)
+        return np.asarray(positions[sample])
+
+    law = controller("dahl", {"level": level, "stiffness": stiffness})
+    found = simulate(
+        haptic_interface(Body("prismatic", {"inertia": Value(1.0)}), cancellation=law),
+        duration=period * (len(positions) - 1),
+        motion={"L": Motion(held, np.zeros_like, np.zeros_like)},
+        step=period,
+        jit=False,
+    )["R_MBC"].values
+    force, worst = 0.0, 0.0
+    for dx, sampled in zip(np.diff(positions), found[1:], strict=True):
+        step = dahl_step(f, d, 1 if dx >= 0 else -1, f_c, sigma)
+        force = float(step.subs({f: force, d: abs(dx), f_c: level, sigma: stiffness}))
+        worst = max(worst, abs(float(sampled) - force))
+    return Numbers((near("largest difference", worst, 0.0, 1e-13, "N"),))  # rounding of doubles
+
+
+@shows(
+    31,
+    paper=MAHVASH,
+    place="eq (9)",
+    formula="f_next = f_c s + (f - f_c s) exp(-(sigma/f_c) abs(dx)),  s = sgn(dx)",
+    numbers=sampled_compensator,
+)
+def exact_step() -> Proof:
+    """The exact step: for any speed profile that does not turn within the sample; it keeps abs(f)
+    <= f_c for every sequence of positions and never diverges.
+    """
+    steps: list[Step] = []
+    for s in (1, -1):
+        step = dahl_step(f, d, s, f_c, sigma)
+        steps += [
+            Equal(
+                f"the law stepped exactly is eq (9), s = {s:+d}",
+                step,
+                f_c * s + (f - f_c * s) * SHARE,
+            ),
+            Equal(
+                "it solves the law over the travel, so at any speed",
+                sp.diff(step, d),
+                dahl_rate(step, sp.S(s), f_c, sigma),
+            ),
+            in_parts(s),
+            Equal("differences between two starts shrink by", sp.diff(step, f), SHARE),
+        ]
+    up = dahl_step(f, d, 1, f_c, sigma)
+    rest = sp.Symbol("rest", nonnegative=True)
+    return proof(
+        steps,
+        Grows("which is at most 1", 1 - SHARE, d, sigma / f_c * SHARE),
+        NotNegative("stays below f_c", f_c - up, ABOVE * SHARE, LEVELS),
+        NotNegative(
+            "and above -f_c; downwards is the point mirror",
+            f_c + up,
+            BELOW * SHARE + 2 * f_c * rest,
+            {**LEVELS, rest: 1 - SHARE},
+        ),
+        assuming=INSIDE,
+    )
+
+
+@shows(
+    32,
+    paper=MAHVASH,
+    place="eq (9)",
+    formula="s = sgn(x_next - x): error within a sample that turns at most 2 sigma d1, d1 <= "
+    "abs(a) T^2/8; "
+    "travel 0 keeps the force",
+    printed="sgn(v_i), the velocity at the old sample",
+    how="refuted",
+)
+def sign_of_the_travel() -> Refutation:
+    """Forward by d1, then back by more within one sample: with the old velocity's sign the force
+    moves the wrong way; with the sign of the travel the error is bounded.
+    """
+    back, small, t1, acc, early = sp.symbols("back small t_1 a early", positive=True)
+
+    def step(force: sp.Expr, travel: sp.Expr, s: int) -> sp.Expr:
+        return dahl_step(force, travel, s, f_c, sigma)
+
+    true = step(step(f, small * d, 1), small * (d + back), -1)
+    wrong, right = step(f, small * back, 1), step(f, small * back, -1)
+
+    def first_order(error: sp.Expr) -> sp.Expr:
+        return sp.diff(error, small).subs(small, 0)
+
+    error = (right - true).subs(small, 1)
+    way = sp.exp(-sigma * back / f_c)
+    rest, over, one = sp.symbols("rest over one", nonnegative=True)
+    given = {**LEVELS, rest: 1 - SHARE, one: 1 - way, over: SHARE - 1 + sigma * d / f_c}
+    return Refutation(
+        proof(
+            Equal(
+                "printed less true, to first order: 2 sigma abs(dx) too much",
+                first_order(wrong - true),
+                2 * sigma * back + 2 * sigma * d * f / f_c,
+            ),
+            Equal("at f = 0 the true force falls", first_order(true).subs(f, 0), -sigma * back),
+            Equal("the printed one rises", first_order(wrong).subs(f, 0), sigma * back),
+        ),
+        proof(
+            Equal("corrected, to first order", first_order(right - true), 2 * sigma * d * f / f_c),
+            Grows("1 - exp(-sigma d1/f_c) >= 0", 1 - SHARE, d, sigma / f_c * SHARE),
+            Grows("likewise for the travel", 1 - way, back, sigma / f_c * way),
+            Grows(
+                "exp(-sigma d1/f_c) >= 1 - sigma d1/f_c",
+                SHARE - 1 + sigma * d / f_c,
+                d,
+                sigma / f_c * rest,
+                {rest: 1 - SHARE},
+            ),
+            NotNegative(
+                "error <= 2 sigma d1",
+                2 * sigma * d - error,
+                2 * f_c * over + rest * (BELOW * one + ABOVE * (1 + way * SHARE)),
+                given,
+            ),
+            NotNegative(
+                "error >= -2 sigma d1",
+                2 * sigma * d + error,
+                2 * f_c * over + rest * (BELOW * (1 + way) + ABOVE * (one + way * rest)),
+                given,
+            ),
+            NotNegative(
+                "the turn comes in the first half of the sample: d1 = a t_1^2/2 <= a T^2/8",
+                (acc * T**2 / 8 - acc * t1**2 / 2).subs(T, 2 * (t1 + early)),
+                acc * (early**2 + 2 * early * t1) / 2,
+            ),
+            Equal("travel 0 keeps the force", step(f, sp.S(0), -1), f),
+            assuming=INSIDE,
+        ),
+    )

@@ -1,0 +1,129 @@
+"""Loops, energy and relatives of the Dahl model: P33 to P36."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from ._laws import (
+    bristle_force,
+    bristle_rate,
+    dahl_loop,
+    dahl_rate,
+    dahl_step,
+    stribeck_level,
+)
+from ._proof import Equal, Grows, Limit, NotNegative, Proof, proof
+from ._statement import DERIVED, MAHVASH, shows
+
+f, x, z = sp.symbols("f x z", real=True)
+f_c, sigma, A, u, w, d = sp.symbols("f_c sigma A u w d", positive=True)
+SCALED = {A: u * f_c / sigma}  # u = A/lambda
+PEAK = f_c * sp.tanh(sigma * A / f_c)
+RISING = dahl_loop(x, A, f_c, sigma)
+ENERGY = 2 * sp.integrate(RISING, (x, -A, A))  # the falling half is the point mirror
+
+
+@shows(
+    33,
+    paper=DERIVED,
+    place="from eq (9) of Mahvash 2006",
+    formula="rising: f_c (1 - exp(-x/lambda)/cosh u), falling: its point mirror; peak f_c tanh u",
+)
+def steady_loop() -> Proof:
+    """Steady loop of amplitude A; any start converges to it, wherever its centre, so Dahl friction
+    forgets offsets and drifts under small biased oscillation.
+    """
+    shape = f_c * (1 - sp.exp(-sigma * x / f_c) / sp.cosh(sigma * A / f_c))
+    there = dahl_step(f, 2 * A, 1, f_c, sigma)
+    back = dahl_step(there, 2 * A, -1, f_c, sigma)
+    swung = dahl_step(dahl_step(f, d, 1, f_c, sigma), d, -1, f_c, sigma)
+    kept = sp.exp(-4 * sigma * A / f_c)
+    return proof(
+        Equal("rising branch", RISING, shape),
+        Equal("its peak", RISING.subs(x, A), PEAK),
+        Equal("it starts at minus the peak: the mirror closes the loop", RISING.subs(x, -A), -PEAK),
+        Equal("after a cycle the distance to it has shrunk by", sp.diff(back, f), kept),
+        Grows("which is below 1", 1 - kept, A, 4 * sigma / f_c * kept),
+        Equal(
+            "small swings about a force f pull it towards 0 by 2 sigma d f/f_c each: drift",
+            sp.diff(swung, d).subs(d, 0),
+            -2 * sigma * f / f_c,
+        ),
+    )
+
+
+@shows(
+    34,
+    paper=DERIVED,
+    place="from eq (9) of Mahvash 2006",
+    formula="W(A) = 4 f_c A (1 - tanh(u)/u)",
+)
+def energy_per_cycle() -> Proof:
+    """Energy that a steady cycle dissipates: as the cube of the amplitude when small, 4 f_c (A -
+    lambda) when large.
+    """
+    scaled = ENERGY.subs(SCALED) * sigma / f_c**2  # in units of f_c lambda
+    form = 4 * f_c * A * (1 - f_c / (sigma * A) * sp.tanh(sigma * A / f_c))
+    return proof(
+        Equal("integral of the force over the loop", ENERGY, form),
+        Limit("small u: (4/3) sigma^2 A^3/f_c", scaled / u**3, u, sp.S(0), sp.Rational(4, 3)),
+        Limit("large u: 4 f_c (A - lambda)", scaled - 4 * (u - 1), u, sp.oo, sp.S(0)),
+        Grows("never negative", u - sp.tanh(u), u, sp.tanh(u) ** 2),
+    )
+
+
+@shows(
+    35,
+    paper=DERIVED,
+    place="from eq (2) of Mahvash 2006",
+    formula="f v = d/dt (f^2/(2 sigma)) + (abs(v)/f_c) f^2",
+)
+def power() -> Proof:
+    """Dahl friction is passive: storage f^2/(2 sigma), dissipation abs(v) f^2/f_c."""
+    velocity = sp.Symbol("v", real=True)
+    stored = sp.diff(f**2 / (2 * sigma), f) * dahl_rate(f, velocity, f_c, sigma)
+    lost = sp.Abs(velocity) * f**2 / f_c
+    return proof(
+        Equal("power, by the law", f * velocity, stored + lost),
+        NotNegative("the dissipation", lost, lost),
+        NotNegative("the storage", f**2 / (2 * sigma), f**2 / (2 * sigma)),
+    )
+
+
+@shows(
+    36,
+    paper=MAHVASH,
+    place="eq (2); LuGre and Hayward-Armstrong models",
+    formula="z' = v - alpha abs(v) z, f = sigma z is Dahl for alpha = 1/lambda; LuGre with "
+    "constant level, "
+    "sigma_1 = sigma_2 = 0 too",
+)
+def relatives() -> Proof:
+    """Hayward-Armstrong friction with constant alpha, and LuGre with constant level and no
+    damping, are Dahl; alpha = 0 near rest removes the drift.
+    """
+    alpha, damping, extra, scale = sp.symbols("alpha sigma_1 F_SC v_S", positive=True)
+    velocity = sp.Symbol("v", real=True)
+    own = velocity - alpha * sp.Abs(velocity) * z
+    level = stribeck_level(velocity, f_c, extra, scale)
+    rate = bristle_rate(z, velocity, level, sigma)
+    force = bristle_force(z, velocity, level, sigma, damping)
+    return proof(
+        Equal(
+            "Hayward-Armstrong, alpha = sigma/f_c",
+            sigma * own.subs(alpha, sigma / f_c),
+            dahl_rate(sigma * z, velocity, f_c, sigma),
+        ),
+        Equal("LuGre's force", force, sigma * z + damping * rate),
+        Equal(
+            "LuGre without extra level: Dahl's rate",
+            sigma * rate.subs(extra, 0),
+            dahl_rate(sigma * z, velocity, f_c, sigma),
+        ),
+        Equal("and without damping Dahl's force", force.subs(damping, 0), sigma * z),
+        Equal(
+            "alpha = 0: the bristle moves with the body, nothing drifts",
+            own.subs(alpha, 0),
+            velocity,
+        ),
+    )

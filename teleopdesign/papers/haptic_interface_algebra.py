@@ -1,0 +1,256 @@
+"""Block algebra of the haptic interface: P1 to P11, all derived from the wiring.
+
+Blocks are matrices that need not commute. H and C depend on speed, so the forms hold at a frozen
+speed or in the sense of describing functions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import sympy as sp
+
+from ..derive import block_symbol, return_difference, transfer, transfer_functions
+from ..diagrams import ANY, Attached, haptic_interface
+from ._proof import (
+    BlocksDiffer,
+    BlocksEqual,
+    Equal,
+    Holds,
+    Limit,
+    NotNegative,
+    Proof,
+    proof,
+)
+from ._statement import BERNSTEIN, shows
+
+Z_M, Z_H, C, H, K = map(block_symbol, ("Z_M", "Z_H", "C", "H", "K"))
+GAMMA = 1 + H
+ZHAT_M = GAMMA**-1 * (Z_M - C)
+ALL = haptic_interface(
+    device=ANY, hand=ANY, cancellation=ANY, force_feedback=ANY, position_loop=ANY
+)
+FORCE = ALL.opened("K")  # R_D from outside
+T = transfer_functions(ALL)
+
+
+@shows(
+    1,
+    paper=BERNSTEIN,
+    place="text at figure 1",
+    formula="R_H = -Z_H L",
+    printed="a sign is missing: R_H = Z_H L",
+)
+def sign_of_the_passive_hand() -> Proof:
+    """Only a hand that resists, R_H = -Z_H L, fits both R_M = -(R_H + R_V) and eq (2)."""
+    base = haptic_interface(device=ANY, hand=ANY)
+    turned = tuple(replace(b, sign=1) if isinstance(b, Attached) else b for b in base.blocks)
+    other = transfer(replace(base, blocks=turned), "R_M", ("R_D",))["R_D"]
+    return proof(
+        BlocksEqual("R_H = -Z_H L gives eq (2)", T["T_o"], Z_H * (Z_H + Z_M) ** -1),
+        BlocksEqual("R_H = +Z_H L gives another form", other, -Z_H * (Z_M - Z_H) ** -1),
+        BlocksDiffer("which is not eq (2)", other, T["T_o"]),
+    )
+
+
+@shows(
+    2,
+    paper=BERNSTEIN,
+    place="eq (2)",
+    formula="T_o = Z_H (Z_H + Z_M)^-1",
+    printed="the inverse is missing in the available text",
+)
+def uncompensated() -> Proof:
+    """Desired force to force on the hand, without compensation."""
+    right = Z_H * (Z_H + Z_M) ** -1
+    return proof(
+        BlocksEqual("the wiring without C and H gives eq (2)", T["T_o"], right),
+        BlocksDiffer("the other order of factors fails", T["T_o"], (Z_H + Z_M) ** -1 * Z_H),
+    )
+
+
+@shows(
+    3,
+    paper=BERNSTEIN,
+    place="eq (3)",
+    formula="T_MBC = Z_H (Z_H + Z_M - C)^-1",
+    printed="the inverse and the minus sign are missing in the available text",
+)
+def motion_based_cancellation() -> Proof:
+    """Desired force to force on the hand, with motion-based cancellation C alone."""
+    return proof(BlocksEqual("the wiring without H", T["T_MBC"], Z_H * (Z_H + Z_M - C) ** -1))
+
+
+@shows(
+    4,
+    paper=BERNSTEIN,
+    place="eq (4)",
+    formula="T_FF = (Z_M Z_H^-1 + Gamma)^-1 Gamma,  Gamma = I + H",
+    printed="the inverses are missing in the available text; Gamma (...)^-1 is wrong for matrices",
+)
+def force_feedback() -> Proof:
+    """Desired force to force on the hand, with force feedback H alone."""
+    denominator = Z_M * Z_H**-1 + GAMMA
+    return proof(
+        BlocksEqual("the wiring without C", T["T_FF"], denominator**-1 * GAMMA),
+        BlocksDiffer("the other order of factors fails", T["T_FF"], GAMMA * denominator**-1),
+    )
+
+
+@shows(
+    5,
+    paper=BERNSTEIN,
+    place="eq (5)",
+    formula="T_H = ((Z_M - C) Z_H^-1 + Gamma)^-1 Gamma = Z_H (Zhat_M + Z_H)^-1",
+    printed="inverses and minus sign are missing in the available text",
+)
+def hybrid() -> Proof:
+    """Desired force to force on the hand, with both: as if the mechanism were Zhat_M."""
+    form = ((Z_M - C) * Z_H**-1 + GAMMA) ** -1 * GAMMA
+    return proof(
+        BlocksEqual("the wiring with C and H", T["T_H"], form),
+        BlocksEqual("by the apparent impedance", T["T_H"], Z_H * (ZHAT_M + Z_H) ** -1),
+    )
+
+
+@shows(
+    6,
+    paper=BERNSTEIN,
+    place="eq (7)",
+    formula="Zhat_M = Gamma^-1 (Z_M - C)",
+    printed="the order of factors cannot be read; (Z_M - C) Gamma^-1 needs commuting blocks",
+)
+def apparent_impedance() -> Proof:
+    """Apparent impedance of the mechanism after compensation."""
+    other = (Z_M - C) * GAMMA**-1
+    scalars = {s: sp.Symbol(f"scalar_{s}") for s in (Z_M, C, H)}
+    return proof(
+        BlocksEqual("force error over motion, from the wiring", T["Zhat_M"], ZHAT_M),
+        BlocksEqual("its inverse", T["Zhat_M"], ((Z_M - C) ** -1 * GAMMA) ** -1),
+        BlocksDiffer("the other order fails for matrices", T["Zhat_M"], other),
+        Equal("for scalars both orders are one", ZHAT_M.subs(scalars), other.subs(scalars)),
+    )
+
+
+@shows(
+    7,
+    paper=BERNSTEIN,
+    place="figure 4",
+    formula="L = (Zhat_M + Z_H + K)^-1 (K L_D + R_V);  Zhat_M = (R_D - R_M)/L",
+)
+def position_loop() -> Proof:
+    """In the position loop a load enters the loop, but not the impedance that is measured in it."""
+    closed = (ZHAT_M + Z_H + K) ** -1
+    return proof(
+        BlocksEqual("response to the reference", T["L/L_D"], closed * K),
+        BlocksEqual("response to the hand", T["L/R_V"], closed),
+        BlocksEqual("Z_H is not in the measured impedance", sp.diff(T["Zhat_M"], Z_H), sp.S(0)),
+        BlocksDiffer("it is in the loop", T["L/L_D"], T["L/L_D"].subs(Z_H, 2 * Z_H)),
+    )
+
+
+@shows(
+    8,
+    paper=BERNSTEIN,
+    place="figure 3",
+    formula="R_D = 0: R_M = -Zhat_M L,  L = (Zhat_M + Z_H)^-1 R_V",
+)
+def free_space() -> Proof:
+    """What a hand feels in free space is the apparent impedance: it is the transparency error."""
+    felt = transfer(FORCE, "R_M", ("L",), given="L")["L"]
+    moved = transfer(FORCE, "L", ("R_V",))["R_V"]
+    return proof(
+        BlocksEqual("force on the hand over motion", felt, -ZHAT_M),
+        BlocksEqual("motion over the hand's force", moved, (ZHAT_M + Z_H) ** -1),
+    )
+
+
+@shows(
+    9,
+    paper=BERNSTEIN,
+    place="limits of eqs (3) to (5)",
+    formula="C = Z_M: T_MBC = I;  I - T_FF = (Z_M Z_H^-1 + Gamma)^-1 Z_M Z_H^-1 -> 0 for large "
+    "Gamma",
+)
+def limits() -> Proof:
+    """Perfect cancellation and infinite force feedback each give the desired force exactly."""
+    x = Z_M * Z_H**-1
+    q = sp.Symbol("q", positive=True)
+
+    def at(name: str, given: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
+        return sp.sympify(T[name]).subs(given)
+
+    return proof(
+        BlocksEqual("C = Z_M: T_MBC = I", at("T_MBC", {C: Z_M}), sp.S(1)),
+        BlocksEqual("C = Z_M: Zhat_M = 0", at("Zhat_M", {C: Z_M}), sp.S(0)),
+        BlocksEqual("what force feedback leaves", 1 - T["T_FF"], (x + GAMMA) ** -1 * x),
+        BlocksEqual(
+            "the same as (I + Y)^-1 Y with Y = Gamma^-1 Z_M Z_H^-1, of norm at most q = "
+            "norm(Z_M Z_H^-1)/(smallest singular value of Gamma)",
+            1 - T["T_FF"],
+            (1 + GAMMA**-1 * x) ** -1 * GAMMA**-1 * x,
+        ),
+        Limit(
+            "its norm is at most q + q^2 + ... = q/(1 - q), which goes to 0", q / (1 - q), q, 0, 0
+        ),
+        BlocksEqual("H = 0: hybrid is MBC", at("T_H", {H: 0}), T["T_MBC"]),
+        BlocksEqual("C = 0: hybrid is FF", at("T_H", {C: 0}), T["T_FF"]),
+        BlocksEqual("both 0: nothing", at("T_H", {C: 0, H: 0}), T["T_o"]),
+    )
+
+
+@shows(
+    10,
+    paper=BERNSTEIN,
+    place="text on eq (4)",
+    formula="T_FF = Gamma/(Gamma + X), X = Z_M/Z_H;  abs(T_FF) <= 1 iff Re y >= -abs(y)^2/2, y "
+    "= X/Gamma",
+    printed="less than unity if Gamma has the sign of X: the case of real values",
+)
+def size_of_force_feedback() -> Proof:
+    """One degree of freedom: when the force on the hand is no larger than the desired one."""
+    re, im = sp.symbols("re im", real=True)
+    gamma, ratio = sp.symbols("gamma ratio")
+    y = sp.Symbol("y", positive=True)
+    scalar = sp.sympify(T["T_FF"]).subs({H: gamma - 1, Z_M: ratio, Z_H: 1})
+    z = re + sp.I * im
+    return proof(
+        Equal("T_FF = 1/(1 + X/Gamma)", scalar, 1 / (1 + ratio / gamma)),
+        Equal(
+            "1/abs(T_FF)^2 - 1 = 2 Re y + abs(y)^2, not negative exactly under the condition",
+            sp.expand((1 + z) * sp.conjugate(1 + z)) - 1,
+            2 * re + re**2 + im**2,
+        ),
+        NotNegative("real, of one sign: y > 0 satisfies it", 2 * y + y**2, 2 * y + y**2),
+        Holds(
+            "the sign alone does not decide: y = -3 has the other sign and abs(T_FF) = 1/2",
+            sp.Abs(1 / (1 + sp.Integer(-3))),
+            "==",
+            sp.Rational(1, 2),
+        ),
+    )
+
+
+@shows(
+    11,
+    paper=BERNSTEIN,
+    place="figure 3",
+    formula="FF: 1 + H (I + Z_M Z_H^-1)^-1;  MBC: 1 - C (Z_H + Z_M)^-1",
+)
+def loops() -> Proof:
+    """Loops that must stay stable: force feedback, and motion-based cancellation, positive
+    feedback.
+    """
+    m, m_h, h, s = sp.symbols("m m_H h s", positive=True)
+    loop = return_difference(FORCE.without("C"), "H")
+    masses = sp.sympify(loop).subs({H: h, Z_M: m * s**2, Z_H: m_h * s**2})
+    return proof(
+        BlocksEqual("force feedback", loop, 1 + H * (1 + Z_M * Z_H**-1) ** -1),
+        BlocksEqual(
+            "cancellation",
+            return_difference(FORCE.without("H"), "C"),
+            1 - C * (Z_H + Z_M) ** -1,
+        ),
+        Equal("two masses: loop gain H m_H/(m + m_H)", masses - 1, h * m_h / (m + m_h)),
+        Limit("a free rod has loop gain 0", masses - 1, m_h, 0, 0),
+    )

@@ -1,0 +1,244 @@
+"""Compensation of friction that itself gives before it slides: P43 to P46.
+
+Plant: Dahl(sigma_p, f_C). Compensator: Dahl(sigma_D, f_D) on the same position. The pair takes in
+(p - d) v, with p and d their forces.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from ._laws import bristle_force, bristle_rate, dahl_rate, stribeck_level, viscous
+from ._proof import Equal, Grows, Limit, NotNegative, Proof, Step, proof
+from ._statement import DERIVED, shows
+from .dahl_loop import ENERGY, A, f_c
+from .dahl_loop import sigma as STIFFNESS
+
+p, d = sp.symbols("p d", real=True)
+sP, sD, fC, fD, w, g = sp.symbols("sigma_p sigma_D f_C f_D w g", positive=True)
+gap = sp.Symbol("gap", positive=True)  # sigma_p - sigma_D
+SOFTER, LOWER = sp.symbols("softer lower", nonnegative=True)
+ALPHA, BETA = (1 + g * sD) / sP, (g * sP - 1) / sD
+STORED = ALPHA * p**2 / 2 + BETA * d**2 / 2 - g * p * d
+LEVELS = fC - fD
+RATIOS = sP**2 / fC - sD**2 / fD
+CHOSEN = {g: 2 / gap, sP: sD + gap}
+
+
+def rate(stored: sp.Expr, direction: int) -> sp.Expr:
+    """Rate of a stored energy at a speed w, by the laws of plant and compensator."""
+    v = direction * w
+    return sp.diff(stored, p) * dahl_rate(p, v, fC, sP) + sp.diff(stored, d) * dahl_rate(
+        d, v, fD, sD
+    )
+
+
+def dissipation(level: sp.Expr) -> sp.Matrix:
+    """Q of supply - dV/dt = abs(v) (p d) Q (p d)^T, at that level of the plant."""
+    m, n = sP / level, sD / fD
+    side = -g * (m + n) / 2
+    return sp.Matrix([[ALPHA * m, side], [side, BETA * n]])
+
+
+def stored_and_lost(level: sp.Expr) -> list[Step]:
+    """V balances the supply with Q, V > 0, and det Q is the product of two factors."""
+    q = dissipation(level)
+    form = (sp.Matrix([[p, d]]) * q * sp.Matrix([p, d]))[0]
+    factors = (level - fD) * (sP**2 / level - sD**2 / fD)
+    steps: list[Step] = [
+        Equal(
+            f"supply less dV/dt is w (p d) Q (p d)^T at v = {way:+d} w",
+            (p - d) * way * w - rate(STORED, way).subs(fC, level),
+            w * form,
+        )
+        for way in (1, -1)
+    ]
+    return [
+        *steps,
+        NotNegative("V > 0: its first entry", ALPHA, ALPHA, strictly=True),
+        NotNegative(
+            "V > 0: its determinant at g = 2/(sigma_p - sigma_D), sigma_p > sigma_D",
+            sp.hessian(STORED, (p, d)).det().subs(CHOSEN),
+            1 / (sD * (sD + gap)),
+            strictly=True,
+        ),
+        NotNegative("Q >= 0: its first entry", q[0, 0], q[0, 0], strictly=True),
+        Equal(
+            "Q >= 0: its determinant is a product of the two conditions",
+            q.det().subs(CHOSEN),
+            (factors / (level * fD * gap**2)).subs(CHOSEN),
+        ),
+    ]
+
+
+def small_cycles(level: sp.Expr, stiffness: sp.Expr) -> sp.Expr:
+    """Energy of a small cycle over A^3, from the exact loop."""
+    scaled = ENERGY.subs({f_c: level, STIFFNESS: stiffness})
+    return sp.limit(scaled / A**3, A, 0, "+")
+
+
+@shows(
+    43,
+    paper=DERIVED,
+    place="extends Mahvash 2006, section IV-B",
+    formula="passive iff f_D <= f_C and sigma_D^2/f_D <= sigma_p^2/f_C (then sigma_D <= sigma_p)",
+    printed="the proof of the paper supposes ideal Coulomb friction at the measured coordinate",
+)
+def matched_bristles() -> Proof:
+    """Dahl friction compensated by a Dahl compensator on the same position: exactly when the pair
+    is passive.
+    """
+    given = {LOWER: LEVELS, SOFTER: RATIOS}
+    size = sp.Symbol("size", nonnegative=True)  # abs(p - d)
+    shrink = dahl_rate(p, w, fC, sP) - dahl_rate(d, w, fC, sP)
+    return proof(
+        stored_and_lost(fC),
+        NotNegative("which is not negative", LEVELS * RATIOS, LOWER * SOFTER, given),
+        NotNegative(
+            "both conditions together: sigma_p^2 >= sigma_D^2",
+            sP**2 - sD**2,
+            fC * SOFTER + sD**2 * LOWER / fD,
+            given,
+        ),
+        Equal(
+            "sigma_p = sigma_D leaves f_D = f_C: p - d shrinks at the rate abs(v)/lambda, so "
+            "V = lambda abs(p - d) loses abs(v) abs(p - d)",
+            shrink * fC / sP,
+            -w * (p - d),
+        ),
+        [
+            NotNegative(
+                f"which covers any supply, sign {way:+d}",
+                size * w + way * size * w,
+                size * w * (1 + way),
+            )
+            for way in (1, -1)
+        ],
+        Equal(
+            "necessary: small cycles take in (4/3) A^3 (sigma_p^2/f_C - sigma_D^2/f_D)",
+            small_cycles(fC, sP) - small_cycles(fD, sD),
+            sp.Rational(4, 3) * RATIOS,
+        ),
+        Limit(
+            "necessary: large cycles take in 4 A f_C of the plant and give 4 A f_D",
+            ENERGY.subs({f_c: 1, STIFFNESS: 1}) / A,
+            A,
+            sp.oo,
+            sp.S(4),
+        ),
+        assuming=[LEVELS, RATIOS],
+    )
+
+
+@shows(
+    44,
+    paper=DERIVED,
+    place="extends P43",
+    formula="sufficient: f_D <= F_min and sigma_D^2/f_D <= sigma_p^2/F_max",
+)
+def varying_level() -> Proof:
+    """The plant's level may vary in any way between F_min and F_max (speed, position, load,
+    drift): compensate the lowest level that can occur.
+    """
+    level, least, most = sp.symbols("F F_min F_max", positive=True)
+    up, under = sp.symbols("up under", nonnegative=True)
+    low, soft = least - fD, sP**2 / most - sD**2 / fD
+    given = {LOWER: low, SOFTER: soft, up: level - least, under: most - level}
+    return proof(
+        stored_and_lost(level),  # g does not depend on the level: one V for all levels
+        NotNegative("first factor at any level", level - fD, up + LOWER, given),
+        NotNegative(
+            "second factor at any level",
+            sP**2 / level - sD**2 / fD,
+            SOFTER + sP**2 * under / (level * most),
+            given,
+        ),
+        assuming=[low, soft, level - least, most - level],
+    )
+
+
+@shows(
+    45,
+    paper=DERIVED,
+    place="LuGre; Barabanov, Ortega, IEEE TAC 45 (2000) 830",
+    formula="constant level: sigma_1 only dissipates;  level F_C..F_S: passive if sigma_2 >= "
+    "sigma_1 (F_S/F_C - 1)",
+    assumes="that the condition is also necessary is theirs and is not shown here",
+)
+def bristle_damping() -> Proof:
+    """LuGre friction: what bristle damping adds, and when it is passive by itself with the energy
+    of its bristle stored.
+    """
+    s0, s1, s2, extra, scale, level, FS = sp.symbols(
+        "sigma_0 sigma_1 sigma_2 F_SC v_S g F_S", positive=True
+    )
+    force = sp.Symbol("y", real=True)  # sigma_0 z, moving up; down is the point mirror
+    rate_ = bristle_rate(force / s0, w, level, s0)
+    friction = bristle_force(force / s0, w, level, s0, s1) + viscous(w, s2)
+    lost = friction * w - force * rate_
+    inside, above, enough, one = sp.symbols("inside above enough one", nonnegative=True)
+    margin = s2 - s1 * (FS / fC - 1)
+    given = {inside: FS - force, above: level - fC, enough: margin}
+    bell = sp.exp(-((w / scale) ** 2))
+    steepest = stribeck_level(w, fC, extra, scale)
+    below = {inside: fC - force}
+    return proof(
+        NotNegative(
+            "constant level f_C: the damping's power",
+            s1 * rate_.subs(level, fC) * w,
+            s1 * w**2 * inside / fC,
+            below,
+        ),
+        Grows("1 - exp(-(v/v_S)^2) >= 0", 1 - bell, w, 2 * w / scale**2 * bell),
+        NotNegative(
+            "Stribeck: never above F_S, so abs(sigma_0 z) <= F_S is kept",
+            fC + extra - steepest,
+            extra * one,
+            {one: 1 - bell},
+        ),
+        NotNegative("and never below F_C", steepest - fC, extra * bell),
+        NotNegative(
+            "supply less the rate of sigma_0 z^2/2",
+            lost,
+            w * force**2 / level + w**2 * (enough + s1 * (FS * above + fC * inside) / (fC * level)),
+            given,
+        ),
+        assuming=[FS - force, level - fC, margin, fC - force],
+    )
+
+
+@shows(
+    46,
+    paper=DERIVED,
+    place="consequence of P43",
+    formula="small cycles give out (4/3) A^3 (sigma_D^2/f_D - sigma_p^2/f_C)",
+)
+def stiff_compensator() -> Proof:
+    """A compensator stiffer than the plant gives out energy in small motion even far below its
+    level; a lower sigma_D cures it, a lower f_D makes it worse.
+    """
+    given_out = small_cycles(fD, sD) - small_cycles(fC, sP)
+    stiffer, share = sp.symbols("stiffer share", positive=True)
+    return proof(
+        Equal("per A^3", given_out, -sp.Rational(4, 3) * RATIOS),
+        NotNegative(
+            "sigma_D > sigma_p and f_D < f_C",
+            given_out.subs({sD: sP + stiffer, fC: fD + share}),
+            sp.Rational(4, 3)
+            * (2 * sP * stiffer * (fD + share) + stiffer**2 * (fD + share) + sP**2 * share)
+            / (fD * (fD + share)),
+            strictly=True,
+        ),
+        NotNegative(
+            "falls with lower sigma_D",
+            sp.diff(given_out, sD),
+            sp.Rational(8, 3) * sD / fD,
+            strictly=True,
+        ),
+        NotNegative(
+            "rises with lower f_D",
+            -sp.diff(given_out, fD),
+            sp.Rational(4, 3) * sD**2 / fD**2,
+            strictly=True,
+        ),
+    )

@@ -1,0 +1,249 @@
+"""Sampled forces on damped masses: P50 to P52 and P60.
+
+A force held over a sample of length T does the work force * travel; a damper b takes at least
+b travel^2/T. No theorem of others is used.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from ._laws import dahl_rate
+from ._proof import Equal, Limit, NotNegative, Proof, Step, proof
+from ._statement import DERIVED, Paper, shows
+
+COLGATE = Paper(
+    "Colgate 1997",
+    "J. E. Colgate, G. Schenkel, Passivity of a class of sampled-data systems, J. Robotic "
+    "Systems 14 (1997) 37",
+)
+ABBOTT = Paper(
+    "Abbott 2005",
+    "J. J. Abbott, A. M. Okamura, Effects of position quantization and sampling rate on "
+    "virtual-wall passivity, "
+    "IEEE Trans. Robotics 21 (2005) 952",
+)
+HANNAFORD = Paper(
+    "Hannaford 2002",
+    "B. Hannaford, J.-H. Ryu, Time-domain passivity control of haptic interfaces, IEEE Trans. "
+    "Robotics "
+    "Autom. 18 (2002) 1",
+)
+
+T, K, B, b, sigma, r = sp.symbols("T K B b sigma_D r", positive=True)
+theta, D, x = sp.symbols("theta D x", real=True)
+c = sp.cos(theta)
+UNIT = c + sp.I * sp.sin(theta)  # e^(j theta), theta = omega T
+BACK = c - sp.I * sp.sin(theta)
+
+
+def damper_takes_most() -> list[Step]:
+    """b times the integral of v^2 over a sample is at least b D^2/T."""
+    squares = sp.Symbol("squares", positive=True)  # integral of v^2
+    return [
+        Equal(
+            "integral of (v - D/T)^2 over a sample: that of v^2 less D^2/T, 0 at constant speed",
+            squares - 2 * D / T * D + (D / T) ** 2 * T,
+            squares - D**2 / T,
+        )
+    ]
+
+
+def needed(block: sp.Expr) -> sp.Expr:
+    """Damping needed at the angle theta by a held force -H x: T/2/(1 - cos) Re[(1 - 1/z) H]."""
+    return T / 2 / (1 - c) * sp.re(sp.expand((1 - BACK) * block))
+
+
+@shows(
+    50,
+    paper=COLGATE,
+    place="passivity condition",
+    formula="b > T/(2 (1 - cos wT)) Re[(1 - e^(-jwT)) H];  K: b > K T/2;  K + B: b > K T/2 + "
+    "abs(B);  "
+    "-sigma_D: b > -sigma_D T/2, one sample late b > sigma_D T/2, two: b > (5/8) sigma_D T;  "
+    "-B: b > B",
+)
+def held_blocks() -> Proof:
+    """Damping that a sampled block with zero-order hold needs; a Dahl compensator near rest needs
+    none, but delay of its computer does.
+    """
+    jump = UNIT - 1
+    h, g = sp.symbols("h_re h_im", real=True)
+    block = h + sp.I * g
+    spring, damper = K, B * (1 - BACK) / T
+    one, two = -sigma * BACK, -sigma * BACK**2
+    inside = sp.Symbol("inside", nonnegative=True)  # 1 + cos
+    short = sp.Symbol("short", nonnegative=True)  # 1 - cos
+    v = sp.Symbol("v", positive=True)
+    return proof(
+        damper_takes_most(),
+        Equal(
+            "motion e^(j k theta): work given out a sample by the force -H x",
+            sp.re(sp.expand(-block * sp.conjugate(jump))),
+            sp.re(sp.expand((1 - BACK) * block)),
+        ),
+        Equal(
+            "taken by the damper: 2 (1 - cos) b/T; angles do not mix (Parseval)",
+            sp.expand(jump * sp.conjugate(jump)),
+            2 * (1 - c),
+        ),
+        Equal("spring", needed(spring), K * T / 2),
+        Equal("spring with damper from differences", needed(spring + damper), K * T / 2 - B * c),
+        NotNegative(
+            "at most K T/2 + abs(B), reached at theta = pi",
+            B - (needed(damper)),
+            B * inside,
+            {inside: 1 + c},
+        ),
+        NotNegative(
+            "negative damper: at most B, reached at theta -> 0",
+            B - needed(-damper),
+            B * short,
+            {short: 1 - c},
+        ),
+        Equal("Dahl near rest is a spring", dahl_rate(sp.S(0), v, r, sigma), sigma * v),
+        Equal("cancelled: no damping needed", needed(-sigma), -sigma * T / 2),
+        Equal("one sample late", needed(one), -sigma * T / 2 * (1 + 2 * c)),
+        NotNegative(
+            "at most sigma_D T/2, at theta = pi",
+            sigma * T / 2 - needed(one),
+            sigma * T * inside,
+            {inside: 1 + c},
+        ),
+        Equal("two samples late", needed(two), -sigma * T / 2 * (4 * c**2 + 2 * c - 1)),
+        NotNegative(
+            "at most (5/8) sigma_D T, at cos = -1/4",
+            sp.Rational(5, 8) * sigma * T - needed(two),
+            sigma * T / 2 * (2 * c + sp.Rational(1, 2)) ** 2,
+        ),
+        assuming=[1 + c, 1 - c],
+    )
+
+
+@shows(
+    51,
+    paper=ABBOTT,
+    place="main result",
+    formula="passive iff K <= min(2 b/T, 2 f_c/Delta); with friction compensation K <= 2 (f_C - "
+    "f_D)/Delta",
+)
+def encoder_steps() -> Proof:
+    """A sampled spring on an encoder of step Delta, with Coulomb friction and damping: full
+    friction compensation leaves no margin for quantisation.
+    """
+    f_c, step, a = sp.symbols("f_c Delta a", positive=True)
+    q = sp.Symbol("q", real=True)
+    off = sp.Symbol("off", nonnegative=True)
+    slow, dry, inside = sp.symbols("slow dry inside", nonnegative=True)
+    given = {slow: b / T - K / 2, dry: f_c - K * step / 2, inside: step / 2 - off}
+    steps: list[Step] = []
+    for way in (1, -1):
+        for side in (1, -1):
+            travel, error = way * r, side * off
+            stored = K * ((x + travel) ** 2 - x**2) / 2
+            force = -K * (x - error)
+            left = b * travel**2 / T + f_c * r - force * travel - stored
+            spare = inside if way * side > 0 else step / 2 + off
+            steps.append(
+                NotNegative(
+                    f"losses cover work and storage: travel {way:+d}, reading error {side:+d}",
+                    left,
+                    slow * r**2 + r * (dry + K * spare),
+                    given,
+                )
+            )
+    # to and fro over an edge between the readings q and q + Delta, two samples
+    edge = -K * q * r + K * (q + step) * r - 2 * f_c * r - 2 * b * r**2 / T
+    # between -a and a, multiples of Delta
+    wide = -K * -a * 2 * a - K * a * -2 * a - 2 * (b * (2 * a) ** 2 / T + f_c * 2 * a)
+    return proof(
+        damper_takes_most(),
+        steps,
+        Limit(
+            "necessary: small swings over an edge give out",
+            edge / r,
+            r,
+            sp.S(0),
+            K * step - 2 * f_c,
+        ),
+        Limit("necessary: wide swings give out", wide / a**2, a, sp.oo, 4 * K - 8 * b / T),
+        assuming=list(given.values()),
+    )
+
+
+@shows(
+    52,
+    paper=HANNAFORD,
+    place="passivity observer and controller",
+    formula="E[n] = E[n-1] + T sum f_i v_i; where E < 0 add a damper alpha = -E/(T v^2)",
+)
+def observer() -> Proof:
+    """A damper for one sample that restores an energy deficit exactly; friction may be counted
+    into the budget only if it is underestimated.
+    """
+    energy, v = sp.symbols("E v", real=True, nonzero=True)
+    deficit, w, counted = sp.symbols("deficit w f_counted", positive=True)
+    f_C, spare = sp.Symbol("f_C", positive=True), sp.Symbol("spare", nonnegative=True)
+    alpha = -energy / (T * v**2)
+    return proof(
+        Equal("the deficit is made up", energy + T * (alpha * v) * v, 0),
+        NotNegative(
+            "by a true damper", alpha.subs(energy, -deficit), deficit / (T * v**2), strictly=True
+        ),
+        NotNegative(
+            "friction counted below its level: the budget is on the safe side",
+            f_C * w - counted * w,
+            spare * w,
+            {spare: f_C - counted},
+        ),
+        NotNegative(
+            "counted above by spare: the budget misses energy that was never taken",
+            (counted * w - f_C * w).subs(counted, f_C + deficit),
+            deficit * w,
+            strictly=True,
+        ),
+        assuming=[f_C - counted],
+    )
+
+
+@shows(
+    60,
+    paper=DERIVED,
+    place="sampled coupling of Mahvash 2006, eq (10)",
+    formula="passive iff b_m b_s/(b_m + b_s) >= P T/2",
+)
+def sampled_coupling() -> Proof:
+    """Position-position coupling with forces held over a sample: the damping of both sides counts
+    as in parallel.
+    """
+    P, b_m, b_s, a = sp.symbols("P b_m b_s a", positive=True)
+    d_m, d_s, e = sp.symbols("D_m D_s e", real=True)
+    parallel = b_m * b_s / (b_m + b_s)
+    spare = sp.Symbol("spare", nonnegative=True)
+    losses = (b_m * d_m**2 + b_s * d_s**2) / T
+    stored = P * ((e + d_m - d_s) ** 2 - e**2) / 2
+    given_out = -P * e * d_m + P * e * d_s
+    swing = d_m - d_s
+    # e = -a, a, -a ..., split so that b_m D_m = -b_s D_s: the damper losses are least
+    split = {d_m: 2 * a * b_s / (b_m + b_s), d_s: -2 * a * b_m / (b_m + b_s)}
+    cycle = 2 * (given_out.subs(e, -a) - losses).subs(split)
+    return proof(
+        damper_takes_most(),
+        Equal(
+            "two dampers take the parallel one's share and a square",
+            losses - parallel * swing**2 / T,
+            (b_m * d_m + b_s * d_s) ** 2 / ((b_m + b_s) * T),
+        ),
+        NotNegative(
+            "losses cover work and storage",
+            losses - given_out - stored,
+            spare * swing**2 / T + (b_m * d_m + b_s * d_s) ** 2 / ((b_m + b_s) * T),
+            {spare: parallel - P * T / 2},
+        ),
+        Equal(
+            "necessary: a swing at half the sampling rate gives out",
+            cycle,
+            8 * a**2 / T * (P * T / 2 - parallel),
+        ),
+        assuming=[parallel - P * T / 2],
+    )

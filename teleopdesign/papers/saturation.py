@@ -1,0 +1,270 @@
+"""Compensation of ideal Coulomb friction: P37 to P42.
+
+The joint obeys m a = u_link + f_comp - f_friction + f_ext: a compensator pushes along, friction
+against. Energy given out by the pair is that of the compensator less what friction takes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+from scipy.optimize import brentq
+
+from ..blocks import Body, Value
+from ..controllers import controller
+from ..diagrams import haptic_interface
+from ..effects import EFFECTS
+from ..simulate import simulate
+from ._laws import coulomb, dahl_rate, dahl_step, smoothed_coulomb, viscous
+from ._proof import Equal, Grows, Holds, Limit, NotNegative, Proof, Step, proof
+from ._statement import DERIVED, MAHVASH, Figure, Numbers, claim, near, shows
+from .dahl_loop import ENERGY
+from .dahl_loop import A as AMPLITUDE
+from .dahl_loop import f_c as LEVEL
+from .dahl_loop import sigma as STIFFNESS
+
+f_C, f_D, sigma, w, X, u, B, a, d = sp.symbols("f_C f_D sigma_D w X u B a d", positive=True)
+f = sp.Symbol("f", real=True)
+SIZE, MORE, UNUSED = sp.symbols("size more unused", nonnegative=True)
+UNDER = f_C - f_D
+
+
+def pair_power(force: sp.Expr, velocity: sp.Expr) -> sp.Expr:
+    """Power that friction less compensation takes in."""
+    return (coulomb(velocity, f_C) - force) * velocity
+
+
+@shows(
+    37,
+    paper=MAHVASH,
+    place="eqs (12) to (21)",
+    formula="(f_C sgn v - f_dahl) v >= (f_C - abs(f_dahl)) abs(v) >= 0 for abs(f_dahl) <= f_D "
+    "<= f_C",
+    printed="f_c, f_C and f_D are mixed in (15), (16); the sign in (11) is that of the "
+    "resisting force",
+)
+def saturated_compensator() -> Proof:
+    """Ideal Coulomb friction with any compensator that stays within its level is passive at every
+    instant, with no stored energy; added to a passive teleoperator, joint by joint, it keeps it
+    passive.
+    """
+    steps: list[Step] = []
+    for way in (1, -1):
+        for side in (1, -1):
+            here = f"v {'>' if way > 0 else '<'} 0, f_dahl {'>' if side > 0 else '<'} 0"
+            power = pair_power(side * SIZE, way * w)
+            steps.append(
+                NotNegative(
+                    f"power less (f_C - abs(f_dahl)) abs(v): {here}",
+                    power - (f_C - SIZE) * w,
+                    SIZE * w * (1 - way * side),
+                )
+            )
+    return proof(
+        steps,
+        NotNegative(
+            "that bound is not negative; powers of joints and of the teleoperator add up",
+            (f_C - SIZE) * w,
+            (MORE + UNUSED) * w,
+            {MORE: f_D - SIZE, UNUSED: UNDER},
+        ),
+        assuming=[UNDER, f_D - SIZE],
+    )
+
+
+@shows(
+    38,
+    paper=MAHVASH,
+    place="section IV-B",
+    formula="only abs(f_comp) <= f_C is used",
+    printed="proved for the Dahl compensator; not for its forward Euler step with q > 1",
+)
+def only_saturation_counts() -> Proof:
+    """The theorem holds for any stiffness, sampling, delay, quantisation, noise, for smoothed
+    Coulomb friction and even for a wrong sign; it fails for forward Euler with q > 1.
+    """
+    above, below, rest = sp.symbols("above below rest", nonnegative=True)
+    q = sp.Symbol("q", positive=True)
+    kept = sp.exp(-sigma * d / f_D)
+    up = dahl_step(f, d, 1, f_D, sigma)
+    levels = {above: f_D - f, below: f_D + f, rest: 1 - kept}
+    v = sp.Symbol("v", positive=True)
+    euler = f + dahl_rate(f, q * f_D / sigma, f_D, sigma)
+    twice = euler.subs({f: -f_D, q: sp.Rational(3, 2)})
+    return proof(
+        Grows(
+            "share of the distance to the level that a travel takes away",
+            1 - kept,
+            d,
+            sigma / f_D * kept,
+        ),
+        NotNegative(
+            "eq (9) stays below f_D for any next position, late, rounded or noisy",
+            f_D - up,
+            above * kept,
+            levels,
+        ),
+        NotNegative("and above -f_D", f_D + up, below * kept + 2 * f_D * rest, levels),
+        NotNegative(
+            "smoothed Coulomb friction too",
+            f_D - smoothed_coulomb(v, f_D, a),
+            f_D * a / (a + v),
+            strictly=True,
+        ),
+        NotNegative("-f has the same size as f: a wrong sign", f**2 - (-f) ** 2, sp.S(0)),
+        Equal("forward Euler, q = 3/2, f_D = f_C: from -f_D to", twice, 2 * f_D),
+        NotNegative(
+            "moving on, the pair then gives out f_C abs(v)",
+            -pair_power(twice.subs(f_D, f_C), w) - f_C * w,
+            sp.S(0),
+        ),
+        assuming=[f_D - f, f_D + f],
+    )
+
+
+@shows(
+    39,
+    paper=DERIVED,
+    place="converse of Mahvash 2006, eq (21)",
+    formula="given out over X one way: (f_D - f_C) X - f_D lambda (1 - exp(-X/lambda)); passive "
+    "for all "
+    "motions iff f_D <= f_C",
+)
+def unlimited_motion() -> Proof:
+    """The bound is tight where motion is unlimited."""
+    s = sp.Symbol("s", positive=True)
+    given = sp.integrate(dahl_step(sp.S(0), s, 1, f_D, sigma) - coulomb(w, f_C), (s, 0, X))
+    scale = f_D / sigma
+    over = sp.Symbol("over", positive=True)
+    return proof(
+        Equal(
+            "energy given out, from f = 0",
+            given,
+            (f_D - f_C) * X - f_D * scale * (1 - sp.exp(-X / scale)),
+        ),
+        Limit(
+            "f_D = f_C + over: without bound",
+            given.subs(f_C, f_D - over).subs({f_D: 1, sigma: 1}) / X,
+            X,
+            sp.oo,
+            over,
+        ),
+    )
+
+
+def needed_amplitude() -> Numbers:
+    """Amplitude u from which a ratio f_D/f_C gives out energy, and simulations about it."""
+    # half of the last digit stated
+    table: dict[float, tuple[float, float]] = {1.02: (51, 0.5), 1.05: (21, 0.5), 1.1: (11, 0.5)}
+    table |= {1.2: (6, 0.5), 1.5: (2.98, 0.005), 2.0: (1.92, 0.005)}
+    figures = [
+        near(
+            f"u from which f_D = {ratio} f_C gives out energy",
+            float(brentq(lambda x, r=ratio: r * (1 - np.tanh(x) / x) - 1, 1e-3, 1e3)),
+            *expected,
+        )
+        for ratio, expected in table.items()
+    ]
+    for ratio, bristle, grows in ((1.05, 5e-5, True), (1.05, 1e-3, False), (1.2, 1e-3, False)):
+        size = swing(ratio, bristle)
+        what = f"f_D = {ratio} f_C, lambda {1e3 * bristle:g} mm: last swing over first"
+        low, high = (1.0, np.inf) if grows else (-np.inf, 1.0)
+        figures.append(Figure(what, size, low, high))
+    return Numbers(tuple(figures))
+
+
+def swing(ratio: float, bristle: float) -> float:
+    """Last amplitude over the first of a mass on a spring, Coulomb friction compensated by Dahl.
+
+    0.1 kg on 400 N/m (10 Hz), 0.5 N, started 2 mm from rest, 0.5 s
+    """
+    level = 0.5
+    device = Body("prismatic", {"inertia": Value(0.1)})
+    device = device.with_effect(EFFECTS["coulomb"], {"level": level})
+    device = device.with_effect(EFFECTS["spring"], {"stiffness": 400.0})
+    values = {"level": ratio * level, "stiffness": ratio * level / bristle}
+    found = simulate(
+        haptic_interface(device, cancellation=controller("dahl", values)),
+        duration=0.5,
+        initial={"L": 2e-3},
+        computer="continuous",
+        give=1e-6,
+    )["L"].values
+    return float(np.abs(found[-110:]).max() / 2e-3)  # the last cycle and a tenth
+
+
+@shows(
+    40,
+    paper=DERIVED,
+    place="converse of Mahvash 2006, eq (21)",
+    formula="a cycle of amplitude A gives out energy iff f_D (1 - tanh(u)/u) > f_C,  u = "
+    "sigma_D A/f_D",
+    numbers=needed_amplitude,
+)
+def limited_motion() -> Proof:
+    """For plain cycles of limited amplitude the bound is not tight: a soft compensator hides
+    over-compensation until the motion is large. Steps at the reversals find it earlier, see P56.
+    """
+    cycle = ENERGY.subs({LEVEL: f_D, STIFFNESS: sigma, AMPLITUDE: u * f_D / sigma})
+    path = 4 * (u * f_D / sigma)
+    return proof(
+        Equal(
+            "energy given out per travel",
+            cycle / path - coulomb(w, f_C),
+            f_D * (1 - sp.tanh(u) / u) - f_C,
+        ),
+        Grows(
+            "u/cosh^2 u <= tanh u",
+            sp.tanh(u) - u / sp.cosh(u) ** 2,
+            u,
+            2 * u * sp.tanh(u) / sp.cosh(u) ** 2,
+        ),
+        NotNegative(
+            "so the gain per travel rises with u",
+            sp.diff(1 - sp.tanh(u) / u, u),
+            MORE / u**2,
+            {MORE: sp.tanh(u) - u / sp.cosh(u) ** 2},
+        ),
+        Limit("to f_D - f_C", 1 - sp.tanh(u) / u, u, sp.oo, sp.S(1)),
+    )
+
+
+onset = claim(
+    41,
+    paper=MAHVASH,
+    place="experiment",
+    words="Instability set in when f_D exceeded the identified Coulomb level of the prismatic "
+    "joint.",
+    see=(39, 40),
+)
+
+
+@shows(
+    42,
+    paper=DERIVED,
+    place="with a damper",
+    formula="f_D > f_C: speed tends to v* = (f_D - f_C)/B",
+)
+def damped_excess() -> Proof:
+    """Viscous damping bounds what over-compensation can do: not passive, but self-motion stops
+    growing at v*.
+    """
+    top = (f_C - f_D) / -B
+    net = f_D - coulomb(w, f_C) - viscous(w, B)  # at w > 0, compensator at its level
+    slow = sp.Symbol("slow", positive=True)
+    return proof(
+        Equal("force on the moving joint", net, B * (top - w)),
+        NotNegative(
+            "slower than v*: it speeds up",
+            net.subs(f_D, f_C + B * (w + slow)),
+            B * slow,
+            strictly=True,
+        ),
+        NotNegative("faster: it slows down", -net.subs(w, top + slow), B * slow, strictly=True),
+        Holds(
+            "at rest it gives out energy: f_D = 2, f_C = 1, B = 1, v = 1/2",
+            net.subs({f_D: 2, f_C: 1, B: 1, w: sp.Rational(1, 2)}),
+            ">",
+            0,
+        ),
+    )
