@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 from case_writer import write_files
 from excitation import RICHNESS
+from look_alikes import groups
 from machines import Machine, hard_stiffness, make_machine, run_machine
 from reference import Parameters, Track, figure, refit
 from truth_effects import (
@@ -37,8 +38,6 @@ from truth_effects import (
 LEVELS = ("clear", "weak", "null", "double", "outside")
 WINDOW = {"clear": (4.0, 60.0), "weak": (1.6, 3.0), "double": (4.0, 60.0), "outside": (4.0, 60.0)}
 AIM = {"clear": (4.5, 20.0), "weak": (1.8, 2.7), "double": (5.5, 15.0), "outside": (4.5, 15.0)}
-TWINS = {"bias": "coulomb_asymmetry", "coulomb_asymmetry": "bias"}
-RIVALS = {"actuation_delay": "actuator_lag", "actuator_lag": "actuation_delay"}
 START = {
     "bias": 0.1, "coulomb_asymmetry": 0.1, "actuation_delay": 0.2, "actuator_lag": 0.2,
     "contact_damping": 0.2, "contact_hardening": 0.2,
@@ -108,13 +107,17 @@ def model_of(machine: Machine, values: Values, i: int, added: list[str]) -> Para
 
 
 def base_error(
-    machine: Machine, values: list[Values], tracks: dict[str, list[Track]], added: list[list[str]]
+    machine: Machine,
+    values: list[Values],
+    tracks: dict[str, list[Track]],
+    added: list[list[str]],
+    steps: int = 8,
 ) -> tuple[float, float]:
     """Fit and check error of the user's model (and the added effects), re-estimated."""
     fitted = []
     for i, v in enumerate(values):
         p = model_of(machine, v, i, added[i])
-        fitted.append(refit(tracks["fit"][i], p, free_parameters(machine, i, added[i])))
+        fitted.append(refit(tracks["fit"][i], p, free_parameters(machine, i, added[i]), steps))
     both = [
         figure(tr, [t.residual(p) for t, p in zip(tr, fitted, strict=False)])
         for tr in tracks.values()
@@ -290,7 +293,16 @@ def make_case(
             [t.noise_only(v) for t, v in zip(tracks["check"], values, strict=False)],
         )
         figures: dict[str, object] = {
-            "indistinguishable": _groups(machine, hidden, values, tracks, true),
+            "indistinguishable": groups(
+                machine,
+                hidden,
+                values,
+                error=lambda v, added, steps, tr=tracks, m=machine: base_error(
+                    m, v, tr, added, steps
+                )[1],
+                true=true,
+                excitation=excitation,
+            ),
             "check_error_base": round(check, 6),
             "fit_error_base": round(fit, 6),
             "check_error_true": round(true, 6),
@@ -306,31 +318,6 @@ def make_case(
             level, machine, hidden, values, tracks, figures, _believed(rng, machine, values)
         )
     raise RuntimeError(f"no machine with {effects or level} at level {level} in {tries} tries")
-
-
-def _groups(
-    machine: Machine,
-    hidden: list[Hidden],
-    values: list[Values],
-    tracks: dict[str, list[Track]],
-    true: float,
-) -> list[list[dict[str, str]]]:
-    """Effects that this record cannot tell apart; only pairs known to be close are tried."""
-    out = []
-    for h in hidden:
-        twin = TWINS.get(h.effect)
-        rival = RIVALS.get(h.effect)
-        if rival and len(hidden) == 1:
-            changed = [dict(v) for v in values]
-            v = changed[h.body]
-            amount = v["delay"] if h.effect == "actuation_delay" else v["lag"]
-            v |= {"delay": amount, "lag": amount}
-            added = [[rival] if i == h.body else [] for i in range(len(values))]
-            if base_error(machine, changed, tracks, added)[1] < 1.05 * true:
-                twin = rival
-        if twin:
-            out.append([{"effect": e, "at": h.at} for e in (h.effect, twin)])
-    return out
 
 
 def _believed(rng: np.random.Generator, machine: Machine, values: list[Values]) -> list[Values]:

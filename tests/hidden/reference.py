@@ -199,8 +199,8 @@ def figure(tracks: list[Track], residuals: list[np.ndarray]) -> float:
     return float(math.sqrt(top / low))
 
 
-def refit(track: Track, start: Parameters, free: list[str]) -> Parameters:
-    """Free parameters re-estimated on this body's fit record."""
+def refit(track: Track, start: Parameters, free: list[str], steps: int = 8) -> Parameters:
+    """Free parameters re-estimated on this body's fit record, in at most so many steps."""
     scale = np.array([max(abs(start[n]), 1e-9) for n in free])
     step = max(1, int(track.rate / (5 * track.bandwidth)))
 
@@ -211,5 +211,7 @@ def refit(track: Track, start: Parameters, free: list[str]) -> Parameters:
     signed = {"bias", "half_difference", "damping_difference", "cogging_phase", "spring"}
     low = [-np.inf if n in signed else 1e-3 for n in free]
     q0 = np.array([start[n] for n in free]) / scale
-    q = least_squares(cost, np.maximum(q0, low), bounds=(low, np.inf), diff_step=1e-4, max_nfev=8).x
+    q = least_squares(
+        cost, np.maximum(q0, low), bounds=(low, np.inf), diff_step=1e-4, max_nfev=steps
+    ).x
     return start | dict(zip(free, (q * scale).tolist(), strict=False))

@@ -1,0 +1,325 @@
+"""The recovery study: its rules, its counting, its plan; and that it runs (slow)."""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from shared_data import shared_folder
+
+STUDIES = Path(__file__).resolve().parents[1] / "studies"
+sys.path.insert(0, str(STUDIES))
+
+from _campaign import plan, run_campaign, write_plan  # noqa: E402
+from _recovery_tables import Campaign, collect, main_table, row_of  # noqa: E402
+from _scoring import (  # noqa: E402
+    Answer,
+    Share,
+    Truth,
+    calibration,
+    estimates,
+    judge,
+    load_truth,
+    quantile_text,
+)
+
+from teleopdesign import EFFECTS  # noqa: E402
+
+STRIBECK, BIAS = ("stribeck", "device"), ("bias", "device")
+ASYMMETRY = ("coulomb_asymmetry", "device")
+
+
+def truth(*effects, level="clear", groups=(), **content):
+    return Truth("0001", level, effects, tuple(frozenset(g) for g in groups), content)
+
+
+def answer(*named, verdict=None, groups=(), probability=None, **content):
+    verdict = verdict or ("effects_missing" if named else "undecided")
+    groups = tuple(frozenset(g) for g in groups)
+    return Answer(verdict, named, groups, probability or {}, {"candidates": []} | content)
+
+
+ADEQUATE = answer(verdict="model_adequate")
+
+
+@pytest.mark.parametrize(
+    ("said", "outcome"),
+    [
+        (answer(STRIBECK), "right"),
+        (answer(STRIBECK, BIAS), "right first"),
+        (answer(BIAS, STRIBECK), "wrong"),
+        (answer(("stribeck", "slave")), "other place"),
+        (answer(), "undecided"),
+        (answer(groups=[(STRIBECK, BIAS)]), "wide group"),
+        (answer(BIAS, groups=[(STRIBECK, BIAS)]), "wide group"),
+        (answer(BIAS, groups=[(STRIBECK, ASYMMETRY)]), "wrong"),
+        (ADEQUATE, "missed"),
+        (None, "no answer"),
+    ],
+)
+def test_one_effect_is_judged_by_what_is_named_first_and_what_else(said, outcome):
+    assert judge(truth(STRIBECK), said) == outcome
+
+
+@pytest.mark.parametrize(
+    ("said", "outcome"),
+    [
+        (answer(groups=[(BIAS, ASYMMETRY)]), "look-alike"),
+        (answer(ASYMMETRY, groups=[(BIAS, ASYMMETRY)]), "look-alike"),
+        (answer(ASYMMETRY, STRIBECK, groups=[(BIAS, ASYMMETRY)]), "right first"),
+        (answer(groups=[(BIAS, ASYMMETRY, STRIBECK)]), "wide group"),
+        (answer(ASYMMETRY), "wrong"),  # sure of what nobody could know
+    ],
+)
+def test_look_alikes_count_only_where_the_answer_lists_them(said, outcome):
+    assert judge(truth(BIAS, groups=[(BIAS, ASYMMETRY)]), said) == outcome
+
+
+@pytest.mark.parametrize(
+    ("said", "outcome"),
+    [
+        (answer(BIAS, STRIBECK), "right"),
+        (answer(ASYMMETRY, STRIBECK, groups=[(BIAS, ASYMMETRY)]), "right"),
+        (answer(STRIBECK, BIAS, ("spring", "device")), "right first"),
+        (answer(STRIBECK), "half"),
+        (answer(STRIBECK, ("spring", "device")), "wrong"),
+        (answer(STRIBECK, STRIBECK), "wrong"),
+        (answer(), "undecided"),
+        (ADEQUATE, "missed"),
+    ],
+)
+def test_two_effects_are_right_when_exactly_the_two_are_named(said, outcome):
+    assert judge(truth(STRIBECK, BIAS, level="double", groups=[(BIAS, ASYMMETRY)]), said) == outcome
+
+
+def test_an_adequate_model_called_anything_else_is_a_false_alarm():
+    assert judge(truth(level="null"), ADEQUATE) == "right"
+    assert judge(truth(level="null"), answer()) == "false alarm"
+    assert judge(truth(level="null"), answer(BIAS)) == "false alarm"
+
+
+def test_an_outside_effect_must_not_get_a_catalogue_name_with_confidence():
+    hum = truth(("outside_hum", "device"), level="outside")
+    assert judge(hum, answer()) == "right"
+    assert judge(hum, answer(("my_hum", "device"))) == "right"
+    assert judge(hum, answer(BIAS, probability={BIAS: 0.4})) == "unsure"
+    assert judge(hum, answer(BIAS, probability={BIAS: 0.6})) == "confident"
+    assert judge(hum, answer(BIAS)) == "confident"  # no probability: said as a fact
+    assert judge(hum, ADEQUATE) == "missed"
+
+
+def test_the_truth_itself_is_right_in_every_published_case():
+    folder = shared_folder("hidden")
+    for path in sorted((folder / "truth").glob("*.json")):
+        true = load_truth(folder, path.stem)
+        said = answer(*true.effects, groups=true.groups) if true.effects else ADEQUATE
+        said = answer() if true.level == "outside" else said
+        assert judge(true, said) == "right"
+
+
+def test_shares_have_the_exact_binomial_interval():
+    assert Share(0, 10).interval == pytest.approx((0.0, 1 - 0.025**0.1))  # closed form for none
+    assert str(Share(3, 4)) == "75 % (19 to 99), 3 of 4"
+    assert str(Share(0, 0)) == "–"
+
+
+def test_a_quantile_says_where_too_few_values_leave_its_interval_open():
+    assert quantile_text([1.0, 2.0, 3.0], 0.5) == "2.00 (? to ?), n = 3"
+    assert quantile_text(list(range(1, 101)), 0.5, digits=0) == "50 (40 to 61), n = 100"
+
+
+def test_calibration_error_is_what_sureness_exceeds_truth_by():
+    rng = np.random.default_rng(0)
+    said = rng.uniform(size=4000)
+    fair = calibration([[(p, rng.uniform() < p)] for p in said], rng)
+    # ten bins of 400: half a standard deviation of a share, 0.02, is left by chance
+    assert fair.error < 0.03
+    sure = calibration([[(0.9, k % 2 == 0)] for k in range(100)], rng)
+    assert sure.error == pytest.approx(0.4)
+    assert sure.interval[0] < 0.4 < sure.interval[1]
+    assert [s.n for s in sure.true] == [100]
+
+
+def test_a_phase_is_compared_on_the_circle():
+    cogging = ("cogging", "device")
+    true = truth(
+        cogging,
+        effects=[
+            {
+                "effect": "cogging",
+                "at": "device",
+                "parameters": {"phase": {"value": 6.2}, "period": {"value": 0.01}},
+            }
+        ],
+    )
+    parameters = {
+        "phase": {"value": 6.25 - 2 * math.pi, "stderr": 0.03},
+        "period": {"value": 0.0103, "stderr": 0.0001},
+    }
+    said = answer(
+        cogging,
+        candidates=[{"effect": "cogging", "at": "device", "parameters": parameters}],
+    )
+    assert {e.parameter: e.inside for e in estimates(true, said)} == {
+        "phase": True,
+        "period": False,
+    }
+
+
+def test_a_longer_plan_begins_with_the_shorter_one():
+    assert plan(60, seed=4)[:25] == plan(25, seed=4)
+    assert plan(25, seed=5) != plan(25, seed=4)
+
+
+def test_a_plan_hides_every_effect_of_the_catalogue_on_both_kinds_of_machine():
+    cases = plan(400, seed=1)
+    contact = {"contact_damping", "contact_hardening"}
+    for kind, wanted in (("device", set(EFFECTS) - contact), ("teleoperator", set(EFFECTS))):
+        hidden = {c.effect for c in cases if c.kind == kind and c.level == "clear"}
+        assert hidden >= wanted
+    for name in ("level", "excitation", "rate"):  # each together with each kind
+        pairs = {(getattr(c, name), c.kind) for c in cases}
+        assert len(pairs) == 2 * len({getattr(c, name) for c in cases})
+
+
+def test_a_folder_of_other_cases_is_refused(tmp_path):
+    write_plan(tmp_path, plan(3, seed=1))
+    write_plan(tmp_path, plan(5, seed=1))
+    assert len(json.loads((tmp_path / "plan.json").read_text())["cases"]) == 5
+    with pytest.raises(SystemExit, match="plan.json: case 000"):
+        write_plan(tmp_path, plan(3, seed=2))
+
+
+def finished(folder, case, said):
+    """A case whose truth and answer are there already."""
+    for part in ("truth", "answers", f"cases/{case.name}"):
+        (folder / part).mkdir(parents=True, exist_ok=True)
+    content = {
+        "level": "null", "axis": "prismatic", "effects": [], "indistinguishable": [],
+        "check_error_true": 0.02, "noise_floor": 0.019,
+    }  # fmt: skip
+    (folder / "truth" / f"{case.name}.json").write_text(json.dumps(content))
+    (folder / "cases" / case.name / "experiment.toml").write_text("[channels]\n")
+    (folder / "answers" / f"{case.name}.json").write_text(json.dumps(said))
+
+
+def test_an_answer_that_is_there_is_not_made_again(tmp_path, capsys):
+    (case,) = plan(1, seed=1, levels=("null",))
+    said = {
+        "verdict": "model_adequate", "missing": [], "indistinguishable": [],
+        "ladder": [{"check_error": 0.021}], "processor_seconds": 9.0,
+        "candidates": [{"effect": "bias", "at": "device", "probability": 0.01}],
+    }  # fmt: skip
+    finished(tmp_path, case, said)
+    run_campaign(tmp_path, [case])
+    assert "1 cases" in (printed := capsys.readouterr().out) and "0 to do" in printed
+    campaign = collect(tmp_path, [case], ["answers"])
+    assert [r.outcome for r in campaign.rows] == ["right"]
+    assert campaign.rows[0].noise == "1 to 2 %"
+    assert campaign.best == ((0.01, False),)
+    assert "| nothing missing: false alarm | 0 % (0 to 98), 0 of 1 |" in main_table(campaign)
+
+
+def test_a_case_that_failed_counts_and_one_that_was_not_run_does_not(tmp_path):
+    first, second = plan(2, seed=1, levels=("null",))
+    for case in (first, second):
+        finished(tmp_path, case, {})
+        (tmp_path / "answers" / f"{case.name}.json").unlink()
+    (tmp_path / "failed").mkdir()
+    (tmp_path / "failed" / f"{first.name}.answers.txt").write_text("why\n")
+    campaign = collect(tmp_path, [first, second], ["answers"])
+    assert [(r.case, r.outcome) for r in campaign.rows] == [(first.name, "no answer")]
+
+
+def test_a_table_without_any_answer_can_be_printed():
+    assert main_table(Campaign((), (), (), (), 0)).count("\n") > 3
+
+
+def test_an_unfinished_case_has_a_row_without_numbers():
+    (case,) = plan(1, seed=1)
+    true = truth(STRIBECK, axis="prismatic", check_error_true=0.02, noise_floor=0.02)
+    row = row_of(case, true, None, "answers")
+    assert row.outcome == "no answer" and math.isnan(row.error_after)
+
+
+def made_library():
+    """One body whose force lacks a spring, among terms that are near-copies or nothing."""
+    from _terms import Library
+
+    rng = np.random.default_rng(3)
+    effects = ("viscous", "spring", "hardening_spring", "cogging", "cogging", "bias")
+    columns = rng.standard_normal((2, 900, len(effects)))
+    columns[:, :, 2] = 0.8 * columns[:, :, 1] + 0.6 * columns[:, :, 2]  # a cube looks like a line
+    target = 0.4 * columns[:, :, 1] + 0.1 * rng.standard_normal((2, 900))
+    return Library(
+        body="slave",
+        effect=effects,
+        size=np.ones(len(effects)),
+        fit=columns[0],
+        check=columns[1],
+        fit_target=target[0],
+        check_target=target[1],
+    )
+
+
+@pytest.mark.parametrize("method", ["pysindy", "sysidentpy"])
+def test_a_baseline_names_the_term_that_is_missing_and_where(method):
+    pytest.importorskip(method, reason="the extra `bench` is not installed")
+    import _baselines
+
+    choose = getattr(_baselines, f"{method}_columns")
+    library = made_library()
+    named = _baselines.name_effects(library, choose(library))
+    assert (named[0].effect, named[0].at) == ("spring", "slave")
+
+
+def test_a_choice_that_the_check_record_does_not_support_names_nothing():
+    from _baselines import name_effects
+
+    library = made_library()
+    assert name_effects(library, np.array([0, 3])) == []
+    assert [n.effect for n in name_effects(library, np.array([1]))] == ["spring"]
+
+
+def test_a_delay_and_a_lag_are_told_by_their_second_coefficient():
+    from _baselines import name_effects
+    from _terms import Library
+
+    rng = np.random.default_rng(1)
+    columns = rng.standard_normal((2, 600, 2))
+    for share, effect in ((0.5, "actuation_delay"), (1.0, "actuator_lag")):
+        tau = 0.3
+        target = columns @ np.array([tau, -share * tau**2])
+        library = Library(
+            body="device",
+            effect=("actuation_delay", "actuation_delay"),
+            size=np.ones(2),
+            fit=columns[0],
+            check=columns[1],
+            fit_target=target[0],
+            check_target=target[1],
+        )
+        assert [n.effect for n in name_effects(library, np.array([0]))] == [effect]
+
+
+@pytest.mark.slow
+def test_the_study_runs_quickly_and_writes_tables_rows_and_figures(tmp_path):
+    command = [sys.executable, str(STUDIES / "hidden_effects.py"), "--quick", "--baselines"]
+    done = subprocess.run(
+        [*command, "--output", str(tmp_path)], capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stderr
+    assert "one clear effect" in done.stdout
+    assert {p.name for p in tmp_path.iterdir()} == {
+        "hidden_effects.md", "hidden_effects_more.md", "hidden_effects.csv", "hidden_effects.nc",
+        "hidden_effects_parameters.csv", "hidden_effects_confusion.pdf",
+        "hidden_effects_confusion.png", "hidden_effects_calibration.pdf",
+        "hidden_effects_calibration.png",
+    }  # fmt: skip
+    rows = (tmp_path / "hidden_effects.csv").read_text()
+    assert rows.count("\n") == 3 and "no answer" not in rows
