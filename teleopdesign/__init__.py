@@ -22,6 +22,7 @@ The folders, each importing only from those before it:
     realise       any block into each form: transfer function, iosystem, kernel, residual
     derive        transfer functions and impedances from the wiring, symbolic
     frequency     responses over frequency
+    passivity     claims: proved with a certificate, refuted by a motion, or evidence
     simulate      time
     measurement   experiment, record, motion
     diagnose      residual, noise floor, candidates, ladder, answer

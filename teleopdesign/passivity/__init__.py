@@ -1,0 +1,90 @@
+"""Passivity: claims about a port, each proved, refuted, supported by numbers, or unknown.
+
+    from teleopdesign.passivity import dahl_compensation, positive_real
+
+    claim = positive_real(0.15 * s + 4)      # force over velocity, N s/m
+    claim.status, claim.verdict              # "proved", by what, with which margin
+    claim.certificates[0].write("c.json")    # python check_certificate.py c.json
+
+A refuted claim holds a motion that gives out energy: `claim.record.replay()`.
+"""
+
+from .certificate import Certificate, read_certificate
+from .claim import Claim, Evidence, Proof, Refutation, Unknown
+from .compliant_transmission import any_environment, free_motion, free_motion_margin
+from .delayed_compensation import delayed_small_motion, given_out_late, inertia_given_out
+from .delayed_coupling import delayed_spring
+from .friction_compensation import (
+    bounded_compensation,
+    dahl_compensation,
+    largest_passive_level,
+    onset_amplitude,
+    self_motion_speed,
+)
+from .hand_port import hand_port
+from .impedance import Impedance, impedance
+from .kyp import Kyp, kyp, storage_function
+from .lugre import lugre_passivity
+from .positive_real import Excess, damping_excess, mobility_excess, positive_real
+from .quantised_spring import quantised_spring
+from .record import read_record, write_record
+from .regions import Region, region
+from .sampled_data import required_damping, sampled_coupling, sampled_passivity
+from .second_opinion import SecondOpinion, second_opinion
+from .two_port import FrequencyMargins, TwoPort, over_frequency, teleoperator, two_port
+from .two_port_claims import absolutely_stable, passive
+from .z_width import WALL_DAMPING, WALL_STIFFNESS, ZWidth, z_width
+
+__all__ = [
+    "WALL_DAMPING",
+    "WALL_STIFFNESS",
+    "Certificate",
+    "Claim",
+    "Evidence",
+    "Excess",
+    "FrequencyMargins",
+    "Impedance",
+    "Kyp",
+    "Proof",
+    "Refutation",
+    "Region",
+    "SecondOpinion",
+    "TwoPort",
+    "Unknown",
+    "ZWidth",
+    "absolutely_stable",
+    "any_environment",
+    "bounded_compensation",
+    "dahl_compensation",
+    "damping_excess",
+    "delayed_small_motion",
+    "delayed_spring",
+    "free_motion",
+    "free_motion_margin",
+    "given_out_late",
+    "hand_port",
+    "impedance",
+    "inertia_given_out",
+    "kyp",
+    "largest_passive_level",
+    "lugre_passivity",
+    "mobility_excess",
+    "onset_amplitude",
+    "over_frequency",
+    "passive",
+    "positive_real",
+    "quantised_spring",
+    "read_certificate",
+    "read_record",
+    "region",
+    "required_damping",
+    "sampled_coupling",
+    "sampled_passivity",
+    "second_opinion",
+    "self_motion_speed",
+    "storage_function",
+    "teleoperator",
+    "two_port",
+    "write_record",
+    "z_width",
+]

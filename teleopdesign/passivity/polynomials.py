@@ -1,0 +1,108 @@
+"""Exact statements about real polynomials with rational coefficients."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import sympy as sp
+
+#: stands for the square of the angular frequency, omega^2
+X = sp.Symbol("x")
+
+
+def is_hurwitz(polynomial: sp.Poly) -> bool:
+    """Whether every root has a negative real part (Routh's scheme; constants have no root)."""
+    a = [fraction(c) for c in polynomial.all_coeffs()]
+    if a[0] == 0:
+        return False
+    upper, lower = [c / a[0] for c in a[::2]], [c / a[0] for c in a[1::2]]
+    for _ in a[1:]:
+        if not lower or lower[0] <= 0:
+            return False
+        ratio = upper[0] / lower[0]
+        below = lower + [Fraction(0)] * (len(upper) - len(lower))
+        upper, lower = lower, [u - ratio * v for u, v in zip(upper[1:], below[1:], strict=True)]
+    return True
+
+
+def is_non_negative(polynomial: sp.Poly) -> bool:
+    """Whether p(x) >= 0 for all x >= 0: no root of odd multiplicity at x > 0 (Sturm)."""
+    if polynomial.is_zero:
+        return True
+    if polynomial.LC() < 0:
+        return False
+    for factor, multiplicity in polynomial.sqf_list()[1]:
+        if multiplicity % 2:
+            at_zero = 1 if factor.eval(0) == 0 else 0
+            if int(factor.count_roots(0, None)) > at_zero:
+                return False
+    return True
+
+
+def where_negative(polynomial: sp.Poly) -> list[Fraction]:
+    """Points x > 0 at which p(x) < 0, at least one in each gap between neighbouring roots."""
+    for bits in (80, 1000):  # roots that agree in 80 bits need more
+        ends = [Fraction(0), *positive_roots(polynomial, bits=bits)]
+        points = [(a + b) / 2 for a, b in zip(ends, ends[1:], strict=False)]
+        points.append(2 * ends[-1] + 1)
+        found = [x for x in points if value(polynomial, x) < 0]
+        if found:
+            return found
+    return []
+
+
+def positive_roots(polynomial: sp.Poly, *, bits: int = 80) -> list[Fraction]:
+    """Roots x > 0, each once, by isolation and bisection; relative error 2^-bits."""
+    if polynomial.degree() < 1:
+        return []
+    plain = polynomial.sqf_part()
+    found = []
+    for low, high in ((fraction(a), fraction(b)) for a, b in plain.intervals(inf=0, sqf=True)):
+        while low == 0 and high > 0:  # a relative error needs an end that is not 0
+            middle = high / 2
+            low, high = (low, middle) if _between(plain, low, middle) else (middle, high)
+        while (high - low) * 2**bits > high:
+            middle = (low + high) / 2
+            low, high = (low, middle) if _between(plain, low, middle) else (middle, high)
+        if high > 0:
+            found.append((low + high) / 2)
+    return found
+
+
+def _between(plain: sp.Poly, low: Fraction, high: Fraction) -> bool:
+    """Whether the one root above `low` lies at or below `high`; simple roots only."""
+    start, end = value(plain, low), value(plain, high)
+    if start == 0:  # the neighbouring root, exactly: the sign just after it is that of the slope
+        start = value(plain.diff(), low)
+    return end == 0 or start * end < 0
+
+
+def value(polynomial: sp.Poly, at: Fraction) -> Fraction:
+    """Exact value at a rational point."""
+    total = Fraction(0)
+    for c in polynomial.all_coeffs():
+        total = total * at + fraction(c)
+    return total
+
+
+def fraction(number: sp.Expr) -> Fraction:
+    """A sympy rational as a Fraction."""
+    return Fraction(int(number.p), int(number.q))
+
+
+def even_part(p: sp.Poly, q: sp.Poly) -> sp.Poly:
+    """Re p(j w) conj q(j w) as a polynomial in x = w^2."""
+    (pe, po), (qe, qo) = halves(p), halves(q)
+    return pe * qe + sp.Poly(X, X) * po * qo
+
+
+def halves(p: sp.Poly) -> tuple[sp.Poly, sp.Poly]:
+    """(a, b) with p(j w) = a(w^2) + j w b(w^2)."""
+    rising = p.all_coeffs()[::-1]
+    return _alternating(rising[::2]), _alternating(rising[1::2])
+
+
+def _alternating(rising: Sequence[sp.Expr]) -> sp.Poly:
+    signed = [(-1) ** k * c for k, c in enumerate(rising)]
+    return sp.Poly(signed[::-1] or [0], X, domain="QQ")

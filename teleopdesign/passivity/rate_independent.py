@@ -1,0 +1,156 @@
+"""Friction that depends on the path, not on the speed, integrated exactly along turning points.
+
+Each element resists: `leg` takes its force and a travel of one sign, and gives the force at the end
+and the work that the travel puts in. No time step, no approximation but rounding.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+
+class Element(Protocol):
+    """A rate-independent force against the motion, within `level` (N)."""
+
+    @property
+    def level(self) -> float:
+        """Largest force, N."""
+        ...
+
+    def leg(self, force: float, travel: float) -> tuple[float, float]:
+        """(force at the end, work put in) of a travel without turning."""
+        ...
+
+
+@dataclass(frozen=True)
+class Coulomb:
+    """level sgn(v)."""
+
+    level: float
+
+    def leg(self, force: float, travel: float) -> tuple[float, float]:
+        """Force jumps to the level against the travel; all work is lost."""
+        return math.copysign(self.level, travel) if travel else force, self.level * abs(travel)
+
+
+@dataclass(frozen=True)
+class Dahl:
+    """df/dx = stiffness (1 - f/level sgn v): exact over any travel."""
+
+    level: float
+    stiffness: float
+
+    def leg(self, force: float, travel: float) -> tuple[float, float]:
+        """f' = s level + (f - s level) e^(-abs(travel)/length), and its integral."""
+        if not travel:
+            return force, 0.0
+        length, s = self.level / self.stiffness, math.copysign(1.0, travel)
+        y = abs(travel) / length
+        gone = -math.expm1(-y)
+        work = self.level * length * _beyond_linear(y) + s * force * length * gone
+        return force * (1 - gone) + s * self.level * gone, work
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A spring that slides at its level: a body stuck by Coulomb friction behind a compliance."""
+
+    level: float
+    stiffness: float
+
+    def leg(self, force: float, travel: float) -> tuple[float, float]:
+        """Linear up to the level, constant beyond it."""
+        if not travel:
+            return force, 0.0
+        s = math.copysign(1.0, travel)
+        give = min(abs(travel), (self.level - s * force) / self.stiffness)
+        end = force + s * self.stiffness * give
+        return end, s * (force + end) / 2 * give + self.level * (abs(travel) - give)
+
+
+def _beyond_linear(y: float) -> float:
+    """y - (1 - e^-y), without cancellation where y is small."""
+    if y > 0.1:
+        return y + math.expm1(-y)
+    term, total = y * y / 2, 0.0
+    for k in range(3, 16):
+        total, term = total + term, -term * y / k
+    return total
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """A closed path through turning points that gives out energy each time, as often as one likes.
+
+    compensator: whose force helps the motion;  friction: what resists
+    turning_points: positions, m, of one round, starting at the last of them; from rest and without
+    preloads, `rounds` are travelled, and the last one is counted
+    """
+
+    compensator: Dahl
+    friction: tuple[Element, ...]
+    turning_points: tuple[float, ...]
+    rounds: int = 200
+
+    @property
+    def energy(self) -> float:
+        """Energy given out in the last round, J."""
+        return self.replay()
+
+    def replay(self) -> float:
+        """Energy given out in the last round, J, integrated anew."""
+        elements: tuple[Element, ...] = (self.compensator, *self.friction)
+        forces, here, out = [0.0] * len(elements), self.turning_points[-1], 0.0
+        for _ in range(self.rounds):
+            before, out = list(forces), 0.0
+            for point in self.turning_points:
+                for k, element in enumerate(elements):
+                    forces[k], work = element.leg(forces[k], point - here)
+                    out += work if k == 0 else -work
+                here = point
+            if forces == before:
+                break
+        return out
+
+    def as_dict(self) -> dict[str, object]:
+        """Plain data, to be written as JSON."""
+        return {
+            "kind": "cycle",
+            "compensator": _plain(self.compensator),
+            "friction": [_plain(e) for e in self.friction],
+            "turning_points": list(self.turning_points),
+            "rounds": self.rounds,
+            "energy": self.energy,
+        }
+
+
+def _plain(element: Element) -> list[object]:
+    return [type(element).__name__.lower(), *vars(element).values()]
+
+
+def symmetric_cycle(compensator: Dahl, friction: Sequence[Element], amplitude: float) -> Cycle:
+    """The cycle between -amplitude and amplitude (m)."""
+    # a cycle of u bristle lengths forgets its start as e^(-4 u): 40 of those are beyond rounding
+    softest = min(
+        [
+            amplitude * e.stiffness / e.level
+            for e in (compensator, *friction)
+            if hasattr(e, "stiffness")
+        ]
+    )
+    rounds = int(min(max(12, 10 / softest), 20000))
+    return Cycle(compensator, tuple(friction), (amplitude, -amplitude), rounds)
+
+
+def dahl_loss(level: float, stiffness: float, amplitude: float) -> float:
+    """Energy that Dahl friction takes per cycle, J: 4 f A (1 - tanh(u)/u), u = A sigma/f.
+
+    N, N/m;  amplitude: A of a symmetric cycle, m
+    """
+    u = amplitude * stiffness / level
+    if u < 1e-3:
+        return 4 * level * amplitude * u * u / 3 * (1 - 0.4 * u * u)
+    return 4 * level * amplitude * (1 - math.tanh(u) / u)

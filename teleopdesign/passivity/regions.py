@@ -1,0 +1,42 @@
+"""Where in a plane of two parameters a claim holds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .claim import Claim
+
+
+@dataclass(frozen=True)
+class Region:
+    """Status of a claim over two parameters.
+
+    x, y: (n,), (m,);  status: (m, n) of "proved", "refuted", "evidence" or "unknown"
+    holds: (m, n), 1 where it holds, 0 where not, NaN where unknown
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    status: np.ndarray
+    holds: np.ndarray
+
+    def __repr__(self) -> str:
+        counts = {s: int((self.status == s).sum()) for s in sorted(set(self.status.ravel()))}
+        total = ", ".join(f"{n} {s}" for s, n in counts.items())
+        return f"Region of {self.status.size} points: {total}"
+
+
+def region(claim: Callable[[float, float], Claim], x: np.ndarray, y: np.ndarray) -> Region:
+    """Settle claim(x, y) at every point of a grid, each for itself and exactly as that claim is.
+
+    Between the points nothing is said.
+    """
+    found = [[claim(float(a), float(b)) for a in x] for b in y]
+    status = np.array([[c.status for c in row] for row in found])
+    holds = np.array(
+        [[np.nan if c.holds is None else float(c.holds) for c in row] for row in found]
+    )
+    return Region(np.asarray(x, dtype=float), np.asarray(y, dtype=float), status, holds)

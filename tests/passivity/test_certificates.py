@@ -1,0 +1,275 @@
+"""Certificates: a program of 80 lines verifies them without the package, and refuses the rest."""
+
+import ast
+import copy
+import hashlib
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import sympy as sp
+
+from teleopdesign.errors import ModelError
+from teleopdesign.passivity import (
+    Certificate,
+    any_environment,
+    bounded_compensation,
+    dahl_compensation,
+    delayed_small_motion,
+    delayed_spring,
+    lugre_passivity,
+    passive,
+    positive_real,
+    quantised_spring,
+    read_certificate,
+    sampled_passivity,
+    teleoperator,
+)
+from teleopdesign.passivity import check_certificate as checker
+from teleopdesign.realise.lti import S
+
+SOURCE = Path(checker.__file__)
+
+PROVED = {
+    "impedance": lambda: positive_real(0.15 * S + 4 + 300 / S),
+    "two-port": lambda: passive(teleoperator(master=S + 1, slave=S + 2, stiffness=10)),
+    "delayed coupling": lambda: delayed_spring(
+        master_inertia=1, master_damping=2, slave_inertia=1, slave_damping=2, stiffness=9, delay=0.1
+    ),
+    "sampled": lambda: sampled_passivity(1000, damping=1, sample_time=1e-3),
+    "bounded": lambda: bounded_compensation(coulomb_level=1, bound=0.9),
+    "coulomb": lambda: dahl_compensation(
+        coulomb_level=1, compensator_level=1, compensator_stiffness=1e4
+    ),
+    "presliding": lambda: dahl_compensation(
+        coulomb_level=0.5,
+        compensator_level=0.4,
+        compensator_stiffness=1e3,
+        presliding_stiffness=2e3,
+        highest_level=0.7,
+    ),
+    "identical": lambda: dahl_compensation(
+        coulomb_level=1, compensator_level=1, compensator_stiffness=1e3, presliding_stiffness=1e3
+    ),
+    "lugre": lambda: lugre_passivity(
+        coulomb_level=0.5,
+        static_level=0.6,
+        stiffness=1e5,
+        bristle_damping=20,
+        viscous_damping=4,
+        stribeck_velocity=0.005,
+    ),
+    "motor": lambda: any_environment(
+        motor_level=1,
+        link_level=2,
+        transmission_stiffness=1e4,
+        compensator_level=0.9,
+        compensator_stiffness=1e4,
+    ),
+    "quantised": lambda: quantised_spring(
+        stiffness=1000, damping=4, sample_time=1e-3, step=1e-4, coulomb_level=0.2
+    ),
+    "late": lambda: delayed_small_motion(
+        damping=2, compensator_stiffness=5e3, delay=1e-3, presliding_stiffness=1e4
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def certificates():
+    """Each certificate of the claims above, by name."""
+    return {
+        f"{name} {k}": certificate
+        for name, claim in PROVED.items()
+        for k, certificate in enumerate(claim().certificates)
+    }
+
+
+def resealed(content):
+    """As a forger would: with a digest that fits."""
+    body = {k: v for k, v in content.items() if k != "digest"}
+    text = json.dumps(body, sort_keys=True)
+    return Certificate({**body, "digest": hashlib.sha256(text.encode()).hexdigest()})
+
+
+def test_the_checker_is_short_and_imports_only_sympy():
+    source = SOURCE.read_text()
+    assert len(source.splitlines()) <= 80
+    names = {
+        alias.name.split(".")[0]
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Import | ast.ImportFrom)
+        for alias in node.names
+    }
+    assert names - sys.stdlib_module_names == {"sympy"}
+
+
+def test_every_proof_has_certificates_that_the_checker_accepts(certificates):
+    assert len(certificates) >= len(PROVED)
+    for name, certificate in certificates.items():
+        assert certificate.check() == certificate.content["claim"], name
+
+
+def test_the_checker_runs_alone(certificates, tmp_path):
+    """Copied away from the package, in a fresh interpreter without it on the path."""
+    shutil.copy(SOURCE, tmp_path / "check.py")
+    files = [tmp_path / f"{k}.json" for k, _ in enumerate(certificates)]
+    for file, certificate in zip(files, certificates.values(), strict=True):
+        certificate.write(file)
+    command = [sys.executable, "-I", "check.py", *(f.name for f in files[:4])]
+    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.count("proved:") == 4
+    files[0].write_text(files[0].read_text().replace("passive", "splendid"))
+    run = subprocess.run(command[:4], cwd=tmp_path, capture_output=True, text=True)
+    assert run.returncode != 0
+    assert "refused" in run.stderr
+
+
+def test_a_certificate_survives_its_file(certificates, tmp_path):
+    for certificate in certificates.values():
+        certificate.write(tmp_path / "c.json")
+        assert read_certificate(tmp_path / "c.json").content == certificate.content
+
+
+def test_a_file_that_is_no_certificate_is_one_clear_line(tmp_path):
+    (tmp_path / "c.json").write_text("{")
+    with pytest.raises(ModelError, match=r"c\.json: no certificate"):
+        read_certificate(tmp_path / "c.json")
+
+
+def test_any_change_breaks_the_digest(certificates):
+    for certificate in certificates.values():
+        content = {**certificate.content, "claim": "something else"}
+        with pytest.raises(ModelError, match="changed since it was written"):
+            Certificate(content).check()
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "lugre 0",
+        *(
+            pytest.param(n, marks=pytest.mark.slow)
+            for n in ("presliding 0", "coulomb 0", "quantised 0", "motor 0")
+        ),
+    ],
+)
+def test_forged_proofs_are_refused_with_a_digest_that_fits(certificates, name):
+    """Weights, squares, storage, supply, assumptions: each change alone is noticed."""
+    original = certificates[name].content
+    for change in (
+        _weight_doubled,
+        _weight_negative,
+        _term_left_out,
+        _supply_taxed,
+        _assumption_dropped,
+        _example_outside,
+        _proof_of_one_sign_missing,
+    ):
+        forged = copy.deepcopy(dict(original))
+        change(forged)
+        with pytest.raises(ModelError, match="certificate"):
+            resealed(forged).check()
+
+
+def _first(forged):
+    return next(t for by_case in forged["proofs"].values() for t in by_case.values() if t)
+
+
+def _weight_doubled(forged):
+    terms = _first(forged)
+    terms[0][0] = str(2 * sp.Rational(terms[0][0]))
+
+
+def _weight_negative(forged):
+    terms = _first(forged)
+    terms.append(["-1", {}, "1"])
+    terms.append(["1", {}, "1"])  # together nothing, but one weight is negative
+
+
+def _term_left_out(forged):
+    _first(forged).pop()
+
+
+def _supply_taxed(forged):
+    """As if the port gave a little more than it does."""
+    forged["supply"] = f"{forged['supply']} - {'d' if 'd' in forged['symbols'] else 'v'}**2"
+
+
+def _assumption_dropped(forged):
+    used = {f for by in forged["proofs"].values() for ts in by.values() for t in ts for f in t[1]}
+    forged["nonnegative"].pop(next(n for n in forged["nonnegative"] if n in used))
+
+
+def _example_outside(forged):
+    name = next(n for n in forged["example"] if n.startswith(("f_D", "s1", "K", "F_S", "f_C")))
+    forged["example"][name] = "-7"
+
+
+def _proof_of_one_sign_missing(forged):
+    forged["proofs"]["supply"].popitem()
+
+
+def test_a_storage_must_not_assume_what_a_state_does(certificates):
+    """A bound on a state is an invariant to be shown; as a mere assumption it is refused."""
+    forged = copy.deepcopy(dict(certificates["coulomb 0"].content))
+    kept = forged["invariant"].pop("below")
+    forged["nonnegative"]["below"] = kept["expression"]
+    with pytest.raises(ModelError, match="a state is assumed"):
+        resealed(forged).check()
+
+
+def test_a_storage_must_not_depend_on_a_signal(certificates):
+    forged = copy.deepcopy(dict(certificates["presliding 0"].content))
+    forged["constants"].remove("sigma_p")
+    with pytest.raises(ModelError, match="depends on a signal"):
+        resealed(forged).check()
+
+
+def test_what_may_divide_by_zero_is_refused(certificates):
+    forged = copy.deepcopy(dict(certificates["presliding 0"].content))
+    del forged["positive"]["softer"]  # sigma_p = sigma_D, and V is infinite
+    with pytest.raises(ModelError, match="divide by zero"):
+        resealed(forged).check()
+
+
+@pytest.mark.parametrize("impedance", ["s - 1", "1/(s**2 + 2*s + 1)", "-s", "1/s**2", "s**2", "-1"])
+def test_an_impedance_that_is_not_positive_real_is_refused(impedance, certificates):
+    forged = {**certificates["impedance 0"].content, "impedance": [[impedance]]}
+    with pytest.raises(ModelError, match="certificate"):
+        resealed(forged).check()
+
+
+@pytest.mark.parametrize(
+    "text", ["__import__('os').system('true')", "s.__class__", "(lambda: 1)()", "exit()", "1e3"]
+)
+def test_a_certificate_cannot_run_code(text, certificates):
+    forged = {**certificates["impedance 0"].content, "impedance": [[text]]}
+    with pytest.raises(ModelError, match="refused"):
+        resealed(forged).check()
+
+
+def test_z3_confirms_what_the_identities_show(certificates):
+    """The same inequalities without the identities; see `second_opinion`."""
+    pytest.importorskip("z3", reason="the extra `proof` is not installed")
+    from teleopdesign.passivity.second_opinion import second_opinion
+
+    for name, certificate in certificates.items():
+        if certificate.kind == "storage":
+            assert second_opinion(certificate).verdict == "confirmed", name
+
+
+def test_z3_finds_values_that_break_a_claim_without_its_condition(certificates):
+    pytest.importorskip("z3", reason="the extra `proof` is not installed")
+    from teleopdesign.passivity.second_opinion import second_opinion
+
+    for condition in ("covered", "soft_enough"):
+        forged = copy.deepcopy(dict(certificates["presliding 0"].content))
+        del forged["nonnegative"][condition]
+        opinion = second_opinion(Certificate(forged))
+        assert opinion.verdict == "refuted"
+        assert "f_D" in opinion.counterexample

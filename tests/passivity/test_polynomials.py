@@ -1,0 +1,87 @@
+"""Exact statements about polynomials, against their roots in floating point."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from teleopdesign.errors import ModelError
+from teleopdesign.passivity.inequality import inequality_certificate
+from teleopdesign.passivity.polynomials import (
+    X,
+    is_hurwitz,
+    is_non_negative,
+    positive_roots,
+    value,
+    where_negative,
+)
+from teleopdesign.realise.lti import S
+
+small = st.integers(-6, 6).map(lambda k: sp.Rational(k, 2))
+positive = st.integers(1, 12).map(lambda k: sp.Rational(k, 4))
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.tuples(small, positive), min_size=1, max_size=4), st.sampled_from([1, -2]))
+def test_hurwitz_is_that_of_the_roots(pairs, sign):
+    """Products of (s + a)^2 + b^2, with a known by construction."""
+    p = sp.Poly(sign * sp.prod([(S + a) ** 2 + b**2 for a, b in pairs]), S, domain="QQ")
+    assert is_hurwitz(p) == all(a > 0 for a, _ in pairs)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.tuples(small, st.integers(1, 3)), min_size=1, max_size=4), st.booleans())
+def test_sign_changes_are_found_where_roots_are_odd(roots, negative):
+    """Products of (x - r)^k: negative somewhere on x > 0 as counted by hand."""
+    sign = -1 if negative else 1
+    p = sp.Poly(sign * sp.prod([(X - r) ** k for r, k in roots]), X, domain="QQ")
+    total = {r: sum(k for q, k in roots if q == r) for r, _ in roots}
+    odd = [r for r, k in total.items() if k % 2 and r > 0]
+    assert is_non_negative(p) == (not negative and not odd)
+    below = where_negative(p)
+    assert bool(below) == (not is_non_negative(p))
+    assert all(x > 0 and value(p, x) < 0 for x in below)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(small, min_size=1, max_size=5), positive)
+def test_positive_roots_are_found_once_each(roots, b):
+    p = sp.Poly(sp.prod([X - r for r in roots]) * (X**2 + b), X, domain="QQ")
+    expected = sorted({float(r) for r in roots if r > 0})
+    assert [float(x) for x in positive_roots(p)] == pytest.approx(expected, rel=1e-15)
+
+
+def test_roots_of_very_different_size_are_as_exact():
+    roots = [Fraction(1, 10**15), Fraction(1, 3), Fraction(10**15)]
+    p = sp.Poly(sp.prod([X - sp.Rational(str(r)) for r in roots]), X, domain="QQ")
+    for found, r in zip(positive_roots(p), roots, strict=True):
+        assert abs(found - r) <= r / 2**79
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.lists(st.tuples(small, positive), min_size=1, max_size=2), small, st.integers(0, 2))
+def test_every_polynomial_without_sign_change_gets_a_certificate(pairs, root, power):
+    """Positive parts, squares that touch zero, and powers of x: a certificate that holds."""
+    positive_part = sp.prod([(X - a) ** 2 + b for a, b in pairs])
+    p = sp.Poly(positive_part * (X - root) ** 2 * X**power, X, domain="QQ")
+    certificate = inequality_certificate("not negative", p)
+    if certificate is None:  # roots very close to the axis: a power beyond the limit
+        distance = min(np.sqrt(float(b)) / max(abs(float(a)), 0.1) for a, b in pairs)
+        assert distance < 0.7
+    else:
+        certificate.check()
+
+
+def test_a_polynomial_with_a_sign_change_gets_none():
+    for e in (X - 1, 1 - X, (X - 1) ** 3, -(X**2) - 1):
+        assert inequality_certificate("wrong", sp.Poly(e, X, domain="QQ")) is None
+
+
+def test_a_certificate_for_another_polynomial_is_refused():
+    certificate = inequality_certificate("right", sp.Poly((X - 1) ** 2 + 1, X, domain="QQ"))
+    content = {**certificate.content, "supply": "x**2 - 2*x"}
+    with pytest.raises(ModelError):
+        type(certificate)(content).check()

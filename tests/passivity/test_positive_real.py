@@ -1,0 +1,256 @@
+"""The exact positive-real test: improper, marginal and badly scaled impedances."""
+
+import math
+from fractions import Fraction
+
+import control
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import teleopdesign as td
+from teleopdesign.errors import ModelError
+from teleopdesign.passivity import (
+    damping_excess,
+    impedance,
+    mobility_excess,
+    positive_real,
+    read_record,
+    write_record,
+)
+from teleopdesign.realise.lti import S
+
+PASSIVE = {
+    "mass and damper": 0.15 * S + 4,
+    "mass": 0.15 * S,
+    "spring": 300 / S,
+    "mass, damper and spring": 0.15 * S + 4 + 300 / S,
+    "nothing": 0,
+    "damper": 5,
+    "resonance without loss": S / (S**2 + 9),
+    "its dual": (S**2 + 9) / S,
+    "zeros and poles on the axis in turn": (S**2 + 4) * (S**2 + 16) / (S * (S**2 + 9)),
+    "touching zero at one frequency": (S**2 + 1) / (S + 1) ** 2,
+    "compliant damper": (S + 1) / (S**2 + S + 1),
+    "common factor in the right half plane": (S - 1) * (S + 2) / ((S - 1) * (S + 1)),
+}
+NOT_PASSIVE = {
+    "negative damper": -4,
+    "negative mass": 4 - S,
+    "negative spring": 4 - 1 / S,
+    "second order lag": 1 / (S + 1) ** 2,
+    "double integrator": 1 / S**2,
+    "jerk": S**3 + S,
+    "acceleration squared": S**2,
+    "pole that grows": 1 / (S - 1),
+    "resonance with negative residue": 1 - S / (S**2 + 9),
+    "zeros and poles on the axis not in turn": (S**2 + 4) * (S**2 + 16) / (S * (S**2 + 17)),
+    "just beyond touching": (S**2 - sp.Rational(1, 10**12) * S + 1) / (S + 1) ** 2,
+    "all-pass": (S - 1) / (S + 1),
+}
+
+
+@pytest.mark.parametrize("name", PASSIVE)
+def test_passive_impedances_are_proved(name):
+    claim = positive_real(PASSIVE[name])
+    assert claim.status == "proved"
+    claim.certificates[0].check()
+
+
+@pytest.mark.parametrize("name", NOT_PASSIVE)
+def test_others_are_refuted_by_a_motion_that_gives_out_energy(name, tmp_path):
+    claim = positive_real(NOT_PASSIVE[name])
+    assert claim.status == "refuted"
+    record = claim.record
+    assert record.energy > 0
+    # Re Z < 0 there, in exact arithmetic
+    assert impedance(NOT_PASSIVE[name]).at(record.rate, record.frequency)[0] < 0
+    assert record.rate > 0
+    write_record(record, tmp_path / "motion.json")
+    again = read_record(tmp_path / "motion.json")
+    if record.frequency / record.rate < 100:  # else only a part of the wave is sampled
+        assert again.replay() == pytest.approx(record.energy, rel=1e-6)
+    assert again.replay() > 0
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1e6])
+@pytest.mark.parametrize("time", [1e-6, 1e6])
+def test_the_units_of_force_and_time_change_no_verdict(scale, time):
+    """Impedances from 1e-6 to 1e6 in size and in time."""
+    for cases, status in ((PASSIVE, "proved"), (NOT_PASSIVE, "refuted")):
+        for name, z in cases.items():
+            scaled = sp.sympify(z) * sp.Rational(str(scale))
+            scaled = scaled.subs(S, S * sp.Rational(str(time)))
+            assert positive_real(scaled).status == status, name
+
+
+def test_mixed_scales_within_one_impedance():
+    """Terms that differ by 1e12 and more; each verdict turns on the smallest of them."""
+    assert positive_real(1e-6 * S + 1e6 + 1e6 / S).status == "proved"
+    assert positive_real((S + 1e-6) / (S + 1e6)).status == "proved"
+    assert positive_real((1e-6 * S - 1e-12) / (S + 1e-6)).status == "refuted"
+    assert positive_real(1e6 - 1e-6 * S).status == "refuted"
+    assert positive_real(1e6 + 1e-6 / S**2).status == "refuted"
+    assert positive_real((S + 1e6) / (S - 1e-6)).status == "refuted"
+
+
+def test_equality_is_named():
+    assert "loses nothing" in positive_real(0.15 * S + 300 / S).verdict.equality
+    assert positive_real((S**2 + 1) / (S + 1) ** 2).verdict.equality == "at 1 rad/s"
+    assert "high frequency" in positive_real((S + 1) / (S**2 + S + 1)).verdict.equality
+    assert positive_real(0.15 * S + 4).verdict.equality == ""
+
+
+@pytest.mark.parametrize(
+    ("z", "excess", "frequency"),
+    [
+        (0.15 * S + 4 + 300 / S, 4, None),
+        ((S**2 + S + 1) / (S + 1) ** 2, 0.5, 1),
+        ((S**2 - 0.1 * S + 1) / (S + 1) ** 2, -0.05, 1),
+        (1 / (S + 2), 0, math.inf),
+        (3 + 1 / (S + 2), 3, math.inf),
+        ((S + 1) / (S + 2), 0.5, 0),
+        (-7, -7, None),
+        (1 / (S - 1), -math.inf, None),
+        (4 - S, -math.inf, None),
+        (1 / S**2, -math.inf, None),
+        (4 - 1 / S, -math.inf, None),
+    ],
+)
+def test_excess_and_shortage_of_damping(z, excess, frequency):
+    """The damping that could go (> 0) or is lacking (< 0); worked out by hand."""
+    found = damping_excess(z)
+    assert float(found) == pytest.approx(excess, rel=1e-11, abs=1e-20)
+    if frequency is not None:
+        assert found.frequency == pytest.approx(frequency, rel=1e-9)
+
+
+def test_the_bounds_of_the_excess_are_exact():
+    """Z less the lower bound is passive, less the upper it is not: by the same test."""
+    for z in (0.3 + (S + 1) / (S**2 + S + 7), (S**2 - 0.1 * S + 1) / (S + 1) ** 2, 2 + 1 / S):
+        found = damping_excess(z)
+        assert isinstance(found.lower, Fraction)
+        assert found.lower < found.upper
+        less = [sp.sympify(z) - sp.Rational(str(c)) for c in (found.lower, found.upper)]
+        assert [positive_real(e).status for e in less] == ["proved", "refuted"]
+
+
+def test_mobility_excess_is_that_of_the_inverse():
+    assert float(mobility_excess(S + 4)) == pytest.approx(0.0, abs=1e-20)
+    assert float(mobility_excess(4)) == pytest.approx(0.25)
+    assert float(mobility_excess(0)) == math.inf
+
+
+def test_floats_are_the_decimals_that_they_are_written_as():
+    """On the boundary the binary value of 0.1, which is a little more, would decide."""
+    assert impedance(0.1 / S).p.all_coeffs() == [sp.Rational(1, 10)]
+    # (s + a)(s + b)/(...) that cancels only if 0.02 is 0.1 * 0.2
+    cancels = control.tf([1, 0.3, 0.02], [1, 0.1])
+    assert str(impedance(cancels)) == "s + 1/5"
+
+
+def test_relative_to_position_is_divided_by_s():
+    """The blocks of a diagram are N/m: a body's impedance is m s^2 + b s + k."""
+    body = td.Body("prismatic", {"inertia": td.Value(0.15)})
+    body = body.with_effect(td.EFFECTS["viscous"], {"damping": 4.0})
+    z, left_out = body.impedance(S)
+    assert not left_out
+    claim = positive_real(z.subs(body.numbers()), motion="position")
+    assert claim.status == "proved"
+    assert claim.verdict.margin == pytest.approx(4.0)
+
+
+def test_python_control_systems_are_read():
+    transfer = control.tf([0.1, 0.8, 1.7], [1, 3, 2])
+    space = control.ss([[-1.0, 1], [0, -2]], [[0], [1]], [[1, 0.5]], [[0.1]])
+    assert str(impedance(transfer)) == str(impedance(space))
+    assert positive_real(control.tf([0.15, 4], [1])).status == "proved"
+
+
+def test_modes_that_the_port_does_not_see_drop_out():
+    """A state that input or output does not touch is not part of the impedance."""
+    space = control.ss(np.diag([-1.0, 5.0]), [[1], [0]], [[1, 1]], [[0.0]])
+    assert str(impedance(space)) == "1/(s + 1)"
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.lists(st.floats(-10, 10).map(lambda x: round(x, 2)), min_size=9, max_size=9))
+def test_state_space_and_transfer_function_agree(entries):
+    """C (s I - A)^-1 B at one point, in floating point, for any matrices."""
+    a, b = np.array(entries[:4]).reshape(2, 2), np.array(entries[4:6])[:, None]
+    c, d = np.array(entries[6:8])[None, :], np.array([[entries[8]]])
+    s = 3.0 + 20.0j  # away from every pole of such matrices
+    direct = (c @ np.linalg.solve(s * np.eye(2) - a, b) + d)[0, 0]
+    found = impedance(control.ss(a, b, c, d))(s)
+    assert found == pytest.approx(direct, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("system", "message"),
+    [
+        ("s + b", "values are needed for b"),
+        (sp.exp(-S), "not a rational function of s"),
+        (sp.sqrt(S), "not a rational function of s"),
+        (float("nan"), "not finite|finite real number"),
+        (control.tf([1], [1, 0.5], 0.001), "discrete"),
+        (control.ss([[-1.0]], [[1.0, 0.0]], [[1.0]], [[0.0, 0.0]]), "found 2 and 1"),
+        (sp.Matrix([1]), "expected an expression in s"),
+        ("s +", "expected an expression in s"),
+    ],
+)
+def test_what_is_no_impedance_is_one_clear_line(system, message):
+    with pytest.raises(ModelError, match=message):
+        positive_real(system)
+
+
+def test_a_wave_is_the_response_of_a_stable_system_from_rest():
+    """The force of the record against python-control's simulation of the same motion."""
+    z = 1 / (S + 1) ** 2
+    record = positive_real(z).record
+    t, v, f = record.samples(4001)
+    simulated = control.forced_response(control.tf([1], [1, 2, 1]), t - t[0], v[:, 0]).outputs
+    # the start is e^-12 of the end, and its transient has gone by then
+    assert simulated[2000:] == pytest.approx(f[2000:, 0], abs=1e-3 * np.abs(f).max())
+
+
+def test_a_growing_wave_is_a_mode_of_the_port_held_by_a_damper():
+    """No dip of Re Z on the axis, but a double pole there: found as an unstable coupling."""
+    record = positive_real(1 / S + S**3).record
+    assert record.value[0, 0].real < 0
+
+
+class TestAgainstPythonControl:
+    """Where python-control's `ispassive` refuses or errs, the exact test is right."""
+
+    @pytest.fixture(autouse=True)
+    def _needs_cvxopt(self):
+        pytest.importorskip("cvxopt", reason="ispassive needs cvxopt, which is GPL")
+
+    def test_it_refuses_improper_impedances(self):
+        system = control.tf([0.15, 4], [1])
+        with pytest.raises(ValueError, match="non-proper"):
+            control.ispassive(system)
+        assert positive_real(system).status == "proved"
+
+    def test_it_refuses_a_constant(self):
+        system = control.tf([-1e-9], [1])
+        with pytest.raises(ValueError, match="at least one array"):
+            control.ispassive(system)
+        assert positive_real(system).status == "refuted"
+
+    def test_it_calls_a_badly_scaled_passive_system_active(self):
+        """1e6 (s + 1e6)/(s + 1e-6): zero and pole in the left half plane, Re Z > 0."""
+        system = control.tf([1e6, 1e12], [1, 1e-6])
+        assert not control.ispassive(system)
+        claim = positive_real(system)
+        assert claim.status == "proved"
+        assert claim.verdict.margin == pytest.approx(1e6)
+
+    def test_it_calls_a_badly_scaled_active_system_passive(self):
+        """(1e-6 s - 1e-12)/(s + 1e-6) is -1e-6 at rest."""
+        system = control.tf([1e-6, -1e-12], [1, 1e-6])
+        assert control.ispassive(system)
+        assert positive_real(system).status == "refuted"
+        assert float(damping_excess(system)) == pytest.approx(-1e-6)
