@@ -14,8 +14,9 @@ from ..measurement.experiment import Experiment
 from ..model import Model
 from .candidates import Candidate
 from .evidence import chance
+from .excerpt import excerpt
 from .fit import Fit, estimate, fit_squares
-from .force_error import Prepared, prepare
+from .force_error import Prepared, force_error, prepare
 from .noise_floor import NoiseFloor, noise_floor
 from .rank import (
     Ranked,
@@ -46,6 +47,8 @@ ADEQUATE = 1.8
 MOSTLY = 0.5
 #: most effects that one diagnosis adds
 MOST = 6
+#: samples of all records together above which effects are sought on windows of so many
+LONG, WINDOWS = 400_000, 120_000
 #: candidates that are added on trial where none is supported alone: each may mask another
 TRIED = 3
 
@@ -135,11 +138,16 @@ def find_missing(
     """Hold a model against an experiment and add the effects that its check records support.
 
     model: default: the one that the experiment describes
+    Of more than `LONG` samples, effects are sought and parameters estimated on `WINDOWS` samples in
+    windows spread evenly over the records; errors are those of the whole records.
     progress: called with a line of text at each step;  seed: of the draws for the noise floor
     raises ExperimentError: the experiment lacks what the comparison needs
     """
     say = progress or (lambda _: None)
     prepared = prepare(experiment)
+    whole, long = prepared, sum(len(r.time) for r in experiment.records) > LONG
+    if long:
+        prepared = prepare(excerpt(experiment, most=WINDOWS), bandwidth=whole.bandwidth)
     say("re-estimating the model")
     stated = model or Model.from_experiment(experiment)
     rungs = [Rung(None, estimate_from_starts(stated, prepared))]
@@ -163,7 +171,21 @@ def find_missing(
         rungs = _pruned(rungs, prepared, floor)
     generator = np.random.default_rng(seed)
     rungs = [replace(r, fit=widened(r.fit, prepared, generator)) for r in rungs]
-    return Diagnosis(experiment, prepared, _verdict(rungs, floor), tuple(rungs), ranking, floor)
+    if long:
+        say("errors on the whole records")
+        rungs = [replace(r, fit=_on_all(r.fit, whole)) for r in rungs]
+    return Diagnosis(experiment, whole, _verdict(rungs, floor), tuple(rungs), ranking, floor)
+
+
+def _on_all(found: Fit, whole: Prepared) -> Fit:
+    """A fit that was made on windows, with the errors that it has on the whole records."""
+    fit_error = force_error(found.model, whole.of("fit"))
+    check = whole.of("check")
+    return replace(
+        found,
+        fit_error=fit_error,
+        check_error=force_error(found.model, check) if check else found.check_error,
+    )
 
 
 def _pair(

@@ -151,7 +151,7 @@ def rank_candidates(
         if progress is not None:
             progress(str(candidate))
         added = base.model.with_effect(candidate.effect, at=candidate.at)
-        return candidate, estimate_from_starts(added, prepared, base)
+        return candidate, estimate_from_starts(added, prepared, base, stated)
 
     # transforms and kernels release the interpreter's lock, so threads share the cores
     with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:

@@ -22,26 +22,39 @@ from .scales import scales
 
 #: gain in squares on the fit records from which a start is worth a step
 WORTH = 0.01
-#: starts kept after the prediction, and after the first steps
+#: starts kept after the prediction, and after the first steps; one step says less of an effect
+#: that is linear in no strength
 PREDICTED, STEPPED = 2, 1
+CURVED_PREDICTED, CURVED_STEPPED = 4, 2
+#: part by which a user's value may be wrong: what moved further may have been led astray
+MOVED = 0.25
 FIRST_STEPS = Effort(1e-3, 4)
 
 
-def estimate_from_starts(model: Model, prepared: Prepared, base: Fit | None = None) -> Fit:
+def estimate_from_starts(
+    model: Model, prepared: Prepared, base: Fit | None = None, stated: Model | None = None
+) -> Fit:
     """The best fit of a model, from every starting value of the effects that are still absent.
 
     base: a fit of the model without them: then the best stays rough, to be ranked first
+    stated: the model as its user gave it: what the base moved far from it starts there too
     """
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     models = started(model, unit)
+    kept = CURVED_STEPPED
     if base is not None:
+        curved = _with_strength(model, base) is None
+        kept = CURVED_STEPPED if curved else STEPPED
+        if curved and stated is not None and _moved(base, stated):
+            own = {n: stated.parameters[n].value for n in base.free if n in stated.parameters}
+            models += [m.with_values(own) for m in models]
         models = _promising(model, models, prepared, base, unit)
         if not models:
             return unchanged(model, base)
     elif len(models) == 1:
         return estimate(model, prepared)
-    if len(models) > STEPPED + 1:
-        models = _best_stepped(models, prepared)
+    if len(models) > kept + 1:
+        models = _best_stepped(models, prepared, kept)
     rough = [estimate(m, prepared, effort=ROUGH) for m in models]
     best = min(rough, key=fit_squares)
     return best if base is not None else estimate(best.model, prepared, effort=FINE)
@@ -56,16 +69,33 @@ def _promising(
     model: Model, models: list[Model], prepared: Prepared, base: Fit, unit: dict[str, float]
 ) -> list[Model]:
     """The starts from which one linear step promises most; none where none promises a gain."""
-    new = [n for n in free_parameters(model) if n not in base.free]
-    effects = {model.body(place).effect(name): place for name, place in model.absent}
-    if len(effects) == 1:
-        ((effect, place),) = effects.items()
-        if effect.strength is not None and f"{place}.{effect.name}.{effect.strength}" in new:
-            return _by_strength(models, effect, place, prepared, base)
-    promised = sorted((_promise(m, new, prepared, base, unit), i) for i, m in enumerate(models))
+    linear = _with_strength(model, base)
+    if linear is not None:
+        return _by_strength(models, *linear, prepared, base)
+    promised = sorted((_promise(m, prepared, base, unit), i) for i, m in enumerate(models))
     if promised[0][0] > (1.0 - WORTH) * fit_squares(base):
         return []
-    return [models[i] for _, i in promised[:PREDICTED]]
+    return [models[i] for _, i in promised[:CURVED_PREDICTED]]
+
+
+def _with_strength(model: Model, base: Fit) -> tuple[Effect, str] | None:
+    """The one effect that is still absent, and its place, where it has a strength that is free."""
+    absent = [(model.body(place).effect(name), place) for name, place in model.absent]
+    if len(absent) != 1 or absent[0][0].strength is None:
+        return None
+    effect, place = absent[0]
+    strength = f"{place}.{effect.name}.{effect.strength}"
+    return absent[0] if not model.parameters[strength].fixed else None
+
+
+def _moved(base: Fit, stated: Model) -> bool:
+    """Whether a parameter of the base lies further from its user's value than users are wrong."""
+    pairs = [
+        (base.model.parameters[n].value, stated.parameters[n].value)
+        for n in base.free
+        if n in stated.parameters
+    ]
+    return any(abs(found - given) > MOVED * abs(given) for found, given in pairs)
 
 
 def _by_strength(
@@ -83,17 +113,17 @@ def _by_strength(
     return [s.model for s in starts[:PREDICTED]]
 
 
-def _promise(
-    model: Model, new: list[str], prepared: Prepared, base: Fit, unit: dict[str, float]
-) -> float:
+def _promise(model: Model, prepared: Prepared, base: Fit, unit: dict[str, float]) -> float:
     """Sum of squares after one linear step from this start, by all parameters."""
     stretches = prepared.of("fit")
-    parts = referred(model, stretches, new)
+    same = all(model.parameters[n].value == base.model.parameters[n].value for n in base.free)
+    wanted = [n for n in free_parameters(model) if not (same and n in base.free)]
+    parts = referred(model, stretches, wanted)
     roots = [np.sqrt(s.weight) for s in stretches]
     residual = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
     columns = np.concatenate([w * d.T for w, (_, d) in zip(roots, parts, strict=True)])
-    columns = columns * np.array([unit[model.declared(n).quantity] for n in new])
-    return _left(np.hstack([base.jacobian, columns]), residual)
+    columns = columns * np.array([unit[model.declared(n).quantity] for n in wanted])
+    return _left(np.hstack([base.jacobian, columns]) if same else columns, residual)
 
 
 def _left(columns: Array, residual: Array) -> float:
@@ -105,7 +135,7 @@ def _left(columns: Array, residual: Array) -> float:
     return float(residual @ residual - gradient @ np.linalg.solve(normal, gradient))
 
 
-def _best_stepped(models: list[Model], prepared: Prepared) -> list[Model]:
+def _best_stepped(models: list[Model], prepared: Prepared, kept: int) -> list[Model]:
     """The starts that lie lowest after a few real steps, where these steps have led them."""
     stretches, found = prepared.of("fit"), []
     for i, model in enumerate(models):
@@ -114,4 +144,4 @@ def _best_stepped(models: list[Model], prepared: Prepared) -> list[Model]:
         squares = float(solution.residual @ solution.residual)
         found.append((squares, i, dict(zip(free, solution.values.tolist(), strict=True))))
     found.sort(key=lambda f: f[:2])
-    return [models[i].with_values(values) for _, i, values in found[:STEPPED]]
+    return [models[i].with_values(values) for _, i, values in found[:kept]]

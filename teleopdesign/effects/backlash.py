@@ -30,12 +30,15 @@ EFFECT = Effect(
     parameters={
         "tip_inertia": Parameter("inertia", "m_t: inertia of the tip side", starts=(0.3,)),
         "stiffness": Parameter(
-            "stiffness", "K: contact stiffness", starts=(0.05, 0.3), scale="resonance_stiffness"
+            "stiffness",
+            "K: contact stiffness",
+            starts=(0.03, 0.1, 0.3),
+            scale="resonance_stiffness",
         ),
         "damping": Parameter(
             "damping", "C: contact damping", starts=(0.03,), scale="resonance_damping"
         ),
-        "gap": Parameter("position", "g: width of the gap", starts=(0.03, 0.3)),
+        "gap": Parameter("position", "g: width of the gap", starts=(0.01, 0.03, 0.1, 0.3)),
     },
     absent={"tip_inertia": 0.0},
     source="two masses with lost motion",
