@@ -13,34 +13,22 @@ from ..errors import ModelError
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .candidates import Candidate
-from .evidence import chance
 from .excerpt import excerpt
 from .fit import Fit, estimate, fit_squares
 from .force_error import Prepared, force_error, prepare
 from .noise_floor import NoiseFloor, noise_floor
 from .rank import (
-    Ranked,
     Ranking,
-    check_score,
     check_squares,
     rank_candidates,
-    whole_score,
 )
 from .reading_error import widened
 from .search import estimate_from_starts
+from .support import alike, equals_of, is_better, is_supported, simplicity
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: a gain counts from this many standard deviations of its chance part ...
-SURE = 4.0
-#: ... and from this part of the noise floor's square: while a body is stuck or turns, its friction
-#: is known no better than that, and less may be the method's own
-OF_FLOOR = 0.25
-#: ... and from this part of the squares before: less is no answer to where a model fails
-RELEVANT = 0.03
-#: candidates that lie closer than this (standard deviations) explain the record equally well
-CLOSE = 3.0
 #: what is left counts as noise up to this many noise floors
 ADEQUATE = 1.8
 #: what is named must explain this part of the squares above the noise floor
@@ -48,7 +36,7 @@ MOSTLY = 0.5
 #: most effects that one diagnosis adds
 MOST = 6
 #: samples of all records together above which effects are sought on windows of so many
-LONG, WINDOWS = 400_000, 120_000
+LONG, WINDOWS = 200_000, 60_000
 #: candidates that are added on trial where none is supported alone: each may mask another
 TRIED = 3
 
@@ -166,8 +154,8 @@ def find_missing(
                 break
             rungs += pair
             continue
-        best = min(_alike(supported), key=_simplicity)
-        rungs.append(Rung(best.candidate, best.fit, ranking, _equals(best, ranking, here, floor)))
+        best = min(alike(supported), key=simplicity)
+        rungs.append(Rung(best.candidate, best.fit, ranking, equals_of(best, ranking, here, floor)))
         rungs = _pruned(rungs, prepared, floor)
     generator = np.random.default_rng(seed)
     rungs = [replace(r, fit=widened(r.fit, prepared, generator)) for r in rungs]
@@ -214,7 +202,7 @@ def _pair(
             continue
         rungs = [
             Rung(first.candidate, first.fit, ranking),
-            Rung(second.candidate, second.fit, again, _equals(second, again, first.fit, floor)),
+            Rung(second.candidate, second.fit, again, equals_of(second, again, first.fit, floor)),
         ]
         if _stands(here, rungs, prepared, floor):
             found.append(rungs)
@@ -242,58 +230,6 @@ def _explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
 
 def _said(say: Callable[[str], None], before: str, text: str) -> None:
     say(before + text)
-
-
-def is_supported(base: Fit, ranked: Ranked, floor: NoiseFloor) -> bool:
-    """Whether a candidate can be told, lowers the check error enough, and leaves the rest in place.
-
-    One that drives a parameter of the model to its bound takes the place of an effect that is
-    there: it describes the records, but is no missing physics beside the model's own.
-    """
-    displaced = set(ranked.fit.at_bound) - set(base.at_bound)
-    return ranked.told and not displaced and is_better(base, ranked.fit, floor)
-
-
-def is_better(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
-    """Whether `other` has the smaller check error by more than chance and by enough to matter."""
-    before = check_squares(base)
-    gain = (before - check_squares(other)) / before
-    score = check_score(base, other)
-    return (
-        score > SURE
-        and gain > RELEVANT
-        and gain > OF_FLOOR * (floor.value / base.check_error) ** 2
-        and chance(score) * len(base.model.known) < 0.01
-    )
-
-
-def _alike(supported: list[Ranked]) -> list[Ranked]:
-    """Those of the supported candidates that explain the records as well as the best."""
-    return [r for r in supported if r is supported[0] or _equal(r, supported[0])]
-
-
-def _equals(best: Ranked, ranking: Ranking, base: Fit, floor: NoiseFloor) -> tuple[Candidate, ...]:
-    """Candidates that the records do not tell from this one.
-
-    One that needs more parameters to do as well explains nothing that the simpler does not.
-    """
-    supported = [r for r in ranking.ranked if is_supported(base, r, floor)]
-    return tuple(
-        r.candidate
-        for r in _alike(supported)
-        if r is not best and _simplicity(r)[0] == _simplicity(best)[0]
-    )
-
-
-def _equal(one: Ranked, best: Ranked) -> bool:
-    """Whether the records do not tell a candidate from the best one."""
-    near = abs(one.fit.check_error - best.fit.check_error) < 0.02 * best.fit.check_error
-    return near and whole_score(one.fit, best.fit) < CLOSE
-
-
-def _simplicity(ranked: Ranked) -> tuple[int, int]:
-    effect = ranked.candidate.effect
-    return sum(not p.optional for p in effect.parameters.values()), len(effect.needs)
 
 
 def _pruned(rungs: list[Rung], prepared: Prepared, floor: NoiseFloor) -> list[Rung]:

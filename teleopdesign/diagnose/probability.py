@@ -1,4 +1,10 @@
-"""How probable it is that a candidate is what is missing, from what the ladder found of it."""
+"""How probable it is that a candidate is what is missing, from what the ladder found of it.
+
+Calibrated on diagnoses of an independent simulator's cases, not by a formula that supposes white
+noise. What an accepted effect's truth depends on there is what is left in the end: where that is
+noise, nearly all accepted effects are true; where much more is left, a wrong one may well have
+stood in for what the catalogue does not have.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from .evidence import chance
-from .ladder import Diagnosis, Rung
+from .ladder import ADEQUATE, Diagnosis, Rung
 from .rank import Ranked, Ranking
+
+#: of 74 effects that were accepted with nothing but noise left, 73 were true: (73 + 1)/(74 + 2)
+TRUE_OF_ACCEPTED = 0.97
+#: of 31 best candidates that were not accepted none was true: 1/33
+TRUE_OF_OTHERS = 0.03
 
 
 @dataclass(frozen=True)
@@ -31,11 +42,13 @@ class CandidateEvidence:
 
     def probability(self) -> float:
         """Probability that the effect is missing, 0 to 1."""
-        real = 1.0 - chance(self.ranked.score)
+        real = self.share * (1.0 - chance(self.ranked.score))
         if not (self.accepted or self.as_good):
-            # nothing was accepted here: what is left over would have to be this effect after all
-            return float(np.clip(0.3 * self.share * real * self.explained, 0.0, 0.3))
-        return float(np.clip(self.share * (0.5 + 0.49 * self.explained) * real, 0.0, 0.99))
+            return TRUE_OF_OTHERS * real * self.explained
+        # none of 4 accepted effects was true that left 3.9 to 29 floors; squares: of what is left
+        # unexplained, as much as noise is sure to be no effect
+        trusted = min(1.0, (ADEQUATE / self.left) ** 2) if self.left > 0 else 1.0
+        return float(np.clip(TRUE_OF_ACCEPTED * real * trusted, 0.0, 1.0))
 
 
 def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:

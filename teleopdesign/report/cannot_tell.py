@@ -7,8 +7,9 @@ import math
 import numpy as np
 
 from ..diagnose.fit import Fit
-from ..diagnose.ladder import CLOSE, Diagnosis, Rung
+from ..diagnose.ladder import Diagnosis, Rung
 from ..diagnose.rank import Ranked, whole_score
+from ..diagnose.support import CLOSE
 from ..effects import CONTACT_ROLES
 from ..finding import Finding
 from .words import listed, number, percent, unit_text, with_error

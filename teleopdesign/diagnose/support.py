@@ -1,0 +1,74 @@
+"""Whether records support a candidate, and which others they support as well."""
+
+from __future__ import annotations
+
+from .candidates import Candidate
+from .evidence import chance
+from .fit import Fit
+from .noise_floor import NoiseFloor
+from .rank import Ranked, Ranking, check_score, check_squares, whole_score
+
+#: a gain counts from this many standard deviations of its chance part ...
+SURE = 4.0
+#: ... and from this part of the noise floor's square: while a body is stuck or turns, its friction
+#: is known no better than that, and less may be the method's own
+OF_FLOOR = 0.5
+#: ... and from this part of the squares before: less is no answer to where a model fails
+RELEVANT = 0.03
+#: candidates that lie closer than this (standard deviations) explain the record equally well
+CLOSE = 3.0
+
+
+def is_supported(base: Fit, ranked: Ranked, floor: NoiseFloor) -> bool:
+    """Whether a candidate can be told, lowers the check error enough, and leaves the rest in place.
+
+    One that drives a parameter of the model to its bound takes the place of an effect that is
+    there: it describes the records, but is no missing physics beside the model's own.
+    """
+    displaced = set(ranked.fit.at_bound) - set(base.at_bound)
+    return ranked.told and not displaced and is_better(base, ranked.fit, floor)
+
+
+def is_better(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
+    """Whether `other` has the smaller check error by more than chance and by enough to matter."""
+    before = check_squares(base)
+    gain = (before - check_squares(other)) / before
+    score = check_score(base, other)
+    return (
+        score > SURE
+        and gain > RELEVANT
+        and gain > OF_FLOOR * (floor.value / base.check_error) ** 2
+        and chance(score) * len(base.model.known) < 0.01
+    )
+
+
+def alike(supported: list[Ranked]) -> list[Ranked]:
+    """Those of the supported candidates that explain the records as well as the best."""
+    return [r for r in supported if r is supported[0] or _equal(r, supported[0])]
+
+
+def equals_of(
+    best: Ranked, ranking: Ranking, base: Fit, floor: NoiseFloor
+) -> tuple[Candidate, ...]:
+    """Candidates that the records do not tell from this one.
+
+    One that needs more parameters to do as well explains nothing that the simpler does not.
+    """
+    supported = [r for r in ranking.ranked if is_supported(base, r, floor)]
+    return tuple(
+        r.candidate
+        for r in alike(supported)
+        if r is not best and simplicity(r)[0] == simplicity(best)[0]
+    )
+
+
+def _equal(one: Ranked, best: Ranked) -> bool:
+    """Whether the records do not tell a candidate from the best one."""
+    near = abs(one.fit.check_error - best.fit.check_error) < 0.02 * best.fit.check_error
+    return near and whole_score(one.fit, best.fit) < CLOSE
+
+
+def simplicity(ranked: Ranked) -> tuple[int, int]:
+    """Parameters that must be estimated, and effects that must be there: fewer is simpler."""
+    effect = ranked.candidate.effect
+    return sum(not p.optional for p in effect.parameters.values()), len(effect.needs)

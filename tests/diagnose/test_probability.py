@@ -1,0 +1,65 @@
+"""The probability of a candidate follows from what the ladder found of it."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from teleopdesign.diagnose.ladder import ADEQUATE
+from teleopdesign.diagnose.probability import CandidateEvidence, evidence_of, shares
+
+
+class Scored:
+    """A ranked candidate of which only the score is asked."""
+
+    def __init__(self, score):
+        self.score = score
+
+
+EVIDENCE = CandidateEvidence(
+    Scored(50.0), accepted=True, as_good=False, share=1.0, explained=0.9, left=1.0
+)
+
+
+@given(left=st.floats(0, 100), share=st.floats(0, 1), score=st.floats(-50, 500))
+def test_it_is_a_probability(left, share, score):
+    for accepted in (True, False):
+        one = replace(
+            EVIDENCE, ranked=Scored(score), accepted=accepted, share=share, left=left
+        ).probability()
+        assert 0.0 <= one <= 1.0
+
+
+def test_it_falls_as_more_is_left_and_never_rises():
+    said = [replace(EVIDENCE, left=x).probability() for x in (0.8, ADEQUATE, 2.5, 4.0, 30.0)]
+    assert said == sorted(said, reverse=True)
+    assert said[0] == said[1] > 0.9
+    assert said[3] < 0.5
+    assert said[4] < 0.01
+
+
+def test_what_was_not_accepted_is_improbable():
+    assert replace(EVIDENCE, accepted=False).probability() < 0.05
+
+
+def test_those_as_good_share_what_the_accepted_one_has():
+    one = replace(EVIDENCE, share=0.5)
+    other = replace(EVIDENCE, share=0.5, accepted=False, as_good=True)
+    assert one.probability() == other.probability() == pytest.approx(EVIDENCE.probability() / 2)
+
+
+def test_a_candidate_that_displaces_a_parameter_has_no_share(diagnosis):
+    rung = diagnosis.rungs[1]
+    first = rung.ranking.ranked[0]
+    bound = replace(first.fit, at_bound=(*first.fit.at_bound, "device.coulomb.level"))
+    spoilt = replace(rung.ranking, ranked=(replace(first, fit=bound), *rung.ranking.ranked[1:]))
+    assert shares(rung.ranking, rung)[first.candidate.key] == pytest.approx(1.0)
+    assert shares(spoilt, rung)[first.candidate.key] == 0.0
+
+
+def test_every_candidate_of_every_step_has_its_evidence(diagnosis):
+    found = evidence_of(diagnosis)
+    rankings = [*(r.ranking for r in diagnosis.rungs if r.ranking), diagnosis.last]
+    assert len(found) == sum(len(k.ranked) for k in rankings)
+    assert [e.ranked.candidate.key for e in found if e.accepted] == [("stribeck", "device")]
