@@ -47,7 +47,7 @@ class CandidateEvidence:
             return TRUE_OF_OTHERS * real * self.explained
         # none of 4 accepted effects was true that left 3.9 to 29 floors; squares: of what is left
         # unexplained, as much as noise is sure to be no effect
-        trusted = min(1.0, (ADEQUATE / self.left) ** 2) if self.left > 0 else 1.0
+        trusted = 1.0 if self.left <= ADEQUATE else (ADEQUATE / self.left) ** 2
         return float(np.clip(TRUE_OF_ACCEPTED * real * trusted, 0.0, 1.0))
 
 
