@@ -1,0 +1,181 @@
+"""propose the experiment that best tells what a recording leaves open"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import re
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import ExperimentError, did_you_mean
+from ._options import add_effect_files, add_folder, check_output, say
+
+if TYPE_CHECKING:
+    from ..diagnose.next_experiment import Limits, Shown
+    from ..measurement import Experiment
+
+#: columns of the terminal
+WIDTH = 100
+#: limit -> its quantity, as units are checked
+QUANTITY = {
+    "low": "position",
+    "high": "position",
+    "speed": "velocity",
+    "acceleration": "acceleration",
+    "jerk": "dimensionless",
+    "force": "force",
+}
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    add_folder(parser)
+    parser.add_argument(
+        "--output", type=Path, metavar="F", help="write the position reference (.csv)"
+    )
+    parser.add_argument("--json", type=Path, metavar="F", help="write the proposal there")
+    parser.add_argument(
+        "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
+    )
+    parser.add_argument(
+        "--limit",
+        action="append",
+        default=[],
+        metavar="[BODY.]NAME=VALUE[UNIT]",
+        help="another limit than the records have shown: low, high, speed, acceleration, jerk or "
+        "force, such as speed=0.2m/s; SI where no unit is given (may be repeated)",
+    )
+    parser.add_argument(
+        "--duration", type=float, default=20.0, metavar="S", help="longest motion, s (20)"
+    )
+    parser.add_argument(
+        "--simulate",
+        nargs="?",
+        type=float,
+        const=120.0,
+        metavar="S",
+        help="make each rival the truth and diagnose; none is begun after S seconds (120)",
+    )
+    add_effect_files(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print what to run next and what it will show; write what was asked for."""
+    for path, endings in (
+        (options.output, (".csv",)),
+        (options.json, (".json",)),
+        (options.figure, (".png", ".pdf", ".svg")),
+    ):
+        if path is not None:
+            check_output(path, endings)
+    if not (math.isfinite(options.duration) and options.duration > 0):
+        raise ExperimentError(f"--duration: found {options.duration:g}, expected more than 0 s")
+    from ..diagnose import find_missing
+    from ..diagnose.next_experiment import propose, show_in_simulation, write_reference
+    from ..effects import catalogue
+    from ..measurement import load_experiment
+    from ..model import Model
+
+    experiment = load_experiment(options.folder)
+    limits = _limits(_asked(options.limit, experiment), experiment)
+    model = Model.from_experiment(experiment, catalogue(options.effect))
+    diagnosis = find_missing(experiment, model, progress=say)
+    proposal = propose(diagnosis, duration=options.duration, limits=limits, progress=say)
+    say("")
+    print(diagnosis)
+    print()
+    print(_wrapped(repr(proposal)))
+    shown: Sequence[Shown] = ()
+    if options.simulate is not None:
+        shown = show_in_simulation(proposal, seconds=options.simulate, progress=say)
+        say("")
+        print("\n".join(["", *map(str, shown)]))
+        print(f"named in simulation: {sum(s.named for s in shown)} of {len(shown)}")
+    if options.output is not None:
+        if proposal.reference is not None and proposal.is_useful:
+            write_reference(proposal.reference, experiment, options.output)
+            print(f"\nwritten: {options.output}")
+        else:
+            print(f"\nnot written: {options.output}, for no motion is proposed")
+    if options.json is not None:
+        content = _content(proposal, shown)
+        options.json.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    if options.figure is not None:
+        proposal.plot().savefig(options.figure)
+    return 0
+
+
+def _wrapped(text: str) -> str:
+    """The sentence within the terminal; the table as it is."""
+    first, *rest = text.split("\n")
+    return "\n".join([textwrap.fill(first, WIDTH, break_on_hyphens=False), *rest])
+
+
+def _content(proposal: Any, shown: Sequence[Shown]) -> dict[str, Any]:
+    from ..diagnose.next_experiment import proposal_data
+
+    simulated = [
+        {
+            "truth": {"effect": s.truth.candidate.key[0], "at": s.truth.candidate.key[1]},
+            "verdict": s.diagnosis.verdict,
+            "named": s.named,
+        }
+        for s in shown
+    ]
+    return {**proposal_data(proposal), "simulation": simulated}
+
+
+def _asked(texts: Sequence[str], experiment: Experiment) -> dict[str, dict[str, float]]:
+    """Body -> limit -> value (SI), from the command line; ExperimentError says what is wrong."""
+    from ..quantity import to_si
+
+    bodies = tuple(experiment.bodies)
+    found: dict[str, dict[str, float]] = {}
+    for text in texts:
+        name, _, value = text.partition("=")
+        body, _, own = name.rpartition(".")
+        body = body or bodies[0]
+        if body not in bodies:
+            raise ExperimentError(
+                f'--limit {text}: no body "{body}", has {", ".join(bodies)}'
+                f"{did_you_mean(body, bodies)}"
+            )
+        if own not in QUANTITY:
+            raise ExperimentError(
+                f'--limit {text}: no limit "{own}", has {", ".join(QUANTITY)}'
+                f"{did_you_mean(own, QUANTITY)}"
+            )
+        number = re.match(r"\s*([-+]?[0-9.]+(?:[eE][-+]?\d+)?)\s*(.*)$", value)
+        if number is None:
+            raise ExperimentError(f"--limit {text}: found {value!r}, expected a number and a unit")
+        try:
+            size = float(number[1])
+        except ValueError:
+            raise ExperimentError(
+                f"--limit {text}: found {number[1]!r}, expected a number"
+            ) from None
+        if number[2]:
+            size = to_si(
+                size,
+                number[2],
+                quantity=QUANTITY[own],
+                axis=experiment.axis(body),
+                where=f"--limit {text}",
+            )
+        found.setdefault(body, {})[own] = size
+    return found
+
+
+def _limits(asked: dict[str, dict[str, float]], experiment: Experiment) -> dict[str, Limits]:
+    """Body -> the limits that its records have shown, with those asked for in their place."""
+    from ..diagnose.force_error import prepare
+    from ..diagnose.next_experiment import shown_limits
+
+    if not asked:
+        return {}
+    shown = shown_limits(prepare(experiment))
+    return {body: shown[body].with_values(**values) for body, values in asked.items()}

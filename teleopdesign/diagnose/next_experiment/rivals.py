@@ -1,0 +1,114 @@
+"""The models that an experiment should tell apart: what the present records leave open."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ...effects import SIGNALS
+from ...errors import ModelError
+from ...model import Model
+from ..candidates import Candidate
+from ..fit import Fit, estimate
+from ..ladder import Diagnosis, Rung
+from ..rank import Ranked
+from ..support import is_supported
+
+#: two models that the check records tell by less than this (noise floors, in quadrature) are left
+#: open: a right model's own error lies between one and about one and a half noise floors
+OPEN = 1.0
+#: most rivals of one question
+MOST = 4
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A model that may be the truth, fitted to the present records.
+
+    candidate: what makes it different from its rivals;  question: those of one number are rivals
+    """
+
+    candidate: Candidate
+    fit: Fit
+    question: int = 0
+
+    @property
+    def model(self) -> Model:
+        """The fitted model."""
+        return self.fit.model
+
+    def __str__(self) -> str:
+        return str(self.candidate)
+
+
+def rivals_of(diagnosis: Diagnosis) -> tuple[Rival, ...]:
+    """Models that the records of a diagnosis leave open; none where they decide.
+
+    Of each effect that was accepted, those that do as well within `OPEN` noise floors take its
+    place in turn. Where nothing was accepted, or what was explains little: the best few of what
+    would be added next.
+    """
+    found: list[Rival] = []
+    for question, rung in enumerate(diagnosis.rungs):
+        if rung.added is not None:
+            found += _of_rung(diagnosis, rung, question)
+    if not found and diagnosis.verdict == "undecided":
+        told = [r for r in diagnosis.last.ranked if r.told and r.score > 0.0]
+        found = [Rival(r.candidate, r.fit) for r in told[: MOST - 1]]
+    return tuple(found) if len(found) > 1 else ()
+
+
+def _of_rung(diagnosis: Diagnosis, rung: Rung, question: int) -> list[Rival]:
+    """The accepted effect of a rung and what may stand in its place, in the final model."""
+    assert rung.added is not None and rung.ranking is not None
+    equals = {c.key for c in rung.equals}
+    ranked = [r for r in rung.ranking.ranked if r.candidate.key != rung.added.key]
+    close = sorted(
+        (r for r in ranked if r.candidate.key in equals or _is_open(r, rung, diagnosis)),
+        key=lambda r: (r.candidate.key not in equals, r.fit.check_error),
+    )
+    found = [Rival(rung.added, diagnosis.after, question)]
+    for other in close[: MOST - 1]:
+        fit = _instead(diagnosis, rung.added, other)
+        if fit is not None:
+            found.append(Rival(other.candidate, fit, question))
+    return found if len(found) > 1 else []
+
+
+def _is_open(ranked: Ranked, rung: Rung, diagnosis: Diagnosis) -> bool:
+    """Whether a candidate could have been accepted too, and the records leave it open."""
+    assert rung.ranking is not None and rung.added is not None
+    added = next(r for r in rung.ranking.ranked if r.candidate.key == rung.added.key)
+    more = ranked.fit.check_error**2 - added.fit.check_error**2
+    near = more < (OPEN * diagnosis.floor.value) ** 2
+    return near and is_supported(rung.ranking.base, ranked, diagnosis.floor)
+
+
+def _instead(diagnosis: Diagnosis, added: Candidate, other: Ranked) -> Fit | None:
+    """The final model with another effect in the place of an accepted one; None if it has none."""
+    effect, at = other.candidate.effect, other.candidate.at
+    names = effect.parameters
+    values = {n: other.fit.model.parameters[f"{at}.{effect.name}.{n}"].value for n in names}
+    model = diagnosis.model
+    if model.body(at).has(effect.name):
+        return None  # a later rung has added it beside
+    try:
+        model = model.without_effect(added.effect.name, at=added.at)
+        return estimate(model.with_effect(effect, at=at, values=values), diagnosis.prepared)
+    except ModelError:
+        return None  # a later effect needs the one that would go
+
+
+def depends_on_time(rivals: Sequence[Rival]) -> bool:
+    """Whether the law of what is in question depends on time itself, as a warm-up does."""
+    return any(r.candidate.effect.expression().has(SIGNALS["time"]) for r in rivals)
+
+
+def pairs(rivals: Sequence[Rival]) -> list[tuple[int, int]]:
+    """(truth, other): both orders of every two rivals of one question."""
+    return [
+        (i, j)
+        for i, a in enumerate(rivals)
+        for j, b in enumerate(rivals)
+        if i != j and a.question == b.question
+    ]
