@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ._options import add_effect_files, add_folder, check_output, say
+
+if TYPE_CHECKING:
+    from ..diagnose import Diagnosis
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -57,7 +61,36 @@ def run(options: argparse.Namespace) -> int:
     if options.figure is not None:
         diagnosis.plot().savefig(options.figure)
     if options.report is not None:
-        from ..report import write_report
-
-        write_report(diagnosis, options.report)
+        _write_report(diagnosis, options.report)
+    for line in _next_commands(diagnosis, options.folder):
+        print(line)
     return 0
+
+
+def _write_report(diagnosis: Diagnosis, path: Path) -> None:
+    """The page, with what was found about the recording, what is left, and what to measure next."""
+    from ..diagnose import check_experiment
+    from ..diagnose.next_experiment import propose
+    from ..diagnose.unexplained import where_it_fails
+    from ..report import write_report
+
+    say("checking the recording")
+    soundness = check_experiment(diagnosis.experiment, diagnosis.before.model)
+    say("describing what is left")
+    left = where_it_fails(diagnosis.after, diagnosis.prepared)
+    open_questions = diagnosis.verdict == "undecided" or bool(diagnosis.groups)
+    steps = propose(diagnosis, progress=say).findings() if open_questions else ()
+    say("")
+    write_report(diagnosis, path, soundness=soundness, unexplained=left, next_steps=steps)
+
+
+def _next_commands(diagnosis: Diagnosis, folder: Path) -> list[str]:
+    """What helps on from here: nothing where all is explained."""
+    from ..diagnose.ladder import ADEQUATE
+
+    lines = []
+    if diagnosis.groups:
+        lines.append(f"what to measure to tell them: teleopdesign next {folder}")
+    if diagnosis.verdict != "model_adequate" and diagnosis.left > ADEQUATE:
+        lines.append(f"where it fails: teleopdesign describe {folder}")
+    return ["", *lines] if lines else []

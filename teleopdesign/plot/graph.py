@@ -107,11 +107,17 @@ def _label(series: Series) -> str:
 
 def _logarithmic(graph: Graph, axes: Axes) -> None:
     """Logarithmic y; x too where it is positive and spans more than a decade, as frequencies do."""
+    from matplotlib.ticker import FuncFormatter, NullFormatter
+
     axes.set_yscale("log")
     x = np.concatenate([s.x for s in graph.series]) if graph.series else np.zeros(1)
     x = x[np.isfinite(x)]
     if x.size and x.min() > 0 and x.max() > 10 * x.min():
         axes.set_xscale("log")
+    for axis in (axes.xaxis, axes.yaxis):
+        if axis.get_scale() == "log":  # plain numbers: powers would be mathtext
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
 
 
 def _legend(axes: Axes) -> None:

@@ -1,0 +1,110 @@
+"""describe where a model fails and what no candidate explains"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import ModelError
+from ._options import add_effect_files, add_folder, check_output, say
+
+if TYPE_CHECKING:
+    from ..diagnose.fit import Fit
+    from ..diagnose.force_error import Prepared
+    from ..diagnose.unexplained import Unexplained
+    from ..measurement.experiment import Experiment
+    from ..model import Model
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    add_folder(parser)
+    parser.add_argument(
+        "--as-is",
+        action="store_true",
+        help="describe where your own model fails, re-estimated, with no effect added",
+    )
+    parser.add_argument(
+        "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
+    )
+    parser.add_argument("--json", type=Path, metavar="F", help="write what was found there")
+    parser.add_argument(
+        "--effect-file",
+        type=Path,
+        metavar="NAME.py",
+        help="write the largest dependence as an effect file, to diagnose with",
+    )
+    add_effect_files(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the sentences; write what was asked for."""
+    for path, endings in (
+        (options.json, (".json",)),
+        (options.figure, (".png", ".pdf", ".svg")),
+        (options.effect_file, (".py",)),
+    ):
+        if path is not None:
+            check_output(path, endings)
+    if options.effect_file is not None and not options.effect_file.stem.isidentifier():
+        raise ModelError(f"{options.effect_file}: expected a name such as my_effect.py")
+    from ..diagnose.unexplained import unexplained
+    from ..effects import catalogue
+    from ..measurement import load_experiment
+    from ..model import Model
+
+    experiment = load_experiment(options.folder)
+    model = Model.from_experiment(experiment, catalogue(options.effect))
+    fit, prepared, said = _fitted(experiment, model, as_is=options.as_is)
+    print(f"{said}\n")
+    found = unexplained(fit, prepared)
+    print(found)
+    if options.json is not None:
+        text = json.dumps({"model": said, **found.as_data()}, indent=1)
+        options.json.write_text(text + "\n", encoding="utf-8")
+    if options.figure is not None:
+        found.plot().savefig(options.figure)
+    if options.effect_file is not None:
+        _write(found, options.effect_file, options.folder)
+    return 0
+
+
+def _fitted(experiment: Experiment, model: Model, *, as_is: bool) -> tuple[Fit, Prepared, str]:
+    """The fit that is described, with a line that says which model it is."""
+    import numpy as np
+
+    from ..diagnose import find_missing
+    from ..diagnose.force_error import prepare
+    from ..diagnose.ladder import ADEQUATE
+    from ..diagnose.noise_floor import noise_floor
+    from ..diagnose.search import estimate_from_starts
+
+    if as_is:
+        prepared = prepare(experiment)
+        return estimate_from_starts(model, prepared), prepared, "Your model, re-estimated:"
+    diagnosis = find_missing(experiment, model, progress=say)
+    say("")
+    prepared, before = diagnosis.prepared, diagnosis.before
+    added = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)
+    # effects that make sensors count for more hide what they leave behind a higher noise floor
+    own = noise_floor(before.model, prepared, np.random.default_rng(0)).value
+    louder = diagnosis.floor.value > ADEQUATE * own
+    if added and not louder and (diagnosis.missing or diagnosis.left <= ADEQUATE):
+        return diagnosis.after, prepared, f"Your model with {added}:"
+    if not added or diagnosis.after.check_error <= ADEQUATE * own:
+        return diagnosis.after, prepared, "Your model, re-estimated:"
+    why = "raise the noise of the sensors" if louder else "explain less than half of what it leaves"
+    return before, prepared, f"Your model, re-estimated ({added} would {why}):"
+
+
+def _write(found: Unexplained, path: Path, folder: Path) -> None:
+    from ..diagnose.unexplained.effect_file import write_effect
+
+    largest = found.largest
+    if largest is None:
+        raise ModelError(f"{path}: not written: what is left depends on nothing for sure")
+    part, described = largest
+    write_effect(path, part, described, found.prepared)
+    print(f"\nwritten: {path}; next: teleopdesign diagnose {folder} --effect {path}")
