@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 
 #: what is left counts as noise up to this many noise floors
 ADEQUATE = 1.8
+#: an effect that makes sensors count for this much more than they do in the user's model hides what
+#: it leaves in their noise
+LOUDER = 1.8
 #: what is named must explain this part of the squares above the noise floor
 MOSTLY = 0.5
 #: most effects that one diagnosis adds
@@ -139,9 +142,12 @@ def find_missing(
     say("re-estimating the model")
     stated = model or Model.from_experiment(experiment)
     rungs = [Rung(None, estimate_from_starts(stated, prepared))]
+    first: NoiseFloor | None = None
     while True:
         here = rungs[-1].fit
         floor = noise_floor(here.model, prepared, np.random.default_rng(seed))
+        first = floor if first is None else first
+        floor = replace(floor, value=min(floor.value, LOUDER * first.value))
         step = len(rungs)
         saying = partial(_said, say, f"step {step}: ")
         ranking = rank_candidates(here, prepared, stated=stated, progress=saying)
@@ -149,7 +155,8 @@ def find_missing(
         if len(rungs) > MOST:
             break
         if not supported:
-            pair = _pair(rungs[-1], ranking, prepared, floor, stated, saying)
+            # beside effects that are accepted already a pair costs more time than it is worth
+            pair = _pair(rungs[0], ranking, prepared, floor, stated, saying) if step == 1 else []
             if not pair:
                 break
             rungs += pair
