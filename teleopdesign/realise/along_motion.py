@@ -100,7 +100,6 @@ class Law:
                 tangent += d * given[s].tangent
         return Traced(value.copy(), tangent)
 
-
     def _slope(
         self, probe: Probe, arrays: Sequence[Array], values: Mapping[sp.Symbol, float]
     ) -> Any:
