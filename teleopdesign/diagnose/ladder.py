@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 
 #: what is left counts as noise up to this many noise floors
 ADEQUATE = 1.8
-#: an effect that makes sensors count for this much more than they do in the user's model hides what
-#: it leaves in their noise
-LOUDER = 1.8
+#: an effect that makes sensors count for this much more than they do in the user's model, and for
+#: this part of what that leaves, hides what it leaves in their noise
+LOUDER, HIDDEN = 1.8, 0.1
 #: what is named must explain this part of the squares above the noise floor
 MOSTLY = 0.5
 #: most effects that one diagnosis adds
@@ -147,7 +147,8 @@ def find_missing(
         here = rungs[-1].fit
         floor = noise_floor(here.model, prepared, np.random.default_rng(seed))
         first = floor if first is None else first
-        floor = replace(floor, value=min(floor.value, LOUDER * first.value))
+        most = max(LOUDER * first.value, HIDDEN * rungs[0].fit.check_error)
+        floor = replace(floor, value=min(floor.value, most))
         step = len(rungs)
         saying = partial(_said, say, f"step {step}: ")
         ranking = rank_candidates(here, prepared, stated=stated, progress=saying)
