@@ -13,9 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..measurement.filtering import Array
-from ..measurement.motion import Motion, motion_of, reading_noise, reading_step
+from ..measurement.motion import Motion, motion_of
 from ..model import Model
 from .force_error import Prepared, Stretch, error_of, residuals
+from .sensors import sensor_of
 
 #: records drawn anew per floor; its spread from draw to draw is a few percent
 DRAWS = 3
@@ -56,21 +57,13 @@ def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Genera
     """The stretch's motion as its sensors would read it once more."""
     motion, channels = stretch.motion, prepared.experiment.channels
     signals = next(r for r in prepared.experiment.records if r.file == motion.file).signals
-    blind = channels[f"{motion.body}.position"].resolution is None
 
     def read(quantity: str, signal: Array) -> Array:
         name = f"{motion.body}.{quantity}"
         if name not in signals:
             return signal
-        readings = signals[name][motion.rows]
-        noise = channels[name].noise or (reading_noise(readings) if blind else 0.0)
-        # levels of a force may be commanded ones; those of a position are its encoder's
-        seen = blind and quantity == "position"
-        step = channels[name].resolution or (reading_step(readings) if seen else 0.0)
-        signal = signal + noise * generator.standard_normal(len(signal))
-        if step > 0:
-            signal = step * np.round(signal / step + generator.uniform(-0.5, 0.5))
-        return signal
+        sensor = sensor_of(prepared.experiment, name, signals[name][motion.rows])
+        return sensor.read(signal, generator)
 
     return motion_of(
         body=motion.body,

@@ -11,6 +11,7 @@ from ...errors import ModelError, did_you_mean
 from ...measurement.experiment import Experiment
 from ...quantity import si_factor
 from ..ladder import Diagnosis
+from ..sensors import sensors_of
 from .family import Part, Setting, Show, family
 from .following import servo_of
 from .limits import Limits, course_of, shown_limits
@@ -19,7 +20,6 @@ from .proposal import Proposal, Reference
 from .remedies import Remedy, remedies, setups
 from .rivals import Rival, depends_on_time, pairs, rivals_of
 from .search import Tried, composed, joined, tried
-from .sensors import sensors_of
 from .separation import floor_force, present_separation
 from .synthesis import Bench, planned
 from .words import sentence_of, unordered

@@ -17,11 +17,11 @@ from ...quantity import unit_of
 from ..fit import fit_squares
 from ..force_error import Prepared
 from ..scales import scales
+from ..sensors import Sensor
 from .family import Setting, family
 from .limits import Limits, course_of
 from .rivals import Rival
 from .search import tried
-from .sensors import Sensor
 from .separation import Sums, solved
 from .synthesis import Bench
 

@@ -21,9 +21,9 @@ from ...measurement.record import Record
 from ...model import Model
 from ...realise.along_motion import residual_along
 from ...realise.simulated import with_give, without_absent
+from ..sensors import Sensor
 from .following import Servo, followed, ramped
 from .limits import Course
-from .sensors import Sensor
 
 #: give of an ideal friction, in encoder steps: too small to be read
 GIVE = 0.3
