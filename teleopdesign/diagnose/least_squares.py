@@ -72,3 +72,14 @@ def _step(jacobian: Array, residual: Array, below: Array, above: Array, damping:
         high = np.where(high - low > 0, high, low + 1e-300)  # a range may have shrunk to nothing
         step = lsq_linear(root.T, target, (low, high), method="bvls").x
     return np.asarray(step / size)
+
+
+#: kept off zero in normal equations, relative to each diagonal: what nothing determines stays zero
+RIDGE = 1e-9
+
+
+def solve_normal(normal: Array, gradient: Array) -> Array:
+    """Solutions (..., k) of normal equations (..., k, k), each scaled to a unit diagonal."""
+    scale = np.sqrt(np.maximum(np.diagonal(normal, axis1=-2, axis2=-1), 1e-300))
+    scaled = normal / (scale[..., :, None] * scale[..., None, :]) + RIDGE * np.eye(scale.shape[-1])
+    return np.asarray(np.linalg.solve(scaled, (gradient / scale)[..., None])[..., 0] / scale)

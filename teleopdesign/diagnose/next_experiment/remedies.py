@@ -16,13 +16,14 @@ from ...measurement.filtering import Array
 from ...quantity import unit_of
 from ..fit import fit_squares
 from ..force_error import Prepared
+from ..least_squares import solve_normal
 from ..scales import scales
 from ..sensors import Sensor
 from .family import Setting, family
 from .limits import Limits, course_of
 from .rivals import Rival
 from .search import tried
-from .separation import Sums, solved
+from .separation import Sums
 from .synthesis import Bench
 
 #: how much finer a sensor, how much wider the limits are taken
@@ -193,5 +194,5 @@ def _step(normal: Array, gradient: Array, change: Array, held: Array) -> Array:
     free = ~held.astype(bool)
     if free.any():
         rest = gradient[free] + normal[np.ix_(free, ~free)] @ change[~free]
-        step[free] = -solved(normal[np.ix_(free, free)], rest)
+        step[free] = -solve_normal(normal[np.ix_(free, free)], rest)
     return step

@@ -19,10 +19,8 @@ from numpy.typing import NDArray
 
 from ...measurement.filtering import Array
 from ..force_error import Prepared, Stretch, referred
+from ..least_squares import solve_normal
 from .rivals import Rival
-
-#: part of a column's square that is added to it: what no record determines stays where it is
-RIDGE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -45,17 +43,10 @@ class Sums:
         """Error that is left along these parts, in noise floors of them."""
         chosen = list(parts)
         normal, gradient = self.normal[chosen].sum(0), self.gradient[chosen].sum(0)
-        step = -solved(self.present + normal, gradient)
+        step = -solve_normal(self.present + normal, gradient)
         left = float(self.squares[chosen].sum() + 2 * gradient @ step + step @ normal @ step)
         noise = float(self.noise[chosen].sum())
         return float(np.sqrt(max(left, 0.0) / max(noise, 1e-300)))
-
-
-def solved(normal: Array, gradient: Array) -> Array:
-    """Solution of the normal equations; what they do not determine stays zero."""
-    size = np.sqrt(np.maximum(np.diag(normal), 1e-300))
-    scaled = normal / np.outer(size, size) + RIDGE * np.eye(len(size))
-    return np.asarray(np.linalg.solve(scaled, gradient / size) / size)
 
 
 def normal_matrix(rival: Rival, prepared: Prepared, use: str = "fit") -> Array:
@@ -120,7 +111,7 @@ def present_separation(truth: Rival, other: Rival, prepared: Prepared, floor: fl
     fit, check = prepared.of("fit"), prepared.of("check") or prepared.of("fit")
     present = normal_matrix(other, prepared)
     seen = _against(truth, other, fit, present)
-    step = -solved(present, seen.gradient.sum(0))
+    step = -solve_normal(present, seen.gradient.sum(0))
     shown = seen if check is fit else _against(truth, other, check, present)
     left = float(
         shown.squares.sum() + 2 * shown.gradient.sum(0) @ step + step @ shown.normal.sum(0) @ step

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ...measurement.filtering import Array
 from ..evidence import chance, gain_score
 from ..force_error import FOLDS
+from ..least_squares import solve_normal
 from ..support import OF_FLOOR, RELEVANT, SURE
 from .rows import Rows
 from .shapes import SHAPES, Shape, columns_of, knots_of, roughness
@@ -26,8 +27,6 @@ SMOOTHNESS = np.logspace(-4, 3, 8)
 #: weight of f itself, relative to the data's: what another value of the model's own parameters
 #: would explain as well is left to them; what the rows tell is lowered by a thousandth
 SMALLNESS = 1e-3
-#: kept off zero in normal equations, relative to each diagonal
-RIDGE = 1e-9
 #: part of a gain that must be there too with the variable as the model expects it: at steady speed
 #: the command is what the model needs plus the residual, and goes along with any residual
 NOT_ITSELF = 0.5
@@ -53,14 +52,7 @@ class Columns:
         """Coefficients (k,) by penalised least squares on these rows."""
         a = self.values[rows]
         normal = a.T @ a + self.penalty
-        return _solved(normal, a.T @ target[rows])
-
-
-def _solved(normal: Array, gradient: Array) -> Array:
-    """Solutions (..., k) of systems (..., k, k), each scaled to a unit diagonal."""
-    scale = np.sqrt(np.maximum(np.diagonal(normal, axis1=-2, axis2=-1), 1e-300))
-    scaled = normal / (scale[..., :, None] * scale[..., None, :]) + RIDGE * np.eye(scale.shape[-1])
-    return np.asarray(np.linalg.solve(scaled, (gradient / scale)[..., None])[..., 0] / scale)
+        return solve_normal(normal, a.T @ target[rows])
 
 
 @dataclass(frozen=True)
@@ -167,7 +159,7 @@ def _smoothed(rows: Rows, beside: Columns, own: Columns, rough: Array) -> Column
     def missed(weight: float) -> float:
         penalised = seen.copy()
         penalised[:, -n:, -n:] += weight * size * rough
-        x = _solved(penalised, gradient.sum(axis=0) - gradient)
+        x = solve_normal(penalised, gradient.sum(axis=0) - gradient)
         bent = np.einsum("fi,fij,fj->", x, normal, x)
         return float(bent - 2 * np.einsum("fi,fi->", x, gradient))
 
