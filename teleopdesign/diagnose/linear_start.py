@@ -103,8 +103,7 @@ def _start(model: Model, effect: Effect, at: str, left: Array, columns: Array) -
             effect.phase: float(np.arctan2(by[1], by[0])),
         }
     declared = effect.parameters[effect.strength]
-    most = min(declared.upper, float("inf"))
-    inside = float(np.clip(values[effect.strength], declared.lower, most))
+    inside = float(np.clip(values[effect.strength], declared.lower, declared.upper))
     part = inside / values[effect.strength] if values[effect.strength] else 0.0
     values[effect.strength] = inside
     rest = left + part * (columns @ by)

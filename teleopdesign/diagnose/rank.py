@@ -14,7 +14,7 @@ from .candidates import Candidate, candidates
 from .evidence import gain_score
 from .fit import ROUGH, Fit, estimate, fit_squares
 from .force_error import Prepared
-from .search import estimate_from_starts
+from .search import at_stated, estimate_from_starts
 
 
 @dataclass(frozen=True)
@@ -125,9 +125,7 @@ def _refined(
     if not present or fit_squares(rough) > leading:
         return tried
     if stated is not None:
-        # without the effect the other parameters may have gone where no step leads back from
-        own = {n: v.value for n, v in stated.parameters.items() if n in rough.free}
-        again = estimate(rough.model.with_values(own), prepared, effort=ROUGH)
+        again = estimate(at_stated(rough.model, stated), prepared, effort=ROUGH)
         if fit_squares(again) < fit_squares(rough):
             rough = again
     return candidate, estimate(rough.model, prepared)

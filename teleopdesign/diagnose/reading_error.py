@@ -15,7 +15,7 @@ import numpy as np
 
 from ..blocks import Value
 from ..measurement.filtering import Array
-from .fit import Fit
+from .fit import Fit, weighted
 from .force_error import Prepared, referred
 from .noise_floor import read_again
 
@@ -37,15 +37,13 @@ class ReadingError:
 def reading_error(found: Fit, prepared: Prepared, generator: np.random.Generator) -> ReadingError:
     """By how much readings drawn anew move the estimates of a fit, to first order."""
     stretches = prepared.of("fit")
-    roots = [np.sqrt(s.weight) for s in stretches]
     size = np.linalg.norm(found.jacobian, axis=0)
     size = np.where(size > 0, size, 1.0)
     inverse = np.linalg.pinv(found.jacobian / size, rcond=1e-6)
     moved = []
     for _ in range(DRAWS):
         drawn = [replace(s, motion=read_again(s, prepared, generator)) for s in stretches]
-        parts = referred(found.model, drawn)
-        after = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
+        after = weighted(drawn, [r for r, _ in referred(found.model, drawn)])
         moved.append(-(inverse @ (after - found.fit_residual)) / size)
     steps = np.array(moved)
     return ReadingError(steps.mean(axis=0), steps.std(axis=0, ddof=1))

@@ -46,8 +46,7 @@ def estimate_from_starts(
         curved = _with_strength(model, base) is None
         kept = CURVED_STEPPED if curved else STEPPED
         if curved and stated is not None and _moved(base, stated):
-            own = {n: stated.parameters[n].value for n in base.free if n in stated.parameters}
-            models += [m.with_values(own) for m in models]
+            models += [at_stated(m, stated) for m in models]
         models = _promising(model, models, prepared, base, unit)
         if not models:
             return unchanged(model, base)
@@ -58,6 +57,13 @@ def estimate_from_starts(
     rough = [estimate(m, prepared, effort=ROUGH) for m in models]
     best = min(rough, key=fit_squares)
     return best if base is not None else estimate(best.model, prepared, effort=FINE)
+
+
+def at_stated(model: Model, stated: Model) -> Model:
+    """The model with its user's values: without an effect that is missing, others may have gone
+    where no step leads back from.
+    """
+    return model.with_values({n: v.value for n, v in stated.parameters.items()})
 
 
 def unchanged(model: Model, base: Fit) -> Fit:
