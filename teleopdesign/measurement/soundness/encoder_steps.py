@@ -9,7 +9,8 @@ import numpy as np
 
 from ...finding import Finding
 from ..filtering import Array
-from .signal import Signal, smallest_step
+from ..motion import reading_step
+from .signal import Signal
 
 #: how close the readings lie to a grid: mean of exp(2 pi i x/step), 1 on it, 0 anywhere
 ON_GRID = 0.9
@@ -29,7 +30,7 @@ def true_step(x: Array, stated: float) -> float | None:
     """The step that the readings move in: the stated one or a multiple; None: neither."""
     if gridded(x, stated) < ON_GRID:
         return None
-    reached, seen = float(np.ptp(x)), round(smallest_step(x) / stated)
+    reached, seen = float(np.ptp(x)), round(reading_step(x) / stated)
     tried = [k for k in (*MULTIPLES, seen) if k > 1 and k * stated < 0.1 * reached]
     on = [k for k in tried if gridded(x, k * stated) > ON_GRID]
     return stated * max(on, default=1)

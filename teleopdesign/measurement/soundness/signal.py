@@ -82,18 +82,9 @@ def signals(experiment: Experiment) -> list[Signal]:
             assert channel.body is not None
             unit = unit_of(BODY_QUANTITIES[channel.quantity], experiment.axis(channel.body))
             middle = max(0, (len(values) - ENOUGH) // 2)
-            step = smallest_step(values[middle : middle + ENOUGH])
+            step = reading_step(values[middle : middle + ENOUGH])
             found.append(Signal(written(experiment, key), unit, channel, record, values, step))
     return found
-
-
-def smallest_step(x: Array) -> float:
-    """Smallest step between values; where most readings repeat, noise says nothing about it."""
-    step, least = reading_step(x), 1e-9 * float(np.ptp(x))
-    if step > least:
-        return step
-    gaps = np.diff(np.unique(x))
-    return float(np.min(gaps[gaps > least], initial=np.inf)) if least > 0 else 0.0
 
 
 def local_scale(e: Array, floor: float) -> Array:
