@@ -9,7 +9,6 @@ no energy out of slow free motion, where friction f_2 alone holds the link.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -22,7 +21,7 @@ from .claim import Claim, Evidence, Proof, Refutation
 from .dahl_certificates import Values, d, f_D
 from .friction_compensation import dahl_compensation
 from .impedance import decimal, exact
-from .rate_independent import Coulomb, Cycle, Dahl, Element, Spring, symmetric_cycle
+from .rate_independent import Coulomb, Cycle, Dahl, Element, Spring, lost_share, symmetric_cycle
 
 
 def any_environment(
@@ -130,15 +129,10 @@ def free_motion_margin(
     compensator_stiffness: float,
 ) -> float:
     """min(f_1 + f_2 - f_D, f_1 - f_D (1 - tanh(u)/u)), N: >= 0 where no symmetric cycle gives."""
-    stuck = compensator_level * _share(
+    stuck = compensator_level * lost_share(
         compensator_stiffness * link_level / (transmission_stiffness * compensator_level)
     )
     return min(motor_level + link_level - compensator_level, motor_level - stuck)
-
-
-def _share(u: float) -> float:
-    """1 - tanh(u)/u."""
-    return u * u / 3 * (1 - 0.4 * u * u) if u < 1e-3 else 1 - math.tanh(u) / u
 
 
 def _worst_cycle(helps: Dahl, against: Sequence[Element]) -> Cycle | None:

@@ -17,12 +17,24 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from ..effects import EFFECTS, SIGNALS
 from ..errors import ModelError
 from .certificate import Certificate, Term, storage_certificate
 from .claim import Claim, Proof, Refutation, Unknown
 from .dahl_certificates import Values, abs_v, dahl_rate, v
 from .impedance import decimal, exact
 from .rate_independent import Dahl
+
+_STRIBECK = EFFECTS["stribeck"]
+#: (velocity, F_S - F_C, v_S) -> extra level: the law of the effect `stribeck`
+_EXTRA = sp.lambdify(
+    [
+        SIGNALS["velocity"],
+        *(_STRIBECK.symbols()[n] for n in ("extra_static_level", "stribeck_velocity")),
+    ],
+    _STRIBECK.expression(),
+    "math",
+)
 
 
 @dataclass(frozen=True)
@@ -43,7 +55,7 @@ class Jumps:
     def level(self, velocity: float) -> float:
         """g(v), N."""
         low, high = self.levels
-        return low + (high - low) * math.exp(-((velocity / self.stribeck_velocity) ** 2))
+        return low + float(_EXTRA(velocity, high - low, self.stribeck_velocity))
 
     @property
     def energy(self) -> float:

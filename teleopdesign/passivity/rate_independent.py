@@ -145,12 +145,14 @@ def symmetric_cycle(compensator: Dahl, friction: Sequence[Element], amplitude: f
     return Cycle(compensator, tuple(friction), (amplitude, -amplitude), rounds)
 
 
+def lost_share(u: float) -> float:
+    """1 - tanh(u)/u: part of the level that a cycle of u bristle lengths either way takes."""
+    return u * u / 3 * (1 - 0.4 * u * u) if u < 1e-3 else 1 - math.tanh(u) / u
+
+
 def dahl_loss(level: float, stiffness: float, amplitude: float) -> float:
     """Energy that Dahl friction takes per cycle, J: 4 f A (1 - tanh(u)/u), u = A sigma/f.
 
     N, N/m;  amplitude: A of a symmetric cycle, m
     """
-    u = amplitude * stiffness / level
-    if u < 1e-3:
-        return 4 * level * amplitude * u * u / 3 * (1 - 0.4 * u * u)
-    return 4 * level * amplitude * (1 - math.tanh(u) / u)
+    return 4 * level * amplitude * lost_share(amplitude * stiffness / level)
