@@ -6,8 +6,7 @@ two at once, none, and ones that no catalogue has; encoders, sensors, sample rat
 from poor to rich. Each is diagnosed as a user would, and judged by the rules in `_scoring.py`.
 PySINDy and SysIdentPy (extra `bench`), where they are installed, answer on the same files.
 
-Finding: in the README's table. How it is judged, and what the baselines get, is in
-docs/recovery_study.md.
+How it is judged, what the baselines get and what was found is in docs/recovery_study.md.
 
     python studies/hidden_effects.py [--quick] [--cases N] [--seed S] [--folder DIR] [--output DIR]
 

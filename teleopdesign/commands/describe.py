@@ -73,12 +73,9 @@ def run(options: argparse.Namespace) -> int:
 
 def _fitted(experiment: Experiment, model: Model, *, as_is: bool) -> tuple[Fit, Prepared, str]:
     """The fit that is described, with a line that says which model it is."""
-    import numpy as np
-
     from ..diagnose import find_missing
     from ..diagnose.force_error import prepare
     from ..diagnose.ladder import ADEQUATE
-    from ..diagnose.noise_floor import noise_floor
     from ..diagnose.search import estimate_from_starts
 
     if as_is:
@@ -88,14 +85,12 @@ def _fitted(experiment: Experiment, model: Model, *, as_is: bool) -> tuple[Fit, 
     say("")
     prepared, before = diagnosis.prepared, diagnosis.before
     added = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)
-    # effects that make sensors count for more hide what they leave behind a higher noise floor
-    own = noise_floor(before.model, prepared, np.random.default_rng(0)).value
-    louder = diagnosis.floor.value > ADEQUATE * own
-    if added and not louder and (diagnosis.missing or diagnosis.left <= ADEQUATE):
+    held = diagnosis.floor.held
+    if not added:
+        return before, prepared, "Your model, re-estimated:"
+    if diagnosis.left <= ADEQUATE or (diagnosis.missing and not held):
         return diagnosis.after, prepared, f"Your model with {added}:"
-    if not added or diagnosis.after.check_error <= ADEQUATE * own:
-        return diagnosis.after, prepared, "Your model, re-estimated:"
-    why = "raise the noise of the sensors" if louder else "explain less than half of what it leaves"
+    why = "raise the noise of the sensors" if held else "explain less than half of what it leaves"
     return before, prepared, f"Your model, re-estimated ({added} would {why}):"
 
 

@@ -147,8 +147,7 @@ def find_missing(
         here = rungs[-1].fit
         floor = noise_floor(here.model, prepared, np.random.default_rng(seed))
         first = floor if first is None else first
-        most = max(LOUDER * first.value, HIDDEN * rungs[0].fit.check_error)
-        floor = replace(floor, value=min(floor.value, most))
+        floor = floor.at_most(max(LOUDER * first.value, HIDDEN * rungs[0].fit.check_error))
         step = len(rungs)
         saying = partial(_said, say, f"step {step}: ")
         ranking = rank_candidates(here, prepared, stated=stated, progress=saying)

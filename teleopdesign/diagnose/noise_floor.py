@@ -24,10 +24,18 @@ DRAWS = 3
 
 @dataclass(frozen=True)
 class NoiseFloor:
-    """The floor as a relative force error, and where its numbers come from."""
+    """The floor as a relative force error, and where its numbers come from.
+
+    held: kept below what this model makes of sensor errors, or what it leaves would hide in them
+    """
 
     value: float
     source: str
+    held: bool = False
+
+    def at_most(self, value: float) -> NoiseFloor:
+        """The floor, held at that value where it is above."""
+        return self if self.value <= value else replace(self, value=value, held=True)
 
 
 def noise_floor(

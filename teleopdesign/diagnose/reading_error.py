@@ -22,7 +22,7 @@ from .noise_floor import read_again
 #: readings drawn anew
 DRAWS = 8
 #: part of the shift that a second reading shows: the smoothed motion that it starts from has lost
-#: what the first reading hid. Measured on records of an independent simulator: docs/theory.md
+#: what the first reading hid. Set so that intervals cover on simulated records: docs/theory.md
 SHOWN = 0.4
 
 
