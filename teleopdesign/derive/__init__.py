@@ -8,6 +8,7 @@ from .transfer_functions import (
     transfer,
     transfer_functions,
 )
+from .two_port import two_port_functions
 
 __all__ = [
     "TransferFunctions",
@@ -20,4 +21,5 @@ __all__ = [
     "return_difference",
     "transfer",
     "transfer_functions",
+    "two_port_functions",
 ]

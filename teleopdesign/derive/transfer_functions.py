@@ -12,7 +12,7 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from ..diagrams import Attached, Control, Diagram, Moving
+from ..diagrams import Attached, Control, Diagram, Kinematics, Linked, Moving, position_symbol
 from ..errors import ModelError
 from .printing import as_latex, as_text, block_symbol, with_gamma
 
@@ -31,11 +31,24 @@ def rows(diagram: Diagram) -> list[Row]:
             row |= {s: sp.S(-sign) for s, sign in part.loads.items()}
         elif isinstance(part, Attached):
             row = {part.force: sp.S(1), part.motion: -part.sign * block_symbol(part.name)}
+        elif isinstance(part, Linked):
+            found += _linked(part)
+            continue
         elif isinstance(part, Control):
             row = {part.output: sp.S(1), part.input: -block_symbol(part.name)}
+        elif isinstance(part, Kinematics):
+            slopes = {s: sp.diff(part.expression, position_symbol(s)) for s in part.inputs}
+            row = {part.output: sp.S(1), **{s: -diagram.here(g) for s, g in slopes.items()}}
         else:
-            row = {part.output: sp.S(1), **{s: sp.S(-g) for s, g in part.terms.items()}}
+            row = {part.output: sp.S(1), **{s: -diagram.here(g) for s, g in part.terms.items()}}
         found.append(row)
+    return found
+
+
+def _linked(part: Linked) -> list[Row]:
+    found: list[Row] = [{force: sp.S(1)} for force in part.forces]
+    for i, j in part.entries:
+        found[i][part.motions[j]] = -part.sign * block_symbol(part.entry_name(i, j))
     return found
 
 
@@ -45,18 +58,23 @@ def has_actuation(part: Moving) -> bool:
 
 
 def transfer(
-    diagram: Diagram, output: str, inputs: tuple[str, ...] | None = None, *, given: str = ""
+    diagram: Diagram,
+    output: str,
+    inputs: tuple[str, ...] | None = None,
+    *,
+    given: str | tuple[str, ...] = (),
 ) -> dict[str, sp.Expr]:
     """Coefficients of `output` = sum of coefficient * input.
 
     inputs: signals from outside (default: all); those left out are zero
-    given: a motion that is prescribed, in place of the outside force that drives it
+    given: motions that are prescribed, in place of the outside forces that drive them
     """
     diagram.signal(output)
     free = dict.fromkeys(diagram.outside)
-    if given:
-        free[given] = None
-        free.pop(_driver(diagram, given), None)
+    prescribed = given if isinstance(given, tuple) else (given,) if given else ()
+    for motion in prescribed:
+        free[motion] = None
+        free.pop(_driver(diagram, motion), None)
     for name in inputs or ():
         diagram.signal(name)
         if name not in free:
@@ -68,7 +86,7 @@ def transfer(
     for signal in _order(unknown, output, diagram):
         _eliminate(system, signal, diagram)
     row = next(r for r in system if _OUTPUT in r)
-    return {s: -row.get(s, sp.S(0)) for s in chosen}
+    return {s: _product(sp.S(-1), row.get(s, sp.S(0))) for s in chosen}
 
 
 def _driver(diagram: Diagram, motion: str) -> str:

@@ -1,7 +1,21 @@
 """Which blocks, wired by signal names."""
 
 from .haptic_interface import four_cases, haptic_interface
-from .wiring import ANY, AnyBlock, Attached, Block, Control, Diagram, Junction, Moving
+from .parts import (
+    ANY,
+    AnyBlock,
+    Attached,
+    Block,
+    Control,
+    Junction,
+    Kinematics,
+    Linked,
+    Moving,
+    Part,
+    position_symbol,
+)
+from .teleoperator import teleoperator
+from .wiring import Diagram
 from .world_haptics_2005 import READINGS, Reading, reading, world_haptics_2005
 
 __all__ = [
@@ -13,10 +27,15 @@ __all__ = [
     "Control",
     "Diagram",
     "Junction",
+    "Kinematics",
+    "Linked",
     "Moving",
+    "Part",
     "Reading",
     "four_cases",
     "haptic_interface",
+    "position_symbol",
     "reading",
+    "teleoperator",
     "world_haptics_2005",
 ]

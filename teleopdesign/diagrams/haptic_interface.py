@@ -15,7 +15,8 @@ from collections.abc import Collection
 from ..blocks import Body
 from ..controllers import Controller
 from ..errors import ModelError
-from .wiring import ANY, AnyBlock, Attached, Block, Control, Diagram, Junction, Moving
+from .parts import ANY, AnyBlock, Attached, Block, Control, Junction, Moving
+from .wiring import Diagram
 
 TEXTS = {
     "R_D": "desired force",

@@ -10,108 +10,25 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
-from ..blocks import Body
+import sympy as sp
+
+from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..errors import ModelError, did_you_mean
-
-
-@dataclass(frozen=True)
-class AnyBlock:
-    """A block known by its name only: enough to derive transfer functions, not to simulate."""
-
-
-ANY = AnyBlock()
-
-
-@dataclass(frozen=True)
-class Moving:
-    """A body that forces move:  Z motion = command + loads.
-
-    command: force commanded to its actuator (its actuation effects stand between)
-    loads: other forces on it, signal -> sign
-    driver: outside force that is whatever it must be where the motion is prescribed instead
-    """
-
-    name: str
-    body: Body | AnyBlock
-    motion: str
-    command: str
-    loads: Mapping[str, int]
-    driver: str
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        return (self.motion,)
-
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        return (self.command, *self.loads)
-
-
-@dataclass(frozen=True)
-class Attached:
-    """A body that follows a motion and resists it:  force = sign Z motion."""
-
-    name: str
-    body: Body | AnyBlock
-    motion: str
-    force: str
-    sign: int = -1
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        return (self.force,)
-
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        return (self.motion,)
-
-
-@dataclass(frozen=True)
-class Control:
-    """A controller:  output = controller(input), along the velocity of `motion`.
-
-    analog: realised by electronics that no computer samples
-    """
-
-    name: str
-    controller: Controller | AnyBlock
-    input: str
-    output: str
-    motion: str
-    analog: bool = False
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        return (self.output,)
-
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        return (self.input, self.motion)
-
-
-@dataclass(frozen=True)
-class Junction:
-    """A summing junction:  output = sum of sign * signal."""
-
-    output: str
-    terms: Mapping[str, int]
-
-    @property
-    def name(self) -> str:
-        return f"junction {self.output}"
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        return (self.output,)
-
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        return tuple(self.terms)
-
-
-Block = Moving | Attached | Control
-Part = Moving | Attached | Control | Junction
+from .parts import (
+    AnyBlock,
+    Attached,
+    Block,
+    Control,
+    Junction,
+    Kinematics,
+    Linked,
+    Moving,
+    Part,
+    Weight,
+    followed,
+    position_symbol,
+)
 
 
 @dataclass(frozen=True)
@@ -121,6 +38,8 @@ class Diagram:
     outside: signals that come from outside, name -> quantity
     measured: signals that sensors give to the computer; what controllers make of them is sampled
     texts: what each signal is, with sign
+    kinematics: positions computed from those of bodies
+    pose: position of each motion (default 0) at which weights and kinematics are linearised
     """
 
     name: str
@@ -129,6 +48,8 @@ class Diagram:
     outside: Mapping[str, str]
     measured: tuple[str, ...]
     texts: Mapping[str, str] = field(default_factory=dict)
+    kinematics: tuple[Kinematics, ...] = ()
+    pose: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         made: dict[str, str] = dict.fromkeys(self.outside, "outside")
@@ -150,13 +71,55 @@ class Diagram:
                     f'{self.name}: {where}: nothing makes signal "{signal}"'
                     f"{did_you_mean(signal, made)}"
                 )
-        for name in ("outside", "texts"):
+        for name in ("outside", "texts", "pose"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
+        for block in self.blocks:
+            for motion in followed(block):
+                self.position(motion)
 
     @property
     def parts(self) -> tuple[Part, ...]:
-        """Blocks and junctions."""
-        return (*self.blocks, *self.junctions)
+        """Blocks, kinematics and junctions."""
+        return (*self.blocks, *self.kinematics, *self.junctions)
+
+    def position(self, name: str) -> sp.Expr:
+        """A motion, or a junction or kinematics of motions, on the positions of moving bodies.
+
+        raises ModelError: the signal is no position that bodies determine
+        """
+        found = self._position(name)
+        if found is None:
+            raise ModelError(
+                f'{self.name}: "{name}" is no motion: expected that of a body or a sum of such'
+            )
+        return found
+
+    def _position(self, name: str, seen: tuple[str, ...] = ()) -> sp.Expr | None:
+        if any(isinstance(b, Moving) and b.motion == name for b in self.blocks):
+            return position_symbol(name)
+        makers: tuple[Junction | Kinematics, ...] = (*self.kinematics, *self.junctions)
+        maker = next((p for p in makers if p.output == name), None)
+        if maker is None or name in seen:
+            return None
+        parts = {s: self._position(s, (*seen, name)) for s in maker.inputs}
+        if any(p is None for p in parts.values()):
+            return None
+        if isinstance(maker, Kinematics):
+            whole = maker.expression
+        else:
+            whole = sp.Add(*(w * position_symbol(s) for s, w in maker.terms.items()))
+        return sp.sympify(whole).xreplace({position_symbol(s): p for s, p in parts.items()})
+
+    def here(self, weight: Weight) -> sp.Expr:
+        """A weight (or derivative of kinematics) at the diagram's pose."""
+        expression = sp.sympify(weight)
+        pose = {
+            s: self.position(s.name).subs(
+                {x: self.pose.get(x.name, 0.0) for x in self.position(s.name).free_symbols}
+            )
+            for s in expression.free_symbols
+        }
+        return expression.subs(pose)
 
     @property
     def signals(self) -> tuple[str, ...]:
@@ -165,7 +128,7 @@ class Diagram:
 
     @property
     def bodies(self) -> tuple[Moving | Attached, ...]:
-        return tuple(b for b in self.blocks if not isinstance(b, Control))
+        return tuple(b for b in self.blocks if isinstance(b, Moving | Attached))
 
     @property
     def controls(self) -> tuple[Control, ...]:
@@ -214,13 +177,17 @@ class Diagram:
         kept = tuple(b for b in self.blocks if b.name not in names)
         return _pruned(replace(self, blocks=kept, outside={**self.outside, **free}))
 
-    def with_block(self, name: str, block: Body | Controller) -> Diagram:
+    def with_block(self, name: str, block: Body | MatrixImpedance | Controller) -> Diagram:
         """The diagram with another body or controller in the place of that name."""
         old = self.block(name)
         if isinstance(old, Control):
-            if isinstance(block, Body):
+            if not isinstance(block, Controller):
                 raise ModelError(f"{self.name}: {name} is a controller, found a body")
             new: Block = replace(old, controller=block)
+        elif isinstance(old, Linked):
+            if not isinstance(block, MatrixImpedance):
+                raise ModelError(f"{self.name}: {name} is a matrix of impedances")
+            new = replace(old, body=block)
         else:
             if not isinstance(block, Body):
                 raise ModelError(f"{self.name}: {name} is a body, found a controller")
@@ -237,6 +204,8 @@ class Diagram:
                     found |= {f"{block.name}.{n}": v for n, v in block.controller.names().items()}
             elif isinstance(block.body, Body):
                 found |= {f"{block.name}.{n}": v.value for n, v in block.body.parameters.items()}
+            elif isinstance(block.body, MatrixImpedance):
+                found |= {f"{block.name}.{n}": v for n, v in block.body.parameters.items()}
         return found
 
     def with_values(self, values: Mapping[str, float]) -> Diagram:
@@ -261,9 +230,17 @@ class Diagram:
         return "\n".join(lines)
 
 
-def _sum(terms: Iterable[tuple[str, int]]) -> str:
-    text = " ".join(f"{'+' if sign > 0 else '-'} {signal}" for signal, sign in terms)
+def _sum(terms: Iterable[tuple[str, Weight]]) -> str:
+    text = " ".join(_weighted(signal, weight) for signal, weight in terms)
     return text.removeprefix("+ ") or "0"
+
+
+def _weighted(signal: str, weight: Weight) -> str:
+    if isinstance(weight, sp.Expr) and not weight.is_number:
+        return f"+ ({weight}) {signal}"
+    value = float(weight)
+    factor = "" if abs(value) == 1 else f"{abs(value):g} "
+    return f"{'-' if value < 0 else '+'} {factor}{signal}"
 
 
 def _line(part: Part) -> str:
@@ -271,8 +248,13 @@ def _line(part: Part) -> str:
         return f"{part.name} {part.motion} = {_sum([(part.command, 1), *part.loads.items()])}"
     if isinstance(part, Attached):
         return f"{part.force} = {'-' if part.sign < 0 else ''}{part.name} {part.motion}"
+    if isinstance(part, Linked):
+        sign = "-" if part.sign < 0 else ""
+        return f"({', '.join(part.forces)}) = {sign}{part.name} ({', '.join(part.motions)})"
     if isinstance(part, Control):
         return f"{part.output} = {part.name} {part.input}"
+    if isinstance(part, Kinematics):
+        return f"{part.output} = {part.expression}"
     return f"{part.output} = {_sum(part.terms.items())}"
 
 

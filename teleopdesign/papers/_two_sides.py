@@ -6,7 +6,7 @@ import numpy as np
 
 from ..blocks import Body, Value
 from ..controllers import controller
-from ..diagrams import Control, Diagram, Junction, Moving
+from ..diagrams import Diagram, teleoperator
 from ..effects import EFFECTS
 from ..simulate import Simulation, simulate, sine
 
@@ -25,35 +25,25 @@ def two_sides(*, cancelled: float, environment: float = 0.0) -> Diagram:
     master = Body("prismatic", {"inertia": Value(0.1)})
     slave = master.with_effect(EFFECTS["coulomb"], {"level": FRICTION})
     slave = slave.with_effect(EFFECTS["viscous"], {"damping": SLAVE_DAMPING})
-    slave = slave.with_effect(EFFECTS["spring"], {"stiffness": environment})
-    spring = controller("lead", {"gain": STIFFNESS, "zero": 1.0, "pole": 1.0})
+    held = Body("prismatic", {"inertia": Value(0.0)})
     cancelled = max(cancelled, 1e-9)  # a level of zero leaves the bristle without a length
     # as soft as the plant's presliding: (sigma_D/sigma_p)^2 = (f_D/f_C)^2 <= f_D/f_C
     dahl = controller("dahl", {"level": cancelled, "stiffness": cancelled / GIVE})
-    return Diagram(
-        "teleoperator",
-        (
-            Moving("master", master, "x_m", "u_m", {"f_u": 1}, "f_u"),
-            Moving("slave", slave, "x_s", "u_s", {}, "f_e"),
-            Control("coupling", spring, "x_e", "f_c", "x_m"),
-            Control("compensator", dahl, "x_s", "f_d", "x_s"),
-        ),
-        (
-            Junction("x_e", {"x_m": 1, "x_s": -1}),
-            Junction("u_m", {"f_c": -1}),
-            Junction("u_s", {"f_c": 1, "f_d": 1}),
-        ),
-        {"f_u": "force"},
-        measured=("x_m", "x_s"),
+    return teleoperator(
+        master,
+        slave,
+        coupling=controller("spring_damper", {"stiffness": STIFFNESS, "damping": 0.0}),
+        environment=held.with_effect(EFFECTS["spring"], {"stiffness": environment}),
+        slave_cancellation=dahl,
     )
 
 
 def slow_cycle(*, cancelled: float, environment: float = 0.0) -> Simulation:
-    """The second of two slow cycles of the master; its user force f_u is what the motion takes."""
+    """The second of two slow cycles of the master; its user force F_u is what the motion takes."""
     found = simulate(
         two_sides(cancelled=cancelled, environment=environment),
         duration=2 / FREQUENCY,
-        motion={"x_m": sine(amplitude=AMPLITUDE, frequency=FREQUENCY)},
+        motion={"X_m": sine(amplitude=AMPLITUDE, frequency=FREQUENCY)},
         computer="continuous",
         give=GIVE,
     )

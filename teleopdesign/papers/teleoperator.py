@@ -114,7 +114,7 @@ def delayed_coupling() -> Proof:
 
 def mid_stroke(found: Simulation, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Master position, a signal and the direction of motion at mid-stroke, both ways."""
-    x, y = found["x_m"].values, found[name].values
+    x, y = found["X_m"].values, found[name].values
     way = np.sign(np.gradient(x))
     middle = np.abs(x) < 0.2 * AMPLITUDE
     return x[middle], y[middle], way[middle]
@@ -126,8 +126,8 @@ def free_space_force() -> Numbers:
     figures = []
     for share in CANCELLED:
         found = slow_cycle(cancelled=share * FRICTION)
-        _, force, way = mid_stroke(found, "f_u")
-        _, error, _ = mid_stroke(found, "x_e")
+        _, force, way = mid_stroke(found, "F_u")
+        _, error, _ = mid_stroke(found, "X_e")
         felt, left = float(np.mean(force * way)), (1 - share) * FRICTION
         # the damper, and a hundredth of the friction: inertia, settling of the bristles
         within = viscous + 0.01 * FRICTION
@@ -148,7 +148,7 @@ def free_space_force() -> Numbers:
 def free_space() -> Proof:
     """What the user feels in slow free motion, both sides sliding, and how far the slave lags."""
     f_Cm, f_Cs, f_Dm, f_Ds = sp.symbols("f_Cm f_Cs f_Dm f_Ds", positive=True)
-    user = sp.Symbol("f_u", real=True)
+    user = sp.Symbol("F_u", real=True)
     steps: list[Step] = []
     for way in (1, -1):
         slave = P * (x_m - x_s) + way * f_Ds - coulomb(way * w, f_Cs)
@@ -165,10 +165,10 @@ def free_space() -> Proof:
 def contact(share: float) -> tuple[float, float, float]:
     """Stiffness felt (N/m), hysteresis width (N), rms difference from the environment (N)."""
     found = slow_cycle(cancelled=share * FRICTION, environment=ENVIRONMENT)
-    x, force, way = mid_stroke(found, "f_u")
+    x, force, way = mid_stroke(found, "F_u")
     design = np.column_stack([x, way])
     (stiffness, half), *_ = np.linalg.lstsq(design, force, rcond=None)
-    whole = found["f_u"].values - ENVIRONMENT * found["x_m"].values
+    whole = found["F_u"].values - ENVIRONMENT * found["X_m"].values
     return float(stiffness), 2 * float(half), float(np.sqrt(np.mean(whole**2)))
 
 

@@ -14,7 +14,8 @@ import sympy as sp
 
 from ..blocks import Body
 from ..controllers import Controller, ControllerEquation, parameter_symbol
-from ..diagrams import Attached, Control, Diagram, Junction, Moving
+from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
+from ..diagrams.parts import Weight
 from ..effects import SIGNALS, delayed
 from ..errors import ModelError
 from ._linear import solve_linear
@@ -88,6 +89,19 @@ def estimate(motion: str) -> sp.Symbol:
     return sp.Symbol(f"{motion}_velocity_estimate", real=True)
 
 
+def rate_of(position: sp.Expr, rate: Callable[[str], sp.Expr]) -> sp.Expr:
+    """Rate of a position that bodies determine;  rate: motion -> its velocity."""
+    return sp.Add(*(sp.diff(position, x) * rate(x.name) for x in position.free_symbols))
+
+
+def motion_of(diagram: Diagram, name: str) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    """Position, velocity and acceleration of a motion on those of the moving bodies."""
+    position = diagram.position(name)
+    speed = rate_of(position, velocity)
+    bent = (sp.diff(speed, x) * velocity(x.name) for x in position.free_symbols)
+    return position, speed, sp.Add(rate_of(position, acceleration), *bent)
+
+
 def equations(
     diagram: Diagram, *, prescribed: Iterable[str] = (), sampled: bool = True
 ) -> Equations:
@@ -142,7 +156,7 @@ class _Builder:
                 continue
             seen.add(name)
             part = made.get(name)
-            if isinstance(part, Moving | Attached):
+            if isinstance(part, Moving | Attached | Linked):
                 raise ModelError(
                     f'{self.diagram.name}: the computer uses "{name}" of {part.name}, which is not '
                     f"measured; sensors give {', '.join(sensors)}"
@@ -228,16 +242,27 @@ class _Builder:
             elif isinstance(part, Attached):
                 rows.append(signal(part.force) - part.sign * self._needed(part, _NO_COMMAND))
                 unknown.append(signal(part.force))
+            elif isinstance(part, Linked):
+                rows += self._linked(part)
+                unknown += [signal(s) for s in part.forces]
             elif isinstance(part, Control) and part.analog:
-                v = velocity(part.motion)
+                _, v, _ = motion_of(self.diagram, part.motion)
                 equation = _placed(part, signal(part.input), v, v)
                 rows.append(signal(part.output) - equation.output)
                 unknown.append(signal(part.output))
                 self.rates |= equation.rates
-            elif isinstance(part, Junction) and part.output not in self.digital:
-                rows.append(signal(part.output) - _sum(part, signal))
+            elif isinstance(part, Junction | Kinematics) and part.output not in self.digital:
+                rows.append(signal(part.output) - summed(part, signal))
                 unknown.append(signal(part.output))
         return rows, unknown
+
+    def _linked(self, part: Linked) -> list[sp.Expr]:
+        forces = part.body.forces(
+            [motion_of(self.diagram, m) for m in part.motions],
+            lambda name: parameter_symbol(part.name, name),
+        )
+        pairs = zip(part.forces, forces, strict=True)
+        return [signal(s) - part.sign * force for s, force in pairs]
 
     def _needed(self, part: Moving | Attached, command: sp.Symbol) -> sp.Expr:
         """inertia a + force + friction - acting: the force that the body needs from others."""
@@ -248,15 +273,16 @@ class _Builder:
                 "holds the body would have to be wired to its tip"
             )
         equation = part.body.equation()
+        position, speed, change = motion_of(self.diagram, part.motion)
         names = {s: parameter_symbol(part.name, n) for n, s in part.body.symbols().items()}
         hidden = {x: sp.Symbol(f"{part.name}_{x.name}", real=True) for x in equation.rates}
         here: dict[sp.Expr, sp.Expr] = {
             **names,
             **hidden,
-            SIGNALS["position"]: signal(part.motion),
-            SIGNALS["velocity"]: velocity(part.motion),
-            SIGNALS["acceleration"]: acceleration(part.motion),
-            SIGNALS["direction"]: sp.sign(velocity(part.motion)),
+            SIGNALS["position"]: position,
+            SIGNALS["velocity"]: speed,
+            SIGNALS["acceleration"]: change,
+            SIGNALS["direction"]: sp.sign(speed),
             SIGNALS["time"]: TIME,
             SIGNALS["command"]: command,
         }
@@ -293,12 +319,15 @@ class _Builder:
             if isinstance(part, Control):
                 if part.analog:
                     continue
-                equation = _placed(part, of(part.input), rate(part.motion), speed(part.motion))
+                moved = self.diagram.position(part.motion)
+                seen = {x: of(x.name) for x in moved.free_symbols}
+                known = (rate_of(moved, f).xreplace(seen) for f in (rate, speed))
+                equation = _placed(part, of(part.input), *known)
                 rows.append(signal(part.output) - equation.output)
                 rates |= equation.rates
                 before |= equation.before
-            elif isinstance(part, Junction) and part.output in self.digital:
-                rows.append(signal(part.output) - _sum(part, of))
+            elif isinstance(part, Junction | Kinematics) and part.output in self.digital:
+                rows.append(signal(part.output) - summed(part, of))
             else:
                 continue
             names += part.outputs
@@ -325,8 +354,16 @@ def _placed(part: Control, given: sp.Expr, rate: sp.Expr, speed: sp.Expr) -> Con
     return part.controller.equation(part.name, signals)
 
 
-def _sum(part: Junction, of: _Reader) -> sp.Expr:
-    return sp.Add(*(sign * of(s) for s, sign in part.terms.items()))
+def summed(part: Junction | Kinematics, of: _Reader) -> sp.Expr:
+    """Output of a junction or kinematics;  of: signal -> symbol that stands for it."""
+    if isinstance(part, Kinematics):
+        return _read(part.expression, of)
+    return sp.Add(*(_read(weight, of) * of(s) for s, weight in part.terms.items()))
+
+
+def _read(weight: Weight, of: _Reader) -> sp.Expr:
+    expression = sp.sympify(weight)
+    return expression.xreplace({x: of(x.name) for x in expression.free_symbols})
 
 
 def _parameter_names(diagram: Diagram) -> dict[sp.Symbol, str]:

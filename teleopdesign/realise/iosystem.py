@@ -15,9 +15,9 @@ import numpy as np
 import sympy as sp
 
 from ..controllers import Controller
-from ..diagrams import Control, Diagram
+from ..diagrams import Control, Diagram, Junction, Kinematics
 from ..errors import ModelError
-from .equations import TIME, Equations, equations, signal, velocity
+from .equations import TIME, Equations, equations, motion_of, signal, summed, velocity
 from .simulated import simulated
 
 if TYPE_CHECKING:
@@ -52,12 +52,9 @@ def to_iosystem(
     numbers = {s: values[n] for s, n in parts.parameters.items()}
     systems = [_mechanics(parts, numbers)]
     for part in diagram.controls:
-        systems.append(_controller(part, numbers))
-    for junction in diagram.junctions:
-        if junction.output in parts.computer.signals:
-            terms = [s if sign > 0 else f"-{s}" for s, sign in junction.terms.items()]
-            name = f"sum_{junction.output}"
-            systems.append(control.summing_junction(terms, junction.output, name=name))
+        systems.append(_controller(diagram, part, numbers))
+    static: tuple[Junction | Kinematics, ...] = (*diagram.kinematics, *diagram.junctions)
+    systems += [_static(p) for p in static if p.output in parts.computer.signals]
     driven = {f"{m}{end}" for m in parts.prescribed for end in ("", "_velocity", "_acceleration")}
     outside = [s for s in diagram.outside if s not in parts.signals]
     taken = {s for system in systems for s in system.input_labels}
@@ -79,16 +76,23 @@ def _mechanics(parts: Equations, numbers: dict[sp.Symbol, float]) -> Any:
     return _nlsys(MECHANICS, states, given, [parts.rates[s] for s in states], outputs, numbers)
 
 
-def _controller(part: Control, numbers: dict[sp.Symbol, float]) -> Any:
+def _controller(diagram: Diagram, part: Control, numbers: dict[sp.Symbol, float]) -> Any:
     assert isinstance(part.controller, Controller)
-    v = velocity(part.motion)
+    _, v, _ = motion_of(diagram, part.motion)
     signals = {"input": signal(part.input), "velocity": v, "speed": sp.Abs(v), "travel_rate": v}
     equation = part.controller.equation(part.name, signals)
     states = sorted(equation.rates, key=str)
     rates = [equation.rates[s] for s in states]
     used = set().union(*(e.free_symbols for e in (equation.output, *rates)))
-    given = [s for s in (signal(part.input), v) if s in used]
+    given = sorted(used - set(states) - set(numbers) - {TIME}, key=str)
     return _nlsys(part.name, states, given, rates, {part.output: equation.output}, numbers)
+
+
+def _static(part: Junction | Kinematics) -> Any:
+    """A sum or a position without states."""
+    given = [signal(s) for s in part.inputs]
+    value = summed(part, signal)
+    return _nlsys(f"sum_{part.output}", [], given, [], {part.output: value}, {})
 
 
 def _nlsys(

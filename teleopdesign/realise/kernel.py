@@ -19,9 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from ..blocks import Body
+from ..blocks import Body, MatrixImpedance
 from ..controllers import CONTROLLERS, SIGNALS, ControlLaw, Controller
-from ..diagrams import Control, Diagram
+from ..diagrams import Control, Diagram, Kinematics
 from ..effects import Effect
 from ..errors import ModelError
 from ._codegen import Generator, Layout
@@ -118,6 +118,10 @@ def _structure(diagram: Diagram) -> tuple[Any, ...]:
             laws = tuple((g.law.name, g.law.law, _rates(g.law)) for g in block.stages)
         elif isinstance(block, Body):
             laws = tuple((e.name, e.role, e.law, _rates(e)) for e in block.effects)
+        elif isinstance(block, MatrixImpedance):
+            laws = tuple(block.parameters)
+        elif isinstance(part, Kinematics):
+            laws = (part.expression,)
         sign = getattr(part, "sign", 1)
         motion = (part.motion, part.analog) if isinstance(part, Control) else ()
         out.append((type(part).__name__, wires, terms, sign, motion, laws))

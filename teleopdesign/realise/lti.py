@@ -14,7 +14,7 @@ import sympy as sp
 
 from ..blocks import Body
 from ..controllers import Controller, parameter_symbol
-from ..diagrams import Control, Diagram, Moving
+from ..diagrams import Control, Diagram, Linked, Moving
 from ..errors import ModelError
 
 if TYPE_CHECKING:
@@ -57,6 +57,9 @@ def linear_blocks(diagram: Diagram, *, speed: float = 0.0) -> LinearBlocks:
             numbers = {parameter_symbol(part.name, n): v for n, v in values}
             blocks[part.name] = sp.S(0) if form is None else form.subs(numbers)
             left_out += [part.name] if form is None else []
+            continue
+        if isinstance(part, Linked):
+            blocks |= {part.entry_name(i, j): part.body.entry(i, j, S) for i, j in part.entries}
             continue
         if not isinstance(part.body, Body):
             raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no values")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..blocks import Body
+from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..diagrams import Control, Diagram
 from ..effects import EFFECTS, SIGNALS
@@ -48,7 +48,7 @@ def simulated(diagram: Diagram, give: float) -> Diagram:
     """The diagram with bodies as they are simulated: absent effects out, ideal friction given."""
     for part in diagram.blocks:
         found = part.controller if isinstance(part, Control) else part.body
-        if not isinstance(found, Body | Controller):
+        if not isinstance(found, Body | MatrixImpedance | Controller):
             raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no equations")
         if isinstance(found, Body):
             diagram = diagram.with_block(part.name, with_give(without_absent(found), give))

@@ -2,34 +2,86 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
-from ..diagrams import Diagram, Moving
+from ..blocks import Body
+from ..diagrams import Attached, Control, Diagram, Linked, Moving
+from ..diagrams.parts import Weight
 from ..quantity import unit_of
 
 
 def signal_units(diagram: Diagram) -> Callable[[str], str]:
-    """Name of a signal or hidden state -> its SI unit on the diagram's axis."""
-    bodies = [b.body for b in diagram.bodies]
-    axis = next((b.axis for b in bodies if hasattr(b, "axis")), "prismatic")
-    motions = {b.motion for b in diagram.blocks if isinstance(b, Moving)}
-    quantities = {n: q for n, q in diagram.outside.items()}
-    for motion in motions:
-        quantities |= {motion: "position", f"{motion}_velocity": "velocity"}
-        quantities |= {f"{motion}_acceleration": "acceleration"}
-    for junction in diagram.junctions:
-        if any(quantities.get(s) == "position" for s in junction.terms):
-            quantities[junction.output] = "position"
+    """Name of a signal or hidden state -> its SI unit on its axis."""
+    axes, quantities = _axes(diagram), _quantities(diagram)
+    states = _states(diagram)
+    first = next((b.body.axis for b in diagram.bodies if isinstance(b.body, Body)), "prismatic")
 
     def unit(name: str) -> str:
-        quantity = quantities.get(name, "force")
-        for block in diagram.blocks:
-            laws = getattr(getattr(block, "body", None), "effects", ())
-            laws = [*laws, *(g.law for g in getattr(getattr(block, "controller", 0), "stages", ()))]
-            for law in laws:
-                for state, declared in law.states.items():
-                    if name == f"{block.name}_{law.name}_{state}":
-                        quantity = declared.quantity
-        return unit_of(quantity, axis)
+        if name in states:
+            quantity, block = states[name]
+            return unit_of(quantity, axes.get(block, first))
+        for end in ("velocity", "acceleration"):
+            stem = name.removesuffix(f"_{end}")
+            if stem != name and quantities.get(stem) == "position":
+                return unit_of(end, axes.get(stem, first))
+        return unit_of(quantities.get(name, "force"), axes.get(name, first))
 
     return unit
+
+
+def _states(diagram: Diagram) -> dict[str, tuple[str, str]]:
+    """Hidden state -> its quantity and a signal of its block."""
+    found = {}
+    for block in diagram.blocks:
+        laws = list(getattr(getattr(block, "body", None), "effects", ()))
+        laws += [g.law for g in getattr(getattr(block, "controller", None), "stages", ())]
+        for law in laws:
+            for state, declared in law.states.items():
+                name = f"{block.name}_{law.name}_{state}"
+                found[name] = (declared.quantity, block.outputs[0])
+    return found
+
+
+def _quantities(diagram: Diagram) -> dict[str, str]:
+    found = dict(diagram.outside)
+    for block in diagram.blocks:
+        if isinstance(block, Moving):
+            found[block.motion] = "position"
+    found |= {k.output: "position" for k in diagram.kinematics}
+    for junction in diagram.junctions:
+        if any(found.get(s) == "position" for s in junction.terms):
+            found[junction.output] = "position"
+    return found
+
+
+def _axes(diagram: Diagram) -> dict[str, str]:
+    """Axis of each signal: that of its body, carried on by blocks and sums."""
+    found = {k.output: k.axis for k in diagram.kinematics}
+    for block in diagram.bodies:
+        axis = getattr(block.body, "axis", None)
+        if axis is None:
+            continue
+        if isinstance(block, Moving):
+            found |= dict.fromkeys((block.motion, *block.inputs, f"{block.name}_friction"), axis)
+        else:
+            found |= dict.fromkeys((block.motion, block.force, f"{block.name}_friction"), axis)
+    groups: list[tuple[str, ...]]
+    groups = [(b.input, b.output) for b in diagram.blocks if isinstance(b, Control)]
+    groups += [(b.motion, b.force) for b in diagram.blocks if isinstance(b, Attached)]
+    for linked in (b for b in diagram.blocks if isinstance(b, Linked)):
+        groups += zip(linked.motions, linked.forces, strict=True)
+    # a lever joins two axes; a sum does not
+    groups += [(j.output, *j.terms) for j in diagram.junctions if not j.arms and _is_sum(j.terms)]
+    for _ in range(len(groups)):
+        before = len(found)
+        for group in groups:
+            axis = next((found[s] for s in group if s in found), None)
+            if axis is not None:
+                found |= {s: axis for s in group if s not in found}
+        if len(found) == before:
+            break
+    return found
+
+
+def _is_sum(terms: Mapping[str, Weight]) -> bool:
+    return all(abs(w) == 1 for w in terms.values())

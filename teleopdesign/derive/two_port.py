@@ -1,0 +1,58 @@
+"""The teleoperator as a two-port, from the wiring: impedance and hybrid matrix, transparency.
+
+    F_m = Z_mm X_m + Z_ms X_s          F_m = h_11 X_m + h_12 F_s
+    F_s = Z_sm X_m + Z_ss X_s          X_s = h_21 X_m + h_22 F_s
+
+Forces of hand and environment act on master and slave; impedances are relative to position. A
+teleoperator that nobody notices has h_11 = h_22 = 0, h_21 = I, h_12 = -I: the hand holds against
+what the environment does. Hannaford, IEEE Trans. Robotics Autom. 5 (1989) 426, with positions in
+the place of velocities and the force on the slave in the place of its reaction.
+"""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import Any
+
+from ..diagrams import Diagram
+from ..errors import ModelError
+from .printing import block_symbol
+from .transfer_functions import TransferFunctions, transfer
+
+_TEXTS = {
+    "Z_mm": "X_m to F_m, slave held",
+    "Z_ms": "X_s to F_m, master held",
+    "Z_sm": "X_m to F_s, slave held",
+    "Z_ss": "X_s to F_s, master held",
+    "h_11": "X_m to F_m, slave free: impedance felt in free space",
+    "h_12": "F_s to F_m, master held: force transmission",
+    "h_21": "X_m to X_s, slave free: position tracking",
+    "h_22": "F_s to X_s, master held: admittance of the slave",
+    "Z_t": "X_m to F_m in contact: transmitted impedance",
+    "Z_t - Z_E": "transparency error",
+}
+
+
+def two_port_functions(diagram: Diagram) -> TransferFunctions:
+    """Every function of a teleoperator; the last two where it has an environment Z_E.
+
+    raises ModelError: the diagram has no master's X_m, F_m or no slave's X_s, F_s
+    """
+    for name in ("X_m", "X_s", "F_m", "F_s"):
+        if name not in diagram.signals:
+            raise ModelError(f'{diagram.name}: no teleoperator: it has no signal "{name}"')
+    ports = diagram.without("Z_H", "Z_E")
+    both = ("X_m", "X_s")
+    found: dict[str, Any] = {}
+    for side in "ms":
+        row = transfer(ports, f"F_{side}", both, given=both)
+        found |= {f"Z_{side}{other}": row[f"X_{other}"] for other in "ms"}
+    for number, output in ((1, "F_m"), (2, "X_s")):
+        row = transfer(ports, output, ("X_m", "F_d"), given="X_m")
+        found |= {f"h_{number}1": row["X_m"], f"h_{number}2": row["F_d"]}
+    if diagram.has("Z_E"):
+        touched = diagram.without("Z_H")
+        found["Z_t"] = transfer(touched, "F_m", ("X_m",), given="X_m")["X_m"]
+        found["Z_t - Z_E"] = found["Z_t"] - block_symbol("Z_E")
+    texts = {name: _TEXTS[name] for name in found}
+    return TransferFunctions(diagram, MappingProxyType(found), MappingProxyType(texts))

@@ -1,0 +1,199 @@
+"""What a diagram is made of: blocks, junctions and kinematics, each with the signals it wires."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import sympy as sp
+
+from ..blocks import Body, MatrixImpedance
+from ..controllers import Controller
+from ..errors import ModelError
+
+
+@dataclass(frozen=True)
+class AnyBlock:
+    """A block known by its name only: enough to derive transfer functions, not to simulate."""
+
+
+ANY = AnyBlock()
+#: a sign, a factor, or an expression of positions (on `position_symbol`), such as a lever arm
+Weight: TypeAlias = "float | sp.Expr"
+
+
+def position_symbol(name: str) -> sp.Symbol:
+    """Symbol of a position in weights and kinematics."""
+    return sp.Symbol(name, real=True)
+
+
+@dataclass(frozen=True)
+class Moving:
+    """A body that forces move:  Z motion = command + loads.
+
+    command: force commanded to its actuator (its actuation effects stand between)
+    loads: other forces on it, signal -> sign
+    driver: outside force that is whatever it must be where the motion is prescribed instead
+    """
+
+    name: str
+    body: Body | AnyBlock
+    motion: str
+    command: str
+    loads: Mapping[str, int]
+    driver: str
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return (self.motion,)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return (self.command, *self.loads)
+
+
+@dataclass(frozen=True)
+class Attached:
+    """A body that follows a motion and resists it:  force = sign Z motion."""
+
+    name: str
+    body: Body | AnyBlock
+    motion: str
+    force: str
+    sign: int = -1
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return (self.force,)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return (self.motion,)
+
+
+@dataclass(frozen=True)
+class Linked:
+    """Bodies joined by a linear impedance:  forces = sign Z motions, Z a matrix."""
+
+    name: str
+    body: MatrixImpedance
+    motions: tuple[str, ...]
+    forces: tuple[str, ...]
+    sign: int = -1
+
+    def __post_init__(self) -> None:
+        if not len(self.motions) == len(self.forces) == self.body.size:
+            raise ModelError(
+                f"{self.name}: {self.body.size} rows, found {len(self.motions)} motions and "
+                f"{len(self.forces)} forces"
+            )
+
+    @property
+    def entries(self) -> tuple[tuple[int, int], ...]:
+        """Rows and columns, from 0, of what is not zero."""
+        found = {tuple(name.split("_")[1:]) for name in self.body.parameters}
+        return tuple(sorted((int(i) - 1, int(j) - 1) for i, j in found))
+
+    def entry_name(self, row: int, column: int) -> str:
+        """Name of an entry as a block of its own, such as "Z_H_1_2"; row and column from 0."""
+        return f"{self.name}_{row + 1}_{column + 1}"
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return self.forces
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return self.motions
+
+
+@dataclass(frozen=True)
+class Control:
+    """A controller:  output = controller(input), along the velocity of `motion`.
+
+    motion: of a body, or a junction or kinematics of motions
+    analog: realised by electronics that no computer samples
+    """
+
+    name: str
+    controller: Controller | AnyBlock
+    input: str
+    output: str
+    motion: str
+    analog: bool = False
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return (self.output,)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return (self.input, self.motion)
+
+
+@dataclass(frozen=True)
+class Junction:
+    """A summing junction:  output = sum of weight * signal.
+
+    A weight may depend on positions: torque = lever arm(angle) * force.
+    """
+
+    output: str
+    terms: Mapping[str, Weight]
+
+    @property
+    def name(self) -> str:
+        return f"junction {self.output}"
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return (self.output,)
+
+    @property
+    def arms(self) -> tuple[str, ...]:
+        """Positions that the weights depend on."""
+        return tuple(sorted({x for w in self.terms.values() for x in _names(w)}))
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return (*self.terms, *(x for x in self.arms if x not in self.terms))
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """A position that others determine:  output = expression of positions (`position_symbol`).
+
+    axis: of the output, "prismatic" or "revolute"
+    """
+
+    output: str
+    expression: sp.Expr
+    axis: str = "prismatic"
+
+    @property
+    def name(self) -> str:
+        return f"kinematics {self.output}"
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return (self.output,)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return _names(self.expression)
+
+
+Block = Moving | Attached | Linked | Control
+Part = Moving | Attached | Linked | Control | Junction | Kinematics
+
+
+def _names(expression: Weight) -> tuple[str, ...]:
+    return tuple(sorted(s.name for s in sp.sympify(expression).free_symbols))
+
+
+def followed(block: Block) -> tuple[str, ...]:
+    """Motions that the block follows without making them."""
+    if isinstance(block, Attached | Control):
+        return (block.motion,)
+    return block.motions if isinstance(block, Linked) else ()

@@ -1,0 +1,86 @@
+"""The teleoperator: a master held by a hand, a slave that meets an environment, and their coupling.
+
+    Z_m X_m = F_m - P (X_m - X_s) + C_m X_m        F_m = F_u - Z_H X_m
+    Z_s X_s = F_s + P (X_m - X_s) + C_s X_s        F_s = F_d - Z_E X_s
+
+All forces act on master or slave, positive along its motion: F_m is all that the hand does, F_u the
+user's own part of it; F_s all that the environment does, F_d what it does of its own accord. P is
+position-position control (a spring, with a damper where wanted); C_m and C_s cancel friction by
+motion. Mahvash, Okamura, ICRA 2006, eqs (10), (11), figures 3 and 4, in the signs of forces that
+act: their eq (10) as printed would repel.
+"""
+
+from __future__ import annotations
+
+from ..blocks import Body
+from ..controllers import Controller
+from .parts import ANY, AnyBlock, Attached, Block, Control, Junction, Moving
+from .wiring import Diagram
+
+TEXTS = {
+    "X_m": "motion of the master",
+    "X_s": "motion of the slave",
+    "X_e": "position error X_m - X_s",
+    "F_u": "voluntary force of the user on the master",
+    "F_H": "passive force of the hand on the master",
+    "F_m": "force of the hand on the master",
+    "F_d": "force of the environment on the slave that the slave's motion does not cause",
+    "F_E": "passive force of the environment on the slave",
+    "F_s": "force of the environment on the slave",
+    "F_P": "force of the coupling on the slave, its negative on the master",
+    "F_Cm": "force that the cancellation adds at the master",
+    "F_Cs": "force that the cancellation adds at the slave",
+    "U_m": "force commanded to the master's actuator",
+    "U_s": "force commanded to the slave's actuator",
+}
+
+
+def teleoperator(
+    master: Body | AnyBlock = ANY,
+    slave: Body | AnyBlock = ANY,
+    *,
+    coupling: Controller | AnyBlock = ANY,
+    hand: Body | AnyBlock | None = None,
+    environment: Body | AnyBlock | None = None,
+    master_cancellation: Controller | AnyBlock | None = None,
+    slave_cancellation: Controller | AnyBlock | None = None,
+) -> Diagram:
+    """Wire a teleoperator on one axis; a block that is not given is not there.
+
+    master, slave: Z_m and Z_s, impedances relative to position;  coupling: P, from the position
+    error X_m - X_s to a force, such as `controller("spring_damper", ...)`;  hand: Z_H, what the
+    user's arm does passively;  environment: Z_E, such as a body without inertia with the contact
+    `CONTACT` on it
+    master_cancellation, slave_cancellation: C_m and C_s, each on its own side's motion
+    ANY stands for a block of which nothing but its place is known.
+    """
+    blocks: list[Block] = [
+        Moving("Z_m", master, "X_m", "U_m", {"F_m": 1}, "F_u"),
+        Moving("Z_s", slave, "X_s", "U_s", {"F_s": 1}, "F_d"),
+        Control("P", coupling, "X_e", "F_P", "X_e"),
+    ]
+    junctions = [Junction("X_e", {"X_m": 1, "X_s": -1})]
+    sides = (
+        ("m", "F_u", -1, ("Z_H", hand, "F_H"), master_cancellation),
+        ("s", "F_d", 1, ("Z_E", environment, "F_E"), slave_cancellation),
+    )
+    for side, own, sign, (name, held, passive), cancellation in sides:
+        motion, force = f"X_{side}", f"F_C{side}"
+        on_body, command = {own: 1}, {"F_P": sign}
+        if held is not None:
+            blocks.append(Attached(name, held, motion, passive))
+            on_body[passive] = 1
+        if cancellation is not None:
+            blocks.append(Control(f"C_{side}", cancellation, motion, force, motion))
+            command[force] = 1
+        junctions += [Junction(f"F_{side}", on_body), Junction(f"U_{side}", command)]
+    outside = {"F_u": "force", "F_d": "force"}
+    made = {*outside, *(s for p in (*blocks, *junctions) for s in p.outputs)}
+    return Diagram(
+        "teleoperator",
+        tuple(blocks),
+        tuple(junctions),
+        outside,
+        measured=("X_m", "X_s"),
+        texts={name: text for name, text in TEXTS.items() if name in made},
+    )
