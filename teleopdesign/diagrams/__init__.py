@@ -1,6 +1,8 @@
 """Which blocks, wired by signal names."""
 
+from .arms import Arm, by_jacobian, joint, teleoperator_of_arms
 from .haptic_interface import four_cases, haptic_interface
+from .parallel_rods import parallel_rods
 from .parts import (
     ANY,
     AnyBlock,
@@ -22,6 +24,7 @@ __all__ = [
     "ANY",
     "READINGS",
     "AnyBlock",
+    "Arm",
     "Attached",
     "Block",
     "Control",
@@ -32,10 +35,14 @@ __all__ = [
     "Moving",
     "Part",
     "Reading",
+    "by_jacobian",
     "four_cases",
     "haptic_interface",
+    "joint",
+    "parallel_rods",
     "position_symbol",
     "reading",
     "teleoperator",
+    "teleoperator_of_arms",
     "world_haptics_2005",
 ]

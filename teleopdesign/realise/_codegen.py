@@ -12,6 +12,7 @@ import keyword
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import sympy as sp
 
@@ -114,11 +115,25 @@ def _code(expression: sp.Expr) -> str:
     return str(sp.pycode(expression, fully_qualified_modules=False))
 
 
+def needed_steps(
+    results: Iterable[sp.Expr], joined: Mapping[sp.Symbol, sp.Expr]
+) -> dict[sp.Symbol, sp.Expr]:
+    """Those of the named steps that the results are written in, in their order."""
+    wanted = set().union(*(sp.sympify(r).free_symbols for r in results))
+    found = {}
+    for symbol, expression in reversed(list(joined.items())):
+        if symbol in wanted:
+            found[symbol] = expression
+            wanted |= expression.free_symbols
+    return dict(reversed(list(found.items())))
+
+
 def _function(
     name: str,
     arguments: Iterable[sp.Symbol],
     results: list[sp.Expr],
     renamed: Mapping[sp.Symbol, sp.Symbol],
+    joined: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
 ) -> str:
     """Source of a function that returns the results, common parts computed once."""
     if not results:
@@ -126,7 +141,9 @@ def _function(
     shared, out = sp.cse(
         [sp.sympify(r).xreplace(renamed) for r in results], symbols=sp.numbered_symbols("k")
     )
-    lines = [f"    {s} = {_code(e)}" for s, e in shared]
+    needed = needed_steps(results, joined)
+    lines = [f"    {s} = {_code(e.xreplace(renamed))}" for s, e in needed.items()]
+    lines += [f"    {s} = {_code(e)}" for s, e in shared]
     value = ", ".join(_code(e) for e in out)
     given = ", ".join(str(renamed.get(a, a)) for a in arguments)
     return f"@jitted\ndef {name}({given}):\n" + "\n".join([*lines, f"    return ({value},)\n\n\n"])
@@ -185,7 +202,8 @@ class Generator:
     def _expressions(self) -> list[sp.Expr]:
         e = self.equations
         late = [expression for expression, _ in e.late.values()]
-        return [*e.rates.values(), *e.signals.values(), *late, *self._computer_expressions()]
+        analog = [*e.rates.values(), *e.signals.values(), *late, *e.joined.values()]
+        return [*analog, *self._computer_expressions()]
 
     def layout(self) -> Layout:
         """The order of everything."""
@@ -216,12 +234,16 @@ class Generator:
         head = _HEAD.format(jit=_JIT if jit else _NO_JIT, series=series)
         rates = [e.rates[s] for s in self.states]
         accelerations = [e.rates[velocity(m)] for m in e.motions]
+
+        def analog(name: str, results: list[sp.Expr]) -> str:
+            return _function(name, self.analog, results, self.renamed, e.joined)
+
         parts = [
             head,
-            _function("rates", self.analog, rates, self.renamed),
-            _function("slopes", self.analog, list(self.slopes.values()), self.renamed),
-            _function("signals", self.analog, [*accelerations, *e.signals.values()], self.renamed),
-            _function("late_values", self.analog, [x for x, _ in e.late.values()], self.renamed),
+            analog("rates", rates),
+            analog("slopes", list(self.slopes.values())),
+            analog("signals", [*accelerations, *e.signals.values()]),
+            analog("late_values", [x for x, _ in e.late.values()]),
             self._computer_functions(),
         ]
         return "".join(parts)

@@ -124,7 +124,8 @@ class _Loop:
             return
         self.add(depth, f"values = {self._call('late_values')}")
         for k, (s, (expression, _)) in enumerate(g.equations.late.items()):
-            smooth = bool(expression.free_symbols & set(g.equations.rates)) or not g.commands
+            moving = {*g.equations.rates, *g.equations.joined}
+            smooth = bool(expression.free_symbols & moving) or not g.commands
             self.add(depth, f"history[j, {k}] = values[{k}]", f"q = j - late_steps[{k}]")
             self.add(depth, f"{s} = history[q, {k}] if q >= 0 else 0.0")
             end = f"history[q + 1, {k}] if q >= -1 else 0.0" if smooth else f"{s}"

@@ -1,4 +1,8 @@
-"""Linear equations with symbolic coefficients, solved by elimination."""
+"""Linear equations with symbolic coefficients, solved by elimination.
+
+Where unknowns are joined by coefficients that are no numbers (accelerations through a mass matrix),
+expressions of their solution would grow beyond all bounds: its steps are given names instead.
+"""
 
 from __future__ import annotations
 
@@ -8,27 +12,34 @@ import sympy as sp
 
 from ..errors import ModelError
 
+#: symbol -> expression, in an order in which they can be computed
+Steps = dict[sp.Symbol, sp.Expr]
+
 
 def solve_linear(
     rows: list[sp.Expr], unknown: Sequence[sp.Symbol], name: str
-) -> dict[sp.Symbol, sp.Expr]:
-    """Solve rows = 0, linear in the unknowns, one after the other; simplest pivots first."""
+) -> tuple[dict[sp.Symbol, sp.Expr], Steps]:
+    """Solve rows = 0, linear in the unknowns, one after the other; simplest pivots first.
+
+    returns: the solution, and the named steps that it is written in
+    raises ModelError: an unknown is not determined, or enters other than linearly
+    """
     rows, left = list(rows), set(unknown)
     found: dict[sp.Symbol, sp.Expr] = {}
     while left:
         choice = None
         for i, row in enumerate(rows):
             for x in sorted(left & row.free_symbols, key=str):
-                factor = sp.diff(row, x)
-                if left & factor.free_symbols:
-                    raise ModelError(f"{name}: {x} enters an equation other than linearly")
+                factor = _factor(row, x, left, name)
                 cost = (not factor.is_Number, len(left & row.free_symbols), factor.count_ops())
                 if factor != 0 and (choice is None or cost < choice[0]):
                     choice = (cost, i, x, factor)
         if choice is None:
-            some = ", ".join(sorted(s.name for s in left))
-            raise ModelError(f"{name}: the wiring does not determine {some}")
-        _, i, x, factor = choice
+            raise _undetermined(left, name)
+        (no_number, others, _), i, x, factor = choice
+        if no_number and others > 1:
+            values, steps = _joined(rows, left, name)
+            return {s: e.xreplace(values) for s, e in found.items()} | values, steps
         row = rows.pop(i)
         value = -row.xreplace({x: sp.S(0)}) / factor
         rows = [r.xreplace({x: value}) if r.has(x) else r for r in rows]
@@ -36,7 +47,19 @@ def solve_linear(
         rows = [_gathered(r, left - {x}) for r in rows]
         found = {s: e.xreplace({x: value}) for s, e in found.items()} | {x: value}
         left.remove(x)
-    return found
+    return found, {}
+
+
+def _factor(row: sp.Expr, x: sp.Symbol, unknown: set[sp.Symbol], name: str) -> sp.Expr:
+    factor = sp.diff(row, x)
+    if unknown & factor.free_symbols:
+        raise ModelError(f"{name}: {x} enters an equation other than linearly")
+    return factor
+
+
+def _undetermined(left: set[sp.Symbol], name: str) -> ModelError:
+    some = ", ".join(sorted(s.name for s in left))
+    return ModelError(f"{name}: the wiring does not determine {some}")
 
 
 def _gathered(row: sp.Expr, unknown: set[sp.Symbol]) -> sp.Expr:
@@ -45,3 +68,71 @@ def _gathered(row: sp.Expr, unknown: set[sp.Symbol]) -> sp.Expr:
     factors = {x: sp.expand(f, power_exp=False) for x, f in factors.items()}
     rest = row.xreplace(dict.fromkeys(here, sp.S(0)))
     return sp.Add(rest, *(f * x for x, f in factors.items()))
+
+
+class _Named:
+    """Expressions under names, each used once computed."""
+
+    def __init__(self) -> None:
+        self.steps: Steps = {}
+
+    def __call__(self, expression: sp.Expr) -> sp.Expr:
+        if not expression.args or expression.is_number:
+            return expression
+        symbol = sp.Symbol(f"joined_{len(self.steps)}", real=True)
+        self.steps[symbol] = expression
+        return symbol
+
+
+def _joined(
+    rows: list[sp.Expr], left: set[sp.Symbol], name: str
+) -> tuple[dict[sp.Symbol, sp.Expr], Steps]:
+    """Solution of what is left by Gaussian elimination, every step under a name of its own."""
+    named = _Named()
+    values: dict[sp.Symbol, sp.Expr] = {}
+    todo = sorted(left, key=str)
+    while todo:
+        group = _group(rows, todo[0], left)
+        own = [r for r in rows if r.free_symbols & group]
+        if len(own) < len(group):
+            raise _undetermined(group, name)
+        values |= _eliminated(own, sorted(group, key=str), named, name)
+        todo = [x for x in todo if x not in group]
+    return values, named.steps
+
+
+def _group(rows: list[sp.Expr], first: sp.Symbol, left: set[sp.Symbol]) -> set[sp.Symbol]:
+    """Unknowns that rows join to the first one."""
+    group, grown = {first}, True
+    while grown:
+        more = set().union(*(left & r.free_symbols for r in rows if r.free_symbols & group))
+        grown = not more <= group
+        group |= more
+    return group
+
+
+def _eliminated(
+    rows: list[sp.Expr], unknown: list[sp.Symbol], named: _Named, name: str
+) -> dict[sp.Symbol, sp.Expr]:
+    zero = dict.fromkeys(unknown, sp.S(0))
+    a = [[named(_factor(r, x, set(unknown), name)) for x in unknown] for r in rows]
+    b = [named(-r.xreplace(zero)) for r in rows]
+    n = len(unknown)
+    for i in range(n):
+        at = next((r for r in range(i, len(a)) if a[r][i] != 0), None)
+        if at is None:
+            raise _undetermined({unknown[i]}, name)
+        a[i], a[at], b[i], b[at] = a[at], a[i], b[at], b[i]
+        inverse = named(1 / a[i][i])
+        a[i] = [named(inverse * x) if j > i else x for j, x in enumerate(a[i])]
+        b[i] = named(inverse * b[i])
+        for r in range(i + 1, len(a)):
+            if a[r][i] != 0:
+                factor = a[r][i]
+                a[r] = [named(x - factor * a[i][j]) if j > i else x for j, x in enumerate(a[r])]
+                b[r] = named(b[r] - factor * b[i])
+    found: dict[sp.Symbol, sp.Expr] = {}
+    for i in reversed(range(n)):
+        rest = sp.Add(*(a[i][j] * found[unknown[j]] for j in range(i + 1, n)))
+        found[unknown[i]] = named(b[i] - rest)
+    return found

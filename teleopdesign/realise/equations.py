@@ -18,7 +18,7 @@ from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked,
 from ..diagrams.parts import Weight
 from ..effects import SIGNALS, delayed
 from ..errors import ModelError
-from ._linear import solve_linear
+from ._linear import Steps, solve_linear
 
 #: signal's name -> symbol that stands for it
 _Reader = Callable[[str], sp.Symbol]
@@ -47,6 +47,7 @@ class Equations:
     commands: held commands (sampled) by signal;  late: symbol -> (expression, delay)
     sampled_inputs: outside signals that the computer reads;  motions: motions that are simulated
     prescribed: motions that are given;  parameters: symbol -> name in `Diagram.values`
+    joined: quantities that all these are written in, in an order in which they can be computed
     """
 
     rates: Mapping[sp.Symbol, sp.Expr]
@@ -59,6 +60,7 @@ class Equations:
     motions: tuple[str, ...]
     prescribed: tuple[str, ...]
     parameters: Mapping[sp.Symbol, str]
+    joined: Mapping[sp.Symbol, sp.Expr]
 
 
 def signal(name: str) -> sp.Symbol:
@@ -194,7 +196,7 @@ class _Builder:
             self.rates |= more[1]
             unknown += [signal(s) for s in names]
             inputs = list(self.outside)
-        solved = self._acted(solve_linear(rows, unknown, self.diagram.name))
+        solved, joined = self._acted(*solve_linear(rows, unknown, self.diagram.name))
         for motion in self.motions:
             self.rates[signal(motion)] = velocity(motion)
             self.rates[velocity(motion)] = solved[acceleration(motion)]
@@ -214,9 +216,12 @@ class _Builder:
             motions=self.motions,
             prescribed=self.prescribed,
             parameters=_parameter_names(self.diagram),
+            joined=joined,
         )
 
-    def _acted(self, solved: dict[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
+    def _acted(
+        self, solved: dict[sp.Symbol, sp.Expr], joined: Steps
+    ) -> tuple[dict[sp.Symbol, sp.Expr], Steps]:
         """The solution with forces behind nonlinear actuators in place, and these forces."""
         forces = {s: e.xreplace(solved) for s, e in self.acting.items()}
         if any(e.free_symbols & set(forces) for e in forces.values()):
@@ -224,7 +229,8 @@ class _Builder:
                 f"{self.diagram.name}: a command depends at once on the force behind a nonlinear "
                 "actuator: a filter in the force feedback, or sampling, parts them"
             )
-        return {s: e.xreplace(forces) for s, e in solved.items()} | forces
+        known = {s: e.xreplace(forces) for s, e in solved.items()} | forces
+        return known, {s: e.xreplace(forces) for s, e in joined.items()}
 
     def _taken(self, name: str) -> bool:
         """Whether something analog takes this outside signal as it is."""
@@ -340,7 +346,7 @@ class _Builder:
             return measured(name) if name in sensors else signal(name)
 
         (rows, rates, before), names = self._computer_rows(of, travel_rate, estimate)
-        solved = solve_linear(rows, [signal(s) for s in names], self.diagram.name)
+        solved, _ = solve_linear(rows, [signal(s) for s in names], self.diagram.name)
         return Computer(
             {x: r.xreplace(solved) for x, r in rates.items()},
             frozenset(before),

@@ -7,8 +7,9 @@ sampled and continuous blocks.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +18,7 @@ import sympy as sp
 from ..controllers import Controller
 from ..diagrams import Control, Diagram, Junction, Kinematics
 from ..errors import ModelError
+from ._codegen import needed_steps
 from .equations import TIME, Equations, equations, motion_of, signal, summed, velocity
 from .simulated import simulated
 
@@ -73,7 +75,8 @@ def _mechanics(parts: Equations, numbers: dict[sp.Symbol, float]) -> Any:
     states = sorted(parts.rates, key=str)
     # a signal that the system takes and gives under one name would be wired to itself
     outputs = {str(s): s for s in moved} | {n: e for n, e in parts.signals.items()}
-    return _nlsys(MECHANICS, states, given, [parts.rates[s] for s in states], outputs, numbers)
+    rates = [parts.rates[s] for s in states]
+    return _nlsys(MECHANICS, states, given, rates, outputs, numbers, parts.joined)
 
 
 def _controller(diagram: Diagram, part: Control, numbers: dict[sp.Symbol, float]) -> Any:
@@ -102,12 +105,19 @@ def _nlsys(
     rates: Sequence[sp.Expr],
     outputs: dict[str, sp.Expr],
     numbers: dict[sp.Symbol, float],
+    joined: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
 ) -> Any:
     import control
 
     def function(expressions: Sequence[sp.Expr]) -> Callable[..., Any]:
         found = [sp.sympify(e).subs(numbers) for e in expressions]
-        call = sp.lambdify([TIME, list(states), list(inputs)], found, "math", cse=True)
+        steps = [(s, e.subs(numbers)) for s, e in needed_steps(expressions, joined).items()]
+
+        def shared(results: list[sp.Expr]) -> tuple[list[Any], list[sp.Expr]]:
+            common, out = sp.cse(results)
+            return [*steps, *common], out
+
+        call = sp.lambdify([TIME, list(states), list(inputs)], found, "math", cse=shared)
         return lambda t, x, u, params: np.array(call(t, x, u), dtype=float)
 
     return control.nlsys(

@@ -1,0 +1,169 @@
+"""A teleoperator of two arms: several joints on each side, coupled where the tips are.
+
+    M q'' + ... = tau + J^T F        X = f(q), J = df/dq
+    tau_m = -J_m^T F_P + C_m q_m     tau_s = J_s^T F_P + C_s q_s     F_P = P e + D e', e = X_m - X_s
+
+Each joint is a body with friction and, where wanted, a cancellation on its own position. What hangs
+on the tip (`load`, hand, environment) is carried through the kinematics, so that full and changing
+inertia and its Coriolis forces follow. Mahvash, Okamura, ICRA 2006, eq (10), figure 4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from ..blocks import Body, MatrixImpedance
+from ..controllers import Controller, controller
+from ..errors import ModelError
+from .parts import Block, Control, Junction, Kinematics, Linked, Moving, Weight, position_symbol
+from .wiring import Diagram
+
+
+def joint(number: int) -> sp.Symbol:
+    """Symbol of a joint's position in an arm's coordinates; numbers from 1."""
+    return sp.Symbol(f"q_{number}", real=True)
+
+
+@dataclass(frozen=True)
+class Arm:
+    """Joints and where they bring the tip.
+
+    joints: a body each;  coordinates: of the tip, expressions on `joint(1)`, ..., as many as are
+    coupled;  cancellations: of each joint (None: none), () for none at all
+    load: impedance that the arm itself has at its tip;  pose: joint positions for linear forms
+    """
+
+    joints: tuple[Body, ...]
+    coordinates: tuple[sp.Expr, ...]
+    cancellations: tuple[Controller | None, ...] = ()
+    load: MatrixImpedance | None = None
+    pose: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        known = {joint(n + 1) for n in range(len(self.joints))}
+        for expression in self.coordinates:
+            if unknown := sp.sympify(expression).free_symbols - known:
+                raise ModelError(
+                    f"arm: coordinate {expression} has {min(map(str, unknown))}, joints are "
+                    f"{', '.join(sorted(map(str, known)))}"
+                )
+        for name in ("cancellations", "pose"):
+            given = getattr(self, name)
+            if given and len(given) != len(self.joints):
+                raise ModelError(f"arm: {len(given)} {name} for {len(self.joints)} joints")
+
+
+def by_jacobian(jacobian: Any) -> tuple[sp.Expr, ...]:
+    """Coordinates of a tip whose Jacobian does not change: X = J q, J (coordinates, joints)."""
+    matrix = np.asarray(jacobian, dtype=float)
+    symbols = [joint(n + 1) for n in range(matrix.shape[1])]
+    return tuple(
+        sp.Add(*(float(w) * q for w, q in zip(row, symbols, strict=True) if w)) for row in matrix
+    )
+
+
+def teleoperator_of_arms(
+    master: Arm,
+    slave: Arm,
+    *,
+    stiffness: Any,
+    damping: Any = None,
+    hand: MatrixImpedance | None = None,
+    environment: MatrixImpedance | None = None,
+) -> Diagram:
+    """Wire two arms.
+
+    stiffness, damping: P and D (n, n), from the difference of the tips to forces on the slave's
+    tip: a spring only if P is symmetric and not negative;  hand, environment: Z_H, Z_E (n, n) at
+    the tips
+    Signals carry side and number: q_m1 joints, X_m1 tips, F_u1 and F_d1 forces from outside at the
+    tips, F_m1 and F_s1 all forces there, F_P1 the coupling, U_m1 commanded torques.
+    raises ModelError: sizes differ
+    """
+    size = len(master.coordinates)
+    none = np.zeros((size, size))
+    given = {"stiffness": stiffness, "damping": none if damping is None else damping}
+    gains = {name: np.asarray(g, dtype=float) for name, g in given.items()}
+    if len(slave.coordinates) != size or any(g.shape != (size, size) for g in gains.values()):
+        sizes = ", ".join(f"{name} {g.shape}" for name, g in gains.items())
+        raise ModelError(
+            f"arms: {size} coordinates of the master, {len(slave.coordinates)} of the slave, "
+            f"{sizes}: expected one size"
+        )
+    blocks: list[Block] = []
+    junctions = [Junction(f"X_e{k}", {f"X_m{k}": 1, f"X_s{k}": -1}) for k in range(1, size + 1)]
+    for k in range(size):
+        terms: dict[str, Weight] = {}
+        for j in range(size):
+            values = {name: float(g[k, j]) for name, g in gains.items()}
+            if any(values.values()):
+                error, force = f"X_e{j + 1}", f"F_P{k + 1}_{j + 1}"
+                law = controller("spring_damper", values)
+                blocks.append(Control(f"P{k + 1}_{j + 1}", law, error, force, error))
+                terms[force] = 1
+        junctions.append(Junction(f"F_P{k + 1}", terms))
+    found = [
+        _side("m", master, "F_u", -1, hand, "H"),
+        _side("s", slave, "F_d", 1, environment, "E"),
+    ]
+    return Diagram(
+        "teleoperator of arms",
+        (*blocks, *(b for side in found for b in side.blocks)),
+        (*junctions, *(j for side in found for j in side.junctions)),
+        {f"{own}{k}": "force" for own in ("F_u", "F_d") for k in range(1, size + 1)},
+        measured=tuple(m for side in found for m in side.motions),
+        kinematics=tuple(k for side in found for k in side.kinematics),
+        pose={n: x for side in found for n, x in side.pose.items()},
+    )
+
+
+@dataclass(frozen=True)
+class _Side:
+    blocks: tuple[Block, ...]
+    junctions: tuple[Junction, ...]
+    kinematics: tuple[Kinematics, ...]
+    motions: tuple[str, ...]
+    pose: dict[str, float]
+
+
+def _side(
+    side: str, arm: Arm, own: str, sign: int, held: MatrixImpedance | None, name: str
+) -> _Side:
+    """Everything of one side; own: forces from outside at its tip;  held: what the tip touches."""
+    numbers = range(1, len(arm.joints) + 1)
+    places = range(1, len(arm.coordinates) + 1)
+    motions = tuple(f"q_{side}{n}" for n in numbers)
+    tips = tuple(f"X_{side}{k}" for k in places)
+    named = {joint(n): position_symbol(q) for n, q in zip(numbers, motions, strict=True)}
+    where = [sp.sympify(x).xreplace(named) for x in arm.coordinates]
+    blocks: list[Block] = []
+    at_tip: dict[int, dict[str, Weight]] = {k: {f"{own}{k}": 1} for k in places}
+    for block, z, force in (
+        (f"Z_{name}", held, f"F_{name}"),
+        (f"Z_L{side}", arm.load, f"F_L{side}"),
+    ):
+        if z is not None:
+            forces = tuple(f"{force}{k}" for k in places)
+            blocks.append(Linked(block, z, tips, forces))
+            for k in places:
+                at_tip[k][forces[k - 1]] = 1
+    junctions = [Junction(f"F_{side}{k}", at_tip[k]) for k in places]
+    for n, (body, q) in enumerate(zip(arm.joints, motions, strict=True), start=1):
+        arms = {k: sp.diff(x, position_symbol(q)) for k, x in zip(places, where, strict=True)}
+        arms = {k: w for k, w in arms.items() if w != 0}
+        torque, command = f"T_{side}{n}", f"U_{side}{n}"
+        blocks.append(Moving(f"Z_{side}{n}", body, q, command, {torque: 1}, f"{own}{n}"))
+        commanded: dict[str, Weight] = {f"F_P{k}": sign * w for k, w in arms.items()}
+        law = arm.cancellations[n - 1] if arm.cancellations else None
+        if law is not None:
+            blocks.append(Control(f"C_{side}{n}", law, q, f"F_C{side}{n}", q))
+            commanded[f"F_C{side}{n}"] = 1
+        junctions.append(Junction(torque, {f"F_{side}{k}": w for k, w in arms.items()}))
+        junctions.append(Junction(command, commanded))
+    pose = dict(zip(motions, arm.pose, strict=True)) if arm.pose else {}
+    kinematics = tuple(Kinematics(x, e) for x, e in zip(tips, where, strict=True))
+    return _Side(tuple(blocks), tuple(junctions), kinematics, motions, pose)

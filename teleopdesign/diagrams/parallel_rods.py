@@ -1,0 +1,112 @@
+"""A haptic interface of several rods that hold one hand: figure 3 with matrices for blocks.
+
+    R_A = R_D + H (R_D - R_M) + C L        Z_M L = R_A - R_M        L = G X
+    G^T R_M = -(F_H + F_V)                 F_H = -Z_H X             felt: G^T Zhat_M G
+
+L, R are lists over the rods, X, F over the hand's coordinates, one rod for each coordinate. G is
+the geometry at one pose. Everything that `haptic_interface(ANY, ...)` derives holds as it stands,
+for its blocks are matrices that need not commute. Lee, Lawrence, Pao, Control Eng. Practice 12
+(2004) 1423, have five such rods.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..blocks import Body, MatrixImpedance
+from ..controllers import Controller
+from ..errors import ModelError
+from .parts import Block, Control, Junction, Linked, Moving
+from .wiring import Diagram
+
+#: controllers of single rods (None: none), or by (rod that acts, rod that is read), from 1
+Controllers = Sequence[Controller | None] | Mapping[tuple[int, int], Controller]
+
+
+def parallel_rods(
+    rods: Sequence[Body],
+    geometry: Any,
+    *,
+    hand: MatrixImpedance | None = None,
+    mechanism: MatrixImpedance | None = None,
+    cancellation: Controllers = (),
+    force_feedback: Controllers = (),
+    analog: Collection[str] = (),
+) -> Diagram:
+    """Wire rods in parallel.
+
+    rods: n bodies, the diagonal of Z_M;  geometry: G (n, n), motion of each rod for each coordinate
+    of the hand;  hand: Z_H (n, n) in the hand's coordinates;  mechanism: what joins the rods beside
+    the hand, added to Z_M (n, n);  cancellation: C;  force_feedback: H
+    analog: "C", "H" where no computer samples them
+    Signals carry their number: R_D1, R_A1, R_M1, L1, ... of the rods; X1, F_H1, F_V1 of the hand.
+    raises ModelError: G is no regular n x n matrix, or another block has another size
+    """
+    size = len(rods)
+    g = np.asarray(geometry, dtype=float)
+    if g.shape != (size, size):
+        raise ModelError(f"parallel rods: geometry is {g.shape}, expected ({size}, {size})")
+    if np.linalg.matrix_rank(g) < size:
+        raise ModelError("parallel rods: the geometry is singular: some motion of the hand is free")
+    inverse = np.linalg.inv(g)
+    numbers = range(1, size + 1)
+    blocks: list[Block] = []
+    junctions: list[Junction] = []
+    joined = {}
+    if mechanism is not None:
+        lengths, forces = _named("L", numbers), _named("R_Z", numbers)
+        blocks.append(Linked("Z_J", mechanism, lengths, forces))
+        joined = {n: {f"R_Z{n}": 1} for n in numbers}
+    commands: dict[int, dict[str, float]] = {n: {f"R_D{n}": 1} for n in numbers}
+    for n, rod in zip(numbers, rods, strict=True):
+        loads = {f"R_M{n}": -1, **joined.get(n, {})}
+        blocks.append(Moving(f"Z_M{n}", rod, f"L{n}", f"R_A{n}", loads, f"F_V{n}"))
+        junctions.append(Junction(f"E{n}", {f"R_D{n}": 1, f"R_M{n}": -1}))
+    laws = (("C", cancellation, "L", "R_MBC"), ("H", force_feedback, "E", "R_FF"))
+    for name, given, read, made in laws:
+        for (i, j), law in _by_rods(name, given, size).items():
+            force = f"{made}{i}" if i == j else f"{made}{i}_{j}"
+            of = f"{name}{i}" if i == j else f"{name}{i}_{j}"
+            blocks.append(Control(of, law, f"{read}{j}", force, f"L{j}", name in analog))
+            commands[i][force] = 1
+    hands = {k: {f"F_V{k}": 1} for k in numbers}
+    if hand is not None:
+        blocks.append(Linked("Z_H", hand, _named("X", numbers), _named("F_H", numbers)))
+        hands = {k: {f"F_H{k}": 1, f"F_V{k}": 1} for k in numbers}
+    for n in numbers:
+        junctions.append(Junction(f"R_A{n}", commands[n]))
+        junctions.append(Junction(f"X{n}", _row(inverse[n - 1], "L")))
+        junctions.append(Junction(f"F{n}", hands[n]))
+        junctions.append(Junction(f"R_M{n}", _row(-inverse[:, n - 1], "F")))
+    return Diagram(
+        f"{size} parallel rods",
+        tuple(blocks),
+        tuple(junctions),
+        {f"{signal}{n}": "force" for n in numbers for signal in ("R_D", "F_V")},
+        measured=(*_named("L", numbers), *_named("R_M", numbers)),
+    )
+
+
+def _named(signal: str, numbers: range) -> tuple[str, ...]:
+    return tuple(f"{signal}{n}" for n in numbers)
+
+
+def _row(weights: np.ndarray, signal: str) -> dict[str, float]:
+    """Weights of numbered signals, those that are zero left out."""
+    return {f"{signal}{k + 1}": float(w) for k, w in enumerate(weights) if abs(w) > 1e-15}
+
+
+def _by_rods(name: str, given: Controllers, size: int) -> dict[tuple[int, int], Controller]:
+    if isinstance(given, Mapping):
+        found = dict(given)
+    else:
+        if given and len(given) != size:
+            raise ModelError(f"parallel rods: {name}: {len(given)} controllers for {size} rods")
+        found = {(n + 1, n + 1): law for n, law in enumerate(given) if law is not None}
+    for pair in found:
+        if not all(1 <= n <= size for n in pair):
+            raise ModelError(f"parallel rods: {name}: no rods {pair}, numbers are 1 to {size}")
+    return found

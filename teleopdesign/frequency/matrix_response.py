@@ -1,0 +1,111 @@
+"""Frequency responses from several inputs to several outputs, solved at each frequency.
+
+The same equations as the symbolic transfer functions, with numbers in the place of blocks: for
+diagrams of many axes, whose symbolic forms would fill pages.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import sympy as sp
+
+from ..derive.printing import block_symbol
+from ..derive.transfer_functions import rows
+from ..diagrams import Diagram, Moving
+from ..errors import ModelError
+from ..realise.lti import S, linear_blocks
+
+if TYPE_CHECKING:
+    import control
+    import xarray
+
+
+@dataclass(frozen=True)
+class MatrixResponse:
+    """Complex response over frequency (Hz), output and input; what has no linear form is named."""
+
+    data: xarray.DataArray
+    left_out: tuple[str, ...]
+
+    def singular_values(self) -> np.ndarray:
+        """(frequencies, smaller of the two sizes): gain over all directions, largest first."""
+        return np.linalg.svd(self.data.values, compute_uv=False)
+
+    def frd(self) -> control.FRD:
+        """As a python-control frequency response."""
+        import control
+
+        values = np.moveaxis(self.data.values, 0, -1)
+        return control.frd(values, 2 * np.pi * self.data["frequency"].values)
+
+    def __repr__(self) -> str:
+        shape = f"{len(self.data['output'])} outputs from {len(self.data['input'])} inputs"
+        f = self.data["frequency"].values
+        gone = f"; left out: {', '.join(self.left_out)}" if self.left_out else ""
+        return f"Response of {shape}, {f[0]:g} to {f[-1]:g} Hz{gone}"
+
+
+def matrix_response(
+    diagram: Diagram,
+    outputs: Sequence[str],
+    inputs: Sequence[str],
+    frequency: np.ndarray,
+    *,
+    given: Sequence[str] = (),
+    speed: float = 0.0,
+) -> MatrixResponse:
+    """Response of each output to each input, all others zero.
+
+    frequency: (n,), Hz;  given: motions that are prescribed, in place of the forces that drive them
+    speed: at which smoothed friction and schedules are frozen, m/s or rad/s
+    raises ModelError: a signal is not there, an input is not free, a loop has no solution
+    """
+    import xarray
+
+    drivers = {b.motion: b.driver for b in diagram.blocks if isinstance(b, Moving)}
+    free = [s for s in diagram.outside if s not in {drivers.get(m) for m in given}]
+    free += given
+    for name in (*outputs, *inputs):
+        diagram.signal(name)
+    if bound := [name for name in inputs if name not in free]:
+        raise ModelError(f'{diagram.name}: signal "{bound[0]}" is not from outside')
+    unknown = [s for s in diagram.signals if s not in free]
+    form = linear_blocks(diagram, speed=speed)
+    values = {block_symbol(n): z for n, z in form.blocks.items()}
+    values |= {block_symbol(f"A_{n}"): z for n, z in form.actuation.items()}
+    s = 2j * np.pi * np.asarray(frequency, dtype=float)
+    system = rows(diagram)
+    matrix = np.zeros((len(s), len(system), len(unknown)), dtype=complex)
+    right = np.zeros((len(s), len(system), len(inputs)), dtype=complex)
+    for i, row in enumerate(system):
+        for name, coefficient in row.items():
+            target, names, sign = (right, inputs, -1) if name in inputs else (matrix, unknown, 1)
+            if name in names:
+                over = sp.lambdify(S, sp.sympify(coefficient).xreplace(values), "numpy")
+                target[:, i, names.index(name)] = sign * over(s)
+    try:
+        solved = np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        raise ModelError(f"{diagram.name}: the wiring does not determine all signals") from None
+    chosen = [
+        solved[:, unknown.index(o)] if o in unknown else _itself(o, inputs, s) for o in outputs
+    ]
+    data = xarray.DataArray(
+        np.stack(chosen, axis=1),
+        {
+            "frequency": ("frequency", np.asarray(frequency), {"units": "Hz"}),
+            "output": list(outputs),
+            "input": list(inputs),
+        },
+        ("frequency", "output", "input"),
+    )
+    return MatrixResponse(data, form.left_out)
+
+
+def _itself(output: str, inputs: Sequence[str], s: np.ndarray) -> np.ndarray:
+    """Response of a free signal: one to itself, zero to others."""
+    return np.tile(np.array([float(output == i) for i in inputs], dtype=complex), (len(s), 1))
