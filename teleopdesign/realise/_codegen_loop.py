@@ -98,7 +98,7 @@ class _Loop:
         given = ", ".join(reads)
         chosen = [s for s in g.computer_states if s in g.equations.computer.before]
         self.add(depth, "if n > 0:" if chosen else "")
-        self._exact(depth + 1, "before", chosen, given)
+        self._advance(depth + 1, "before", chosen, given)
         names = list(g.equations.computer.signals)
         self.add(depth, f"made = computer({given})" if names else "")
         self.add(depth, *(f"{n}_made = made[{i}]" for i, n in enumerate(names)))
@@ -108,15 +108,19 @@ class _Loop:
             )
             self.add(depth, f"held[n, {i}] = {source}")
         rest = [s for s in g.computer_states if s not in g.equations.computer.before]
-        self._exact(depth, "after", rest, given)
+        self._advance(depth, "after", rest, given)
 
-    def _exact(self, depth: int, name: str, states: list[sp.Symbol], given: str) -> None:
-        if not states:
-            return
-        self.add(depth, f"made_{name} = {name}_rates({given})")
-        for i, s in enumerate(states):
+    def _advance(self, depth: int, name: str, states: list[sp.Symbol], given: str) -> None:
+        """Carry states over a sample: exactly by their rates, or as they say."""
+        computer = self.g.equations.computer
+        exact = [s for s in states if s in computer.rates]
+        stated = [s for s in states if s in computer.steps]
+        self.add(depth, f"made_{name} = {name}_rates({given})" if exact else "")
+        self.add(depth, f"next_{name} = {name}_steps({given})" if stated else "")
+        for i, s in enumerate(exact):
             self.add(depth, f"e, f, _, _ = phi(period * made_{name}[{i}])")
-            self.add(depth, f"{s} = e * {s} + period * f * made_{name}[{i + len(states)}]")
+            self.add(depth, f"{s} = e * {s} + period * f * made_{name}[{i + len(exact)}]")
+        self.add(depth, *(f"{s} = next_{name}[{i}]" for i, s in enumerate(stated)))
 
     def _late(self, depth: int) -> None:
         g = self.g

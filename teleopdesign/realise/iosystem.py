@@ -43,7 +43,7 @@ def to_iosystem(
         replace(b, analog=False) if isinstance(b, Control) else b for b in diagram.blocks
     )
     diagram = replace(diagram, blocks=blocks)
-    parts = equations(diagram, prescribed=prescribed)
+    parts = equations(_known(diagram), prescribed=prescribed)
     if parts.late:
         raise ModelError(
             f"{diagram.name}: actuation_delay has no python-control form: use `simulate` instead"
@@ -79,16 +79,48 @@ def _mechanics(parts: Equations, numbers: dict[sp.Symbol, float]) -> Any:
     return _nlsys(MECHANICS, states, given, [parts.rates[s] for s in states], outputs, numbers)
 
 
+def _known(diagram: Diagram) -> Diagram:
+    """Systems that are known as code only give way to a wire: the mechanics do not see them."""
+    for part in diagram.controls:
+        if _code(part) is not None:
+            diagram = diagram.with_block(part.name, Controller(()))
+    return diagram
+
+
+def _code(part: Control) -> Any:
+    """The python-control system that the controller consists of; None where it is a law."""
+    assert isinstance(part.controller, Controller)
+    stages = part.controller.stages
+    return stages[0].law.system if len(stages) == 1 else None
+
+
 def _controller(part: Control, numbers: dict[sp.Symbol, float]) -> Any:
+    if (system := _code(part)) is not None:
+        return _renamed(system, part)
     assert isinstance(part.controller, Controller)
     v = velocity(part.motion)
     signals = {"input": signal(part.input), "velocity": v, "speed": sp.Abs(v), "travel_rate": v}
+    signals["period"] = sp.S(0)
     equation = part.controller.equation(part.name, signals)
     states = sorted(equation.rates, key=str)
     rates = [equation.rates[s] for s in states]
     used = set().union(*(e.free_symbols for e in (equation.output, *rates)))
     given = [s for s in (signal(part.input), v) if s in used]
     return _nlsys(part.name, states, given, rates, {part.output: equation.output}, numbers)
+
+
+def _renamed(system: Any, part: Control) -> Any:
+    """A python-control system under the block's name, on its signals."""
+    import control
+
+    return control.nlsys(
+        (lambda t, x, u, params: system.dynamics(t, x, u)) if system.nstates else None,
+        lambda t, x, u, params: system.output(t, x, u),
+        inputs=[part.input],
+        outputs=[part.output],
+        states=list(system.state_labels) or None,
+        name=part.name,
+    )
 
 
 def _nlsys(

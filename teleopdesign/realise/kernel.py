@@ -115,17 +115,17 @@ def _structure(diagram: Diagram) -> tuple[Any, ...]:
         block = getattr(part, "controller", getattr(part, "body", None))
         laws: tuple[Any, ...] = ()
         if isinstance(block, Controller):
-            laws = tuple((g.law.name, g.law.law, _rates(g.law)) for g in block.stages)
+            laws = tuple((g.law.name, g.law.law, _states(g.law)) for g in block.stages)
         elif isinstance(block, Body):
-            laws = tuple((e.name, e.role, e.law, _rates(e)) for e in block.effects)
+            laws = tuple((e.name, e.role, e.law, _states(e)) for e in block.effects)
         sign = getattr(part, "sign", 1)
         motion = (part.motion, part.analog) if isinstance(part, Control) else ()
         out.append((type(part).__name__, wires, terms, sign, motion, laws))
     return tuple(out)
 
 
-def _rates(law: Effect | ControlLaw) -> tuple[Any, ...]:
-    return tuple((name, state.rate) for name, state in law.states.items())
+def _states(law: Effect | ControlLaw) -> tuple[Any, ...]:
+    return tuple(law.states.items())
 
 
 def velocity_smoothing(bandwidth: float, period: float) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
-from ..realise.simulated import simulated
+from ..realise.simulated import in_computer, simulated
 from .motion import Motion
 
 if TYPE_CHECKING:
@@ -56,6 +56,9 @@ def prepare(
     motion, inputs, initial = dict(motion or {}), dict(inputs or {}), dict(initial or {})
     body = simulated(diagram, give)
     sampled = not isinstance(computer, str)
+    setting = Sampling() if isinstance(computer, str) else computer
+    if sampled:
+        body = in_computer(body, setting.period)
     made = program(body, prescribed=tuple(motion), sampled=sampled, jit=jit)
     for name in inputs:
         if name not in diagram.outside:
@@ -69,7 +72,6 @@ def prepare(
             raise ModelError(
                 f'initial: no state "{name}", has {", ".join(states)}{did_you_mean(name, states)}'
             )
-    setting = Sampling() if isinstance(computer, str) else computer
     return Prepared(body, made, setting, duration, step, inputs, motion, initial)
 
 
