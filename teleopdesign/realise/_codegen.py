@@ -135,10 +135,14 @@ def _function(
 
 
 class Generator:
-    """Names and source for one diagram's equations."""
+    """Names and source for one diagram's equations.
 
-    def __init__(self, equations: Equations) -> None:
+    observer: order of the observer that estimates velocities, 2 or 3; 0: a filtered difference
+    """
+
+    def __init__(self, equations: Equations, *, observer: int = 0) -> None:
         e = self.equations = equations
+        self.observer = observer
         self._refuse_reserved()
         self.slopes = slopes(e)
         self.states = sorted(e.rates, key=str)

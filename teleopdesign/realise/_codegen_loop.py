@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
+from . import _velocity_estimate
 from ._codegen import ARGUMENTS, Generator
 from .equations import acceleration, estimate, signal, travel_rate, velocity
 
@@ -38,6 +39,10 @@ class _Loop:
         computed += [n for n in g.equations.signals]
         computed += [f"{acceleration(m)}" for m in g.equations.motions]
         self.add(1, *(f"{name} = 0.0" for name in computed))
+        if g.commands and g.motions:
+            self.add(1, *_velocity_estimate.gains(g.observer))
+            for m in g.motions:
+                self.add(1, *_velocity_estimate.start(g.observer, signal(m).name, "0.0"))
         self.add(1, "for j in range(samples * inner + 1):")
         self.add(2, "time = j * h", *self._inputs("2 * j", ""))
         if g.commands:
@@ -86,9 +91,12 @@ class _Loop:
             seen = f"{x}_seen"
             self.add(depth, f"{seen} = {x}", "if encoder_step > 0.0:")
             self.add(depth + 1, f"{seen} = floor({x} / encoder_step + 0.5) * encoder_step")
-            self.add(depth, "if n == 0:", f"    {rate} = {v}", f"    {known} = {v}", "else:")
+            self.add(depth, "if n == 0:", f"    {rate} = {v}", f"    {known} = {v}")
+            self.add(depth + 1, *_velocity_estimate.start(g.observer, x.name, seen))
+            self.add(depth, "else:")
             self.add(depth + 1, f"{rate} = ({seen} - {x}_before) / period")
-            self.add(depth + 1, f"{known} = smoothing * {known} + (1.0 - smoothing) * {rate}")
+            update = _velocity_estimate.update(g.observer, x.name, seen, rate.name, known.name)
+            self.add(depth + 1, *update)
             self.add(depth, f"{x}_before = {seen}")
         for s in g.sensors:
             name = s.name.removesuffix("_measured")

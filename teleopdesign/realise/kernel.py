@@ -52,7 +52,8 @@ class Timing:
     """Grid and sampling of one run.
 
     step: inner step, s;  inner: steps a sample;  lag: delay of commands in steps
-    late: delay of each late signal in steps;  smoothing: factor of the velocity filter a sample
+    late: delay of each late signal in steps
+    smoothing: factor of the velocity filter a sample, the pole of an observer
     """
 
     step: float
@@ -76,15 +77,22 @@ _programs: dict[Any, Program] = {}
 
 
 def program(
-    diagram: Diagram, *, prescribed: tuple[str, ...] = (), sampled: bool = True, jit: bool = True
+    diagram: Diagram,
+    *,
+    prescribed: tuple[str, ...] = (),
+    sampled: bool = True,
+    observer: int = 0,
+    jit: bool = True,
 ) -> Program:
     """The loop for this diagram's structure, built and compiled where it is not yet.
 
+    observer: its order, where the computer observes velocities in place of filtering differences
     jit: False runs the same generated source in plain Python, some hundred times slower
     """
-    key = (_structure(diagram), prescribed, sampled, jit)
+    key = (_structure(diagram), prescribed, sampled, observer, jit)
     if key not in _programs:
-        generator = Generator(equations(diagram, prescribed=prescribed, sampled=sampled))
+        found = equations(diagram, prescribed=prescribed, sampled=sampled)
+        generator = Generator(found, observer=observer)
         loop = loop_source(generator)
         source = generator.source(jit=jit) + loop
         plain = _executed(generator.source(jit=False) + loop)

@@ -12,30 +12,13 @@ from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
 from ..realise.simulated import in_computer, simulated
 from .motion import Motion
+from .sampling import SAMPLED, Sampling
 
 if TYPE_CHECKING:
     from ..realise.kernel import Program, Timing
 
 Input = float | np.ndarray | Callable[[np.ndarray], np.ndarray]
 _MOST_REFINED = 200  # inner steps a default one may become
-
-
-@dataclass(frozen=True)
-class Sampling:
-    """How the computer sees and acts.
-
-    period: s;  delay: from a sample to the change of the command, s
-    encoder_step: m or rad, 0: none
-    velocity_bandwidth: of the first-order filter on the differenced position, Hz; inf: none
-    """
-
-    period: float = 1e-3
-    delay: float = 0.0
-    encoder_step: float = 0.0
-    velocity_bandwidth: float = float("inf")
-
-
-SAMPLED = Sampling()
 
 
 def prepare(
@@ -59,7 +42,13 @@ def prepare(
     setting = Sampling() if isinstance(computer, str) else computer
     if sampled:
         body = in_computer(body, setting.period)
-    made = program(body, prescribed=tuple(motion), sampled=sampled, jit=jit)
+    made = program(
+        body,
+        prescribed=tuple(motion),
+        sampled=sampled,
+        observer=setting.observer if sampled else 0,
+        jit=jit,
+    )
     for name in inputs:
         if name not in diagram.outside:
             raise ModelError(
