@@ -1,6 +1,24 @@
 """Blocks of a diagram: equations only."""
 
+from .arm import ARM
 from .body import Body, BodyEquation, Value
+from .contact_hysteresis import CONTACT_HYSTERESIS
 from .environment import CONTACT
+from .environments import free_space, hunt_crossley, soft_rubber, spring_damper
+from .hand import hand
+from .impact_damping import IMPACT_DAMPING
 
-__all__ = ["CONTACT", "Body", "BodyEquation", "Value"]
+__all__ = [
+    "ARM",
+    "CONTACT",
+    "CONTACT_HYSTERESIS",
+    "IMPACT_DAMPING",
+    "Body",
+    "BodyEquation",
+    "Value",
+    "free_space",
+    "hand",
+    "hunt_crossley",
+    "soft_rubber",
+    "spring_damper",
+]

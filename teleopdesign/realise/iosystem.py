@@ -136,7 +136,13 @@ def _nlsys(
     def function(expressions: Sequence[sp.Expr]) -> Callable[..., Any]:
         found = [sp.sympify(e).subs(numbers) for e in expressions]
         call = sp.lambdify([TIME, list(states), list(inputs)], found, "math", cse=True)
-        return lambda t, x, u, params: np.array(call(t, x, u), dtype=float)
+
+        def values(t: float, x: np.ndarray, u: np.ndarray, params: object) -> np.ndarray:
+            return np.array(call(t, x, u), dtype=float)
+
+        # a contact's law is evaluated where nothing touches too
+        one_sided = any(e.has(sp.Piecewise) for e in found)
+        return np.errstate(all="ignore")(values) if one_sided else values
 
     return control.nlsys(
         function(rates) if states else None,

@@ -207,7 +207,8 @@ def fastest_rate(made: Program, values: Mapping[str, float]) -> tuple[float, str
     inputs = [0.0] * (len(layout.inputs) + len(layout.commands) + len(layout.late))
 
     def rates(x: np.ndarray) -> np.ndarray:
-        return np.array(made.functions["rates"](0.0, *x, *inputs, *parameters))
+        with np.errstate(all="ignore"):  # a contact's law is evaluated where nothing touches too
+            return np.array(made.functions["rates"](0.0, *x, *inputs, *parameters))
 
     n = len(layout.states)
     small = 1e-9  # at rest: below every smoothing velocity and bristle length
