@@ -1,7 +1,27 @@
 """Blocks of a diagram: equations only."""
 
+from .arm import ARM
 from .body import Body, BodyEquation, Value
+from .contact_hysteresis import CONTACT_HYSTERESIS
 from .environment import CONTACT
+from .environments import free_space, hunt_crossley, soft_rubber, spring_damper
+from .hand import hand
+from .impact_damping import IMPACT_DAMPING
 from .matrix_impedance import MatrixImpedance, matrix_impedance
 
-__all__ = ["CONTACT", "Body", "BodyEquation", "MatrixImpedance", "Value", "matrix_impedance"]
+__all__ = [
+    "ARM",
+    "CONTACT",
+    "CONTACT_HYSTERESIS",
+    "IMPACT_DAMPING",
+    "Body",
+    "BodyEquation",
+    "MatrixImpedance",
+    "Value",
+    "free_space",
+    "hand",
+    "hunt_crossley",
+    "matrix_impedance",
+    "soft_rubber",
+    "spring_damper",
+]

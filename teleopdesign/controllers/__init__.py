@@ -18,8 +18,10 @@ from ._controller import (
     Controller,
     ControllerEquation,
     Stage,
+    State,
     parameter_symbol,
 )
+from ._from_control import from_control, inverted
 
 __all__ = [
     "CONTROLLERS",
@@ -28,7 +30,10 @@ __all__ = [
     "Controller",
     "ControllerEquation",
     "Stage",
+    "State",
     "controller",
+    "from_control",
+    "inverted",
     "parameter_symbol",
     "scheduled_force_feedback",
 ]

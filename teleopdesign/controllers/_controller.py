@@ -1,10 +1,11 @@
 """What a control law is: one law, written once with sympy, in a file of its own.
 
 A law sees `now.input` (the signal wired to the block), the motion that it acts along (`velocity`,
-`speed` = abs(velocity), `travel_rate`) and its hidden states. `speed` is apart from `velocity` so
-that the linear form can freeze it; `travel_rate` is the travel of the last sample over its
-duration, velocity itself in continuous time. Every form of the law (transfer function,
-python-control system, sampled step of the kernel) is derived from it.
+`speed` = abs(velocity), `travel_rate`), its hidden states and `now.period`, the duration of a
+sample, 0 in continuous time. `speed` is apart from `velocity` so that the linear form can freeze
+it; `travel_rate` is the travel of the last sample over its duration, velocity itself in continuous
+time. Every form of the law (transfer function, python-control system, sampled step of the kernel)
+is derived from it.
 """
 
 from __future__ import annotations
@@ -12,16 +13,36 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType, SimpleNamespace
-from typing import Any
+from typing import Any, Literal
 
 import sympy as sp
 
-from ..effects import Parameter, State
+from ..effects import Parameter
 from ..errors import ModelError, did_you_mean
 
 SIGNALS = {
-    name: sp.Symbol(name, real=True) for name in ("input", "velocity", "speed", "travel_rate")
+    name: sp.Symbol(name, real=True)
+    for name in ("input", "velocity", "speed", "travel_rate", "period")
 }
+
+
+def only_sampled(now: Any, p: Any) -> sp.Expr:
+    """The rate of a state that has none: it exists in a computer only."""
+    return sp.nan
+
+
+@dataclass(frozen=True)
+class State:
+    """A hidden state of a control law, whose `now` also carries the states of the law.
+
+    rate(now, p): rate of change, or `only_sampled`
+    step(now, p): value at the next sample, `now.period` later;  None: the step that is exact for
+    the rate, which is affine in the state, with all else held
+    """
+
+    quantity: str
+    rate: Callable[[Any, Any], sp.Expr]
+    step: Callable[[Any, Any], sp.Expr] | None = None
 
 
 @dataclass(frozen=True)
@@ -30,15 +51,23 @@ class ControlLaw:
 
     linear: declares that, at frozen `speed`, the law is linear in its input and in velocity;
     False: the LTI form leaves the block out, and says so.
-    States whose rate uses `travel_rate` are brought up to a sample before its output is taken,
-    all others are carried from it to the next with their inputs held. Rates are affine in their
-    own state, so both steps are exact.
+    States whose rate or step uses `travel_rate` are brought up to a sample before its output is
+    taken, all others are carried from it to the next with their inputs held.
+    takes: "force" where the input must not be the motion itself; "": anything
+    transfer(values, s): transfer function from the input, where not to be found from the states
+    sampled(values, period): the stage that takes the place of this one in a computer of that
+    period (s); None: this one, its states stepped as they say
+    system: a python-control system in place of a law: known as code only, it has no equation
     """
 
     law: Callable[[Any, Any], sp.Expr]
     parameters: Mapping[str, Parameter]
     states: Mapping[str, State] = field(default_factory=dict)
     linear: bool = False
+    takes: Literal["", "force"] = ""
+    transfer: Callable[[Mapping[str, float], sp.Symbol], sp.Expr] | None = None
+    sampled: Callable[[Mapping[str, float], float], Stage] | None = None
+    system: Any = None
     source: str = ""
     name: str = ""
     text: str = ""
@@ -76,10 +105,15 @@ class Stage:
 
 @dataclass(frozen=True)
 class ControllerEquation:
-    """Output and rates of a controller placed under a name, on the signals given to it."""
+    """Output and states of a controller placed under a name, on the signals given to it.
+
+    rates: state -> rate;  steps: state -> value at the next sample, for those that state it
+    before: states that are brought up to a sample before its output is taken
+    """
 
     output: sp.Expr
     rates: Mapping[sp.Symbol, sp.Expr]
+    steps: Mapping[sp.Symbol, sp.Expr]
     before: frozenset[sp.Symbol]
 
 
@@ -116,34 +150,76 @@ class Controller:
             )
         )
 
+    def sampled(self, period: float) -> Controller:
+        """The controller as a computer of that period (s) realises it."""
+        stages = (
+            g if g.law.sampled is None else g.law.sampled(g.values, period) for g in self.stages
+        )
+        return Controller(tuple(stages))
+
     def equation(self, prefix: str, signals: Mapping[str, sp.Expr]) -> ControllerEquation:
-        """The laws composed in series; prefix: name of the block, in its symbols."""
-        value, rates, before = signals["input"], {}, set()
+        """The laws composed in series; prefix: name of the block, in its symbols.
+
+        signals: those of `SIGNALS`; a `period` of 0 is continuous time
+        raises ModelError: continuous time, and a state that exists in a computer only; a system
+            that is known as code only
+        """
+        value, before = signals["input"], set()
+        rates: dict[sp.Symbol, sp.Expr] = {}
+        steps: dict[sp.Symbol, sp.Expr] = {}
         for stage in self.stages:
             law = stage.law
-            own = {s: state_symbol(prefix, law.name, s) for s in law.states}
-            now = SimpleNamespace(**{**signals, "input": value, **own})
-            p = SimpleNamespace(
-                **{n: parameter_symbol(prefix, f"{law.name}.{n}") for n in law.parameters}
-            )
+            if law.system is not None:
+                raise ModelError(
+                    f"{prefix}: {law.name} is a nonlinear python-control system, known as code "
+                    "only: it takes part in `to_iosystem`, not in simulations of its own kernel"
+                )
+            now, p = _placed(law, prefix, {**signals, "input": value})
+            probe = SimpleNamespace(**{**vars(now), "travel_rate": SIGNALS["travel_rate"]})
             for name, state in law.states.items():
-                rates[own[name]] = sp.sympify(state.rate(now, p))
-                probe = SimpleNamespace(**{**vars(now), "travel_rate": SIGNALS["travel_rate"]})
-                if sp.sympify(state.rate(probe, p)).has(SIGNALS["travel_rate"]):
-                    before.add(own[name])
+                symbol, in_computer = getattr(now, name), signals["period"] != 0
+                if state.step is not None and in_computer:
+                    change, changes = state.step, steps
+                else:
+                    change, changes = state.rate, rates
+                if change is only_sampled:
+                    raise ModelError(
+                        f"{prefix}: {law.name} has no form in continuous time: it needs a computer "
+                        "that samples it"
+                    )
+                changes[symbol] = sp.sympify(change(now, p))
+                if sp.sympify(change(probe, p)).has(SIGNALS["travel_rate"]):
+                    before.add(symbol)
             value = sp.sympify(law.law(now, p))
-        return ControllerEquation(value, MappingProxyType(rates), frozenset(before))
+        return ControllerEquation(
+            value, MappingProxyType(rates), MappingProxyType(steps), frozenset(before)
+        )
 
     def linear_form(self, prefix: str, s: sp.Symbol, speed: sp.Expr) -> sp.Expr | None:
         """Transfer function at frozen speed; None where a law declares no linear form."""
         if not all(stage.law.linear for stage in self.stages):
             return None
         drive = sp.Symbol("drive")
-        signals = {"input": drive, "velocity": s * drive, "speed": speed, "travel_rate": s * drive}
-        equation = self.equation(prefix, signals)
-        settled = sp.solve([s * x - rate for x, rate in equation.rates.items()], *equation.rates)
-        output = equation.output.subs(settled) if equation.rates else equation.output
-        return sp.simplify(output / drive)
+        moved = {"velocity": s * drive, "speed": speed, "travel_rate": s * drive}
+        value: sp.Expr = drive
+        for stage in self.stages:
+            if stage.law.transfer is not None:
+                value *= stage.law.transfer(stage.values, s)
+                continue
+            signals = {**moved, "input": value, "period": sp.S(0)}
+            equation = Controller((stage,)).equation(prefix, signals)
+            settled = sp.solve([s * x - r for x, r in equation.rates.items()], *equation.rates)
+            value = equation.output.subs(settled) if equation.rates else equation.output
+        return sp.simplify(value / drive)
+
+
+def _placed(
+    law: ControlLaw, prefix: str, signals: Mapping[str, sp.Expr]
+) -> tuple[SimpleNamespace, SimpleNamespace]:
+    """What the law sees, its states among it, and its parameters, as symbols of that block."""
+    own = {s: state_symbol(prefix, law.name, s) for s in law.states}
+    values = {n: parameter_symbol(prefix, f"{law.name}.{n}") for n in law.parameters}
+    return SimpleNamespace(**{**signals, **own}), SimpleNamespace(**values)
 
 
 def parameter_symbol(prefix: str, name: str) -> sp.Symbol:

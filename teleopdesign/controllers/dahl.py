@@ -9,8 +9,8 @@ of positions.
 
 from types import SimpleNamespace
 
-from ..effects import EFFECTS, Parameter, State
-from ._controller import ControlLaw
+from ..effects import EFFECTS, Parameter
+from ._controller import ControlLaw, State
 
 _DAHL = EFFECTS["presliding"].without("bristle_damping")
 

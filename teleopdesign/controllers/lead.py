@@ -3,8 +3,8 @@
 output = g (s + z)/(s + p) input,   written  g (input + w),  dw/dt = -p w + (z - p) input
 """
 
-from ..effects import Parameter, State
-from ._controller import ControlLaw
+from ..effects import Parameter
+from ._controller import ControlLaw, State
 
 
 def law(now, p):

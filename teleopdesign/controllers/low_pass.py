@@ -5,8 +5,8 @@ dw/dt = 2 pi f_c (input - w),   output = w
 
 from sympy import pi
 
-from ..effects import Parameter, State
-from ._controller import ControlLaw
+from ..effects import Parameter
+from ._controller import ControlLaw, State
 
 
 def law(now, p):

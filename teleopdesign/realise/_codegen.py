@@ -3,7 +3,8 @@
 Inner steps: exponential Runge-Kutta of order four (Cox, Matthews, J. Comput. Phys. 176 (2002) 430,
 eqs (26) to (29)), with the rate of a hidden state split as A z + B, A frozen at the start of the
 step; A = 0 for the motion, for which it is the classical Runge-Kutta method. At every sample the
-computer reads its sensors and steps its states exactly for inputs held over the sample.
+computer reads its sensors and steps its states as they say, or exactly for inputs held over the
+sample.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import sympy as sp
 
 from ..errors import ModelError
 from .equations import (
+    PERIOD,
     TIME,
     Equations,
     acceleration,
@@ -150,14 +152,18 @@ def _function(
 
 
 class Generator:
-    """Names and source for one diagram's equations."""
+    """Names and source for one diagram's equations.
 
-    def __init__(self, equations: Equations) -> None:
+    observer: order of the observer that estimates velocities, 2 or 3; 0: a filtered difference
+    """
+
+    def __init__(self, equations: Equations, *, observer: int = 0) -> None:
         e = self.equations = equations
+        self.observer = observer
         self._refuse_reserved()
         self.slopes = slopes(e)
         self.states = sorted(e.rates, key=str)
-        self.computer_states = sorted(e.computer.rates, key=str)
+        self.computer_states = sorted((*e.computer.rates, *e.computer.steps), key=str)
         self.motions = [*e.motions, *e.prescribed]
         self.commands = list(e.commands)
         self.late = list(e.late)
@@ -183,6 +189,7 @@ class Generator:
             *self.sampled_inputs,
             *self.computer_states,
             *self.parameters,
+            *({PERIOD} & used),
         ]
         self.renamed = {p: sp.Symbol(f"p{i}", real=True) for i, p in enumerate(self.parameters)}
         self.motion_signals = [f(m) for m in self.motions for f in (signal, velocity, acceleration)]
@@ -197,7 +204,8 @@ class Generator:
 
     def _computer_expressions(self) -> list[sp.Expr]:
         computer = self.equations.computer
-        return [*computer.rates.values(), *computer.signals.values()]
+        steps = computer.steps.values()
+        return [*computer.rates.values(), *steps, *computer.signals.values()]
 
     def _expressions(self) -> list[sp.Expr]:
         e = self.equations
@@ -252,10 +260,13 @@ class Generator:
         computer = self.equations.computer
         out = []
         for name, wanted in (("before", True), ("after", False)):
-            chosen = [s for s in self.computer_states if (s in computer.before) is wanted]
+            here = [s for s in self.computer_states if (s in computer.before) is wanted]
+            chosen = [s for s in here if s in computer.rates]
             a = [sp.diff(computer.rates[s], s) for s in chosen]
             b = [computer.rates[s].xreplace({s: sp.S(0)}) for s in chosen]
             out.append(_function(f"{name}_rates", self.reads, [*a, *b], self.renamed))
+            steps = [computer.steps[s] for s in here if s in computer.steps]
+            out.append(_function(f"{name}_steps", self.reads, steps, self.renamed))
         out.append(_function("computer", self.reads, list(computer.signals.values()), self.renamed))
         return "".join(out)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
+from . import _velocity_estimate
 from ._codegen import ARGUMENTS, Generator
 from .equations import acceleration, estimate, signal, travel_rate, velocity
 
@@ -38,6 +39,10 @@ class _Loop:
         computed += [n for n in g.equations.signals]
         computed += [f"{acceleration(m)}" for m in g.equations.motions]
         self.add(1, *(f"{name} = 0.0" for name in computed))
+        if g.commands and g.motions:
+            self.add(1, *_velocity_estimate.gains(g.observer))
+            for m in g.motions:
+                self.add(1, *_velocity_estimate.start(g.observer, signal(m).name, "0.0"))
         self.add(1, "for j in range(samples * inner + 1):")
         self.add(2, "time = j * h", *self._inputs("2 * j", ""))
         if g.commands:
@@ -86,9 +91,12 @@ class _Loop:
             seen = f"{x}_seen"
             self.add(depth, f"{seen} = {x}", "if encoder_step > 0.0:")
             self.add(depth + 1, f"{seen} = floor({x} / encoder_step + 0.5) * encoder_step")
-            self.add(depth, "if n == 0:", f"    {rate} = {v}", f"    {known} = {v}", "else:")
+            self.add(depth, "if n == 0:", f"    {rate} = {v}", f"    {known} = {v}")
+            self.add(depth + 1, *_velocity_estimate.start(g.observer, x.name, seen))
+            self.add(depth, "else:")
             self.add(depth + 1, f"{rate} = ({seen} - {x}_before) / period")
-            self.add(depth + 1, f"{known} = smoothing * {known} + (1.0 - smoothing) * {rate}")
+            update = _velocity_estimate.update(g.observer, x.name, seen, rate.name, known.name)
+            self.add(depth + 1, *update)
             self.add(depth, f"{x}_before = {seen}")
         for s in g.sensors:
             name = s.name.removesuffix("_measured")
@@ -98,7 +106,7 @@ class _Loop:
         given = ", ".join(reads)
         chosen = [s for s in g.computer_states if s in g.equations.computer.before]
         self.add(depth, "if n > 0:" if chosen else "")
-        self._exact(depth + 1, "before", chosen, given)
+        self._advance(depth + 1, "before", chosen, given)
         names = list(g.equations.computer.signals)
         self.add(depth, f"made = computer({given})" if names else "")
         self.add(depth, *(f"{n}_made = made[{i}]" for i, n in enumerate(names)))
@@ -108,15 +116,19 @@ class _Loop:
             )
             self.add(depth, f"held[n, {i}] = {source}")
         rest = [s for s in g.computer_states if s not in g.equations.computer.before]
-        self._exact(depth, "after", rest, given)
+        self._advance(depth, "after", rest, given)
 
-    def _exact(self, depth: int, name: str, states: list[sp.Symbol], given: str) -> None:
-        if not states:
-            return
-        self.add(depth, f"made_{name} = {name}_rates({given})")
-        for i, s in enumerate(states):
+    def _advance(self, depth: int, name: str, states: list[sp.Symbol], given: str) -> None:
+        """Carry states over a sample: exactly by their rates, or as they say."""
+        computer = self.g.equations.computer
+        exact = [s for s in states if s in computer.rates]
+        stated = [s for s in states if s in computer.steps]
+        self.add(depth, f"made_{name} = {name}_rates({given})" if exact else "")
+        self.add(depth, f"next_{name} = {name}_steps({given})" if stated else "")
+        for i, s in enumerate(exact):
             self.add(depth, f"e, f, _, _ = phi(period * made_{name}[{i}])")
-            self.add(depth, f"{s} = e * {s} + period * f * made_{name}[{i + len(states)}]")
+            self.add(depth, f"{s} = e * {s} + period * f * made_{name}[{i + len(exact)}]")
+        self.add(depth, *(f"{s} = next_{name}[{i}]" for i, s in enumerate(stated)))
 
     def _late(self, depth: int) -> None:
         g = self.g

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ..blocks import Body
+from ..controllers import SIGNALS as CONTROL_SIGNALS
 from ..controllers import Controller, ControllerEquation, parameter_symbol
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ..diagrams.parts import Weight
@@ -22,8 +23,12 @@ from ._linear import Steps, solve_linear
 
 #: signal's name -> symbol that stands for it
 _Reader = Callable[[str], sp.Symbol]
+#: state -> rate, or value at the next sample
+_Changes = dict[sp.Symbol, sp.Expr]
 TIME = sp.Symbol("time", real=True)
 _NO_COMMAND = sp.Symbol("no_command", real=True)
+#: duration of a sample, in the laws of what is sampled
+PERIOD = CONTROL_SIGNALS["period"]
 
 
 @dataclass(frozen=True)
@@ -31,9 +36,11 @@ class Computer:
     """The sampled part: states before and after their step over one sample, and the signals.
 
     rates: continuous rates, inputs held over a sample;  before: states stepped ahead of the output
+    steps: value at the next sample, for states that state it in place of a rate
     """
 
     rates: Mapping[sp.Symbol, sp.Expr]
+    steps: Mapping[sp.Symbol, sp.Expr]
     before: frozenset[sp.Symbol]
     signals: Mapping[str, sp.Expr]
 
@@ -126,6 +133,7 @@ class _Builder:
                     f'{diagram.name}: "{motion}" is no motion, has {", ".join(motions)}'
                 )
         self.motions = tuple(m for m in motions if m not in prescribed)
+        _check_inputs(diagram, motions)
         driven = {b.driver for b in self.moving if b.motion in prescribed}
         self.outside = [s for s in diagram.outside if s not in driven]
         self.digital, self.sampled_inputs = self._computers_signals()
@@ -184,7 +192,7 @@ class _Builder:
 
     def build(self) -> Equations:
         rows, unknown = self._analog_rows()
-        computer = Computer({}, frozenset(), {})
+        computer = Computer({}, {}, frozenset(), {})
         commands: dict[str, sp.Symbol] = {}
         inputs = [s for s in self.outside if s not in self.sampled_inputs or self._taken(s)]
         if self.sampled:
@@ -315,10 +323,11 @@ class _Builder:
         return expression
 
     def _computer_rows(
-        self, of: _Reader, rate: _Reader, speed: _Reader
-    ) -> tuple[tuple[list[sp.Expr], dict[sp.Symbol, sp.Expr], set[sp.Symbol]], list[str]]:
+        self, of: _Reader, rate: _Reader, speed: _Reader, period: sp.Expr = sp.S.Zero
+    ) -> tuple[tuple[list[sp.Expr], _Changes, _Changes, set[sp.Symbol]], list[str]]:
         rows: list[sp.Expr] = []
-        rates: dict[sp.Symbol, sp.Expr] = {}
+        rates: _Changes = {}
+        steps: _Changes = {}
         before: set[sp.Symbol] = set()
         names: list[str] = []
         for part in self.diagram.parts:
@@ -327,17 +336,18 @@ class _Builder:
                     continue
                 moved = self.diagram.position(part.motion)
                 seen = {x: of(x.name) for x in moved.free_symbols}
-                known = (rate_of(moved, f).xreplace(seen) for f in (rate, speed))
-                equation = _placed(part, of(part.input), *known)
+                travel, known = (rate_of(moved, f).xreplace(seen) for f in (rate, speed))
+                equation = _placed(part, of(part.input), travel, known, period)
                 rows.append(signal(part.output) - equation.output)
                 rates |= equation.rates
+                steps |= equation.steps
                 before |= equation.before
             elif isinstance(part, Junction | Kinematics) and part.output in self.digital:
                 rows.append(signal(part.output) - summed(part, of))
             else:
                 continue
             names += part.outputs
-        return (rows, rates, before), names
+        return (rows, rates, steps, before), names
 
     def _computer(self) -> Computer:
         sensors = set(self.diagram.measured)
@@ -345,18 +355,33 @@ class _Builder:
         def of(name: str) -> sp.Symbol:
             return measured(name) if name in sensors else signal(name)
 
-        (rows, rates, before), names = self._computer_rows(of, travel_rate, estimate)
+        found, names = self._computer_rows(of, travel_rate, estimate, PERIOD)
+        rows, rates, steps, before = found
         solved, _ = solve_linear(rows, [signal(s) for s in names], self.diagram.name)
         return Computer(
             {x: r.xreplace(solved) for x, r in rates.items()},
+            {x: r.xreplace(solved) for x, r in steps.items()},
             frozenset(before),
             {s.name: e for s, e in solved.items()},
         )
 
 
-def _placed(part: Control, given: sp.Expr, rate: sp.Expr, speed: sp.Expr) -> ControllerEquation:
+def _check_inputs(diagram: Diagram, motions: list[str]) -> None:
+    for part in diagram.controls:
+        stages = part.controller.stages[:1] if isinstance(part.controller, Controller) else ()
+        if part.input in motions and any(g.law.takes == "force" for g in stages):
+            raise ModelError(
+                f"{diagram.name}: {part.name}: {stages[0].law.name} takes a force, found the "
+                f'motion "{part.input}": wire its input to the force that is commanded'
+            )
+
+
+def _placed(
+    part: Control, given: sp.Expr, rate: sp.Expr, speed: sp.Expr, period: sp.Expr = sp.S.Zero
+) -> ControllerEquation:
     assert isinstance(part.controller, Controller)
     signals = {"input": given, "velocity": speed, "speed": sp.Abs(speed), "travel_rate": rate}
+    signals["period"] = period
     return part.controller.equation(part.name, signals)
 
 

@@ -45,7 +45,7 @@ def to_iosystem(
         replace(b, analog=False) if isinstance(b, Control) else b for b in diagram.blocks
     )
     diagram = replace(diagram, blocks=blocks)
-    parts = equations(diagram, prescribed=prescribed)
+    parts = equations(_known(diagram), prescribed=prescribed)
     if parts.late:
         raise ModelError(
             f"{diagram.name}: actuation_delay has no python-control form: use `simulate` instead"
@@ -79,10 +79,28 @@ def _mechanics(parts: Equations, numbers: dict[sp.Symbol, float]) -> Any:
     return _nlsys(MECHANICS, states, given, rates, outputs, numbers, parts.joined)
 
 
+def _known(diagram: Diagram) -> Diagram:
+    """Systems that are known as code only give way to a wire: the mechanics do not see them."""
+    for part in diagram.controls:
+        if _code(part) is not None:
+            diagram = diagram.with_block(part.name, Controller(()))
+    return diagram
+
+
+def _code(part: Control) -> Any:
+    """The python-control system that the controller consists of; None where it is a law."""
+    assert isinstance(part.controller, Controller)
+    stages = part.controller.stages
+    return stages[0].law.system if len(stages) == 1 else None
+
+
 def _controller(diagram: Diagram, part: Control, numbers: dict[sp.Symbol, float]) -> Any:
+    if (system := _code(part)) is not None:
+        return _renamed(system, part)
     assert isinstance(part.controller, Controller)
     _, v, _ = motion_of(diagram, part.motion)
     signals = {"input": signal(part.input), "velocity": v, "speed": sp.Abs(v), "travel_rate": v}
+    signals["period"] = sp.S(0)
     equation = part.controller.equation(part.name, signals)
     states = sorted(equation.rates, key=str)
     rates = [equation.rates[s] for s in states]
@@ -96,6 +114,20 @@ def _static(part: Junction | Kinematics) -> Any:
     given = [signal(s) for s in part.inputs]
     value = summed(part, signal)
     return _nlsys(f"sum_{part.output}", [], given, [], {part.output: value}, {})
+
+
+def _renamed(system: Any, part: Control) -> Any:
+    """A python-control system under the block's name, on its signals."""
+    import control
+
+    return control.nlsys(
+        (lambda t, x, u, params: system.dynamics(t, x, u)) if system.nstates else None,
+        lambda t, x, u, params: system.output(t, x, u),
+        inputs=[part.input],
+        outputs=[part.output],
+        states=list(system.state_labels) or None,
+        name=part.name,
+    )
 
 
 def _nlsys(
@@ -118,7 +150,13 @@ def _nlsys(
             return [*steps, *common], out
 
         call = sp.lambdify([TIME, list(states), list(inputs)], found, "math", cse=shared)
-        return lambda t, x, u, params: np.array(call(t, x, u), dtype=float)
+
+        def values(t: float, x: np.ndarray, u: np.ndarray, params: object) -> np.ndarray:
+            return np.array(call(t, x, u), dtype=float)
+
+        # a contact's law is evaluated where nothing touches too
+        one_sided = any(e.has(sp.Piecewise) for e in (*found, *(e for _, e in steps)))
+        return np.errstate(all="ignore")(values) if one_sided else values
 
     return control.nlsys(
         function(rates) if states else None,

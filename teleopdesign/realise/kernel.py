@@ -52,7 +52,8 @@ class Timing:
     """Grid and sampling of one run.
 
     step: inner step, s;  inner: steps a sample;  lag: delay of commands in steps
-    late: delay of each late signal in steps;  smoothing: factor of the velocity filter a sample
+    late: delay of each late signal in steps
+    smoothing: factor of the velocity filter a sample, the pole of an observer
     """
 
     step: float
@@ -76,15 +77,22 @@ _programs: dict[Any, Program] = {}
 
 
 def program(
-    diagram: Diagram, *, prescribed: tuple[str, ...] = (), sampled: bool = True, jit: bool = True
+    diagram: Diagram,
+    *,
+    prescribed: tuple[str, ...] = (),
+    sampled: bool = True,
+    observer: int = 0,
+    jit: bool = True,
 ) -> Program:
     """The loop for this diagram's structure, built and compiled where it is not yet.
 
+    observer: its order, where the computer observes velocities in place of filtering differences
     jit: False runs the same generated source in plain Python, some hundred times slower
     """
-    key = (_structure(diagram), prescribed, sampled, jit)
+    key = (_structure(diagram), prescribed, sampled, observer, jit)
     if key not in _programs:
-        generator = Generator(equations(diagram, prescribed=prescribed, sampled=sampled))
+        found = equations(diagram, prescribed=prescribed, sampled=sampled)
+        generator = Generator(found, observer=observer)
         loop = loop_source(generator)
         source = generator.source(jit=jit) + loop
         plain = _executed(generator.source(jit=False) + loop)
@@ -115,9 +123,9 @@ def _structure(diagram: Diagram) -> tuple[Any, ...]:
         block = getattr(part, "controller", getattr(part, "body", None))
         laws: tuple[Any, ...] = ()
         if isinstance(block, Controller):
-            laws = tuple((g.law.name, g.law.law, _rates(g.law)) for g in block.stages)
+            laws = tuple((g.law.name, g.law.law, _states(g.law)) for g in block.stages)
         elif isinstance(block, Body):
-            laws = tuple((e.name, e.role, e.law, _rates(e)) for e in block.effects)
+            laws = tuple((e.name, e.role, e.law, _states(e)) for e in block.effects)
         elif isinstance(block, MatrixImpedance):
             laws = tuple(block.parameters)
         elif isinstance(part, Kinematics):
@@ -128,8 +136,8 @@ def _structure(diagram: Diagram) -> tuple[Any, ...]:
     return tuple(out)
 
 
-def _rates(law: Effect | ControlLaw) -> tuple[Any, ...]:
-    return tuple((name, state.rate) for name, state in law.states.items())
+def _states(law: Effect | ControlLaw) -> tuple[Any, ...]:
+    return tuple(law.states.items())
 
 
 def velocity_smoothing(bandwidth: float, period: float) -> float:
@@ -203,7 +211,8 @@ def fastest_rate(made: Program, values: Mapping[str, float]) -> tuple[float, str
     inputs = [0.0] * (len(layout.inputs) + len(layout.commands) + len(layout.late))
 
     def rates(x: np.ndarray) -> np.ndarray:
-        return np.array(made.functions["rates"](0.0, *x, *inputs, *parameters))
+        with np.errstate(all="ignore"):  # a contact's law is evaluated where nothing touches too
+            return np.array(made.functions["rates"](0.0, *x, *inputs, *parameters))
 
     n = len(layout.states)
     small = 1e-9  # at rest: below every smoothing velocity and bristle length

@@ -44,6 +44,14 @@ def with_give(body: Body, give: float) -> Body:
     return body.with_effect(dahl, {"stiffness": level / give})
 
 
+def in_computer(diagram: Diagram, period: float) -> Diagram:
+    """The diagram with controllers as a computer of that period (s) realises them."""
+    for part in diagram.controls:
+        if isinstance(part.controller, Controller) and not part.analog:
+            diagram = diagram.with_block(part.name, part.controller.sampled(period))
+    return diagram
+
+
 def simulated(diagram: Diagram, give: float) -> Diagram:
     """The diagram with bodies as they are simulated: absent effects out, ideal friction given."""
     for part in diagram.blocks:

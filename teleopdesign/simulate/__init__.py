@@ -2,7 +2,8 @@
 
 from .force_velocity import ForceVelocity, force_velocity
 from .motion import Motion, sampled_motion, sine
-from .prepared import Prepared, Sampling, prepare
+from .prepared import Prepared, prepare
+from .sampling import Sampling
 from .simulation import Simulation, simulate
 
 __all__ = [

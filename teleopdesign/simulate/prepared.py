@@ -10,32 +10,15 @@ import numpy as np
 
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
-from ..realise.simulated import simulated
+from ..realise.simulated import in_computer, simulated
 from .motion import Motion
+from .sampling import SAMPLED, Sampling
 
 if TYPE_CHECKING:
     from ..realise.kernel import Program, Timing
 
 Input = float | np.ndarray | Callable[[np.ndarray], np.ndarray]
 _MOST_REFINED = 200  # inner steps a default one may become
-
-
-@dataclass(frozen=True)
-class Sampling:
-    """How the computer sees and acts.
-
-    period: s;  delay: from a sample to the change of the command, s
-    encoder_step: m or rad, 0: none
-    velocity_bandwidth: of the first-order filter on the differenced position, Hz; inf: none
-    """
-
-    period: float = 1e-3
-    delay: float = 0.0
-    encoder_step: float = 0.0
-    velocity_bandwidth: float = float("inf")
-
-
-SAMPLED = Sampling()
 
 
 def prepare(
@@ -56,7 +39,16 @@ def prepare(
     motion, inputs, initial = dict(motion or {}), dict(inputs or {}), dict(initial or {})
     body = simulated(diagram, give)
     sampled = not isinstance(computer, str)
-    made = program(body, prescribed=tuple(motion), sampled=sampled, jit=jit)
+    setting = Sampling() if isinstance(computer, str) else computer
+    if sampled:
+        body = in_computer(body, setting.period)
+    made = program(
+        body,
+        prescribed=tuple(motion),
+        sampled=sampled,
+        observer=setting.observer if sampled else 0,
+        jit=jit,
+    )
     for name in inputs:
         if name not in diagram.outside:
             raise ModelError(
@@ -69,7 +61,6 @@ def prepare(
             raise ModelError(
                 f'initial: no state "{name}", has {", ".join(states)}{did_you_mean(name, states)}'
             )
-    setting = Sampling() if isinstance(computer, str) else computer
     return Prepared(body, made, setting, duration, step, inputs, motion, initial)
 
 

@@ -12,7 +12,8 @@ import numpy as np
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
 from .motion import Motion
-from .prepared import SAMPLED, Input, Prepared, Sampling, prepare
+from .prepared import Input, Prepared, prepare
+from .sampling import SAMPLED, Sampling
 from .units import signal_units
 
 if TYPE_CHECKING:

@@ -1,0 +1,76 @@
+"""Environments to design against: a body with something to run into.
+
+    slave = soft_rubber(slave, stiffness=800.0, damping=2.0, level=0.3, give=5e-4, position=0.01)
+
+Each replaces the environment that the body had. SI; `position` is where contact begins, and what
+lies beyond it resists. Numbers in the documentation are examples: what a material does is measured.
+"""
+
+from __future__ import annotations
+
+from ..effects import CONTACT_ROLES, EFFECTS, Effect
+from .body import Body
+from .contact_hysteresis import CONTACT_HYSTERESIS
+from .environment import CONTACT
+from .impact_damping import IMPACT_DAMPING
+
+
+def free_space(body: Body) -> Body:
+    """Nothing to touch."""
+    for effect in reversed(body.effects):
+        if effect.role in CONTACT_ROLES:
+            body = body.without_effect(effect.name)
+    return body
+
+
+def spring_damper(body: Body, *, stiffness: float, damping: float, position: float = 0.0) -> Body:
+    """A wall of spring and damper that pushes and never pulls.
+
+    stiffness: N/m;  damping: N s/m, of which the force jumps at the touch
+    """
+    return _touching(body, stiffness, position, damping=damping)
+
+
+def hunt_crossley(
+    body: Body,
+    *,
+    stiffness: float,
+    depth: float,
+    reference_velocity: float,
+    power: float = 1.5,
+    position: float = 0.0,
+) -> Body:
+    """A force K d_0 (d/d_0)^n (1 + v/v_0): k d^n + c d^n v with k = K d_0^(1-n), c = k/v_0.
+
+    stiffness: K, secant stiffness at the depth d_0 = `depth`, N/m and m
+    reference_velocity: v_0, m/s;  power: n, 1.5 for a sphere on a flat (Hertz)
+    """
+    wall = _touching(body, stiffness, position)
+    hard = wall.with_effect(EFFECTS["contact_hardening"], {"power": power, "depth": depth})
+    return hard.with_effect(IMPACT_DAMPING, {"reference_velocity": reference_velocity})
+
+
+def soft_rubber(
+    body: Body,
+    *,
+    stiffness: float,
+    damping: float,
+    level: float,
+    give: float,
+    recovery_time: float = 0.1,
+    position: float = 0.0,
+) -> Body:
+    """Spring, damper and a small friction inside the material.
+
+    stiffness: N/m;  damping: N s/m;  level: of the friction inside, N
+    give: depth over which that friction builds up, m;  recovery_time: s
+    """
+    wall = _touching(body, stiffness, position, damping=damping)
+    inside = {"level": level, "stiffness": level / give, "recovery_time": recovery_time}
+    return wall.with_effect(CONTACT_HYSTERESIS, inside)
+
+
+def _touching(body: Body, stiffness: float, position: float, *, damping: float = 0.0) -> Body:
+    wall: Effect = CONTACT
+    values = {"stiffness": stiffness, "damping": damping, "contact_position": position}
+    return free_space(body).with_effect(wall, values)

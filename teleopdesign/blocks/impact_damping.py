@@ -1,0 +1,36 @@
+"""Impact damping: the contact force grows with the speed of compression (Hunt, Crossley).
+
+    F = K d (1 + v / v_0) while the penetration d = x - x_c > 0
+
+With `contact_hardening` K d_0 (d/d_0)^n takes the place of K d, and the whole is the law of Hunt
+and Crossley, k d^n + c d^n v with c = k / v_0. Unlike a damper beside the spring it starts from
+zero force at the touch. For slow impacts the speed of return over that of impact is 1 - alpha v,
+alpha = 2/(3 v_0).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy as sp
+
+from ..effects import Effect, Parameter
+from .environment import CONTACT
+
+
+def _law(now: Any, p: Any) -> sp.Expr:
+    return CONTACT.symbols()["stiffness"] * now.penetration * now.velocity / p.reference_velocity
+
+
+IMPACT_DAMPING = Effect(
+    role="contact",
+    law=_law,
+    parameters={
+        "reference_velocity": Parameter(
+            "velocity", "v_0: speed of compression that doubles the force"
+        )
+    },
+    absent={"reference_velocity": float("inf")},
+    needs=frozenset({CONTACT.name}),
+    source="Hunt, Crossley, J. Appl. Mech. 42 (1975) 440",
+).named("impact_damping", __doc__ or "")

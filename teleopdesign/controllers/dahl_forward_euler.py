@@ -1,0 +1,27 @@
+"""Dahl cancellation stepped by forward Euler, as printed: for comparison with `dahl` only.
+
+    z_next = z + T (v - (sigma / F_D) abs(v) z),   F = sigma z
+
+Called backward Euler in print; the rate is that at the old sample. With q = T sigma abs(v) / F_D it
+loses its bound F_D from q = 1 on (one step from -F_D reaches (2 q - 1) F_D), and with the bound its
+passivity; beyond q = 2 it diverges. `dahl` has neither limit at the same cost. In continuous time
+the two are one.
+"""
+
+from types import SimpleNamespace
+
+from . import dahl
+from ._controller import ControlLaw, State
+
+
+def step(now, p):
+    old = SimpleNamespace(travel_rate=now.velocity, bristle=now.bristle)
+    return now.bristle + now.period * dahl.bristle(old, p)
+
+
+CONTROLLER = ControlLaw(
+    law=dahl.law,
+    states={"bristle": State("position", dahl.bristle, step)},
+    parameters=dahl.CONTROLLER.parameters,
+    source="Mahvash, Okamura, ICRA 2006, eq (3)",
+)

@@ -1,0 +1,40 @@
+"""Karnopp cancellation: within a band of velocities it balances what is commanded.
+
+    F = F_C sgn(v)                     abs(v) > band
+    F = u limited to -F_C ... F_C      abs(v) <= band,   u = input
+
+At rest friction is no function of velocity: it balances the force that is commanded. A law of the
+velocity alone can add nothing there that is right for both directions, so this one takes the
+commanded force as its input: R_D in the haptic interface, not the motion. Stuck, the command is
+doubled up to F_C, which halves the command that breaks the device away. F_C sgn(u) would free it at
+any command, but jumps by 2 F_C with the sign of a noisy one; this law is continuous in u, and adds
+nothing where nothing is wanted. Never more than F_C: no energy given out where the true level is at
+least that. A band below encoder step over period takes single steps for motion, one below the
+speeds of presliding takes the give of the contact for it.
+"""
+
+from types import SimpleNamespace
+
+from sympy import Piecewise
+
+from ..effects import EFFECTS, Parameter
+from . import coulomb
+from ._controller import ControlLaw
+
+_LIMITED = EFFECTS["actuator_saturation"]
+
+
+def law(now, p):
+    stuck = _LIMITED.law(SimpleNamespace(command=now.input), SimpleNamespace(limit=p.level))
+    return Piecewise((stuck, now.speed <= p.band), (coulomb.law(now, p), True))
+
+
+CONTROLLER = ControlLaw(
+    law=law,
+    takes="force",
+    parameters={
+        "level": coulomb.CONTROLLER.parameters["level"],
+        "band": Parameter("velocity", "largest speed that counts as rest"),
+    },
+    source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100: the friction law, here added",
+)

@@ -1,0 +1,39 @@
+"""LuGre cancellation: a damped bristle that follows the measured position, its level by speed.
+
+    F = sigma z + sigma_1 dz/dt,   dz/dt = v - (sigma / level) abs(v) z
+    level = F_C + (F_S - F_C) exp(-(v / v_S)^2)
+
+The laws are those of the effects `coulomb`, `stribeck` and `presliding`: with the parameters of a
+diagnosis it is the friction that was found, viscous friction left to the device. Sampled, the
+travel of the last sample moves the bristle exactly, the level held meanwhile. The spring's share
+stays within F_S; bristle damping adds to it and carries the noise of the differenced position.
+"""
+
+from types import SimpleNamespace
+
+from ..effects import EFFECTS
+from ._controller import ControlLaw, State
+
+_LEVELS = EFFECTS["coulomb"], EFFECTS["stribeck"]
+_SHAPE = EFFECTS["presliding"]
+
+
+def _here(now, p):
+    level = sum(effect.law(now, p) for effect in _LEVELS)
+    return SimpleNamespace(velocity=now.travel_rate, level=level, bristle=now.bristle)
+
+
+def law(now, p):
+    return _SHAPE.law(_here(now, p), p)
+
+
+def bristle(now, p):
+    return _SHAPE.states["bristle"].rate(_here(now, p), p)
+
+
+CONTROLLER = ControlLaw(
+    law=law,
+    states={"bristle": State("position", bristle)},
+    parameters={n: p for e in (*_LEVELS, _SHAPE) for n, p in e.parameters.items()},
+    source="Canudas de Wit, Olsson, Astrom, Lischinsky, IEEE TAC 40 (1995) 419",
+)

@@ -1,0 +1,73 @@
+"""Model inverse of one axis: the force that a wanted motion takes.
+
+    F = m a + b v + k x,   x = w(s) input,   w(s) = (2 pi f_c / (s + 2 pi f_c))^2
+
+The inverse of the impedance m s^2 + b s + k with a low-pass of just enough roll-off to be proper,
+so that a linear device answers with w, whatever its dynamics. Friction is no part of the inverse:
+cancel it first. Sampled, x, v and a are means over the coming sample, for the reference held.
+Inverse of any other transfer function: `inverted`.
+"""
+
+from types import SimpleNamespace
+
+from sympy import exp, pi
+
+from ..effects import EFFECTS, Parameter
+from ._controller import ControlLaw, State
+
+_TERMS = EFFECTS["added_inertia"], EFFECTS["viscous"], EFFECTS["spring"]
+
+
+def _velocity(now, p):
+    return 2 * pi * p.bandwidth * (now.once - now.twice)
+
+
+def _once(now, p):
+    return 2 * pi * p.bandwidth * (now.input - now.once)
+
+
+def _twice_ahead(now, p):
+    """The double pole solved for the input held: exact, as `once` is not held meanwhile."""
+    decay = 2 * pi * p.bandwidth * now.period
+    left = (now.twice - now.input) + (now.once - now.input) * decay
+    return now.input + left * exp(-decay)
+
+
+def _motion(now, p):
+    """The low-passed motion; sampled, its means over the coming sample (of x by trapezium)."""
+    velocity = _velocity(now, p)
+    if now.period == 0:
+        pole = 2 * pi * p.bandwidth
+        return SimpleNamespace(
+            position=now.twice, velocity=velocity, acceleration=pole * (_once(now, p) - velocity)
+        )
+    once = now.input + (now.once - now.input) * exp(-2 * pi * p.bandwidth * now.period)
+    twice = _twice_ahead(now, p)
+    later = _velocity(SimpleNamespace(once=once, twice=twice), p)
+    return SimpleNamespace(
+        position=(now.twice + twice) / 2,
+        velocity=(twice - now.twice) / now.period,
+        acceleration=(later - velocity) / now.period,
+    )
+
+
+def law(now, p):
+    motion = _motion(now, p)
+    return sum(effect.law(motion, p) for effect in _TERMS)
+
+
+CONTROLLER = ControlLaw(
+    law=law,
+    states={
+        "once": State("position", _once),
+        "twice": State("position", _velocity, _twice_ahead),
+    },
+    linear=True,
+    parameters={
+        "inertia": Parameter("inertia", "m: inertia"),
+        "damping": Parameter("damping", "b: damping"),
+        "stiffness": Parameter("stiffness", "k: stiffness"),
+        "bandwidth": Parameter("frequency", "f_c: of each of the two poles of the low-pass, Hz"),
+    },
+    source="Lee, Lawrence, Pao 2004, as used by Bernstein, Lawrence, Pao, World Haptics 2005",
+)

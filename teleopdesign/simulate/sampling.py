@@ -1,0 +1,55 @@
+"""How a computer samples: its period and delay, its encoders, and how it knows velocity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from ..errors import ModelError, did_you_mean
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """How the computer sees and acts.
+
+    period: s;  delay: from a sample to the change of the command, s
+    encoder_step: m or rad, 0: none
+    velocity: how velocity is known: "difference" of readings; "filtered": the difference through a
+        first-order low-pass; "observer": of position, velocity and, at order 3, acceleration
+    velocity_bandwidth: of that low-pass or of all poles of the observer, Hz; inf: no low-pass
+    observer_order: 2: least noise, late by two time constants;  3: not late in slow motion
+    raises ModelError: another name or order, an observer without bandwidth
+    """
+
+    period: float = 1e-3
+    delay: float = 0.0
+    encoder_step: float = 0.0
+    velocity_bandwidth: float = float("inf")
+    velocity: Literal["difference", "filtered", "observer"] = "filtered"
+    observer_order: Literal[2, 3] = 3
+
+    def __post_init__(self) -> None:
+        names = ("difference", "filtered", "observer")
+        if self.velocity not in names:
+            raise ModelError(
+                f'sampling: no velocity "{self.velocity}", has {", ".join(names)}'
+                f"{did_you_mean(self.velocity, names)}"
+            )
+        bounded = self.velocity_bandwidth < float("inf")
+        if self.velocity == "difference" and bounded:
+            raise ModelError(
+                'sampling: a velocity by "difference" has no bandwidth: leave velocity_bandwidth '
+                'away, or take "filtered"'
+            )
+        if self.velocity == "observer" and not bounded:
+            raise ModelError("sampling: an observer needs a velocity_bandwidth, Hz")
+        if self.observer_order not in (2, 3):
+            raise ModelError(f"sampling: observer_order is 2 or 3, found {self.observer_order}")
+
+    @property
+    def observer(self) -> int:
+        """Order of the observer of velocity; 0: there is none."""
+        return self.observer_order if self.velocity == "observer" else 0
+
+
+SAMPLED = Sampling()
