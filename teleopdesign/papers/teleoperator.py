@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 
-from ..simulate import Simulation
+from ..simulate import Loop, Simulation, loop_of
 from ._laws import coulomb
 from ._proof import Equal, Grows, Limit, NotNegative, Proof, Step, proof
 from ._statement import MAHVASH, Numbers, Paper, claim, near, shows
@@ -112,12 +112,10 @@ def delayed_coupling() -> Proof:
     )
 
 
-def mid_stroke(found: Simulation, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Master position, a signal and the direction of motion at mid-stroke, both ways."""
-    x, y = found["X_m"].values, found[name].values
-    way = np.sign(np.gradient(x))
-    middle = np.abs(x) < 0.2 * AMPLITUDE
-    return x[middle], y[middle], way[middle]
+def mid_stroke(found: Simulation, name: str) -> Loop:
+    """A signal over the master's position, both ways, at mid-stroke."""
+    middle = (-0.2 * AMPLITUDE, 0.2 * AMPLITUDE)
+    return loop_of(found["X_m"].values, found[name].values, within=middle)
 
 
 def free_space_force() -> Numbers:
@@ -126,13 +124,11 @@ def free_space_force() -> Numbers:
     figures = []
     for share in CANCELLED:
         found = slow_cycle(cancelled=share * FRICTION)
-        _, force, way = mid_stroke(found, "F_u")
-        _, error, _ = mid_stroke(found, "X_e")
-        felt, left = float(np.mean(force * way)), (1 - share) * FRICTION
+        felt, left = mid_stroke(found, "F_u").width / 2, (1 - share) * FRICTION
         # the damper, and a hundredth of the friction: inertia, settling of the bristles
         within = viscous + 0.01 * FRICTION
         figures.append(near(f"user force, f_D = {share} f_C", felt, left, within, "N"))
-        slack = 1e3 * float(np.mean(error * way))
+        slack = 1e3 * mid_stroke(found, "X_e").width / 2
         expected = 1e3 * left / STIFFNESS
         figures.append(near("  position error", slack, expected, 1e3 * within / STIFFNESS, "mm"))
     return Numbers(tuple(figures))
@@ -165,11 +161,9 @@ def free_space() -> Proof:
 def contact(share: float) -> tuple[float, float, float]:
     """Stiffness felt (N/m), hysteresis width (N), rms difference from the environment (N)."""
     found = slow_cycle(cancelled=share * FRICTION, environment=ENVIRONMENT)
-    x, force, way = mid_stroke(found, "F_u")
-    design = np.column_stack([x, way])
-    (stiffness, half), *_ = np.linalg.lstsq(design, force, rcond=None)
+    loop = mid_stroke(found, "F_u")
     whole = found["F_u"].values - ENVIRONMENT * found["X_m"].values
-    return float(stiffness), 2 * float(half), float(np.sqrt(np.mean(whole**2)))
+    return loop.stiffness, loop.width, float(np.sqrt(np.mean(whole**2)))
 
 
 def contact_force() -> Numbers:

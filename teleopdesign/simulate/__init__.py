@@ -1,5 +1,6 @@
 """Simulate a diagram: prescribed motion or closed loop, sampled or continuous controllers."""
 
+from .force_displacement import ForceDisplacement, Loop, force_displacement, loop_of
 from .force_velocity import ForceVelocity, force_velocity
 from .motion import Motion, sampled_motion, sine
 from .prepared import Prepared, prepare
@@ -7,12 +8,16 @@ from .sampling import Sampling
 from .simulation import Simulation, simulate
 
 __all__ = [
+    "ForceDisplacement",
     "ForceVelocity",
+    "Loop",
     "Motion",
     "Prepared",
     "Sampling",
     "Simulation",
+    "force_displacement",
     "force_velocity",
+    "loop_of",
     "prepare",
     "sampled_motion",
     "simulate",

@@ -1,0 +1,151 @@
+"""Force against displacement at the user's hand, laid over the environment's own curve."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import ModelError
+from .simulation import Simulation
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+    import xarray
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A force over a displacement, both ways: slope (N/m) and width of the loop (N)."""
+
+    stiffness: float
+    width: float
+
+
+@dataclass(frozen=True)
+class ForceDisplacement:
+    """What a user feels of an environment.
+
+    data: `force` and `displacement` at the hand, `environment_force` and `environment_displacement`
+    at the environment, over `case` and `time`; forces are those that the user and the tip exert
+    loops: case -> figures of the user's loop;  environment: case -> those of the environment's own
+    rms: case -> rms of the user's force less the environment's at the same time, N
+    """
+
+    data: xarray.Dataset
+    loops: Mapping[str, Loop]
+    environment: Mapping[str, Loop]
+    rms: Mapping[str, float]
+
+    def plot(self) -> matplotlib.figure.Figure:
+        """Displacement and force over time, force over displacement."""
+        from ..plot.force_displacement import plot_force_displacement
+
+        return plot_force_displacement(self)
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write the curves with their units to a netCDF file."""
+        self.data.to_netcdf(path)
+
+    def to_json(self, path: str | Path) -> None:
+        """Write the figures of each case to a JSON file (N, N/m)."""
+        figures = {
+            case: {
+                "stiffness": loop.stiffness,
+                "width": loop.width,
+                "environment_stiffness": self.environment[case].stiffness,
+                "environment_width": self.environment[case].width,
+                "rms_difference": self.rms[case],
+            }
+            for case, loop in self.loops.items()
+        }
+        Path(path).write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
+
+    def __repr__(self) -> str:
+        lines = [
+            f"  {case:<24} {loop.stiffness:8.4g} N/m (environment "
+            f"{self.environment[case].stiffness:.4g}), loop {loop.width:.3f} N wide (environment "
+            f"{self.environment[case].width:.3f}), rms difference {self.rms[case]:.3f} N"
+            for case, loop in self.loops.items()
+        ]
+        return "\n".join(["Force against displacement", *lines])
+
+
+def force_displacement(
+    simulations: Mapping[str, Simulation],
+    *,
+    within: tuple[float, float] | None = None,
+    after: float = 0.0,
+) -> ForceDisplacement:
+    """The user's force over the master's motion, and the tip's force over the slave's.
+
+    simulations: case -> simulation of a teleoperator, all on one grid of time
+    within: displacements between which slope and width are read, m (default: the middle half of
+    the stroke);  after: start of the whole cycles used, s
+    raises ModelError: the motion never passes these displacements both ways
+    """
+    import xarray
+
+    rows: dict[str, list[np.ndarray]] = {name: [] for name in _SIGNALS}
+    loops, environment, rms = {}, {}, {}
+    for case, simulation in simulations.items():
+        kept = simulation.data["time"].values >= after - 1e-9
+        time = simulation.data["time"][kept]
+        found = {n: sign * simulation[s].values[kept] for n, (s, sign) in _SIGNALS.items()}
+        for name, values in found.items():
+            rows[name].append(values)
+        loops[case] = loop_of(found["displacement"], found["force"], within=within)
+        there = found["environment_displacement"]
+        environment[case] = loop_of(there, found["environment_force"], within=within)
+        rms[case] = float(np.sqrt(np.mean((found["force"] - found["environment_force"]) ** 2)))
+    data = xarray.Dataset(
+        {
+            name: (
+                ("case", "time"),
+                np.array(values),
+                {"units": "m" if "displacement" in name else "N", "signal": _SIGNALS[name][0]},
+            )
+            for name, values in rows.items()
+        },
+        {"case": list(simulations), "time": time},
+    )
+    return ForceDisplacement(data, loops, environment, rms)
+
+
+#: signal of the teleoperator, and the sign that makes a push into the environment positive
+_SIGNALS = {
+    "displacement": ("X_m", 1),
+    "force": ("F_m", 1),
+    "environment_displacement": ("X_s", 1),
+    "environment_force": ("F_s", -1),
+}
+
+
+def loop_of(
+    displacement: np.ndarray,
+    force: np.ndarray,
+    *,
+    within: tuple[float, float] | None = None,
+) -> Loop:
+    """Slope and width of a loop, by least squares of k x + F_0 +- width/2 by direction.
+
+    displacement, force: (n,), m and N;  within: displacements that count, m (default: the middle
+    half of the stroke)
+    raises ModelError: the motion never passes these displacements both ways
+    """
+    low, high = float(displacement.min()), float(displacement.max())
+    first, last = within or (low + (high - low) / 4, high - (high - low) / 4)
+    way = np.sign(np.gradient(displacement))
+    used = (displacement >= first) & (displacement <= last) & (way != 0)
+    if len(np.unique(way[used])) < 2:
+        raise ModelError(
+            f"force over displacement: the motion, {low:.4g} to {high:.4g} m, does not pass "
+            f"{first:.4g} to {last:.4g} m both ways"
+        )
+    design = np.column_stack([displacement[used], np.ones(used.sum()), way[used]])
+    (slope, _, half), *_ = np.linalg.lstsq(design, force[used], rcond=None)
+    return Loop(float(slope), 2 * float(half))
