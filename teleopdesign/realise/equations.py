@@ -252,8 +252,8 @@ class _Builder:
         assert isinstance(part.body, Body)
         if parted := [e.name for e in part.body.effects if e.role == "structure"]:
             raise ModelError(
-                f"{self.diagram.name}: {part.name}: {parted[0]} has no simulated form yet; what "
-                "holds the body would have to be wired to its tip"
+                f"{self.diagram.name}: {part.name}: {parted[0]} has no simulated form: what holds "
+                "the body would have to be wired to its tip (transmission_compliance has one)"
             )
         equation = part.body.equation()
         names = {s: parameter_symbol(part.name, n) for n, s in part.body.symbols().items()}

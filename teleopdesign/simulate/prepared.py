@@ -37,7 +37,7 @@ def prepare(
     from ..realise.kernel import program
 
     motion, inputs, initial = dict(motion or {}), dict(inputs or {}), dict(initial or {})
-    body = simulated(diagram, give)
+    body = simulated(diagram, give, motion)
     sampled = not isinstance(computer, str)
     setting = Sampling() if isinstance(computer, str) else computer
     if sampled:
