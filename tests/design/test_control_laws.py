@@ -80,10 +80,10 @@ def test_kernel_and_python_control_give_one_force(name):
     1e-5 of the peak: python-control takes inputs as linear between samples of 0.1 ms, which leaves
     2e-6 of the force; where sgn v jumps, no sample lies.
     """
-    diagram, time = diagram_of(name), PERIOD * np.arange(251)
-    kernel = force(diagram)
+    diagram, time = diagram_of(name), PERIOD * np.arange(151)
+    kernel = force(diagram, duration=0.15)
     system = to_iosystem(diagram, prescribed=("L",))
-    fine = np.linspace(0, time[-1], 2501)
+    fine = np.linspace(0, time[-1], 1501)
     given = dict(zip(("L", "L_velocity", "L_acceleration"), SINE.all, strict=True))
     given |= {"R_D": desired}
     inputs = [given[n](fine) if n in given else 0 * fine for n in system.input_labels]
@@ -186,6 +186,11 @@ def test_forward_euler_diverges_where_the_exact_step_does_not():
 def test_ideal_coulomb_adds_nothing_at_rest():
     found = along(law("coulomb"), 1e-3 * np.array([0.0, 1.0, 1.0, 1.0, 0.5, 0.5]))
     np.testing.assert_array_equal(found, [0, 0.5, 0, 0, -0.5, 0])
+
+
+def test_ideal_coulomb_in_a_continuous_loop_is_refused_with_the_reason():
+    with pytest.raises(ModelError, match="L_velocity jumps with the sign of a velocity"):
+        simulate(moved(law("coulomb")), duration=0.1, computer="continuous", jit=False)
 
 
 def test_karnopp_balances_the_command_at_rest_and_adds_its_level_in_motion():
