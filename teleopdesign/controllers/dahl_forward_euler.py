@@ -4,8 +4,8 @@
 
 Called backward Euler in print; the rate is that at the old sample. With q = T sigma abs(v) / F_D it
 loses its bound F_D from q = 1 on (one step from -F_D reaches (2 q - 1) F_D), and with the bound its
-passivity; beyond q = 2 it diverges. `dahl` has neither limit at the same cost. In continuous time
-the two are one.
+passivity; beyond q = 2 it diverges (P28 to P30). `dahl` has neither limit at the same cost. In
+continuous time the two are one.
 """
 
 from types import SimpleNamespace

@@ -283,8 +283,8 @@ class _Builder:
         assert isinstance(part.body, Body)
         if parted := [e.name for e in part.body.effects if e.role == "structure"]:
             raise ModelError(
-                f"{self.diagram.name}: {part.name}: {parted[0]} has no simulated form yet; what "
-                "holds the body would have to be wired to its tip"
+                f"{self.diagram.name}: {part.name}: {parted[0]} has no simulated form: what holds "
+                "the body would have to be wired to its tip (transmission_compliance has one)"
             )
         equation = part.body.equation()
         position, speed, change = motion_of(self.diagram, part.motion)

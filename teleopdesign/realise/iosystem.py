@@ -40,7 +40,7 @@ def to_iosystem(
     """
     import control
 
-    diagram = simulated(diagram, give)
+    diagram = simulated(diagram, give, prescribed)
     blocks = tuple(
         replace(b, analog=False) if isinstance(b, Control) else b for b in diagram.blocks
     )

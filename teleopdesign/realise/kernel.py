@@ -30,6 +30,8 @@ from .equations import Equations, equations
 
 #: h times the fastest rate of the equations at rest; 0.3: 20 steps a period
 FASTEST = 0.3
+#: 1/s; a larger rate is no physics but a jump: 1 N at once on 1 kg within 1 nm/s is 1e9
+JUMP = 1e7
 #: bound of h * (change of a bristle's decay rate in a step); 0.02: 10 steps a reload
 RELOAD = 0.02
 

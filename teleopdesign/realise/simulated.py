@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..diagrams import Control, Diagram
 from ..effects import EFFECTS, SIGNALS
 from ..errors import ModelError
+from .tips import with_tips
 
 
 def without_absent(body: Body) -> Body:
@@ -52,12 +55,15 @@ def in_computer(diagram: Diagram, period: float) -> Diagram:
     return diagram
 
 
-def simulated(diagram: Diagram, give: float) -> Diagram:
-    """The diagram with bodies as they are simulated: absent effects out, ideal friction given."""
+def simulated(diagram: Diagram, give: float, prescribed: Iterable[str] = ()) -> Diagram:
+    """The diagram with bodies as they are simulated: absent effects out, ideal friction given.
+
+    prescribed: motions that are given
+    """
     for part in diagram.blocks:
         found = part.controller if isinstance(part, Control) else part.body
         if not isinstance(found, Body | MatrixImpedance | Controller):
             raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no equations")
         if isinstance(found, Body):
             diagram = diagram.with_block(part.name, with_give(without_absent(found), give))
-    return diagram
+    return with_tips(diagram, prescribed=prescribed)

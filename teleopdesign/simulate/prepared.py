@@ -37,7 +37,7 @@ def prepare(
     from ..realise.kernel import program
 
     motion, inputs, initial = dict(motion or {}), dict(inputs or {}), dict(initial or {})
-    body = simulated(diagram, give)
+    body = simulated(diagram, give, motion)
     sampled = not isinstance(computer, str)
     setting = Sampling() if isinstance(computer, str) else computer
     if sampled:
@@ -135,11 +135,16 @@ class Prepared:
         self, *, long_step: Literal["refine", "refuse"], every_step: bool = False
     ) -> tuple[np.ndarray, Timing]:
         """Run with a step that resolves oscillations and bristles, or refuse the one given."""
-        from ..realise.kernel import FASTEST, RELOAD, fastest_rate, refine_factor, too_long
+        from ..realise.kernel import FASTEST, JUMP, RELOAD, fastest_rate, refine_factor, too_long
 
         inner = max(-int(-self.sampling.period * (1 - 1e-9) // self.step), 1)
         most = inner * _MOST_REFINED
         rate, state = fastest_rate(self.program, self.diagram.values)
+        if rate > JUMP:
+            raise ModelError(
+                f"simulate: a force on {state} jumps with the sign of a velocity: no step resolves "
+                "that in continuous time; sample the controller, or take a law that is rounded off"
+            )
         timing = self.timing(inner)
         if rate * timing.step > FASTEST:
             if long_step == "refuse":

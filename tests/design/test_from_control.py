@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from design.devices import body
+from scipy.signal import butter
 
 from teleopdesign.controllers import controller, from_control, inverted, parameter_symbol
 from teleopdesign.diagrams import haptic_interface
@@ -12,7 +13,7 @@ from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, transfer_function
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.lti import S
-from teleopdesign.simulate import Sampling, simulate, sine
+from teleopdesign.simulate import Motion, Sampling, simulate, sine
 
 NOTCH = control.tf([1.0, 6.0, 4e3], [1.0, 120.0, 4e3])
 #: two resonances and a slow pole
@@ -35,6 +36,20 @@ def test_a_computer_realises_it_exactly_for_an_input_held_over_a_sample(system):
     response = control.forced_response(discrete, found["time"].values, found["L"].values)
     expected = response.outputs
     np.testing.assert_allclose(found["R_MBC"], expected, atol=1e-12 * np.abs(expected).max())
+
+
+def test_a_filter_of_high_order_keeps_its_digits():
+    """Butterworth of order 8 at 100 Hz, entries up to 2e22: its step as a sum of exponentials."""
+    zeros, poles, gain = butter(8, 2 * np.pi * 100, analog=True, output="zpk")
+    filtered = from_control(control.tf(*butter(8, 2 * np.pi * 100, analog=True)))
+    one = {"L": Motion(np.ones_like, np.zeros_like, np.zeros_like)}
+    found = sampled(filtered, motion=one, duration=0.05)
+    expected = np.zeros(len(found["time"]), dtype=complex)
+    for i, pole in enumerate(poles):
+        share = gain / pole / np.prod(pole - np.delete(poles, i))
+        expected += share * (np.exp(pole * found["time"].values) - 1)
+    assert len(zeros) == 0
+    np.testing.assert_allclose(found["R_MBC"], expected.real, atol=1e-12)
 
 
 @pytest.mark.parametrize("dt", [1e-3, True])
