@@ -94,6 +94,10 @@ class Diagram:
             )
         return found
 
+    def is_position(self, name: str) -> bool:
+        """Whether bodies determine the signal: a motion, or a junction or kinematics of motions."""
+        return self._position(name) is not None
+
     def _position(self, name: str, seen: tuple[str, ...] = ()) -> sp.Expr | None:
         if any(isinstance(b, Moving) and b.motion == name for b in self.blocks):
             return position_symbol(name)

@@ -261,7 +261,9 @@ class _Builder:
                 unknown += [signal(s) for s in part.forces]
             elif isinstance(part, Control) and part.analog:
                 _, v, _ = motion_of(self.diagram, part.motion)
-                equation = _placed(part, signal(part.input), v, v)
+                known = self.diagram.is_position(part.input)
+                given = self.diagram.position(part.input) if known else signal(part.input)
+                equation = _placed(part, given, v, v)
                 rows.append(signal(part.output) - equation.output)
                 unknown.append(signal(part.output))
                 self.rates |= equation.rates

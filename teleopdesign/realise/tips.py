@@ -1,13 +1,13 @@
-"""A compliant transmission as two moving bodies: what is simulated of `transmission_compliance`.
+"""A body with a structure as two moving bodies: what is simulated of compliance and backlash.
 
-The body of a `Moving` block with that effect is parted at its transmission:
+The body of a `Moving` block with an effect of that role is parted at its transmission:
 
     Z_M      (m - m_t) with friction and actuator, on the motion L that sensors see
     Z_M_tip  m_t, on the motion L_tip; hand, loads and contact act here
-    Z_M_transmission  force K (L - L_tip) + C (v - v_tip) from one to the other
+    Z_M_transmission  the structure's force, from L - L_tip and its rate, from one to the other
 
-in blocks that every simulated form knows already: the transmission is two analog laws, one on each
-motion, and their difference.
+in blocks that every simulated form knows already: the transmission is an analog law on the
+difference of the two motions.
 """
 
 from __future__ import annotations
@@ -21,11 +21,9 @@ import sympy as sp
 
 from ..blocks import Body, Value
 from ..controllers import ControlLaw, Controller, Stage
-from ..diagrams import Attached, Block, Control, Diagram, Junction, Moving
-from ..effects import CONTACT_ROLES, EFFECTS
+from ..diagrams import Attached, Block, Control, Diagram, Junction, Linked, Moving
+from ..effects import CONTACT_ROLES, Effect
 from ..errors import ModelError
-
-COMPLIANCE = EFFECTS["transmission_compliance"]
 
 
 def tip(motion: str) -> str:
@@ -34,39 +32,39 @@ def tip(motion: str) -> str:
 
 
 def with_tips(diagram: Diagram, *, prescribed: Iterable[str] = ()) -> Diagram:
-    """The diagram with every compliant transmission as two bodies.
+    """The diagram with every body that has a structure as two bodies.
 
-    prescribed: motions that are given; of a compliant body only the tip's can be
-    raises ModelError: the tip is no lighter than the body, another structure, a motion given that
-        no outside force drives
+    prescribed: motions that are given; of such a body only the tip's can be
+    raises ModelError: the tip is no lighter than the body, a motion given that no outside force
+        drives
     """
     for part in diagram.blocks:
         if not isinstance(part, Moving) or not isinstance(part.body, Body):
             continue
-        if not part.body.has(COMPLIANCE.name):
+        structure = next((e for e in part.body.effects if e.role == "structure"), None)
+        if structure is None:
             continue
         if part.motion in prescribed:
             raise ModelError(
-                f"{diagram.name}: {part.motion} is the actuator's side of a compliant transmission,"
-                f" which no hand leads: give the motion {tip(part.motion)}"
+                f"{diagram.name}: {part.motion} is the actuator's side of {structure.name}, which "
+                f"no hand leads: give the motion {tip(part.motion)}"
             )
-        diagram = _parted(diagram, part, part.body)
+        diagram = _parted(diagram, part, part.body, structure)
     return diagram
 
 
-def _parted(diagram: Diagram, part: Moving, body: Body) -> Diagram:
-    device, end = _sides(diagram, part, body)
-    names = tuple(f"{part.name}_{n}" for n in ("transmission", "near", "far"))
-    force, near, far = names
+def _parted(diagram: Diagram, part: Moving, body: Body, structure: Effect) -> Diagram:
+    device, end = _sides(diagram, part, body, structure)
     values = body.parameters
-    given = {n: values[f"{COMPLIANCE.name}.{n}"].value for n in ("stiffness", "damping")}
-    law = Controller((Stage(_law(), given),))
+    law = transmission(structure)
+    given = {n: values[f"{structure.name}.{n}"].value for n in law.parameters}
     here, there = part.motion, tip(part.motion)
+    force, twist = f"{part.name}_transmission", f"{here}_twist"
+    joining = Controller((Stage(law, given),))
     split: list[Block] = [
         replace(part, body=device, loads={force: -1}),
         Moving(f"{part.name}_tip", end, there, force, part.loads, part.driver),
-        Control(f"{part.name}_near_spring", law, here, near, here, analog=True),
-        Control(f"{part.name}_far_spring", law, there, far, there, analog=True),
+        Control(f"{part.name}_structure", joining, twist, force, twist, analog=True),
     ]
     blocks: list[Block] = []
     for block in diagram.blocks:
@@ -74,28 +72,31 @@ def _parted(diagram: Diagram, part: Moving, body: Body) -> Diagram:
             blocks += split
         elif isinstance(block, Attached) and block.motion == here:
             blocks.append(replace(block, motion=there))
+        elif isinstance(block, Linked):
+            motions = tuple(there if m == here else m for m in block.motions)
+            blocks.append(replace(block, motions=motions))
         else:
             blocks.append(block)
     return replace(
         diagram,
         blocks=tuple(blocks),
-        junctions=(*diagram.junctions, Junction(force, {near: 1, far: -1})),
+        junctions=(*diagram.junctions, Junction(twist, {here: 1, there: -1})),
         # no sensor sees it: electronics do, and the transmission is wired as such
         measured=(*diagram.measured, there),
         texts={**diagram.texts, there: "motion of the tip, behind the transmission"},
     )
 
 
-def _sides(diagram: Diagram, part: Moving, body: Body) -> tuple[Body, Body]:
+def _sides(diagram: Diagram, part: Moving, body: Body, structure: Effect) -> tuple[Body, Body]:
     """The actuator's side, and the tip with what it touches."""
     inertia = body.parameters["inertia"].value
-    behind = body.parameters[f"{COMPLIANCE.name}.tip_inertia"].value
+    behind = body.parameters[f"{structure.name}.tip_inertia"].value
     if not 0 < behind < inertia:
         raise ModelError(
             f"{diagram.name}: {part.name}: the tip has {behind:g} {body.unit('inertia')} of the "
             f"body's {inertia:g}: it must be less, and more than none"
         )
-    device = body.without_effect(COMPLIANCE.name).with_values({"inertia": inertia - behind})
+    device = body.without_effect(structure.name).with_values({"inertia": inertia - behind})
     end = Body(body.axis, {"inertia": Value(behind)})
     for effect in body.effects:
         if effect.role in CONTACT_ROLES:
@@ -106,16 +107,17 @@ def _sides(diagram: Diagram, part: Moving, body: Body) -> tuple[Body, Body]:
     return device, end
 
 
-@lru_cache(maxsize=1)
-def _law() -> ControlLaw:
-    """One side's share in the force of the transmission, the other side at rest."""
+@lru_cache(maxsize=8)  # laws compare by identity: one structure, one kernel
+def transmission(structure: Effect) -> ControlLaw:
+    """The force of a structure from the difference of its two motions, as a law."""
 
-    def share(now: Any, p: Any) -> sp.Expr:
+    def force(now: Any, p: Any) -> sp.Expr:
         here = {"position": now.input, "velocity": now.velocity, "acceleration": 0}
         there = {"tip_position": 0, "tip_velocity": 0, "interaction_force": 0}
-        return COMPLIANCE.expression({**here, **there}, {**vars(p), "tip_inertia": 0})
+        return structure.expression({**here, **there}, {**vars(p), "tip_inertia": 0})
 
-    names = ("stiffness", "damping")
-    parameters = {n: COMPLIANCE.parameters[n] for n in names}
-    law = ControlLaw(law=share, parameters=parameters, linear=True, source=COMPLIANCE.source)
-    return law.named("transmission", COMPLIANCE.text)
+    parameters = {n: p for n, p in structure.parameters.items() if n != "tip_inertia"}
+    law = ControlLaw(
+        law=force, parameters=parameters, linear=structure.linear, source=structure.source
+    )
+    return law.named(structure.name, structure.text)
