@@ -1,0 +1,140 @@
+"""A measured impedance over case, frequency and amplitude, and how far from linear it is."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+    import xarray
+
+
+@dataclass(frozen=True)
+class ImpedanceMap:
+    """Impedance relative to position over `case`, `frequency` (Hz) and, on a grid, `amplitude`.
+
+    data: `impedance`, complex, force per position; spring 0, damper and friction 90, mass 180 deg
+        `distortion` of the force: rms of its higher harmonics over that of the first
+        `change` of the phasors from cycle to cycle, relative: how well it has settled
+        `motion_amplitude` (m or rad), that of the motion itself
+        Coordinate `amplitude` (of the drive) stands over `frequency` where it follows a profile.
+    """
+
+    data: xarray.Dataset
+
+    @property
+    def on_profile(self) -> bool:
+        """Whether amplitude follows frequency instead of being varied by itself."""
+        return "amplitude" not in self.data["impedance"].dims
+
+    @property
+    def decibel(self) -> xarray.DataArray:
+        """20 log10 of the size, dB re 1 N/m (N m/rad on a revolute axis)."""
+        z = np.abs(self.data["impedance"])
+        unit = self.data["impedance"].attrs["units"]
+        return (20 * np.log10(z)).assign_attrs(units=f"dB re 1 {unit}")
+
+    @property
+    def phase(self) -> xarray.DataArray:
+        """Degrees in 0 .. 360."""
+        angle = np.degrees(np.angle(self.data["impedance"])) % 360
+        return self.data["impedance"].copy(data=angle).assign_attrs(units="deg")
+
+    def spread(self) -> xarray.Dataset:
+        """How far from linear: largest less smallest size (dB) and phase (deg) over amplitude.
+
+        0 for a linear system;  over `case` and `frequency`
+        raises ModelError: amplitude follows a profile, so that it cannot be told from frequency
+        """
+        import xarray
+
+        from ..errors import ModelError
+
+        if self.on_profile:
+            raise ModelError("impedance map: amplitude follows frequency, spread needs a grid")
+        z, size = self.data["impedance"], self.decibel
+        turned = np.degrees(np.unwrap(np.angle(z), axis=z.get_axis_num("amplitude")))
+        turn = z.copy(data=turned)
+        return xarray.Dataset(
+            {
+                "size": (size.max("amplitude") - size.min("amplitude")).assign_attrs(units="dB"),
+                "phase": (turn.max("amplitude") - turn.min("amplitude")).assign_attrs(units="deg"),
+            }
+        )
+
+    def plot(
+        self,
+        against: Literal["frequency", "amplitude", ""] = "",
+        *,
+        columns: Literal[1, 2] = 1,
+    ) -> matplotlib.figure.Figure:
+        """Size and phase, one line a case; of the other variable a shade for each value.
+
+        against: default: amplitude where there are more of them than frequencies
+        columns: of the page, 3.5 in or 7.16 in wide
+        """
+        from ..plot.frequency import plot_impedance
+
+        more = not self.on_profile and self.data.sizes["amplitude"] > self.data.sizes["frequency"]
+        return plot_impedance(
+            self, against=against or ("amplitude" if more else "frequency"), columns=columns
+        )
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write everything with units to a netCDF file, the impedance as two real parts."""
+        z = self.data["impedance"]
+        parts = {f"impedance_{n}": p.assign_attrs(z.attrs) for n, p in _parts(z).items()}
+        self.data.drop_vars("impedance").assign(parts).to_netcdf(path)
+
+    def to_json(self, path: str | Path) -> None:
+        """Write size, phase, distortion and change of every point to a JSON file, with units."""
+        written = {
+            "unit": self.decibel.attrs["units"],
+            "frequency_Hz": self.data["frequency"].values.tolist(),
+            "amplitude": self.data["amplitude"].values.tolist(),
+            "amplitude_unit": self.data["amplitude"].attrs["units"],
+        }
+        tables = {
+            "size": self.decibel,
+            "phase_deg": self.phase,
+            "distortion": self.data["distortion"],
+            "change": self.data["change"],
+        }
+        cases = {
+            str(case): {name: _rounded(t.sel(case=case).values) for name, t in tables.items()}
+            for case in self.data["case"].values
+        }
+        text = json.dumps({**written, "cases": cases}, indent=1)
+        Path(path).write_text(text + "\n", encoding="utf-8")
+
+    def __repr__(self) -> str:
+        f, a = self.data["frequency"].values, self.data["amplitude"].values
+        unit = self.data["amplitude"].attrs["units"]
+        how = "following frequency" if self.on_profile else f"{len(a)} of them at each"
+        lines = [
+            f"Measured impedance, {len(f)} frequencies {f.min():g} to {f.max():g} Hz, "
+            f"amplitude {a.min():g} to {a.max():g} {unit}, {how}"
+        ]
+        for case in self.data["case"].values:
+            z, p = self.decibel.sel(case=case), self.phase.sel(case=case)
+            worst = float(self.data["change"].sel(case=case).max())
+            lines.append(
+                f"  {case!s:<8} {float(z.min()):.1f} to {float(z.max()):.1f} {z.attrs['units']}, "
+                f"{float(p.min()):.0f} to {float(p.max()):.0f} deg, settled to {worst:.1g}"
+            )
+        return "\n".join(lines)
+
+
+def _parts(z: xarray.DataArray) -> dict[str, xarray.DataArray]:
+    return {"real": z.real, "imaginary": z.imag}
+
+
+def _rounded(values: np.ndarray) -> list[object]:
+    # five digits: more than any figure shows, and the same on every machine
+    found: list[object] = np.vectorize(lambda x: float(f"{x:.5g}"))(values).tolist()
+    return found
