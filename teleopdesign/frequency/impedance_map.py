@@ -35,9 +35,9 @@ class ImpedanceMap:
     @property
     def decibel(self) -> xarray.DataArray:
         """20 log10 of the size, dB re 1 N/m (N m/rad on a revolute axis)."""
-        z = np.abs(self.data["impedance"])
-        unit = self.data["impedance"].attrs["units"]
-        return (20 * np.log10(z)).assign_attrs(units=f"dB re 1 {unit}")
+        z = self.data["impedance"]
+        size = 20 * np.log10(np.abs(z.values))
+        return z.copy(data=size).assign_attrs(units=f"dB re 1 {z.attrs['units']}")
 
     @property
     def phase(self) -> xarray.DataArray:

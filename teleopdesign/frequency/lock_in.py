@@ -41,7 +41,7 @@ def distortion(cycles: np.ndarray) -> np.ndarray:
     first = 0.5 * np.abs(phasors(cycles)) ** 2
     others = np.maximum(np.var(cycles, axis=-1) - first, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.sqrt(others / first)
+        return np.asarray(np.sqrt(others / first))
 
 
 def last_cycles(
@@ -56,7 +56,7 @@ def last_cycles(
     first = int(np.floor(end * frequency + 1e-9)) - count
     time = (first + np.arange(count * points) / points) / frequency
     found = np.interp(time, step * np.arange(len(values)), values)
-    return found.reshape(count, points)
+    return np.asarray(found.reshape(count, points))
 
 
 def lock_in(values: np.ndarray, *, step: float, frequency: float, points: int) -> Harmonic:

@@ -107,9 +107,7 @@ def _length(diagram: Diagram, drive: Sinusoid) -> float:
     return 1e-3 if diagram.outside.get(drive.drive) == "force" else drive.amplitude
 
 
-def _outside(
-    diagram: Diagram, drive: Sinusoid, rows: int, step: float
-) -> dict[str, np.ndarray]:
+def _outside(diagram: Diagram, drive: Sinusoid, rows: int, step: float) -> dict[str, np.ndarray]:
     """Signals from outside at the nodes: the drive, and zeros."""
     found = {name: np.zeros(rows) for name in diagram.outside}
     if drive.drive in found:

@@ -1,5 +1,13 @@
 """Draw result objects; compute nothing."""
 
-from .design import plot_bode, plot_force_velocity, plot_simulation, save_figure
+from .design import plot_force_velocity, plot_simulation, save_figure
+from .frequency import plot_bode, plot_impedance, plot_nyquist
 
-__all__ = ["plot_bode", "plot_force_velocity", "plot_simulation", "save_figure"]
+__all__ = [
+    "plot_bode",
+    "plot_force_velocity",
+    "plot_impedance",
+    "plot_nyquist",
+    "plot_simulation",
+    "save_figure",
+]
