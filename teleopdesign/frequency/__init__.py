@@ -1,8 +1,10 @@
 """Frequency responses of a diagram."""
 
 from .describing_function import describing_function
+from .grid import falling
 from .impedance_map import ImpedanceMap
-from .measured_impedance import falling, measured_impedance
+from .loop import delay_margin, loop_gain
+from .measured_impedance import measured_impedance
 from .measured_response import measured_response, simulated_response
 from .quasi_linear import quasi_linear_impedance
 from .response import FrequencyResponse, bode, transfer_function
@@ -11,8 +13,10 @@ __all__ = [
     "FrequencyResponse",
     "ImpedanceMap",
     "bode",
+    "delay_margin",
     "describing_function",
     "falling",
+    "loop_gain",
     "measured_impedance",
     "measured_response",
     "quasi_linear_impedance",

@@ -1,13 +1,16 @@
-"""A measured impedance over case, frequency and amplitude, and how far from linear it is."""
+"""An impedance over case, frequency and amplitude, and how far from linear it is."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+
+from ..errors import ModelError
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -19,10 +22,11 @@ class ImpedanceMap:
     """Impedance relative to position over `case`, `frequency` (Hz) and, on a grid, `amplitude`.
 
     data: `impedance`, complex, force per position; spring 0, damper and friction 90, mass 180 deg
+        Coordinate `amplitude` (of the drive) stands over `frequency` where it follows a profile.
+        Where it was measured also
         `distortion` of the force: rms of its higher harmonics over that of the first
         `change` of the phasors from cycle to cycle, relative: how well it has settled
         `motion_amplitude` (m or rad), that of the motion itself
-        Coordinate `amplitude` (of the drive) stands over `frequency` where it follows a profile.
     """
 
     data: xarray.Dataset
@@ -45,6 +49,16 @@ class ImpedanceMap:
         angle = np.degrees(np.angle(self.data["impedance"])) % 360
         return self.data["impedance"].copy(data=angle).assign_attrs(units="deg")
 
+    @property
+    def measured(self) -> bool:
+        """Whether it was measured, in simulation or on a device; else predicted."""
+        return "distortion" in self.data
+
+    def up_to(self, largest: Callable[[np.ndarray], np.ndarray]) -> ImpedanceMap:
+        """The map where the amplitude is at most largest(frequency in Hz); not a number beyond."""
+        limit = self.data["frequency"].copy(data=largest(self.data["frequency"].values))
+        return ImpedanceMap(self.data.where(self.data["amplitude"] <= limit))
+
     def spread(self) -> xarray.Dataset:
         """How far from linear: largest less smallest size (dB) and phase (deg) over amplitude.
 
@@ -52,8 +66,6 @@ class ImpedanceMap:
         raises ModelError: amplitude follows a profile, so that it cannot be told from frequency
         """
         import xarray
-
-        from ..errors import ModelError
 
         if self.on_profile:
             raise ModelError("impedance map: amplitude follows frequency, spread needs a grid")
@@ -71,19 +83,20 @@ class ImpedanceMap:
         self,
         against: Literal["frequency", "amplitude", ""] = "",
         *,
+        model: ImpedanceMap | None = None,
         columns: Literal[1, 2] = 1,
     ) -> matplotlib.figure.Figure:
         """Size and phase, one line a case; of the other variable a shade for each value.
 
         against: default: amplitude where there are more of them than frequencies
+        model: drawn as lines, this map then as points
         columns: of the page, 3.5 in or 7.16 in wide
         """
         from ..plot.frequency import plot_impedance
 
         more = not self.on_profile and self.data.sizes["amplitude"] > self.data.sizes["frequency"]
-        return plot_impedance(
-            self, against=against or ("amplitude" if more else "frequency"), columns=columns
-        )
+        chosen: Literal["frequency", "amplitude"] = "amplitude" if more else "frequency"
+        return plot_impedance(self, against=against or chosen, model=model, columns=columns)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write everything with units to a netCDF file, the impedance as two real parts."""
@@ -99,12 +112,8 @@ class ImpedanceMap:
             "amplitude": self.data["amplitude"].values.tolist(),
             "amplitude_unit": self.data["amplitude"].attrs["units"],
         }
-        tables = {
-            "size": self.decibel,
-            "phase_deg": self.phase,
-            "distortion": self.data["distortion"],
-            "change": self.data["change"],
-        }
+        tables = {"size": self.decibel, "phase_deg": self.phase}
+        tables |= {n: self.data[n] for n in ("distortion", "change") if n in self.data}
         cases = {
             str(case): {name: _rounded(t.sel(case=case).values) for name, t in tables.items()}
             for case in self.data["case"].values
@@ -117,16 +126,18 @@ class ImpedanceMap:
         unit = self.data["amplitude"].attrs["units"]
         how = "following frequency" if self.on_profile else f"{len(a)} of them at each"
         lines = [
-            f"Measured impedance, {len(f)} frequencies {f.min():g} to {f.max():g} Hz, "
-            f"amplitude {a.min():g} to {a.max():g} {unit}, {how}"
+            f"{'Measured' if self.measured else 'Quasi-linear'} impedance, {len(f)} frequencies "
+            f"{f.min():g} to {f.max():g} Hz, amplitude {a.min():g} to {a.max():g} {unit}, {how}"
         ]
         for case in self.data["case"].values:
             z, p = self.decibel.sel(case=case), self.phase.sel(case=case)
-            worst = float(self.data["change"].sel(case=case).max())
-            lines.append(
+            line = (
                 f"  {case!s:<8} {float(z.min()):.1f} to {float(z.max()):.1f} {z.attrs['units']}, "
-                f"{float(p.min()):.0f} to {float(p.max()):.0f} deg, settled to {worst:.1g}"
+                f"{float(p.min()):.0f} to {float(p.max()):.0f} deg"
             )
+            if self.measured:
+                line += f", settled to {float(self.data['change'].sel(case=case).max()):.1g}"
+            lines.append(line)
         return "\n".join(lines)
 
 

@@ -7,25 +7,19 @@ amplitude. Bernstein, Lawrence, Pao, World Haptics 2005, section 6 and figures 6
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal
 
 import numpy as np
 
+from ..blocks import Body
 from ..diagrams import Diagram
-from ..errors import ModelError
 from ..quantity import unit_of
 from ..simulate import Sampling
 from ..simulate.prepared import SAMPLED
+from .grid import Amplitude, Grid
 from .impedance_map import ImpedanceMap
 from .sinusoid import GIVE, Sinusoid, settled_harmonics
-
-Amplitude = float | Sequence[float] | np.ndarray | Callable[[np.ndarray], np.ndarray]
-
-
-def falling(amplitude: float, *, exponent: float = 0.8) -> Callable[[np.ndarray], np.ndarray]:
-    """The profile amplitude * (f / 1 Hz)^-exponent; 0.8 is that of figure 7 of the paper."""
-    return lambda frequency: amplitude * np.asarray(frequency, dtype=float) ** -exponent
 
 
 def measured_impedance(
@@ -52,48 +46,33 @@ def measured_impedance(
     raises ModelError: a frequency or amplitude that is not positive, a signal that is not there, or
         a loop that is unstable
     """
-    import xarray
-
     cases = {diagrams.name: diagrams} if isinstance(diagrams, Diagram) else dict(diagrams)
-    frequencies = _positive("frequency", frequency)
-    profile = callable(amplitude)
-    sizes = _positive("amplitude", amplitude(frequencies) if callable(amplitude) else amplitude)
-    shape = (len(cases), len(frequencies), *(() if profile else (len(sizes),)))
-    found = {n: np.empty(shape) for n in ("distortion", "change", "motion_amplitude")}
+    grid, source = Grid.of(amplitude, frequency), drive or motion
+    shape = (len(cases), *(len(getattr(grid, name)) for name in grid.dims))
     z = np.empty(shape, dtype=complex)
+    distortion, change, moved = np.empty(shape), np.empty(shape), np.empty(shape)
     for i, diagram in enumerate(cases.values()):
-        for j, f in enumerate(frequencies):
-            for k, size in enumerate(sizes[j : j + 1] if profile else sizes):
-                at = (i, j) if profile else (i, j, k)
-                sinusoid = Sinusoid(
-                    drive or motion, float(size), float(f), computer=computer, give=give
-                )
-                one = settled_harmonics(diagram, sinusoid, signals=(force, motion))
-                z[at] = one[force].phasor / one[motion].phasor
-                found["distortion"][at] = one[force].distortion
-                found["change"][at] = max(h.change for h in one.values())
-                found["motion_amplitude"][at] = abs(one[motion].phasor)
-    dims = ("case", "frequency", *(() if profile else ("amplitude",)))
-    axis = _axis(next(iter(cases.values())))
+        for at, size, f in grid.points:
+            sinusoid = Sinusoid(source, size, f, computer=computer, give=give)
+            one = settled_harmonics(diagram, sinusoid, signals=(force, motion))
+            here = (i, *at)
+            z[here] = one[force].phasor / one[motion].phasor
+            distortion[here] = one[force].distortion
+            change[here] = max(h.change for h in one.values())
+            moved[here] = abs(one[motion].phasor)
+    axis = axis_of(next(iter(cases.values())))
     length = unit_of("position", axis)
-    units = {"distortion": "1", "change": "1", "motion_amplitude": length}
-    data = {"impedance": (dims, z, {"units": unit_of("stiffness", axis)})}
-    data |= {n: (dims, values, {"units": units[n]}) for n, values in found.items()}
-    coordinates = {
-        "case": list(cases),
-        "frequency": ("frequency", frequencies, {"units": "Hz"}),
-        "amplitude": ("frequency" if profile else "amplitude", sizes, {"units": length}),
+    values = {
+        "impedance": (z, unit_of("stiffness", axis)),
+        "distortion": (distortion, "1"),
+        "change": (change, "1"),
+        "motion_amplitude": (moved, length),
     }
-    attrs = {"drive": drive or motion, "motion": motion, "force": force, "give": give}
-    return ImpedanceMap(xarray.Dataset(data, coordinates, attrs))
+    data = grid.labelled(values, cases=list(cases), length=length)
+    data.attrs |= {"drive": source, "motion": motion, "force": force, "give": give}
+    return ImpedanceMap(data)
 
 
-def _positive(what: str, values: float | Sequence[float] | np.ndarray) -> np.ndarray:
-    found = np.atleast_1d(np.asarray(values, dtype=float))
-    if found.ndim != 1 or not found.size or not (np.isfinite(found) & (found > 0)).all():
-        raise ModelError(f"measured impedance: {what} must be positive numbers, found {values}")
-    return found
-
-
-def _axis(diagram: Diagram) -> str:
-    return next((b.body.axis for b in diagram.bodies if hasattr(b.body, "axis")), "prismatic")
+def axis_of(diagram: Diagram) -> str:
+    """ "prismatic" or "revolute"."""
+    return next((b.body.axis for b in diagram.bodies if isinstance(b.body, Body)), "prismatic")

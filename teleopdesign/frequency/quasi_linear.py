@@ -8,6 +8,7 @@ first harmonic, so that this is the approximation which simulation is compared w
 from __future__ import annotations
 
 import cmath
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import sympy as sp
@@ -17,32 +18,42 @@ from ..controllers import Controller
 from ..derive import block_symbol, transfer
 from ..diagrams import Control, Diagram
 from ..errors import ModelError
+from ..quantity import unit_of
 from ..realise.lti import S, linear_blocks
 from .describing_function import describing_function, driven_gain
+from .grid import Amplitude, Grid
+from .impedance_map import ImpedanceMap
+from .measured_impedance import axis_of
 
 #: the phase of what drives a controller is found by iteration: relative change at its end
 _FOUND, _MOST = 1e-9, 100
 
 
 def quasi_linear_impedance(
-    diagram: Diagram,
+    diagrams: Diagram | Mapping[str, Diagram],
     *,
-    amplitude: float | np.ndarray,
-    frequency: float | np.ndarray,
+    amplitude: Amplitude,
+    frequency: float | Sequence[float] | np.ndarray,
     motion: str = "L",
     force: str = "E",
-) -> complex | np.ndarray:
-    """Zhat_M in N/m at an amplitude (m or rad) of the prescribed motion and a frequency (Hz).
+) -> ImpedanceMap:
+    """Zhat_M of one diagram or several cases over frequency and amplitude, without simulation.
 
-    Controllers count as continuous. Arrays are broadcast.
+    Arguments as in `measured_impedance`, the motion prescribed; controllers count as continuous.
     raises ModelError: a block without laws or without describing function
     """
-    sizes, f = np.broadcast_arrays(np.asarray(amplitude, float), np.asarray(frequency, float))
-    form = _Form(diagram, motion, force)
-    found = np.empty(sizes.shape, dtype=complex)
-    for at, size in np.ndenumerate(sizes):
-        found[at] = form.value(float(size), float(f[at]))
-    return found if found.shape else complex(found)
+    cases = {diagrams.name: diagrams} if isinstance(diagrams, Diagram) else dict(diagrams)
+    grid = Grid.of(amplitude, frequency)
+    z = np.empty((len(cases), *(len(getattr(grid, n)) for n in grid.dims)), dtype=complex)
+    for i, diagram in enumerate(cases.values()):
+        form = _Form(diagram, motion, force)
+        for at, size, f in grid.points:
+            z[(i, *at)] = form.value(size, f)
+    axis = axis_of(next(iter(cases.values())))
+    values = {"impedance": (z, unit_of("stiffness", axis))}
+    data = grid.labelled(values, cases=list(cases), length=unit_of("position", axis))
+    data.attrs |= {"motion": motion, "force": force}
+    return ImpedanceMap(data)
 
 
 class _Form:

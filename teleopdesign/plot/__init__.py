@@ -1,7 +1,7 @@
 """Draw result objects; compute nothing."""
 
 from .design import plot_force_velocity, plot_simulation, save_figure
-from .frequency import plot_bode, plot_impedance, plot_nyquist
+from .frequency import plot_bode, plot_impedance, plot_nyquist, plot_spread
 
 __all__ = [
     "plot_bode",
@@ -9,5 +9,6 @@ __all__ = [
     "plot_impedance",
     "plot_nyquist",
     "plot_simulation",
+    "plot_spread",
     "save_figure",
 ]
