@@ -42,8 +42,8 @@ def largest_amplitude(frequency: np.ndarray) -> np.ndarray:
 def run(*, quick: bool = False) -> tuple[ImpedanceMap, ImpedanceMap]:
     """Simulated and quasi-linear impedance of the four cases on a grid, within the actuator's."""
     cases = four_cases(world_haptics_2005())
-    frequency = np.geomspace(1.0, 20.0, 4 if quick else 10)
-    amplitude = 1e-3 * np.geomspace(0.1, 10.0, 5 if quick else 13)
+    frequency = np.geomspace(1.0, 20.0, 3 if quick else 10)
+    amplitude = 1e-3 * np.geomspace(0.1, 10.0, 4 if quick else 13)
     measured = measured_impedance(
         cases, amplitude=amplitude, frequency=frequency, computer="continuous"
     )

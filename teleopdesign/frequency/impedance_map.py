@@ -25,7 +25,7 @@ class ImpedanceMap:
         Coordinate `amplitude` (of the drive) stands over `frequency` where it follows a profile.
         Where it was measured also
         `distortion` of the force: rms of its higher harmonics over that of the first
-        `change` of the phasors from cycle to cycle, relative: how well it has settled
+        `unsettled`: how far first harmonics still differ from cycle to cycle, relative
         `motion_amplitude` (m or rad), that of the motion itself
     """
 
@@ -105,7 +105,7 @@ class ImpedanceMap:
         self.data.drop_vars("impedance").assign(parts).to_netcdf(path)
 
     def to_json(self, path: str | Path) -> None:
-        """Write size, phase, distortion and change of every point to a JSON file, with units."""
+        """Write size, phase, distortion and settling of every point to a JSON file, with units."""
         written = {
             "unit": self.decibel.attrs["units"],
             "frequency_Hz": self.data["frequency"].values.tolist(),
@@ -113,7 +113,7 @@ class ImpedanceMap:
             "amplitude_unit": self.data["amplitude"].attrs["units"],
         }
         tables = {"size": self.decibel, "phase_deg": self.phase}
-        tables |= {n: self.data[n] for n in ("distortion", "change") if n in self.data}
+        tables |= {n: self.data[n] for n in ("distortion", "unsettled") if n in self.data}
         cases = {
             str(case): {name: _rounded(t.sel(case=case).values) for name, t in tables.items()}
             for case in self.data["case"].values
@@ -136,7 +136,7 @@ class ImpedanceMap:
                 f"{float(p.min()):.0f} to {float(p.max()):.0f} deg"
             )
             if self.measured:
-                line += f", settled to {float(self.data['change'].sel(case=case).max()):.1g}"
+                line += f", settled to {float(self.data['unsettled'].sel(case=case).max()):.1g}"
             lines.append(line)
         return "\n".join(lines)
 

@@ -14,13 +14,13 @@ class Harmonic:
     phasor: of the first harmonic, mean of the last two cycles, unit of the signal; sin is 1 and
         cos is j
     distortion: rms of all higher harmonics over that of the first; inf where there is no first
-    change: larger difference between the phasors of one cycle and the next, among the last three,
-        over the size of the phasor
+    unsettled: largest difference between the last cycle and any other of the second half of the
+        record, relative: a slow transient may turn, so that two cycles alone can agree by chance
     """
 
     phasor: complex
     distortion: float
-    change: float
+    unsettled: float
 
 
 def phasors(cycles: np.ndarray) -> np.ndarray:
@@ -44,17 +44,14 @@ def distortion(cycles: np.ndarray) -> np.ndarray:
         return np.asarray(np.sqrt(others / first))
 
 
-def last_cycles(
-    values: np.ndarray, *, step: float, frequency: float, count: int, points: int
-) -> np.ndarray:
-    """The last whole cycles of a record that starts at t = 0, shape (count, points).
+def whole_cycles(values: np.ndarray, *, step: float, frequency: float, points: int) -> np.ndarray:
+    """All whole cycles of a record that starts at t = 0, shape (cycles, points).
 
     values: (n,) at times 0, step, ...; between them linear, so that a cycle need not be a whole
     number of steps.  Every cycle begins where sin(2 pi frequency t) goes up through zero.
     """
-    end = step * (len(values) - 1)
-    first = int(np.floor(end * frequency + 1e-9)) - count
-    time = (first + np.arange(count * points) / points) / frequency
+    count = int(np.floor(step * (len(values) - 1) * frequency + 1e-9))
+    time = np.arange(count * points) / points / frequency
     found = np.interp(time, step * np.arange(len(values)), values)
     return np.asarray(found.reshape(count, points))
 
@@ -65,13 +62,10 @@ def lock_in(values: np.ndarray, *, step: float, frequency: float, points: int) -
     values: (n,), at least four cycles, at times 0, step, ... in s;  frequency: Hz
     points: of the grid over one cycle
     """
-    cycles = last_cycles(values, step=step, frequency=frequency, count=4, points=points)
+    cycles = whole_cycles(values, step=step, frequency=frequency, points=points)
     each = phasors(cycles)
-    found = complex(each[2:].mean())
+    found = complex(each[-2:].mean())
     # 1e-12 of the record: below it a first harmonic is rounding
     size = max(abs(found), 1e-12 * float(np.abs(values).max()), float(np.finfo(float).tiny))
-    return Harmonic(
-        found,
-        float(distortion(cycles[2:].mean(axis=0))),
-        float(np.abs(np.diff(each[1:])).max()) / size,
-    )
+    apart = np.abs(each[len(each) // 2 - 1 :] - each[-1]).max()
+    return Harmonic(found, float(distortion(cycles[-2:].mean(axis=0))), float(apart) / size)

@@ -50,7 +50,7 @@ def measured_impedance(
     grid, source = Grid.of(amplitude, frequency), drive or motion
     shape = (len(cases), *(len(getattr(grid, name)) for name in grid.dims))
     z = np.empty(shape, dtype=complex)
-    distortion, change, moved = np.empty(shape), np.empty(shape), np.empty(shape)
+    distortion, unsettled, moved = np.empty(shape), np.empty(shape), np.empty(shape)
     for i, diagram in enumerate(cases.values()):
         for at, size, f in grid.points:
             sinusoid = Sinusoid(source, size, f, computer=computer, give=give)
@@ -58,14 +58,14 @@ def measured_impedance(
             here = (i, *at)
             z[here] = one[force].phasor / one[motion].phasor
             distortion[here] = one[force].distortion
-            change[here] = max(h.change for h in one.values())
+            unsettled[here] = max(h.unsettled for h in one.values())
             moved[here] = abs(one[motion].phasor)
     axis = axis_of(next(iter(cases.values())))
     length = unit_of("position", axis)
     values = {
         "impedance": (z, unit_of("stiffness", axis)),
         "distortion": (distortion, "1"),
-        "change": (change, "1"),
+        "unsettled": (unsettled, "1"),
         "motion_amplitude": (moved, length),
     }
     data = grid.labelled(values, cases=list(cases), length=length)

@@ -60,7 +60,10 @@ def first_harmonic(
     states = _closed(law, signals, 1 / (float(frequency) * STEPS)) if law.rates else {}
     given = {**signals, **states}
     used, call = law.force
-    force = np.asarray(call(*(given[s] for s in used)), dtype=float)
+    with np.errstate(all="ignore"):  # a piecewise law is computed also where it does not hold
+        force = np.asarray(call(*(given[s] for s in used)), dtype=float)
+    if not np.isfinite(force).all():
+        raise ModelError(f"{law.where}: the force is not finite along this motion")
     force = np.broadcast_to(force, np.broadcast_shapes(force.shape, (STEPS,)))
     # taken half a step after the nodes of `phasors`
     return np.asarray(phasors(force) * np.exp(-1j * np.pi / STEPS))

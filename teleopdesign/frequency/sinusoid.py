@@ -32,8 +32,8 @@ class Sinusoid:
     drive: a motion (prescribed), or a signal from outside;  amplitude: its unit;  frequency: Hz
     computer: how controllers are sampled, see `simulate`
     give: share of the amplitude (of the motion) by which ideal Coulomb friction gives
-    tolerance: change between cycles, relative, at which they count as settled: a slow pole that
-        loses a fifth a cycle is then 0.1 % off
+    tolerance: difference of cycles, relative, at which a first harmonic counts as settled; what a
+        transient that loses a quarter over half the run has still to come is three times that
     """
 
     drive: str
@@ -49,8 +49,8 @@ def settled_harmonics(
 ) -> dict[str, Harmonic]:
     """First harmonics of signals once their cycles repeat; phases relative to the drive.
 
-    Runs four cycles, then twice as many, up to 128, until the last three agree. What has not
-    settled then says so by its `change`.
+    Runs four cycles, then twice as many, up to 128, until the last ones agree. What has not
+    settled then says so: `unsettled`.
 
     raises ModelError: drive is no motion and not from outside, or an unknown signal
     """
@@ -71,7 +71,7 @@ def settled_harmonics(
             )
             for name in signals
         }
-        worst = max(h.change for h in found.values())
+        worst = max(h.unsettled for h in found.values())
         if worst <= drive.tolerance or cycles >= _CYCLES * _MOST_LONGER:
             return found
         cycles *= 2
