@@ -6,7 +6,7 @@ motion falling as f^-0.8. The factor of that profile cannot be read; it is chose
 Coulomb friction weigh alike at 20 Hz (P20), where the paper sees two regimes part.
 
 Finding: below 5 Hz Coulomb friction climbs by 16 dB/decade near 90 degrees, without compensation
-(16.3) and with force feedback (17.0): the slope is that of the profile, 20 times 0.8, not of the
+(16.2) and with force feedback (16.9): the slope is that of the profile, 20 times 0.8, not of the
 mechanism. Far above 20 Hz all four meet on the mass, 40 dB/decade at 180 degrees; without
 compensation and with cancellation that is so from 50 Hz (38 to 40). With force feedback of 20 Hz
 and gain 5 the way there is steeper (52 dB/decade from 50 to 100 Hz, phase up to 218 degrees): a

@@ -107,7 +107,7 @@ def bode(
     frequency: Hz, default 0.1 to 1000;  speed: where smoothed friction and schedules are frozen
     """
     cases = {diagrams.name: diagrams} if isinstance(diagrams, Diagram) else dict(diagrams)
-    f = np.geomspace(0.1, 1000.0, 401) if frequency is None else np.asarray(frequency, dtype=float)
+    f = np.geomspace(0.1, 1000.0, 2001) if frequency is None else np.asarray(frequency, dtype=float)
     rows, left_out = [], {}
     for name, diagram in cases.items():
         expression, linear = _scalar(diagram, output, input, given, speed)

@@ -299,7 +299,7 @@ def _decades(axis: matplotlib.axes.Axes, f: np.ndarray, z: np.ndarray, colour: s
     axis.plot(z[at].real, z[at].imag, ".", color=colour or "#000000", markersize=4)
     if axis.texts:
         return  # another case has the names
-    apart = 0.06 * max(float(np.ptp(z.real)), float(np.ptp(z.imag)))
+    apart = 0.1 * max(float(np.ptp(z.real)), float(np.ptp(z.imag)))
     named: list[complex] = []
     for ten, k in zip(tens, at, strict=True):
         if all(abs(z[k] - other) > apart for other in named):
