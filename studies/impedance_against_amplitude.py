@@ -8,7 +8,7 @@ Finding: none of the four is linear, for a linear mechanism would give horizonta
 compensation |Zhat_M| falls by 20 dB/decade in small motion, as Coulomb friction does, and settles
 at m omega^2 (43.4 dB) in large motion; force feedback lowers that by 14 dB at 1 mm and by 7 dB at
 20 mm, for its gain falls with speed, so that it has a minimum over amplitude (34.4 dB near 7 mm).
-So has the hybrid (31.1 dB near 2.5 mm, the dip that the paper shows at 2 mm) without cancelling
+So has the hybrid (31.0 dB near 2.3 mm, the dip that the paper shows at 2 mm) without cancelling
 more than there is; cancellation alone has none. Describing functions (lines) predict the simulated
 values (points) within 0.8 dB and 3 degrees.
 

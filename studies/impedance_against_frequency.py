@@ -9,7 +9,7 @@ Finding: below 5 Hz Coulomb friction climbs by 16 dB/decade near 90 degrees, wit
 (16.2) and with force feedback (16.9): the slope is that of the profile, 20 times 0.8, not of the
 mechanism. Far above 20 Hz all four meet on the mass, 40 dB/decade at 180 degrees; without
 compensation and with cancellation that is so from 50 Hz (38 to 40). With force feedback of 20 Hz
-and gain 5 the way there is steeper (52 dB/decade from 50 to 100 Hz, phase up to 218 degrees): a
+and gain 5 the way there is steeper (51 dB/decade from 50 to 100 Hz, phase up to 218 degrees): a
 first-order filter lets its gain go only at 200 Hz, later than the paper's "above 20 Hz".
 
     python studies/impedance_against_frequency.py [--quick] [--output DIR]

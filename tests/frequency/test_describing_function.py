@@ -66,6 +66,15 @@ def test_a_linear_effect_is_its_declared_impedance(name):
     assert found == pytest.approx(expected, rel=1e-9)
 
 
+def test_a_linear_controller_is_its_transfer_function():
+    """A lead compensator on the position, its hidden state closed over a cycle."""
+    lead = controller("lead", {"gain": 2e4, "zero": 6.0, "pole": 300.0})
+    s = 8j * np.pi
+    found = describing_function(lead, amplitude=3e-3, frequency=4.0)
+    # second order: (300/s times a step of 1/8000 s)^2/24 = 6e-5
+    assert found == pytest.approx(2e4 * (s + 6.0) / (s + 300.0), rel=1e-4)
+
+
 @pytest.mark.parametrize("name", [n for n in NAMES if n not in WITHOUT])
 def test_every_dissipating_effect_takes_energy_from_a_sinusoid(name):
     """What opposes motion in phase with velocity is not negative where an effect claims that."""

@@ -107,11 +107,14 @@ def test_results_are_written_with_units(coulomb, tmp_path):
     )
 
 
-def test_beyond_an_actuators_reach_there_is_no_number(coulomb):
+def test_beyond_an_actuators_reach_there_is_no_number(coulomb, tmp_path):
     limited = coulomb.up_to(lambda f: 0.02 / f)
     known = np.isfinite(limited.decibel.isel(case=0).values)
     np.testing.assert_array_equal(known, [[True, True, True], [True, True, False]])
     assert float(limited.spread()["size"][0, 1]) < float(coulomb.spread()["size"][0, 1])
+    limited.to_json(tmp_path / "map.json")
+    written = json.loads((tmp_path / "map.json").read_text(), parse_constant=pytest.fail)
+    assert written["cases"]["haptic interface"]["size"][1][2] is None
 
 
 def test_a_linear_loop_simulated_agrees_with_its_symbolic_response():
