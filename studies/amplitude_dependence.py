@@ -11,8 +11,8 @@ light. From 4 to 20 Hz the spread falls from 36 to 9 dB without compensation, as
 the actuator allows less motion; the hybrid leaves 34 and 4 dB, force feedback 30 and 7. So all four
 are far from linear in the range that the paper left untested, and no compensation that looks at
 velocity mends it. Phase spreads most at 5 to 7 Hz: 71 degrees without compensation, below the 79
-that mass and Coulomb friction can lose over two decades (P21), 89 with the hybrid. Describing
-functions (lines) give the same within 1 dB and 4 degrees.
+that mass and Coulomb friction can lose over two decades (P21), 88 with the hybrid. Describing
+functions (lines) give the same within 0.5 dB and 2 degrees.
 
     python studies/amplitude_dependence.py [--quick] [--output DIR]
 """

@@ -34,7 +34,7 @@ from teleopdesign.diagrams import Diagram, four_cases, reading, world_haptics_20
 from teleopdesign.frequency import delay_margin, loop_gain, measured_impedance
 from teleopdesign.plot import save_figure
 from teleopdesign.plot.design import STYLE, TWO_COLUMNS
-from teleopdesign.plot.frequency import logarithmic
+from teleopdesign.plot.frequency_axes import logarithmic
 from teleopdesign.simulate import Motion, simulate
 
 if TYPE_CHECKING:

@@ -92,7 +92,7 @@ class ImpedanceMap:
         model: drawn as lines, this map then as points
         columns: of the page, 3.5 in or 7.16 in wide
         """
-        from ..plot.frequency import plot_impedance
+        from ..plot.frequency_impedance import plot_impedance
 
         more = not self.on_profile and self.data.sizes["amplitude"] > self.data.sizes["frequency"]
         chosen: Literal["frequency", "amplitude"] = "amplitude" if more else "frequency"
