@@ -71,6 +71,7 @@ def grid():
     return study("amplitude_dependence").run(quick=True)[0]
 
 
+@pytest.mark.slow
 def test_amplitude_dependence_falls_with_frequency_but_stays_in_every_case(grid):
     spread = grid.spread()["size"]
     assert (spread.diff("frequency") < 0).all()
@@ -78,6 +79,7 @@ def test_amplitude_dependence_falls_with_frequency_but_stays_in_every_case(grid)
     assert (spread.isel(frequency=-1) > 3).all()
 
 
+@pytest.mark.slow
 def test_cancellation_makes_slow_motion_less_linear(grid):
     slow = grid.spread()["size"].isel(frequency=0)
     assert float(slow.sel(case="MBC")) > float(slow.sel(case="none")) + 5
