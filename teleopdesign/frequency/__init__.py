@@ -1,6 +1,28 @@
 """Frequency responses of a diagram."""
 
+from .describing_function import describing_function
+from .grid import falling
+from .impedance_map import ImpedanceMap
+from .loop import delay_margin, loop_gain
 from .matrix_response import MatrixResponse, matrix_response
+from .measured_impedance import measured_impedance
+from .measured_response import measured_response, simulated_response
+from .quasi_linear import quasi_linear_impedance
 from .response import FrequencyResponse, bode, transfer_function
 
-__all__ = ["FrequencyResponse", "MatrixResponse", "bode", "matrix_response", "transfer_function"]
+__all__ = [
+    "FrequencyResponse",
+    "ImpedanceMap",
+    "MatrixResponse",
+    "bode",
+    "delay_margin",
+    "describing_function",
+    "falling",
+    "loop_gain",
+    "matrix_response",
+    "measured_impedance",
+    "measured_response",
+    "quasi_linear_impedance",
+    "simulated_response",
+    "transfer_function",
+]

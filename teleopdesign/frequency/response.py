@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import sympy as sp
 
 from ..derive import block_symbol, transfer
 from ..diagrams import Diagram
+from ..errors import ModelError, did_you_mean
 from ..realise.lti import LinearBlocks, S, as_transfer_function, linear_blocks
 
 if TYPE_CHECKING:
@@ -32,11 +33,48 @@ class FrequencyResponse:
     input: str
     left_out: Mapping[str, tuple[str, ...]]
 
-    def plot(self) -> matplotlib.figure.Figure:
-        """Bode plot, one line a case."""
-        from ..plot.design import plot_bode
+    @property
+    def measured(self) -> bool:
+        """Whether it was measured: drawn as points instead of lines."""
+        return bool(self.data.attrs.get("measured", 0))
 
-        return plot_bode(self)
+    def values(self, case: str = "") -> np.ndarray:
+        """Complex response over frequency, (n,), of a case; default: the first."""
+        name = case or str(self.data["case"].values[0])
+        known = [str(c) for c in self.data["case"].values]
+        if name not in known:
+            raise ModelError(
+                f'frequency response: no case "{name}", has {", ".join(known)}'
+                f"{did_you_mean(name, known)}"
+            )
+        one = self.data.sel(case=name)
+        turned = np.exp(1j * np.radians(one["phase"].values))
+        return np.asarray(one["magnitude"].values * turned)
+
+    def as_frd(self, case: str = "") -> control.FrequencyResponseData:
+        """A case (default: the first) as python-control frequency response data, in rad/s."""
+        import control
+
+        return control.frd(self.values(case), 2 * np.pi * self.data["frequency"].values)
+
+    def plot(
+        self, *, measured: FrequencyResponse | None = None, columns: Literal[1, 2] = 1
+    ) -> matplotlib.figure.Figure:
+        """Bode plot, one line a case.
+
+        measured: drawn as points beside it;  columns: of the page, 3.5 in or 7.16 in wide
+        """
+        from ..plot.frequency import plot_bode
+
+        return plot_bode(self, measured=measured, columns=columns)
+
+    def plot_nyquist(
+        self, *, measured: FrequencyResponse | None = None, columns: Literal[1, 2] = 1
+    ) -> matplotlib.figure.Figure:
+        """Imaginary against real part, one line a case; arguments as in `plot`."""
+        from ..plot.frequency import plot_nyquist
+
+        return plot_nyquist(self, measured=measured, columns=columns)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write magnitude and phase with their units to a netCDF file."""
@@ -45,6 +83,8 @@ class FrequencyResponse:
     def __repr__(self) -> str:
         f = self.data["frequency"].values
         head = f"Frequency response {self.input} to {self.output}, {f[0]:g} to {f[-1]:g} Hz, at "
+        if self.measured:
+            return f"{head.removesuffix(', at ')}, measured"
         lines = [f"{head}speed {self.data.attrs['speed']:g}"]
         for case, gone in self.left_out.items():
             lines.append(f"  {case}: left out: {', '.join(gone) or 'nothing'}")
@@ -66,29 +106,44 @@ def bode(
         impedance Zhat_M
     frequency: Hz, default 0.1 to 1000;  speed: where smoothed friction and schedules are frozen
     """
-    import xarray
-
     cases = {diagrams.name: diagrams} if isinstance(diagrams, Diagram) else dict(diagrams)
-    f = np.geomspace(0.1, 1000.0, 401) if frequency is None else np.asarray(frequency, dtype=float)
+    f = np.geomspace(0.1, 1000.0, 2001) if frequency is None else np.asarray(frequency, dtype=float)
     rows, left_out = [], {}
     for name, diagram in cases.items():
         expression, linear = _scalar(diagram, output, input, given, speed)
         call = sp.lambdify(S, expression, "numpy")
         rows.append(np.broadcast_to(np.asarray(call(2j * np.pi * f), dtype=complex), f.shape))
         left_out[name] = linear.left_out
-    phase = np.degrees(np.unwrap(np.angle(np.array(rows)), axis=1))
+    data = labelled(np.array(rows), list(cases), f, unit=ratio_unit(diagram, output, input))
+    data.attrs |= {"output": output, "input": input, "speed": abs(speed)}
+    return FrequencyResponse(data, output, input, left_out)
+
+
+def labelled(
+    values: np.ndarray, cases: list[str], frequency: np.ndarray, *, unit: str
+) -> xarray.Dataset:
+    """Magnitude and phase of complex values (cases, n) over frequency (n,) in Hz."""
+    import xarray
+
+    phase = np.degrees(np.unwrap(np.angle(values), axis=1))
     phase -= 360 * np.floor((phase[:, :1] + 90) / 360)  # starting between -90 and 270 degrees
-    unit = "N/m" if given else "1"
     dims = ("case", "frequency")
-    data = xarray.Dataset(
+    return xarray.Dataset(
         {
-            "magnitude": (dims, np.abs(rows), {"units": unit}),
+            "magnitude": (dims, np.abs(values), {"units": unit}),
             "phase": (dims, phase, {"units": "deg"}),
         },
-        {"case": list(cases), "frequency": ("frequency", f, {"units": "Hz"})},
-        {"output": output, "input": input, "speed": abs(speed)},
+        {"case": cases, "frequency": ("frequency", frequency, {"units": "Hz"})},
     )
-    return FrequencyResponse(data, output, input, left_out)
+
+
+def ratio_unit(diagram: Diagram, output: str, source: str) -> str:
+    """Unit of one signal over another; "1" where they have the same."""
+    from ..simulate.units import signal_units
+
+    units = signal_units(diagram)
+    above, below = units(output), units(source)
+    return "1" if above == below else f"{above}/{below}"
 
 
 def transfer_function(

@@ -7,9 +7,12 @@ from math import pi
 import numpy as np
 import sympy as sp
 
+from ..blocks import Body, Value
+from ..controllers import controller
 from ..diagrams import Diagram, four_cases, reading, world_haptics_2005
-from ..simulate import Simulation, simulate, sine
-from ._laws import coulomb, smoothed_coulomb
+from ..effects import EFFECTS
+from ..frequency import describing_function, measured_impedance
+from ._laws import coulomb
 from ._proof import Equal, Holds, Limit, NotNegative, Proof, Refutation, proof
 from ._statement import BERNSTEIN, DERIVED, Figure, Numbers, near, shows
 from .describing_functions import first_harmonic
@@ -109,26 +112,12 @@ def phase_per_decade() -> Refutation:
     )
 
 
-def harmonic(simulation: Simulation, signal: str, *, frequency: float) -> complex:
-    """Phasor of a signal over the last cycle; 1 is sin(omega t)."""
-    n = round(1 / (frequency * simulation.data.attrs["step_s"]))
-    angle = 2 * np.pi * np.arange(n) / n
-    values = simulation[signal].values[-n - 1 : -1]
-    return complex(2 * np.mean(values * (np.sin(angle) + 1j * np.cos(angle))))
-
-
 def apparent_impedance(diagram: Diagram, *, amplitude: float, frequency: float) -> complex:
     """First harmonic of the force error over that of a prescribed sinusoid, N/m."""
-    found = simulate(
-        diagram,
-        duration=4 / frequency,  # H at 20 Hz has settled after one cycle
-        motion={"L": sine(amplitude=amplitude, frequency=frequency)},
-        computer="continuous",
-        every_step=True,
-        give=1e-8,
+    found = measured_impedance(
+        diagram, amplitude=amplitude, frequency=frequency, computer="continuous"
     )
-    force = harmonic(found, "E", frequency=frequency)
-    return force / harmonic(found, "L", frequency=frequency)
+    return complex(found.data["impedance"].values.item())
 
 
 def decibel(z: complex | np.ndarray) -> np.ndarray:
@@ -146,16 +135,15 @@ def cancelled(
 ) -> np.ndarray:
     """Impedance of mass and Coulomb friction less smoothed Coulomb friction of `share` its level.
 
-    First harmonic of the controller's law by the midpoint rule; N/m over amplitude (n,).
+    From describing functions; N/m over amplitude (n,).
     """
-    level, omega = reading("coulomb_level"), 2 * pi * frequency
-    speed = sp.Symbol("speed", positive=True)
-    law = sp.lambdify(speed, smoothed_coulomb(speed, sp.Float(share * level), smoothing))
-    n = 2000  # the integrand is smooth over a quarter cycle
-    cosine = np.cos((np.arange(n) + 0.5) * pi / (2 * n))
-    force = law(omega * np.multiply.outer(amplitude, cosine))
-    first = 2 * np.mean(force * cosine, axis=-1)
-    return np.asarray(-reading("mass") * omega**2 + 1j * (4 * level / pi - first) / amplitude)
+    level, mass = reading("coulomb_level"), reading("mass")
+    parameters = {"inertia": Value(mass), "coulomb.level": Value(level)}
+    rod = Body("prismatic", parameters, (EFFECTS["coulomb"],))
+    values = {"level": share * level, "smoothing_velocity": smoothing}
+    both = rod, controller("smoothed_coulomb", values)
+    body, c = (describing_function(x, amplitude=amplitude, frequency=frequency) for x in both)
+    return np.asarray(body - c)
 
 
 @shows(
@@ -171,7 +159,7 @@ def minimum_over_amplitude() -> Numbers:
     """Why compensated impedance has a minimum over amplitude: the schedule of H lets it rise
     again; for cancellation alone it takes over-compensation, and the rise is tiny.
     """
-    grid = np.geomspace(1e-4, 1.0, 4000)
+    grid = np.geomspace(1e-4, 1.0, 1500)
     exact = cancelled(grid, share=1.0, smoothing=0.005, frequency=5.0)
     figures = [
         near("MBC: phase at 1 m amplitude, V = 2000 a", phase(exact[-1]), 180, 1, "deg"),

@@ -9,6 +9,7 @@ from __future__ import annotations
 import sympy as sp
 
 from ..effects import EFFECTS
+from ..frequency import closed_forms
 from ._laws import coulomb, dahl_loop, smoothed_coulomb
 from ._proof import Equal, Holds, Limit, NotNegative, Proof, Refutation, proof
 from ._statement import BERNSTEIN, DERIVED, shows
@@ -17,8 +18,8 @@ phi, theta = sp.symbols("phi theta", real=True)
 v, A, V, a, F_C, f, sigma, u, r = sp.symbols("v A V a F_C f_D sigma_D u r", positive=True)
 QUARTER = sp.pi / 2
 #: first harmonic of Dahl friction of level f at u = sigma A/f: with position, with velocity
-DAHL_SPRING = 2 * f * sp.besseli(1, u) / sp.cosh(u)
-DAHL_FRICTION = 4 * f / sp.pi * (1 - sp.tanh(u) / u)
+DAHL_SPRING = closed_forms.dahl_spring(f, u)
+DAHL_FRICTION = closed_forms.dahl_friction(f, u)
 
 
 def first_harmonic(force: sp.Expr) -> sp.Expr:
@@ -41,7 +42,11 @@ def coulomb_friction() -> Refutation:
     return Refutation(
         proof(Holds("the first harmonic of sgn is 4/pi, not 4", first_harmonic(1), "!=", 4)),
         proof(
-            Equal("in phase with velocity", first_harmonic(force), 4 * F_C / sp.pi),
+            Equal(
+                "in phase with velocity",
+                sp.I * first_harmonic(force) / A,
+                closed_forms.coulomb(F_C, A),
+            ),
             Equal("no spring part", spring, 0),
         ),
     )
@@ -65,16 +70,16 @@ def smoothed_friction() -> Proof:
     slope = 2 / (1 + t**2) / (r + cosine)
     below, above = (1 - c**2) / (1 + c**2), (1 + c**2) / (1 - c**2)  # r < 1 and r > 1, 0 < c < 1
     root = 2 * c / (1 + c**2), 2 * c / (1 - c**2)
-    j_above = sp.acos(1 / r) / sp.sqrt(r**2 - 1)
+    j_below, j_at, j_above = closed_forms.reciprocals(r)
     x = sp.Symbol("x", positive=True)  # 1/r = V/a
-    inner = 4 / sp.pi * (1 - sp.pi * r / 2 + r**2 * j_above)
+    inner = 4 / sp.pi * closed_forms.smoothed_share(r, j_above)
     series = sp.series(inner.subs(r, 1 / x), x, 0, 3).removeO()
     return proof(
         Equal("the force times cos phi, taken apart", force * sp.cos(phi), parts),
         Equal(
             "the first two parts give (4 F_C/pi)(1 - pi r/2)",
             2 / sp.pi * sp.integrate(F_C * (sp.cos(phi) - r), (phi, -QUARTER, QUARTER)),
-            4 * F_C / sp.pi * (1 - sp.pi * r / 2),
+            4 * F_C / sp.pi * closed_forms.smoothed_share(r, 0),
         ),
         Equal("r < 1: r^2 J, root of 1 - r^2", root[0] ** 2, 1 - below**2),
         Equal(
@@ -85,7 +90,7 @@ def smoothed_friction() -> Proof:
         Equal(
             "its end 2 artanh c is arcosh(1/r)", sp.expand_trig(sp.cosh(2 * sp.atanh(c))), 1 / below
         ),
-        Equal("r = 1: J = 1", sp.integrate(sp.simplify(slope.subs(r, 1)), (t, 0, 1)), 1),
+        Equal("r = 1: J = 1", sp.integrate(sp.simplify(slope.subs(r, 1)), (t, 0, 1)), j_at),
         Equal("r > 1: root of r^2 - 1", root[1] ** 2, above**2 - 1),
         Equal(
             "antiderivative of J, r > 1",
@@ -97,7 +102,7 @@ def smoothed_friction() -> Proof:
         ),
         Limit(
             "r -> 0: Coulomb, since r^2 J -> 0",
-            r**2 * sp.acosh(1 / r) / sp.sqrt(1 - r**2),
+            r**2 * j_below,
             r,
             sp.S(0),
             sp.S(0),

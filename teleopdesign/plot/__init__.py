@@ -1,5 +1,15 @@
 """Draw result objects; compute nothing."""
 
-from .design import plot_bode, plot_force_velocity, plot_simulation, save_figure
+from .design import plot_force_velocity, plot_simulation, save_figure
+from .frequency import plot_bode, plot_nyquist
+from .frequency_impedance import plot_impedance, plot_spread
 
-__all__ = ["plot_bode", "plot_force_velocity", "plot_simulation", "save_figure"]
+__all__ = [
+    "plot_bode",
+    "plot_force_velocity",
+    "plot_impedance",
+    "plot_nyquist",
+    "plot_simulation",
+    "plot_spread",
+    "save_figure",
+]

@@ -1,4 +1,4 @@
-"""Figures of design: Bode plots, force against velocity, signals over time. Nothing is computed."""
+"""Figures of design: force against velocity, signals over time. Nothing is computed."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import matplotlib.figure
 
-    from ..frequency import FrequencyResponse
     from ..simulate import ForceVelocity, Simulation
 
 STYLE = Path(__file__).with_name("teleopdesign.mplstyle")
@@ -62,37 +61,6 @@ def save_figure(
         for file in files:
             figure.savefig(file)
     return files
-
-
-def plot_bode(response: FrequencyResponse) -> matplotlib.figure.Figure:
-    """Magnitude in dB and phase against frequency."""
-    import matplotlib.pyplot as plt
-    import numpy as np
-    from matplotlib.ticker import MultipleLocator
-
-    data = response.data
-    unit = data["magnitude"].attrs["units"]
-    with plt.style.context(STYLE):
-        figure, (upper, lower) = plt.subplots(2, 1, sharex=True, figsize=(ONE_COLUMN, 3.4))
-        for case in data["case"].values:
-            colour, line, label = CASES.get(str(case), (None, "-", str(case)))
-            f, one = data["frequency"].values, data.sel(case=case)
-            style = {"color": colour, "linestyle": line, "label": label}
-            upper.semilogx(f, 20 * np.log10(one["magnitude"].values), **style)
-            lower.semilogx(f, one["phase"].values, **style)
-        beside = "" if unit == "1" else f" re 1 {unit_text(unit)}"
-        upper.set_ylabel(f"magnitude (dB{beside})")
-        lower.set_ylabel("phase (deg)")
-        lower.set_xlabel("frequency (Hz)")
-        spread = float(data["phase"].max() - data["phase"].min())
-        lower.yaxis.set_major_locator(MultipleLocator(90 if spread > 270 else 45))
-        lower.set_xlim(float(data["frequency"][0]), float(data["frequency"][-1]))
-        for axis in (upper, lower):
-            axis.grid(True)
-        figure.align_ylabels()
-        if len(data["case"]) > 1:
-            upper.legend(loc="best")
-    return figure
 
 
 def plot_force_velocity(result: ForceVelocity) -> matplotlib.figure.Figure:

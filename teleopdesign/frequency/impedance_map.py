@@ -1,0 +1,152 @@
+"""An impedance over case, frequency and amplitude, and how far from linear it is."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from ..errors import ModelError
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+    import xarray
+
+
+@dataclass(frozen=True)
+class ImpedanceMap:
+    """Impedance relative to position over `case`, `frequency` (Hz) and, on a grid, `amplitude`.
+
+    data: `impedance`, complex, force per position; spring 0, damper and friction 90, mass 180 deg
+        Coordinate `amplitude` (of the drive) stands over `frequency` where it follows a profile.
+        Where it was measured also
+        `distortion` of the force: rms of its higher harmonics over that of the first
+        `unsettled`: how far first harmonics still differ from cycle to cycle, relative
+        `motion_amplitude` (m or rad), that of the motion itself
+    """
+
+    data: xarray.Dataset
+
+    @property
+    def on_profile(self) -> bool:
+        """Whether amplitude follows frequency instead of being varied by itself."""
+        return "amplitude" not in self.data["impedance"].dims
+
+    @property
+    def decibel(self) -> xarray.DataArray:
+        """20 log10 of the size, dB re 1 N/m (N m/rad on a revolute axis)."""
+        z = self.data["impedance"]
+        size = 20 * np.log10(np.abs(z.values))
+        return z.copy(data=size).assign_attrs(units=f"dB re 1 {z.attrs['units']}")
+
+    @property
+    def phase(self) -> xarray.DataArray:
+        """Degrees in 0 .. 360."""
+        angle = np.degrees(np.angle(self.data["impedance"])) % 360
+        return self.data["impedance"].copy(data=angle).assign_attrs(units="deg")
+
+    @property
+    def measured(self) -> bool:
+        """Whether it was measured, in simulation or on a device; else predicted."""
+        return "distortion" in self.data
+
+    def up_to(self, largest: Callable[[np.ndarray], np.ndarray]) -> ImpedanceMap:
+        """The map where the amplitude is at most largest(frequency in Hz); not a number beyond."""
+        limit = self.data["frequency"].copy(data=largest(self.data["frequency"].values))
+        return ImpedanceMap(self.data.where(self.data["amplitude"] <= limit))
+
+    def spread(self) -> xarray.Dataset:
+        """How far from linear: largest less smallest size (dB) and phase (deg) over amplitude.
+
+        0 for a linear system;  over `case` and `frequency`
+        raises ModelError: amplitude follows a profile, so that it cannot be told from frequency
+        """
+        import xarray
+
+        if self.on_profile:
+            raise ModelError("impedance map: amplitude follows frequency, spread needs a grid")
+        z, size = self.data["impedance"], self.decibel
+        turned = np.degrees(np.unwrap(np.angle(z), axis=z.get_axis_num("amplitude")))
+        turn = z.copy(data=turned)
+        return xarray.Dataset(
+            {
+                "size": (size.max("amplitude") - size.min("amplitude")).assign_attrs(units="dB"),
+                "phase": (turn.max("amplitude") - turn.min("amplitude")).assign_attrs(units="deg"),
+            }
+        )
+
+    def plot(
+        self,
+        against: Literal["frequency", "amplitude", ""] = "",
+        *,
+        model: ImpedanceMap | None = None,
+        columns: Literal[1, 2] = 1,
+    ) -> matplotlib.figure.Figure:
+        """Size and phase, one line a case; of the other variable a shade for each value.
+
+        against: default: amplitude where there are more of them than frequencies
+        model: drawn as lines, this map then as points
+        columns: of the page, 3.5 in or 7.16 in wide
+        """
+        from ..plot.frequency_impedance import plot_impedance
+
+        more = not self.on_profile and self.data.sizes["amplitude"] > self.data.sizes["frequency"]
+        chosen: Literal["frequency", "amplitude"] = "amplitude" if more else "frequency"
+        return plot_impedance(self, against=against or chosen, model=model, columns=columns)
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write everything with units to a netCDF file, the impedance as two real parts."""
+        z = self.data["impedance"]
+        parts = {f"impedance_{n}": p.assign_attrs(z.attrs) for n, p in _parts(z).items()}
+        self.data.drop_vars("impedance").assign(parts).to_netcdf(path)
+
+    def to_json(self, path: str | Path) -> None:
+        """Write size, phase, distortion and settling of every point to a JSON file, with units."""
+        written = {
+            "unit": self.decibel.attrs["units"],
+            "frequency_Hz": self.data["frequency"].values.tolist(),
+            "amplitude": self.data["amplitude"].values.tolist(),
+            "amplitude_unit": self.data["amplitude"].attrs["units"],
+        }
+        tables = {"size": self.decibel, "phase_deg": self.phase}
+        tables |= {n: self.data[n] for n in ("distortion", "unsettled") if n in self.data}
+        cases = {
+            str(case): {name: _rounded(t.sel(case=case).values) for name, t in tables.items()}
+            for case in self.data["case"].values
+        }
+        text = json.dumps({**written, "cases": cases}, indent=1)
+        Path(path).write_text(text + "\n", encoding="utf-8")
+
+    def __repr__(self) -> str:
+        f, a = self.data["frequency"].values, self.data["amplitude"].values
+        unit = self.data["amplitude"].attrs["units"]
+        how = "following frequency" if self.on_profile else f"{len(a)} of them at each"
+        lines = [
+            f"{'Measured' if self.measured else 'Quasi-linear'} impedance, {len(f)} frequencies "
+            f"{f.min():g} to {f.max():g} Hz, amplitude {a.min():g} to {a.max():g} {unit}, {how}"
+        ]
+        for case in self.data["case"].values:
+            z, p = self.decibel.sel(case=case), self.phase.sel(case=case)
+            line = (
+                f"  {case!s:<8} {float(z.min()):.1f} to {float(z.max()):.1f} {z.attrs['units']}, "
+                f"{float(p.min()):.0f} to {float(p.max()):.0f} deg"
+            )
+            if self.measured:
+                line += f", settled to {float(self.data['unsettled'].sel(case=case).max()):.1g}"
+            lines.append(line)
+        return "\n".join(lines)
+
+
+def _parts(z: xarray.DataArray) -> dict[str, xarray.DataArray]:
+    return {"real": z.real, "imaginary": z.imag}
+
+
+def _rounded(values: np.ndarray) -> list[object]:
+    """Five digits, more than any figure shows and the same on every machine; None: no number."""
+    numbers = [float(f"{x:.5g}") if np.isfinite(x) else None for x in values.reshape(-1)]
+    found: list[object] = np.array(numbers, dtype=object).reshape(values.shape).tolist()
+    return found

@@ -1,0 +1,78 @@
+"""The apparent impedance of a mechanism, measured in simulation as on the device.
+
+The motion is a sinusoid, prescribed or tracked by a position loop; once cycles repeat, the first
+harmonic of the force error R_D - R_M over that of the motion is Zhat_M at that frequency and
+amplitude. Bernstein, Lawrence, Pao, World Haptics 2005, section 6 and figures 6 and 7.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Literal
+
+import numpy as np
+
+from ..blocks import Body
+from ..diagrams import Diagram
+from ..quantity import unit_of
+from ..simulate import Sampling
+from ..simulate.sampling import SAMPLED
+from .grid import Amplitude, Grid
+from .impedance_map import ImpedanceMap
+from .sinusoid import GIVE, Sinusoid, settled_harmonics
+
+
+def measured_impedance(
+    diagrams: Diagram | Mapping[str, Diagram],
+    *,
+    amplitude: Amplitude,
+    frequency: float | Sequence[float] | np.ndarray,
+    drive: str = "",
+    motion: str = "L",
+    force: str = "E",
+    computer: Sampling | Literal["continuous"] = SAMPLED,
+    give: float = GIVE,
+) -> ImpedanceMap:
+    """Zhat_M of one diagram or several cases over frequency and amplitude.
+
+    amplitude: of the drive, m or rad: each with each frequency, or a function of frequency (a
+        profile, such as `falling(0.01)`);  frequency: Hz
+    drive: signal that is the sinusoid; default the motion itself, prescribed; "L_D": the reference
+        of a position loop, which the motion then follows as well as the loop can
+    motion, force: signals whose first harmonics are divided
+    computer: how controllers are sampled, or "continuous"
+    give: share of the amplitude by which ideal Coulomb friction gives before it slides; sqrt(give)
+        sets the error (1e-5: 0.2 degrees of its phase), 1/sqrt(give) the time
+    raises ModelError: a frequency or amplitude that is not positive, a signal that is not there, or
+        a loop that is unstable
+    """
+    cases = {diagrams.name: diagrams} if isinstance(diagrams, Diagram) else dict(diagrams)
+    grid, source = Grid.of(amplitude, frequency), drive or motion
+    shape = (len(cases), *(len(getattr(grid, name)) for name in grid.dims))
+    z = np.empty(shape, dtype=complex)
+    distortion, unsettled, moved = np.empty(shape), np.empty(shape), np.empty(shape)
+    for i, diagram in enumerate(cases.values()):
+        for at, size, f in grid.points:
+            sinusoid = Sinusoid(source, size, f, computer=computer, give=give)
+            one = settled_harmonics(diagram, sinusoid, signals=(force, motion))
+            here = (i, *at)
+            z[here] = one[force].phasor / one[motion].phasor
+            distortion[here] = one[force].distortion
+            unsettled[here] = max(h.unsettled for h in one.values())
+            moved[here] = abs(one[motion].phasor)
+    axis = axis_of(next(iter(cases.values())))
+    length = unit_of("position", axis)
+    values = {
+        "impedance": (z, unit_of("stiffness", axis)),
+        "distortion": (distortion, "1"),
+        "unsettled": (unsettled, "1"),
+        "motion_amplitude": (moved, length),
+    }
+    data = grid.labelled(values, cases=list(cases), length=length)
+    data.attrs |= {"drive": source, "motion": motion, "force": force, "give": give}
+    return ImpedanceMap(data)
+
+
+def axis_of(diagram: Diagram) -> str:
+    """ "prismatic" or "revolute"."""
+    return next((b.body.axis for b in diagram.bodies if isinstance(b.body, Body)), "prismatic")

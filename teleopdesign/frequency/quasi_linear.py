@@ -1,0 +1,109 @@
+"""The apparent impedance of an interface from describing functions instead of simulation.
+
+Zhat_M = Gamma^-1 (Z_M - C) holds for linear blocks; here each nonlinear one is its describing
+function at the amplitude of the motion. What a controller driven by a force sees is taken for its
+first harmonic, so that this is the approximation which simulation is compared with.
+"""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import sympy as sp
+
+from ..blocks import Body
+from ..controllers import Controller
+from ..derive import block_symbol, transfer
+from ..diagrams import Control, Diagram
+from ..errors import ModelError
+from ..quantity import unit_of
+from ..realise.lti import S, linear_blocks
+from .describing_function import describing_function, driven_gain
+from .grid import Amplitude, Grid
+from .impedance_map import ImpedanceMap
+from .measured_impedance import axis_of
+
+#: the phase of what drives a controller is found by iteration: relative change at its end
+_FOUND, _MOST = 1e-9, 100
+
+
+def quasi_linear_impedance(
+    diagrams: Diagram | Mapping[str, Diagram],
+    *,
+    amplitude: Amplitude,
+    frequency: float | Sequence[float] | np.ndarray,
+    motion: str = "L",
+    force: str = "E",
+) -> ImpedanceMap:
+    """Zhat_M of one diagram or several cases over frequency and amplitude, without simulation.
+
+    Arguments as in `measured_impedance`, the motion prescribed; controllers count as continuous.
+    raises ModelError: a block without laws or without describing function
+    """
+    cases = {diagrams.name: diagrams} if isinstance(diagrams, Diagram) else dict(diagrams)
+    grid = Grid.of(amplitude, frequency)
+    z = np.empty((len(cases), *(len(getattr(grid, n)) for n in grid.dims)), dtype=complex)
+    for i, diagram in enumerate(cases.values()):
+        form = _Form(diagram, motion, force)
+        for at, size, f in grid.points:
+            z[(i, *at)] = form.value(size, f)
+    axis = axis_of(next(iter(cases.values())))
+    values = {"impedance": (z, unit_of("stiffness", axis))}
+    data = grid.labelled(values, cases=list(cases), length=unit_of("position", axis))
+    data.attrs |= {"motion": motion, "force": force}
+    return ImpedanceMap(data)
+
+
+class _Form:
+    """The transfer function from motion to force, blocks to be put in place."""
+
+    def __init__(self, diagram: Diagram, motion: str, force: str) -> None:
+        self.diagram, self.motion = diagram, motion
+        self.force = transfer(diagram, force, (motion,), given=motion)[motion]
+        self.controls: dict[str, tuple[Controller, sp.Expr | None]] = {}
+        for part in diagram.controls:
+            if not isinstance(part.controller, Controller):
+                raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no laws")
+            self.controls[part.name] = (part.controller, self._drive(part))
+        self.linear = linear_blocks(diagram)
+
+    def _drive(self, part: Control) -> sp.Expr | None:
+        """What drives a controller, per motion; None: the motion itself."""
+        if part.input == self.motion:
+            return None
+        found = transfer(self.diagram, part.input, (self.motion,), given=self.motion)
+        return sp.sympify(found[self.motion])
+
+    def value(self, amplitude: float, frequency: float) -> complex:
+        s = 2j * np.pi * frequency
+        values = {
+            block_symbol(f"A_{n}"): complex(e.subs(S, s)) for n, e in self.linear.actuation.items()
+        }
+        for part in self.diagram.bodies:
+            assert isinstance(part.body, Body)
+            if part.motion == self.motion:
+                z = describing_function(part.body, amplitude=amplitude, frequency=frequency)
+                values[block_symbol(part.name)] = complex(z)
+        asked = []
+        for name, (law, drive) in self.controls.items():
+            values[block_symbol(name)] = 0j
+            if drive is None:
+                n = describing_function(law, amplitude=amplitude, frequency=frequency)
+                values[block_symbol(name)] = complex(n)
+            else:
+                gain = driven_gain(law, amplitude=amplitude, frequency=frequency)
+                asked.append((block_symbol(name), gain, drive))
+        for _ in range(_MOST):
+            before = dict(values)
+            for symbol, gain, drive in asked:
+                size = _number(drive, values) * amplitude
+                values[symbol] = gain(size) if size else 0j  # nothing drives it: it gives nothing
+            if all(cmath.isclose(values[k], before[k], rel_tol=_FOUND) for k in values):
+                return _number(self.force, values)
+        raise ModelError(f"{self.diagram.name}: the gains of its controllers settle on no phase")
+
+
+def _number(form: sp.Expr, values: dict[sp.Symbol, complex]) -> complex:
+    return complex(sp.N(sp.sympify(form).subs(values)))

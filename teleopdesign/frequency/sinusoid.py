@@ -1,0 +1,126 @@
+"""A diagram driven by a sinusoid until its cycles repeat."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ..diagrams import Diagram, Junction, Moving
+from ..errors import ModelError, did_you_mean
+from ..simulate import Prepared, Sampling, prepare, sine
+from ..simulate.sampling import SAMPLED
+from .lock_in import Harmonic, lock_in
+
+#: share of the amplitude by which ideal Coulomb friction gives before it slides. What it leaves of
+#: a spring, 1.25 sqrt(share) of the friction (P18), turns the phase of friction by 0.2 degrees
+GIVE = 1e-5
+#: inner steps in which such a bristle is reloaded after a reversal: one more than the kernel needs
+_RELOAD_STEPS = 11
+#: at least that many inner steps a cycle, also where nothing slides
+_LEAST_STEPS = 400
+#: cycles of the first run, and by how much that may grow
+_CYCLES, _MOST_LONGER = 4, 32
+
+
+@dataclass(frozen=True)
+class Sinusoid:
+    """How a diagram is driven.
+
+    drive: a motion (prescribed), or a signal from outside;  amplitude: its unit;  frequency: Hz
+    computer: how controllers are sampled, see `simulate`
+    give: share of the amplitude (of the motion) by which ideal Coulomb friction gives
+    tolerance: difference of cycles, relative, at which a first harmonic counts as settled; what a
+        transient that loses a quarter over half the run has still to come is three times that
+    """
+
+    drive: str
+    amplitude: float
+    frequency: float
+    computer: Sampling | Literal["continuous"] = SAMPLED
+    give: float = GIVE
+    tolerance: float = 3e-4
+
+
+def settled_harmonics(
+    diagram: Diagram, drive: Sinusoid, *, signals: tuple[str, ...]
+) -> dict[str, Harmonic]:
+    """First harmonics of signals once their cycles repeat; phases relative to the drive.
+
+    Runs four cycles, then twice as many, up to 128, until the last ones agree. What has not
+    settled then says so: `unsettled`.
+
+    raises ModelError: drive is no motion and not from outside, or an unknown signal
+    """
+    for name in signals:
+        diagram.signal(name)
+    cycles = _CYCLES
+    while True:
+        prepared = _prepared(diagram, drive, duration=cycles / drive.frequency)
+        rows, timing = prepared.checked(long_step="refine", every_step=True)
+        columns = dict(zip(prepared.program.layout.columns, rows.T, strict=True))
+        columns = _outside(diagram, drive, len(rows), timing.step) | columns
+        found = {
+            name: lock_in(
+                _signal(diagram, columns, name),
+                step=timing.step,
+                frequency=drive.frequency,
+                points=round(1 / (drive.frequency * timing.step)),
+            )
+            for name in signals
+        }
+        worst = max(h.unsettled for h in found.values())
+        if worst <= drive.tolerance or cycles >= _CYCLES * _MOST_LONGER:
+            return found
+        cycles *= 2
+
+
+def _prepared(diagram: Diagram, drive: Sinusoid, *, duration: float) -> Prepared:
+    omega = 2 * np.pi * drive.frequency
+    motion = sine(amplitude=drive.amplitude, frequency=drive.frequency)
+    prescribed = drive.drive in {b.motion for b in diagram.blocks if isinstance(b, Moving)}
+    if not prescribed and drive.drive not in diagram.outside:
+        known = [b.motion for b in diagram.blocks if isinstance(b, Moving)] + [*diagram.outside]
+        raise ModelError(
+            f'{diagram.name}: "{drive.drive}" cannot be driven, found {", ".join(known)}'
+            f"{did_you_mean(drive.drive, known)}"
+        )
+    # reloading takes sqrt(2 lambda/a), lambda = give A and a = A omega^2
+    step = min(np.sqrt(2 * drive.give) / _RELOAD_STEPS, 2 * np.pi / _LEAST_STEPS) / omega
+    period = 1e-3 if isinstance(drive.computer, str) else drive.computer.period
+    samples = np.ceil(duration / period - 1e-9)  # whole cycles, at least the number asked for
+    return prepare(
+        diagram,
+        duration=float(samples * period),
+        motion={drive.drive: motion} if prescribed else None,
+        inputs=None if prescribed else {drive.drive: motion.position},
+        computer=drive.computer,
+        step=float(step),
+        give=drive.give * _length(diagram, drive),
+    )
+
+
+def _length(diagram: Diagram, drive: Sinusoid) -> float:
+    """Amplitude of the motion, m or rad, as far as it is known; 1 mm under a force."""
+    return 1e-3 if diagram.outside.get(drive.drive) == "force" else drive.amplitude
+
+
+def _outside(diagram: Diagram, drive: Sinusoid, rows: int, step: float) -> dict[str, np.ndarray]:
+    """Signals from outside at the nodes: the drive, and zeros."""
+    found = {name: np.zeros(rows) for name in diagram.outside}
+    if drive.drive in found:
+        found[drive.drive] = sine(amplitude=drive.amplitude, frequency=drive.frequency).position(
+            step * np.arange(rows)
+        )
+    return found
+
+
+def _signal(diagram: Diagram, columns: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+    """A signal at the nodes; sums anew, for the computer's own hold the last sample."""
+    for part in diagram.parts:
+        if isinstance(part, Junction) and part.output == name:
+            shape = np.zeros_like(next(iter(columns.values())))
+            return sum((g * columns[s] for s, g in part.terms.items()), shape)
+    return columns[name]

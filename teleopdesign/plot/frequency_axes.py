@@ -1,0 +1,80 @@
+"""The look of figures over frequency and amplitude: cases, points, panels, abscissa."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+from .design import CASES, ONE_COLUMN, TWO_COLUMNS
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+    import matplotlib.figure
+
+Columns = Literal[1, 2]
+MEASURED = "#7F7F7F"
+
+
+def look(case: str) -> dict[str, Any]:
+    """Colour, line and label of a case, the same in every figure."""
+    colour, line, label = CASES.get(case, (None, "-", case))
+    return {"color": colour, "linestyle": line, "label": label}
+
+
+def points(case: str, *, alone: bool) -> dict[str, Any]:
+    """Look of what was measured: grey, or the colour of its case where there are several."""
+    colour = MEASURED if alone or case not in CASES else CASES[case][0]
+    return {
+        "color": colour,
+        "linestyle": "none",
+        "marker": "o",
+        "markersize": 2.6,
+        "markerfacecolor": "none",
+        "markeredgewidth": 0.7,
+    }
+
+
+def panels(columns: Columns) -> tuple[matplotlib.figure.Figure, Any]:
+    """Two panels that share their abscissa: above each other, or side by side in two columns."""
+    import matplotlib.pyplot as plt
+
+    if columns == 2:
+        return plt.subplots(1, 2, sharex=True, figsize=(TWO_COLUMNS, 2.4))
+    return plt.subplots(2, 1, sharex=True, figsize=(ONE_COLUMN, 3.6))
+
+
+def share_abscissa(
+    upper: matplotlib.axes.Axes,
+    lower: matplotlib.axes.Axes,
+    label: str,
+    ends: tuple[float, float],
+    columns: Columns,
+) -> None:
+    """Logarithmic abscissa of both panels, named below the lower one, or below both of a row."""
+    logarithmic(lower, *ends)
+    for axis in (upper, lower):
+        axis.grid(True)
+        if columns == 2 or axis is lower:
+            axis.set_xlabel(label)
+    upper.figure.align_ylabels()
+
+
+def logarithmic(axis: matplotlib.axes.Axes, low: float, high: float) -> None:
+    """Logarithmic abscissa with plain numbers; 2 and 5 too where it spans under two decades."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axis.set_xscale("log")
+    if low < high:
+        axis.set_xlim(low, high)
+    subs = (1.0, 2.0, 5.0) if high < 100 * low else (1.0,)
+    axis.xaxis.set_major_locator(LogLocator(subs=subs))
+    axis.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+    axis.xaxis.set_minor_formatter(NullFormatter())
+
+
+def mark_degrees(axis: matplotlib.axes.Axes) -> None:
+    """Ticks at 45 or 90 degrees, where the range is wide enough."""
+    from matplotlib.ticker import MultipleLocator
+
+    low, high = axis.get_ylim()
+    if high - low > 90:
+        axis.yaxis.set_major_locator(MultipleLocator(90 if high - low > 270 else 45))

@@ -1,0 +1,55 @@
+"""Lock-in over whole cycles: phasors, distortion, settling."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from teleopdesign.frequency.lock_in import distortion, lock_in, phasors
+
+GRID = 2 * np.pi * np.arange(2000) / 2000
+
+
+@given(real=st.floats(-5, 5), imaginary=st.floats(-5, 5), offset=st.floats(-5, 5))
+def test_a_phasor_counts_sine_as_one_and_cosine_as_j(real, imaginary, offset):
+    wave = offset + real * np.sin(GRID) + imaginary * np.cos(GRID) + np.sin(3 * GRID)
+    # 1e-12: rounding of 2000 terms of size 10
+    assert phasors(wave) == pytest.approx(real + 1j * imaginary, abs=1e-12)
+
+
+def test_distortion_of_a_square_wave_is_the_known_one():
+    # sqrt(pi^2/8 - 1) = 0.4834; 2000 points to a cycle leave 1e-3
+    assert distortion(np.sign(np.sin(GRID + 1e-3))) == pytest.approx(0.4834, abs=1e-3)
+
+
+def test_a_pure_sine_is_undistorted():
+    # 1e-7: square root of the rounding of a variance
+    assert distortion(np.sin(GRID + 0.3)) < 1e-7
+
+
+def test_a_cycle_need_not_be_a_whole_number_of_steps():
+    step, frequency = 1e-4, 17.3
+    time = step * np.arange(round(5 / frequency / step))
+    found = lock_in(
+        np.sin(2 * np.pi * frequency * time + 0.5), step=step, frequency=17.3, points=578
+    )
+    # (omega step)^2/8 = 1.5e-5 is what linear interpolation leaves
+    assert found.phasor == pytest.approx(np.exp(0.5j), abs=2e-5)
+    assert found.unsettled < 2e-5
+
+
+def test_a_drifting_amplitude_is_not_settled():
+    time = 1e-3 * np.arange(5001)
+    found = lock_in(
+        (1 + 0.1 * time) * np.sin(2 * np.pi * time), step=1e-3, frequency=1.0, points=1000
+    )
+    # a tenth a cycle over the three cycles from the second to the last, of 1.4 on average
+    assert found.unsettled == pytest.approx(3 * 0.1 / 1.4, rel=0.02)
+
+
+def test_a_turning_transient_does_not_pass_for_settled():
+    """Its cycles come in pairs that agree; those of the second half of the record do not."""
+    time = 1e-3 * np.arange(8001)
+    pairs = 1 + 0.1 * (np.floor(time / 2) % 2)
+    found = lock_in(pairs * np.sin(2 * np.pi * time), step=1e-3, frequency=1.0, points=1000)
+    assert found.unsettled == pytest.approx(0.1 / 1.1, rel=0.02)

@@ -1,0 +1,139 @@
+"""Impedance measured in simulation: linear mechanisms, Coulomb friction, errors, files."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray
+from design.devices import LUGRE, body
+
+from teleopdesign.blocks import Body, Value
+from teleopdesign.controllers import controller
+from teleopdesign.diagrams import four_cases, haptic_interface, world_haptics_2005
+from teleopdesign.errors import ModelError
+from teleopdesign.frequency import bode, falling, measured_impedance, simulated_response
+
+LINEAR = body(0.2, viscous__damping=3.0, spring__stiffness=500.0)
+
+
+@pytest.fixture(scope="module")
+def coulomb():
+    diagram = haptic_interface(body(coulomb__level=0.5))
+    return measured_impedance(diagram, amplitude=[1e-3, 4e-3, 1e-2], frequency=[2.0, 5.0])
+
+
+def test_a_linear_mechanism_has_its_own_impedance_at_every_amplitude():
+    found = measured_impedance(
+        haptic_interface(LINEAR), amplitude=[1e-4, 1e-2], frequency=[0.5, 8.0, 60.0]
+    )
+    s = 2j * np.pi * np.array([0.5, 8.0, 60.0])
+    expected = 0.2 * s**2 + 3.0 * s + 500.0
+    # exact but for (omega step)^2/8 of reading cycles between steps
+    np.testing.assert_allclose(found.data["impedance"][0, :, 0], expected, rtol=1e-4)
+    assert float(found.spread()["size"].max()) < 1e-6
+    assert float(found.data["distortion"].max()) < 1e-3
+
+
+def test_coulomb_friction_and_mass_are_as_the_describing_function_says(coulomb):
+    omega = 2 * np.pi * coulomb.data["frequency"]
+    expected = -0.15 * omega**2 + 1j * 4 * 0.5 / (np.pi * coulomb.data["amplitude"])
+    ratio = (coulomb.data["impedance"].isel(case=0) / expected).values
+    # the contact gives by 1e-5 of the amplitude: 0.4 % of friction, in phase with position
+    assert np.abs(ratio - 1).max() < 5e-3
+
+
+def test_phase_loss_over_a_decade_stays_below_its_bound(coulomb):
+    """At most 54.9 degrees a decade of amplitude for mass and Coulomb friction (P21)."""
+    spread = coulomb.spread()["phase"]
+    assert float(spread.max()) < 54.9 + 0.3  # 0.3: the contact's give
+    assert float(spread.max()) > 50
+
+
+def test_cycles_settle_behind_a_slow_filter():
+    """At 100 Hz a filter of 20 Hz loses 72 % a cycle: more than the first four cycles."""
+    feedback = controller("low_pass", {"bandwidth": 20.0})
+    diagram = haptic_interface(LINEAR, force_feedback=feedback, analog=("H",))
+    found = measured_impedance(diagram, amplitude=1e-3, frequency=100.0)
+    expected = bode(diagram, output="E", input="L", given="L", frequency=np.array([100.0]))
+    assert float(found.data["unsettled"].max()) < 3e-4
+    # 0.1 %: what the tolerance of settling allows
+    np.testing.assert_allclose(found.data["impedance"].item(), expected.values()[0], rtol=1e-3)
+
+
+def test_amplitude_can_follow_a_profile():
+    found = measured_impedance(
+        haptic_interface(LINEAR), amplitude=falling(0.01), frequency=[1.0, 10.0]
+    )
+    assert found.on_profile
+    np.testing.assert_allclose(found.data["amplitude"], [0.01, 0.01 * 10**-0.8])
+    with pytest.raises(ModelError, match="follows frequency"):
+        found.spread()
+
+
+def test_a_revolute_axis_has_its_own_units():
+    wheel = Body("revolute", {"inertia": Value(0.01)}, ())
+    found = measured_impedance(haptic_interface(wheel), amplitude=0.1, frequency=2.0)
+    assert found.data["impedance"].attrs["units"] == "N*m/rad"
+    assert found.data["amplitude"].attrs["units"] == "rad"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"amplitude": -1e-3}, "amplitude must be positive"),
+        ({"frequency": [1.0, float("nan")]}, "frequency must be positive"),
+        ({"drive": "L_d"}, '"L_d" cannot be driven.*did you mean'),
+        ({"force": "F"}, 'no signal "F"'),
+    ],
+)
+def test_a_wrong_request_is_said_in_one_line(arguments, message):
+    with pytest.raises(ModelError, match=message):
+        measured_impedance(
+            haptic_interface(LINEAR), **({"amplitude": 1e-3, "frequency": 1.0} | arguments)
+        )
+
+
+def test_results_are_written_with_units(coulomb, tmp_path):
+    coulomb.to_netcdf(tmp_path / "map.nc")
+    with xarray.open_dataset(tmp_path / "map.nc") as read:
+        z = read["impedance_real"] + 1j * read["impedance_imaginary"]
+        np.testing.assert_array_equal(z.values, coulomb.data["impedance"].values)
+        assert read["impedance_real"].attrs["units"] == "N/m"
+    coulomb.to_json(tmp_path / "map.json")
+    read = json.loads((tmp_path / "map.json").read_text())
+    assert read["unit"] == "dB re 1 N/m"
+    np.testing.assert_allclose(
+        read["cases"]["haptic interface"]["size"], coulomb.decibel[0], rtol=1e-4
+    )
+
+
+def test_beyond_an_actuators_reach_there_is_no_number(coulomb, tmp_path):
+    limited = coulomb.up_to(lambda f: 0.02 / f)
+    known = np.isfinite(limited.decibel.isel(case=0).values)
+    np.testing.assert_array_equal(known, [[True, True, True], [True, True, False]])
+    assert float(limited.spread()["size"][0, 1]) < float(coulomb.spread()["size"][0, 1])
+    limited.to_json(tmp_path / "map.json")
+    written = json.loads((tmp_path / "map.json").read_text(), parse_constant=pytest.fail)
+    assert written["cases"]["haptic interface"]["size"][1][2] is None
+
+
+def test_a_linear_loop_simulated_agrees_with_its_symbolic_response():
+    """Analog force feedback on a hand: 0.1 % at every frequency."""
+    feedback = controller("low_pass", {"bandwidth": 20.0})
+    diagram = haptic_interface(
+        body(viscous__damping=5.0), hand=LINEAR, force_feedback=feedback, analog=("H",)
+    )
+    f = np.array([0.5, 2.0, 5.0, 20.0, 100.0])
+    found = simulated_response(diagram, amplitude=1.0, frequency=f)
+    np.testing.assert_allclose(found.values(), bode(diagram, frequency=f).values(), rtol=1e-3)
+
+
+@pytest.mark.slow
+def test_how_ideal_the_contact_is_hardly_matters():
+    """LuGre beside the four cases: halving the give moves sizes by less than 0.1 dB."""
+    cases = four_cases(world_haptics_2005()) | {"LuGre": haptic_interface(body(**LUGRE))}
+    coarse, fine = (
+        measured_impedance(cases, amplitude=[5e-4, 1e-2], frequency=[2.0, 15.0], give=give)
+        for give in (1e-5, 5e-6)
+    )
+    assert float(np.abs(coarse.decibel - fine.decibel).max()) < 0.1
