@@ -1,0 +1,60 @@
+"""What the records of an experiment reached: travel, speed, command, sensors, sampling."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..diagnose.force_error import prepare
+from ..errors import ExperimentError
+from ..measurement.experiment import Experiment
+
+
+@dataclass(frozen=True)
+class Reach:
+    """The recorded range of one body; SI.
+
+    low, high: of its position;  peak_speed, rms_speed;  command: largest commanded force
+    duration: of the longest record;  sample_period: s;  step: what one reading leaves open
+    measures_force: whether the force of hand or environment is a channel
+    """
+
+    low: float
+    high: float
+    peak_speed: float
+    rms_speed: float
+    command: float
+    duration: float
+    sample_period: float
+    step: float
+    measures_force: bool
+
+    @property
+    def travel(self) -> float:
+        """Length of the travel."""
+        return self.high - self.low
+
+
+def reach_of(experiment: Experiment, place: str) -> Reach:
+    """What the records of an experiment reached at one body.
+
+    raises ExperimentError: the body does not move in them
+    """
+    motions = [s.motion for s in prepare(experiment).stretches if s.motion.body == place]
+    position = np.concatenate([m.position for m in motions])
+    speed = np.abs(np.concatenate([m.velocity for m in motions]))
+    if not speed.any():
+        raise ExperimentError(f"{experiment.folder.name}: {place}.position: it never moves")
+    records = experiment.records
+    return Reach(
+        low=float(position.min()),
+        high=float(position.max()),
+        peak_speed=float(speed.max()),
+        rms_speed=float(np.sqrt(np.mean(speed**2))),
+        command=float(max(np.abs(m.command).max() for m in motions)),
+        duration=max(r.duration for r in records),
+        sample_period=records[0].sample_time,
+        step=max(m.step for m in motions),
+        measures_force=f"{place}.interaction_force" in experiment.channels,
+    )

@@ -1,0 +1,93 @@
+"""Is the compensated device passive? Claims, each with how it is known."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from ..blocks import Body
+from ..controllers import Controller
+from ..diagrams import haptic_interface
+from ..passivity import (
+    Claim,
+    Evidence,
+    bounded_compensation,
+    dahl_compensation,
+    delayed_small_motion,
+    hand_port,
+    positive_real,
+)
+from .chosen import Chosen
+from .friction_range import FrictionRange
+from .linear import with_damping
+from .prediction import Prediction
+from .rounding import rounded_down, rounded_up
+
+
+def lower_damping(body: Body, *, errors: float) -> float:
+    """Lower end of the interval of viscous damping, N s/m; 0 where there is none."""
+    damping = body.parameters.get("viscous.damping")
+    if damping is None:
+        return 0.0
+    error = damping.stderr if math.isfinite(damping.stderr) else 0.0
+    return max(damping.value - errors * error, 0.0)
+
+
+def cancellation_claims(
+    chosen: Chosen, friction: FrictionRange, *, gain: float, late: float, damping: float
+) -> list[Claim]:
+    """Claims on friction and its cancellation, at the worst ends of all intervals.
+
+    gain: that acts of a command;  late: of the cancellation's force, s;  damping: N s/m
+    """
+    level = chosen.controller.names()[f"{chosen.law}.level"] * gain
+    level = rounded_up(level, digits=6)
+    least = rounded_down(friction.sure, digits=4)
+    if chosen.law != "dahl" or not friction.has_presliding:
+        return [bounded_compensation(coulomb_level=_decimal(least), bound=_decimal(level))]
+    stiffness = rounded_up(chosen.controller.names()["dahl.stiffness"] * gain, digits=6)
+    presliding = _decimal(rounded_down(friction.sure_stiffness, digits=4))
+    claims = [
+        dahl_compensation(
+            coulomb_level=_decimal(least),
+            highest_level=_decimal(rounded_up(friction.most, digits=4)),
+            compensator_level=_decimal(level),
+            compensator_stiffness=_decimal(stiffness),
+            presliding_stiffness=presliding,
+        )
+    ]
+    if late > 0:
+        claims.append(
+            delayed_small_motion(
+                damping=_decimal(damping),
+                compensator_stiffness=_decimal(stiffness),
+                delay=_decimal(late),
+                presliding_stiffness=presliding,
+            )
+        )
+    return claims
+
+
+def feedback_claim(body: Body, force_feedback: Controller) -> Claim:
+    """Is the linear part of the device under force feedback passive, neither sampled nor late?"""
+    plain = with_damping(body, 0.0)
+    for effect in [e for e in plain.effects if e.role in ("actuation", "structure", "contact")]:
+        plain = plain.without_effect(effect.name)
+    port, _ = hand_port(haptic_interface(plain, force_feedback=force_feedback))
+    claim = positive_real(port)
+    return replace(claim, statement=f"without friction, sampling and delay {claim.statement}")
+
+
+def energy_claim(prediction: Prediction, case: str) -> Claim | None:
+    """Does the hand put energy in, along the motion that was simulated? None where none was."""
+    found = prediction.cases[case]
+    if found.failed:
+        return None
+    statement = "the device takes energy from the hand along the stated motion"
+    searched = "one settled cycle of one motion, simulated with sampling, delay and encoder"
+    return Claim(statement, Evidence(found.energy > 0, searched, found.energy, "J a cycle"))
+
+
+def _decimal(value: float) -> str:
+    """The number as it is read, so that claims are about that number exactly."""
+    return f"{value:.12g}"
