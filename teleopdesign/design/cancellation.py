@@ -14,7 +14,6 @@ import sympy as sp
 from ..blocks import Body
 from ..controllers import controller
 from ..effects import SIGNALS, delayed
-from ..measurement.motion import TRAVEL
 from ..quantity import unit_of
 from .assumptions import Assumptions
 from .chosen import Chosen, Reason
@@ -80,12 +79,16 @@ def dahl_cancellation(
     gain: that acts of a command;  late: delay of its force, s;  damping: viscous, lower end
     """
     acting = level.value * gain
-    counted = assumptions.counts * reach.step
-    limits = {
-        f"a bristle length f_D/sigma_D of {assumptions.counts:g} encoder steps of {reach.step:.3g} "
-        f"{unit_of('position', axis)}, longer than any presliding that the records "
-        f"cannot tell ({TRAVEL} steps), so that P43 holds beside one": acting / counted
+    unit = unit_of("position", axis)
+    lengths = {
+        f"{assumptions.counts:g} encoder steps of {reach.step:.3g} {unit}": (
+            assumptions.counts * reach.step
+        ),
+        f"{reach.unresolved:.3g} {unit}, below which the records tell no presliding, so that P43 "
+        "holds beside one": reach.unresolved,
     }
+    longest = max(lengths, key=lengths.__getitem__)
+    limits = {f"a bristle length f_D/sigma_D of {longest}": acting / lengths[longest]}
     if friction.has_presliding:
         if friction.sure_stiffness <= 0:
             return None

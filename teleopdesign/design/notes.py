@@ -60,6 +60,12 @@ def _friction(design: Design) -> list[str]:
             f"lower one is {max(friction.sure - abs(bias.value), 0.0):.3g} {unit}, and motion that "
             "only ever goes one way would need a level below that."
         )
+    if design.cancellation.law == "smoothed_coulomb":
+        lines.append(
+            f"The records tell no presliding shorter than {design.reach.unresolved:.3g} "
+            f"{unit_of('position', design.body.axis)}. Beside one, a smoothed cancellation is a "
+            "negative damper in small motion: lower its level where the device hums at rest."
+        )
     if friction.has_presliding:
         lines.append(
             "Friction is a spring before it slides: a smoothed Coulomb cancellation is not "

@@ -9,6 +9,7 @@ import numpy as np
 from ..diagnose.force_error import prepare
 from ..errors import ExperimentError
 from ..measurement.experiment import Experiment
+from ..measurement.motion import TRAVEL
 
 
 @dataclass(frozen=True)
@@ -17,6 +18,8 @@ class Reach:
 
     low, high: of its position;  peak_speed, rms_speed;  command: largest commanded force
     duration: of the longest record;  sample_period: s;  step: what one reading leaves open
+    unresolved: length below which the give of a contact before it slides cannot be told: within the
+        steps that tell a motion, or half a period of the comparison's bandwidth after a reversal
     measures_force: whether the force of hand or environment is a channel
     """
 
@@ -28,6 +31,7 @@ class Reach:
     duration: float
     sample_period: float
     step: float
+    unresolved: float
     measures_force: bool
 
     @property
@@ -46,7 +50,9 @@ def reach_of(experiment: Experiment, place: str) -> Reach:
     speed = np.abs(np.concatenate([m.velocity for m in motions]))
     if not speed.any():
         raise ExperimentError(f"{experiment.folder.name}: {place}.position: it never moves")
-    records = experiment.records
+    records, step = experiment.records, max(m.step for m in motions)
+    acceleration = float(np.sqrt(np.mean(np.concatenate([m.acceleration**2 for m in motions]))))
+    after_reversal = acceleration / (2 * motions[0].bandwidth) ** 2 / 2
     return Reach(
         low=float(position.min()),
         high=float(position.max()),
@@ -55,6 +61,7 @@ def reach_of(experiment: Experiment, place: str) -> Reach:
         command=float(max(np.abs(m.command).max() for m in motions)),
         duration=max(r.duration for r in records),
         sample_period=records[0].sample_time,
-        step=max(m.step for m in motions),
+        step=step,
+        unresolved=max(TRAVEL * step, after_reversal),
         measures_force=f"{place}.interaction_force" in experiment.channels,
     )
