@@ -50,8 +50,11 @@ def acting_gain(body: Body, reach: Reach, *, errors: float) -> float:
 def cancelled_level(
     friction: FrictionRange, gain: float, assumptions: Assumptions, axis: str
 ) -> Reason | None:
-    """The level to cancel, in commanded force; None where the least level may be none at all."""
-    if friction.sure <= 0:
+    """The level to cancel, in commanded force; None where no level is sure.
+
+    None is where the least one may be zero, or where the records never come near the level.
+    """
+    if friction.sure <= 0 or not friction.slides:
         return None
     unit = unit_of("force", axis)
     value = rounded_down(assumptions.fraction * friction.sure / gain)
@@ -76,7 +79,7 @@ def dahl_cancellation(
 ) -> Chosen | None:
     """A Dahl cancellation of that level; None where presliding leaves no stiffness to it.
 
-    gain: that acts of a command;  late: delay of its force, s;  damping: viscous, lower end
+    gain: that acts of a command;  late: delay of its force, s;  damping: of small motion, lower end
     """
     acting = level.value * gain
     unit = unit_of("position", axis)
@@ -90,7 +93,7 @@ def dahl_cancellation(
     longest = max(lengths, key=lengths.__getitem__)
     limits = {f"a bristle length f_D/sigma_D of {longest}": acting / lengths[longest]}
     if friction.has_presliding:
-        if friction.sure_stiffness <= 0:
+        if friction.sure_stiffness <= 0 or (late > 0 and damping <= 0):
             return None
         passive = friction.sure_stiffness * math.sqrt(acting / friction.most)
         why = f"{STIFFNESS_FRACTION:g} of the stiffest with sigma_D^2/f_D <= sigma_p^2/f_C over "
@@ -99,9 +102,12 @@ def dahl_cancellation(
         limits = {why: STIFFNESS_FRACTION * passive}
         from ..passivity.delayed_compensation import SINC_LEAST
 
-        if damping > 0 and late > 0:
+        if late > 0:
             needed = damping / (float(SINC_LEAST) * late)
-            limits["viscous damping of at least 0.2172 sigma_D tau at this delay (P49)"] = needed
+            limits[
+                f"damping of at least 0.2172 sigma_D tau in small motion, {damping:.4g} at "
+                f"{1e3 * late:.3g} ms (P49)"
+            ] = needed
     why = min(limits, key=limits.__getitem__)
     stiffness = rounded_down(limits[why] / gain)
     made = controller("dahl", {"level": level.value, "stiffness": stiffness})

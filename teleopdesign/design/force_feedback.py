@@ -26,6 +26,8 @@ from .rounding import rounded_down, rounded_up
 
 #: largest gain proposed: beyond it what is left of friction is a few percent already
 MOST_GAIN = 20.0
+#: times its delay that the loop bears where the device is held rigidly
+HELD_FACTOR = 1.5
 #: times the least scheduling velocity of P13 that b keeps
 SCHEDULE_MARGIN = 1.25
 
@@ -100,15 +102,18 @@ def force_feedback(
     mass = float(body.equation().inertia.subs(body.numbers()))
     share, bandwidth = load / (mass + load), assumptions.bandwidth
     factor = assumptions.delay_factor
-    most = largest_gain(share=share, bandwidth=bandwidth, delay=delay, factor=factor)
-    gain = rounded_down(most, digits=2)
+    free = largest_gain(share=share, bandwidth=bandwidth, delay=delay, factor=factor)
+    held = largest_gain(share=1.0, bandwidth=bandwidth, delay=delay, factor=HELD_FACTOR)
+    gain = rounded_down(min(free, held), digits=2)
     loop = Loop(gain * share, bandwidth, delay)
     least = smoothing_velocity * gain / (1 + gain)
     scheduling = rounded_up(max(SCHEDULE_MARGIN * least, reach.rms_speed), digits=2)
     made = scheduled_force_feedback(gain=gain, scheduling_velocity=scheduling, bandwidth=bandwidth)
     kilo, speed = unit_of("inertia", body.axis), unit_of("velocity", body.axis)
-    why = f"the largest whose loop with a load of {load:.3g} {kilo} on {mass:.3g} {kilo} bears "
-    why += f"{factor:g} times its delay of {1e3 * delay:.3g} ms"
+    with_load = f"with a load of {load:.3g} {kilo} on {mass:.3g} {kilo} bears {factor:g} times"
+    rigid = f"held rigidly bears {HELD_FACTOR:g} times"
+    why = f"the largest whose loop {with_load if free <= held else rigid} its delay of "
+    why += f"{1e3 * delay:.3g} ms"
     if gain == MOST_GAIN:
         why = f"no more than {MOST_GAIN:g}; " + why.replace("the largest whose", "its")
     slow = f"b (1 + k) >= a k asks for {least:.3g} {speed} (P13)"

@@ -32,6 +32,7 @@ class FrictionRange:
     identified: `coulomb.level`, and its standard error;  lowest, highest: over the shape
     sure, most: the same at the ends of the interval of so many standard errors
     where_lowest: in words;  stiffness: sigma_p, N/m, inf: none; sure_stiffness: its lower end
+    bristle_lengths: half of the recorded travel in bristle lengths, inf without presliding
     unknown: parameters of the level without a standard error
     """
 
@@ -44,12 +45,18 @@ class FrictionRange:
     where_lowest: str
     stiffness: float
     sure_stiffness: float
+    bristle_lengths: float
     unknown: tuple[str, ...] = ()
 
     @property
     def has_presliding(self) -> bool:
         """Whether friction is a spring before it slides."""
         return math.isfinite(self.stiffness)
+
+    @property
+    def slides(self) -> bool:
+        """Whether friction comes near its level within the recorded travel: else it is a guess."""
+        return self.bristle_lengths > 1.0
 
 
 def friction_range(body: Body, reach: Reach, *, errors: float) -> FrictionRange | None:
@@ -76,6 +83,9 @@ def friction_range(body: Body, reach: Reach, *, errors: float) -> FrictionRange 
         where_lowest=", ".join(where),
         stiffness=stiffness.value if stiffness else math.inf,
         sure_stiffness=_lower(stiffness.value, stiffness.stderr, errors) if stiffness else math.inf,
+        bristle_lengths=(
+            reach.travel / 2 * stiffness.value / float(level.max()) if stiffness else math.inf
+        ),
         unknown=_without_error(body),
     )
 

@@ -1,7 +1,7 @@
-"""What linear theory says: friction as the damper that takes the same energy in a cycle.
+"""What linear theory says: friction as a damper and a spring of the same first harmonic.
 
-Bode plots need linear blocks. Friction becomes a damper that takes, along the stated motion, the
-energy that the friction level takes; a Dahl cancellation a negative one in the same way; smoothed
+Bode plots need linear blocks. Friction becomes the damper, with presliding also the spring, of its
+first harmonic along the stated motion; a Dahl cancellation less of both in the same way; smoothed
 friction and schedules are frozen at the mean speed of the motion.
 """
 
@@ -14,10 +14,10 @@ import numpy as np
 
 from ..blocks import Body, Value
 from ..controllers import Controller
-from ..diagrams import Control, Diagram, four_cases
+from ..diagrams import Diagram, four_cases
 from ..effects import EFFECTS
 from ..frequency import FrequencyResponse, bode
-from ..passivity.rate_independent import dahl_loss
+from ..passivity import given_out_late
 from .quasi_static import force_needed
 from .stated_motion import StatedMotion
 
@@ -60,34 +60,54 @@ def _linear(diagram: Diagram, motion: StatedMotion) -> Diagram:
     (place,) = (b for b in diagram.bodies if b.name == "Z_M")
     body = place.body
     assert isinstance(body, Body)
-    damping = _equal_damping(body, motion)
+    damping, stiffness = _equal_friction(body, motion)
     for block in diagram.controls:
         assert isinstance(block.controller, Controller)
         if block.controller.stages[0].law.name == "dahl":
-            damping -= _dahl_damping(block, motion)
+            values = block.controller.stages[0].values
+            less = _equal_dahl(values["level"], values["stiffness"], motion)
+            damping, stiffness = damping - less[0], stiffness - less[1]
             diagram = diagram.without(block.name)
-    return diagram.with_block("Z_M", with_damping(body, damping))
+    return diagram.with_block("Z_M", without_friction(body, damping=damping, stiffness=stiffness))
 
 
-def with_damping(body: Body, damping: float) -> Body:
-    """The body without friction, with a damper more (N s/m), never less than none in all."""
+def without_friction(body: Body, *, damping: float = 0.0, stiffness: float = 0.0) -> Body:
+    """The body without friction, with a damper (N s/m) and a spring (N/m) more, none below 0."""
     for effect in [e for e in reversed(body.effects) if e.role in FRICTION]:
         body = body.without_effect(effect.name)
-    own = body.parameters["viscous.damping"].value if body.has("viscous") else 0.0
-    if not body.has("viscous"):
-        body = body.with_effect(EFFECTS["viscous"])
-    return body.with_values({"viscous.damping": Value(max(own + damping, 0.0))})
+    for name, parameter, more in (
+        ("viscous", "damping", damping),
+        ("spring", "stiffness", stiffness),
+    ):
+        full = f"{name}.{parameter}"
+        if not body.has(name):
+            body = body.with_effect(EFFECTS[name])
+        value = max(body.parameters[full].value + more, 0.0)
+        body = body.with_values({full: Value(value)})
+    return body
 
 
-def _equal_damping(body: Body, motion: StatedMotion) -> float:
-    """Damping that takes the energy of sliding friction along a cycle, N s/m."""
+def _equal_friction(body: Body, motion: StatedMotion) -> tuple[float, float]:
+    """Damping and stiffness that friction amounts to along a cycle, N s/m and N/m (P16, P18)."""
     _, friction = force_needed(body, motion)
     _, _, velocity, _ = motion.cycle(len(friction))
-    return float(np.mean(friction * velocity) / np.mean(velocity**2))
+    if not velocity.any() or not friction.any():
+        return 0.0, 0.0
+    stiffness = body.parameters.get("presliding.stiffness")
+    if stiffness is not None and math.isfinite(stiffness.value):
+        # of a level that varies, that which takes the same energy while it slides
+        level = float(np.mean(friction * velocity) / np.mean(np.abs(velocity)))
+        return _equal_dahl(level, stiffness.value, motion)
+    return float(np.mean(friction * velocity) / np.mean(velocity**2)), 0.0
 
 
-def _dahl_damping(block: Control, motion: StatedMotion) -> float:
-    assert isinstance(block.controller, Controller)
-    values = block.controller.stages[0].values
-    loss = dahl_loss(values["level"], values["stiffness"], motion.amplitude)
-    return loss / (math.pi * motion.omega * motion.amplitude**2)
+def _equal_dahl(level: float, stiffness: float, motion: StatedMotion) -> tuple[float, float]:
+    """Damping and stiffness of the first harmonic of Dahl friction, N s/m and N/m (P18)."""
+    amplitude = motion.amplitude
+    cycle = math.pi * amplitude**2
+    loss = given_out_late(level=level, stiffness=stiffness, amplitude=amplitude, phase=0.0)
+    # late by a quarter of a period the spring's part does the work
+    spring = given_out_late(
+        level=level, stiffness=stiffness, amplitude=amplitude, phase=math.pi / 2
+    )
+    return loss / (cycle * motion.omega), -spring / cycle

@@ -10,6 +10,7 @@ from ..quantity import unit_of
 from .friction_range import FrictionRange
 from .from_answer import Diagnosed
 from .outcome import Design
+from .prediction import CasePrediction
 from .quasi_static import slow_body
 
 #: part of a predicted force by which two predictions may be apart and nothing is said
@@ -81,15 +82,24 @@ def _friction(design: Design) -> list[str]:
 
 
 def _none_proposed(friction: FrictionRange, unit: str) -> str:
-    if friction.sure <= 0:
-        return (
-            f"No cancellation is proposed: the least level within the interval is "
-            f"{friction.sure:.3g} {unit} (at {friction.where_lowest}), so that no level is sure."
+    if not friction.slides:
+        why = (
+            f"friction does not come near its level within the recorded travel, half of which is "
+            f"{friction.bristle_lengths:.2g} bristle lengths: the level is a guess"
         )
-    return (
-        "No cancellation is proposed: the presliding stiffness is not told from zero, so that no "
-        "stiffness of a cancellation is sure to be passive (P43)."
-    )
+    elif friction.sure <= 0:
+        why = (
+            f"the least level within the interval is {friction.sure:.3g} {unit} (at "
+            f"{friction.where_lowest}), so that no level is sure"
+        )
+    elif friction.sure_stiffness <= 0:
+        why = "the presliding stiffness is not told from zero, so no stiffness is sure (P43)"
+    else:
+        why = (
+            "friction is a spring in small motion, and no damping is identified that makes up for "
+            "the delay of a cancellation there (P49)"
+        )
+    return f"No cancellation is proposed: {why}."
 
 
 def _sensors(design: Design) -> list[str]:
@@ -107,7 +117,15 @@ def _left_out(design: Design) -> list[str]:
     more = [e.name for e in design.body.effects if e.name not in slow]
     lines = []
     if gone:
-        lines.append(f"Linear theory leaves out: {gone} (friction is a damper of equal loss).")
+        lines.append(
+            f"Linear theory leaves out: {gone} (friction is a damper and spring of the same first "
+            "harmonic)."
+        )
+    if design.prediction.rigid:
+        lines.append(
+            f"{design.prediction.rigid} has no simulated form in a diagram: the simulation takes "
+            "the device for rigid, with the inertia of both sides."
+        )
     if more:
         lines.append(f"Slow motion leaves out: {', '.join(more)}.")
     return lines
@@ -115,8 +133,12 @@ def _left_out(design: Design) -> list[str]:
 
 def _apart(design: Design) -> list[str]:
     """Where the quasi-static prediction and the simulation differ."""
-    unit, lines = unit_of("force", design.body.axis), []
+    unit, lines = unit_of("force", design.body.axis), list[str]()
+    said: list[CasePrediction] = []
     for case, p in design.prediction.cases.items():
+        if p in said:  # without a cancellation two cases are the same as two others
+            continue
+        said.append(p)
         if p.failed:
             lines.append(f"{case}: not simulated: {p.failed}.")
             continue

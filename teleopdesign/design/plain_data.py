@@ -37,6 +37,7 @@ def design_data(design: Design) -> dict[str, Any]:
         "loop_held_rigidly": _loop(design.held),
         "motion": asdict(design.prediction.motion),
         "prediction": {case: asdict(p) for case, p in design.prediction.cases.items()},
+        "taken_rigid_in_simulation": design.prediction.rigid,
         "left_out_of_linear": design.prediction.left_out,
         "residual_friction": {
             "speed": residual.speeds.tolist(),

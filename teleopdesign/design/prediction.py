@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..blocks import Body
 from ..diagrams import Diagram, four_cases
 from ..errors import ModelError
 from ..simulate import ForceVelocity, Sampling, Simulation, force_velocity, simulate
@@ -46,12 +47,16 @@ class CasePrediction:
 
 @dataclass(frozen=True)
 class Prediction:
-    """Predicted force errors by case; curves: simulated, over velocity; left_out: of linear."""
+    """Predicted force errors by case; curves: simulated, over velocity; left_out: of linear.
+
+    rigid: a structure of the body that no simulation of a diagram holds yet, "" where none is
+    """
 
     motion: StatedMotion
     cases: Mapping[str, CasePrediction]
     curves: ForceVelocity
     left_out: str
+    rigid: str = ""
 
 
 def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Prediction:
@@ -61,9 +66,10 @@ def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Predic
     raises ModelError: not even the device alone can be simulated
     """
     linear, left_out = linear_error(hybrid, motion)
+    simulated, rigid = _simulable(hybrid, motion, sampling)
     runs: dict[str, Simulation] = {}
     failed: dict[str, str] = {}
-    for case, diagram in four_cases(hybrid).items():
+    for case, diagram in four_cases(simulated).items():
         try:
             runs[case] = _simulated(diagram, motion, sampling)
         except ModelError as error:
@@ -75,7 +81,21 @@ def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Predic
         case: _case(case, diagram, motion, linear[case], curves, failed.get(case, ""))
         for case, diagram in four_cases(hybrid).items()
     }
-    return Prediction(motion, cases, curves, left_out)
+    return Prediction(motion, cases, curves, left_out, rigid)
+
+
+def _simulable(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> tuple[Diagram, str]:
+    """The diagram as far as it has a simulated form, and the structure that was taken rigid."""
+    (body,) = (b.body for b in hybrid.bodies if b.name == "Z_M")
+    assert isinstance(body, Body)
+    structure = next((e.name for e in body.effects if e.role == "structure"), "")
+    if structure:
+        try:
+            _simulated(four_cases(hybrid)["none"], motion, sampling)
+        except ModelError:
+            # its inertia counts both sides
+            return hybrid.with_block("Z_M", body.without_effect(structure)), structure
+    return hybrid, ""
 
 
 def _simulated(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> Simulation:

@@ -24,7 +24,13 @@ from .prediction import Prediction, predict
 from .reach import Reach, reach_of
 from .residual_friction import SHARES, residual_friction
 from .stated_motion import StatedMotion, stated_motion
-from .verdict import cancellation_claims, energy_claim, feedback_claim, lower_damping
+from .verdict import (
+    cancellation_claims,
+    energy_claim,
+    feedback_claim,
+    in_units_of,
+    small_motion_damping,
+)
 
 #: of the load that stands for a hand over the device's inertia, where none is stated
 LOAD = 3.0
@@ -122,7 +128,7 @@ def cancellations(
     level = cancelled_level(friction, gain, given, body.axis)
     if level is None:
         return []
-    damping = lower_damping(body, errors=given.errors)
+    damping = small_motion_damping(body, errors=given.errors)
     late = _late(body, given)
     dahl = dahl_cancellation(
         level, friction, reach, gain, given, axis=body.axis, late=late, damping=damping
@@ -205,13 +211,15 @@ def _claims(
             friction,
             gain=acting_gain(body, reach, errors=given.errors),
             late=_late(body, given),
-            damping=lower_damping(body, errors=given.errors),
+            damping=small_motion_damping(body, errors=given.errors),
         )
     found["FF"] = [feedback_claim(body, best.force_feedback.controller)]
     for case, claims in found.items():
         energy = energy_claim(best.prediction, case)
         claims += [energy] if energy else []
-    return {case: tuple(claims) for case, claims in found.items()}
+    return {
+        case: tuple(in_units_of(body.axis, c) for c in claims) for case, claims in found.items()
+    }
 
 
 def _place(model: Model, place: str | None) -> str:

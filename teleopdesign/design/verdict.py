@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 from ..blocks import Body
@@ -11,6 +12,8 @@ from ..diagrams import haptic_interface
 from ..passivity import (
     Claim,
     Evidence,
+    Proof,
+    Refutation,
     bounded_compensation,
     dahl_compensation,
     delayed_small_motion,
@@ -19,18 +22,20 @@ from ..passivity import (
 )
 from .chosen import Chosen
 from .friction_range import FrictionRange
-from .linear import with_damping
+from .linear import without_friction
 from .prediction import Prediction
 from .rounding import rounded_down, rounded_up
 
 
-def lower_damping(body: Body, *, errors: float) -> float:
-    """Lower end of the interval of viscous damping, N s/m; 0 where there is none."""
-    damping = body.parameters.get("viscous.damping")
-    if damping is None:
-        return 0.0
-    error = damping.stderr if math.isfinite(damping.stderr) else 0.0
-    return max(damping.value - errors * error, 0.0)
+def small_motion_damping(body: Body, *, errors: float) -> float:
+    """Lower end of the interval of damping in small motion, viscous and of bristles, N s/m."""
+    damping = 0.0
+    for name in ("viscous.damping", "presliding.bristle_damping"):
+        if name in body.parameters:
+            value = body.parameters[name]
+            error = value.stderr if math.isfinite(value.stderr) else 0.0
+            damping += max(value.value - errors * error, 0.0)
+    return damping
 
 
 def cancellation_claims(
@@ -70,7 +75,7 @@ def cancellation_claims(
 
 def feedback_claim(body: Body, force_feedback: Controller) -> Claim:
     """Is the linear part of the device under force feedback passive, neither sampled nor late?"""
-    plain = with_damping(body, 0.0)
+    plain = without_friction(body)
     for effect in [e for e in plain.effects if e.role in ("actuation", "structure", "contact")]:
         plain = plain.without_effect(effect.name)
     port, _ = hand_port(haptic_interface(plain, force_feedback=force_feedback))
@@ -86,6 +91,26 @@ def energy_claim(prediction: Prediction, case: str) -> Claim | None:
     statement = "the device takes energy from the hand along the stated motion"
     searched = "one settled cycle of one motion, simulated with sampling, delay and encoder"
     return Claim(statement, Evidence(found.energy > 0, searched, found.energy, "J a cycle"))
+
+
+#: what a unit of claims is called on a revolute axis
+_REVOLUTE = {"N s/m": "N*m*s/rad", "N/m": "N*m/rad", "N": "N*m"}
+
+
+def in_units_of(axis: str, claim: Claim) -> Claim:
+    """The claim with the units of that axis; claims are stated for a prismatic one."""
+    if axis == "prismatic":
+        return claim
+
+    def turned(text: str) -> str:
+        return re.sub(r"\bN s/m\b|\bN/m\b|\bN\b", lambda m: _REVOLUTE[m[0]], text)
+
+    verdict = claim.verdict
+    if isinstance(verdict, Proof | Evidence):
+        verdict = replace(verdict, unit=turned(verdict.unit))
+    elif isinstance(verdict, Refutation):
+        verdict = replace(verdict, method=turned(verdict.method))
+    return Claim(turned(claim.statement), verdict)
 
 
 def _decimal(value: float) -> str:
