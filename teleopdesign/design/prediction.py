@@ -67,21 +67,34 @@ def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Predic
     """
     linear, left_out = linear_error(hybrid, motion)
     simulated, rigid = _simulable(hybrid, motion, sampling)
-    runs: dict[str, Simulation] = {}
-    failed: dict[str, str] = {}
-    for case, diagram in four_cases(simulated).items():
-        try:
-            runs[case] = _simulated(diagram, motion, sampling)
-        except ModelError as error:
-            if case == "none":
-                raise
-            failed[case] = str(error)
+    runs, failed = _all_simulated(simulated, motion, sampling)
     curves = force_velocity(runs, after=(CYCLES - 1) / motion.frequency)
     cases = {
         case: _case(case, diagram, motion, linear[case], curves, failed.get(case, ""))
         for case, diagram in four_cases(hybrid).items()
     }
     return Prediction(motion, cases, curves, left_out, rigid)
+
+
+def _all_simulated(
+    hybrid: Diagram, motion: StatedMotion, sampling: Sampling
+) -> tuple[dict[str, Simulation], dict[str, str]]:
+    """The cases on one grid of time, and why others could not be simulated."""
+    step = sampling.period / 10
+    while True:
+        runs: dict[str, Simulation] = {}
+        failed: dict[str, str] = {}
+        for case, diagram in four_cases(hybrid).items():
+            try:
+                runs[case] = _simulated(diagram, motion, sampling, step=step)
+            except ModelError as error:
+                if case == "none":
+                    raise
+                failed[case] = str(error)
+        finest = min(float(run.data.attrs["step_s"]) for run in runs.values())
+        if all(run.data.attrs["step_s"] == finest for run in runs.values()):
+            return runs, failed
+        step = finest  # a case that needs a finer step takes the others with it
 
 
 def _simulable(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> tuple[Diagram, str]:
@@ -91,20 +104,22 @@ def _simulable(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> tup
     structure = next((e.name for e in body.effects if e.role == "structure"), "")
     if structure:
         try:
-            _simulated(four_cases(hybrid)["none"], motion, sampling)
+            _simulated(four_cases(hybrid)["none"], motion, sampling, step=sampling.period / 10)
         except ModelError:
             # its inertia counts both sides
             return hybrid.with_block("Z_M", body.without_effect(structure)), structure
     return hybrid, ""
 
 
-def _simulated(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> Simulation:
+def _simulated(
+    diagram: Diagram, motion: StatedMotion, sampling: Sampling, *, step: float
+) -> Simulation:
     return simulate(
         diagram,
         duration=CYCLES / motion.frequency,
         motion={"L": motion.motion},
         computer=sampling,
-        step=sampling.period / 10,
+        step=step,
         give=GIVE * motion.amplitude,
         every_step=True,
     )

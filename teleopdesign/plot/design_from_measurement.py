@@ -71,5 +71,5 @@ def _transparency(axis: Axes, design: Design) -> None:
         )
     axis.set_xlim(float(data["frequency"][0]), float(data["frequency"][-1]))
     axis.set_xlabel("frequency (Hz)")
-    axis.set_ylabel(r"$|R_M/R_D|$")
+    axis.set_ylabel(r"$|R_M/R_D|$ (1)")
     axis.grid(True)
