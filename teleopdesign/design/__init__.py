@@ -14,6 +14,7 @@ from .outcome import Design
 from .prediction import CasePrediction, Prediction
 from .propose import design
 from .residual_friction import ResidualFriction, residual_friction
+from .tune import Tuned, tune
 
 __all__ = [
     "Assumptions",
@@ -26,9 +27,11 @@ __all__ = [
     "Prediction",
     "Reason",
     "ResidualFriction",
+    "Tuned",
     "design",
     "diagnosed",
     "friction_range",
     "read_answer",
     "residual_friction",
+    "tune",
 ]

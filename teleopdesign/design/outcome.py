@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ..blocks import Body
 from ..frequency import FrequencyResponse
 from ..passivity import Claim
+from ..simulate import Sampling
 from .assumptions import Assumptions
 from .chosen import Chosen, toml_of
 from .force_feedback import Loop
@@ -18,6 +19,7 @@ from .friction_range import FrictionRange
 from .prediction import Prediction
 from .reach import Reach
 from .residual_friction import ResidualFriction
+from .sampling import sampling_of
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -58,6 +60,11 @@ class Design:
         """The loop of H at rest where the device is held rigidly: a load without limit."""
         gain = self.force_feedback.controller.names()["velocity_schedule.gain"]
         return replace(self.loop, gain=gain)
+
+    @property
+    def sampling(self) -> Sampling:
+        """How the controllers are sampled in simulation."""
+        return sampling_of(self.assumptions, self.reach)
 
     def plot(self) -> matplotlib.figure.Figure:
         """Force error over velocity in the four cases, what is left in slow motion, and T."""

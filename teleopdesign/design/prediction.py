@@ -59,6 +59,17 @@ class Prediction:
     rigid: str = ""
 
 
+def simulated_error(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> float:
+    """Rms force error of one diagram about its mean over a settled cycle, N or N m.
+
+    raises ModelError: it cannot be simulated
+    """
+    run = _simulated(diagram, motion, sampling, step=sampling.period / 10)
+    data = run.data
+    settled = data["time"].values >= (CYCLES - 1) / motion.frequency
+    return float(np.std(data["E"].values[settled]))
+
+
 def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Prediction:
     """Predict the force error of the four cases along a motion that is prescribed.
 

@@ -10,7 +10,6 @@ from ..diagrams import Diagram, four_cases, haptic_interface
 from ..errors import ModelError
 from ..model import Model
 from ..passivity import Claim
-from ..simulate import Sampling
 from .assumptions import Assumptions
 from .cancellation import acting_gain, cancelled_level, dahl_cancellation, smoothed_cancellation
 from .chosen import Chosen
@@ -23,6 +22,7 @@ from .outcome import Design
 from .prediction import Prediction, predict
 from .reach import Reach, reach_of
 from .residual_friction import SHARES, residual_friction
+from .sampling import sampling_of
 from .stated_motion import StatedMotion, stated_motion
 from .verdict import (
     cancellation_claims,
@@ -168,12 +168,7 @@ def _trial(
         cancellation=option.controller if option else None,
         force_feedback=h.controller,
     )
-    sampling = Sampling(
-        period=given.sample_period,
-        delay=_on_grid(given.delay, given.sample_period),
-        encoder_step=reach.step,
-        velocity_bandwidth=given.velocity_bandwidth or float("inf"),
-    )
+    sampling = sampling_of(given, reach)
     return Trial(option, h, loop, diagram, predict(diagram, motion, sampling))
 
 
@@ -181,11 +176,6 @@ def _late(body: Body, given: Assumptions) -> float:
     """Computing delay and what the identified actuation adds, s."""
     assert given.delay is not None
     return given.delay + identified_delay(body)
-
-
-def _on_grid(delay: float, period: float) -> float:
-    """The delay in tenths of a sample, the inner steps of the simulation."""
-    return round(10 * delay / period) * period / 10
 
 
 def _with_load(best: Trial, body: Body, given: Assumptions) -> Diagram:
