@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from ..simulate import ForceVelocity, Sampling, Simulation, force_velocity, simu
 from .linear import linear_error
 from .quasi_static import quasi_static_error
 from .stated_motion import StatedMotion
+
+if TYPE_CHECKING:
+    import xarray
 
 #: cycles simulated; the last one counts
 CYCLES = 3
@@ -49,6 +53,7 @@ class CasePrediction:
 class Prediction:
     """Predicted force errors by case; curves: simulated, over velocity; left_out: of linear.
 
+    hybrid: the diagram as simulated
     rigid: a structure of the body that no simulation of a diagram holds yet, "" where none is
     """
 
@@ -56,7 +61,17 @@ class Prediction:
     cases: Mapping[str, CasePrediction]
     curves: ForceVelocity
     left_out: str
+    hybrid: Diagram
     rigid: str = ""
+
+
+def settled_cycle(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> xarray.Dataset:
+    """The signals of a settled cycle of a prescribed motion.
+
+    raises ModelError: it cannot be simulated
+    """
+    data = _simulated(diagram, motion, sampling, step=sampling.period / 10).data
+    return data.isel(time=data["time"].values >= (CYCLES - 1) / motion.frequency)
 
 
 def simulated_error(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> float:
@@ -64,10 +79,7 @@ def simulated_error(diagram: Diagram, motion: StatedMotion, sampling: Sampling) 
 
     raises ModelError: it cannot be simulated
     """
-    run = _simulated(diagram, motion, sampling, step=sampling.period / 10)
-    data = run.data
-    settled = data["time"].values >= (CYCLES - 1) / motion.frequency
-    return float(np.std(data["E"].values[settled]))
+    return float(np.std(settled_cycle(diagram, motion, sampling)["E"].values))
 
 
 def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Prediction:
@@ -84,7 +96,7 @@ def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Predic
         case: _case(case, diagram, motion, linear[case], curves, failed.get(case, ""))
         for case, diagram in four_cases(hybrid).items()
     }
-    return Prediction(motion, cases, curves, left_out, rigid)
+    return Prediction(motion, cases, curves, left_out, simulated, rigid)
 
 
 def _all_simulated(

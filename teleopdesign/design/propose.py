@@ -13,6 +13,7 @@ from ..passivity import Claim
 from .assumptions import Assumptions
 from .cancellation import acting_gain, cancelled_level, dahl_cancellation, smoothed_cancellation
 from .chosen import Chosen
+from .energy import energy_claim
 from .force_feedback import Loop, force_feedback, identified_delay
 from .friction_range import FrictionRange, friction_range
 from .from_answer import Diagnosed
@@ -26,7 +27,6 @@ from .sampling import sampling_of
 from .stated_motion import StatedMotion, stated_motion
 from .verdict import (
     cancellation_claims,
-    energy_claim,
     feedback_claim,
     in_units_of,
     small_motion_damping,
@@ -204,9 +204,16 @@ def _claims(
             damping=small_motion_damping(body, errors=given.errors),
         )
     found["FF"] = [feedback_claim(body, best.force_feedback.controller)]
-    for case, claims in found.items():
-        energy = energy_claim(best.prediction, case)
-        claims += [energy] if energy else []
+    for case, diagram in four_cases(best.prediction.hybrid).items():
+        found[case].append(
+            energy_claim(
+                diagram,
+                best.prediction.motion,
+                reach,
+                sampling_of(given, reach),
+                axis=body.axis,
+            )
+        )
     return {
         case: tuple(in_units_of(body.axis, c) for c in claims) for case, claims in found.items()
     }

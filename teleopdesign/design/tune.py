@@ -15,7 +15,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..controllers import Controller
-from ..diagrams import Diagram, haptic_interface
 from ..errors import ModelError
 from .outcome import Design
 from .prediction import simulated_error
@@ -63,7 +62,7 @@ def tune(design: Design, *, simulations: int = 60) -> Tuned:
     start, bounds = _range(design)
     names = list(start)
     low, high = np.log([bounds[n] for n in names]).T
-    diagram = _diagram(design)
+    diagram = design.prediction.hybrid
     cost: dict[tuple[float, ...], float] = {}
 
     def error(point: np.ndarray) -> float:
@@ -110,15 +109,6 @@ def tune(design: Design, *, simulations: int = 60) -> Tuned:
         float(found.fun),
         tuple(held),
         len(cost),
-    )
-
-
-def _diagram(design: Design) -> Diagram:
-    rigid = design.prediction.rigid
-    return haptic_interface(
-        design.body.without_effect(rigid) if rigid else design.body,
-        cancellation=design.cancellation.controller if design.cancellation else None,
-        force_feedback=design.force_feedback.controller,
     )
 
 

@@ -23,7 +23,6 @@ from ..passivity import (
 from .chosen import Chosen
 from .friction_range import FrictionRange
 from .linear import without_friction
-from .prediction import Prediction
 from .rounding import rounded_down, rounded_up
 
 
@@ -81,16 +80,6 @@ def feedback_claim(body: Body, force_feedback: Controller) -> Claim:
     port, _ = hand_port(haptic_interface(plain, force_feedback=force_feedback))
     claim = positive_real(port)
     return replace(claim, statement=f"without friction, sampling and delay {claim.statement}")
-
-
-def energy_claim(prediction: Prediction, case: str) -> Claim | None:
-    """Does the hand put energy in, along the motion that was simulated? None where none was."""
-    found = prediction.cases[case]
-    if found.failed:
-        return None
-    statement = "the device takes energy from the hand along the stated motion"
-    searched = "one settled cycle of one motion, simulated with sampling, delay and encoder"
-    return Claim(statement, Evidence(found.energy > 0, searched, found.energy, "J a cycle"))
 
 
 #: what a unit of claims is called on a revolute axis

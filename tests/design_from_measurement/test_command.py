@@ -12,33 +12,44 @@ from teleopdesign.cli import main
 from teleopdesign.effects import EFFECTS
 
 
-@pytest.fixture
-def few(monkeypatch):
-    """A catalogue of few effects, so that a diagnosis takes a second."""
-    from teleopdesign import effects
+@pytest.fixture(scope="module")
+def answer(tmp_path_factory):
+    """The answer file of a diagnosis of the rod among few effects."""
+    from teleopdesign.diagnose.answer import write_answer
 
     names = ("coulomb", "viscous", "stribeck", "bias", "spring")
-    monkeypatch.setattr(effects, "catalogue", lambda extra=(): {n: EFFECTS[n] for n in names})
+    rod = td.load_experiment(td.example("rod"))
+    model = td.Model.from_experiment(rod, {n: EFFECTS[n] for n in names})
+    path = tmp_path_factory.mktemp("rod") / "answer.json"
+    write_answer(td.find_missing(rod, model), path)
+    return path
 
 
 def designs(path):
     return json.loads(path.read_text())["bodies"]
 
 
-def test_the_rod_from_folder_to_controllers(few, tmp_path, capsys):
-    """The diagnosis finds Stribeck friction; its answer file leads to the same design."""
-    folder = td.example("rod")
+def test_an_answer_leads_to_a_design_and_its_files(answer, tmp_path, capsys):
     out = tmp_path / "out"
-    arguments = ["design", str(folder), "--json", str(tmp_path / "d.json"), "--output", str(out)]
-    assert main(arguments) == 0
-    text = capsys.readouterr().out
-    assert "verdict: effects_missing: stribeck" in text
-    assert "MBC: proved: Coulomb friction" in text
+    arguments = ["design", str(td.example("rod")), "--answer", str(answer)]
+    assert main([*arguments, "--json", str(tmp_path / "d.json"), "--output", str(out)]) == 0
+    assert "MBC: proved: Coulomb friction" in capsys.readouterr().out
     assert {p.name for p in out.iterdir()} == {
         f"device_{n}" for n in
         ("design.json", "design.pdf", "design.svg", "design.png", "controllers.toml")
     }  # fmt: skip
-    assert tomllib.loads((out / "device_controllers.toml").read_text())["cancellation"]
+    table = tomllib.loads((out / "device_controllers.toml").read_text())
+    made = designs(tmp_path / "d.json")["device"]
+    laws = [entry["law"] for entry in table["cancellation"]]
+    assert laws == made["cancellation"]["laws"]
+
+
+@pytest.mark.slow
+def test_the_rod_from_folder_to_controllers(tmp_path, capsys):
+    """The diagnosis finds Stribeck friction; its answer file leads to the same design."""
+    folder = td.example("rod")
+    assert main(["design", str(folder), "--json", str(tmp_path / "d.json")]) == 0
+    assert "verdict: effects_missing: stribeck" in capsys.readouterr().out
     answer = tmp_path / "answer.json"
     assert main(["diagnose", str(folder), "--json", str(answer)]) == 0
     again = ["--answer", str(answer), "--json", str(tmp_path / "again.json")]

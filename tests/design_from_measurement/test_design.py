@@ -34,6 +34,15 @@ def test_passivity_of_the_cancellation_is_proved_with_a_certificate(designed):
     assert proof.certificates
 
 
+def test_energy_given_out_is_found_where_force_feedback_is_late(designed):
+    """Cancellation takes energy in every motion tried; behind a 20 Hz low-pass H does not."""
+    for case, holds in (("none", True), ("MBC", True), ("FF", False), ("hybrid", False)):
+        claim = designed.claims[case][-1]
+        assert claim.status == "evidence"
+        assert claim.holds is holds
+        assert (claim.verdict.margin > 0) is holds
+
+
 def test_every_number_has_its_reason_and_unit(designed):
     for chosen in (designed.cancellation, designed.force_feedback):
         assert {r.parameter for r in chosen.reasons} == set(chosen.controller.names())

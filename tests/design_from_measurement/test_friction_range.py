@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
@@ -70,6 +70,7 @@ def test_friction_that_grows_with_the_load_is_that_without_load():
     assert least(body(1.0, load_dependent_friction={"coefficient": 0.1})) == pytest.approx(1.0)
 
 
+@settings(max_examples=20)
 @given(
     errors=st.tuples(*[st.floats(0.0, 0.05)] * 3),
     signs=st.tuples(*[st.sampled_from([-1.0, 1.0])] * 3),

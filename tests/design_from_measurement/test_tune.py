@@ -34,7 +34,10 @@ def test_a_smoothed_cancellation_keeps_its_velocity_above_the_encoders(designed)
         level, designed.reach, designed.assumptions, axis="prismatic", period=1e-3,
         filter_bandwidth=50.0,
     )  # fmt: skip
-    found = tune(replace(designed, cancellation=smoothed), simulations=25)
+    hybrid = designed.prediction.hybrid.with_block("C", smoothed.controller)
+    prediction = replace(designed.prediction, hybrid=hybrid)
+    made = replace(designed, cancellation=smoothed, prediction=prediction)
+    found = tune(made, simulations=25)
     a = smoothed.controller.names()["smoothed_coulomb.smoothing_velocity"]
     assert found.cancellation.names()["smoothed_coulomb.smoothing_velocity"] >= a * (1 - 1e-9)
     h = found.force_feedback.names()
