@@ -1,6 +1,7 @@
 """Experiment and model that several tests here share; the truth simulator can be imported."""
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -40,3 +41,12 @@ def designed(rod):
     from teleopdesign.design import design
 
     return design(rod)
+
+
+@pytest.fixture(scope="session")
+def unsure(rod):
+    """The design for the rod if its Coulomb level were hardly known."""
+    from teleopdesign.design import design
+
+    level = {"device.coulomb.level": Value(0.548, stderr=0.3)}
+    return design(replace(rod, model=rod.model.with_values(level)))

@@ -11,6 +11,7 @@ import teleopdesign as td
 from teleopdesign.blocks import Body, Value
 from teleopdesign.controllers import CONTROLLERS, Controller, Stage
 from teleopdesign.design import Assumptions, design, read_answer
+from teleopdesign.design.propose import cancellations
 from teleopdesign.design.quasi_static import quasi_static_error
 from teleopdesign.design.stated_motion import StatedMotion
 from teleopdesign.diagrams import haptic_interface, world_haptics_2005
@@ -95,20 +96,27 @@ def test_presliding_allows_a_dahl_cancellation_only_and_softer(rod):
     assert made.other is None
 
 
-def test_friction_that_may_be_none_is_not_cancelled(rod):
-    level = {"device.coulomb.level": Value(0.548, stderr=0.3)}
-    made = design(replace(rod, model=rod.model.with_values(level)))
-    assert made.cancellation is None
-    assert made.prediction.cases["MBC"].simulated == made.prediction.cases["none"].simulated
-    assert any("No cancellation is proposed" in n for n in made.notes)
+def test_friction_that_may_be_none_is_not_cancelled(unsure):
+    assert unsure.cancellation is None
+    cases = unsure.prediction.cases
+    assert cases["MBC"].simulated == cases["none"].simulated
+    assert any("No cancellation is proposed" in n for n in unsure.notes)
+    assert "cancellation" not in tomllib.loads(unsure.to_toml())
 
 
 def test_an_actuator_that_gives_more_is_commanded_less(rod, designed):
-    made = design(with_effect(rod, "actuator_gain", {"gain": 1.25}))
-    key = f"{made.cancellation.law}.level"
-    own = designed.cancellation.controller.names()[f"{designed.cancellation.law}.level"]
-    assert made.cancellation.controller.names()[key] == pytest.approx(own / 1.25, rel=0.005)
-    assert made.claims["MBC"][0].status == "proved"
+    """Force that acts is command times gain: so are the level and the stiffness of C."""
+    body = with_effect(rod, "actuator_gain", {"gain": 1.25}).model.body("device")
+    found = cancellations(body, designed.friction, designed.reach, designed.assumptions)
+    plain = cancellations(designed.body, designed.friction, designed.reach, designed.assumptions)
+    assert [c.law for c in found] == [c.law for c in plain] == ["dahl", "smoothed_coulomb"]
+    for one, own in zip(found, plain, strict=True):
+        values, wanted = one.controller.names(), own.controller.names()
+        key = f"{one.law}.level"
+        # rounded down to three digits
+        assert values[key] == pytest.approx(wanted[key] / 1.25, rel=0.005)
+    dahl, own = found[0].controller.names(), plain[0].controller.names()
+    assert dahl["dahl.stiffness"] == pytest.approx(own["dahl.stiffness"] / 1.25, rel=0.01)
 
 
 def test_the_controllers_read_back_from_their_toml(designed):

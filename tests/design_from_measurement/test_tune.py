@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from teleopdesign.design import design, tune
+from teleopdesign.design import tune
 from teleopdesign.design.cancellation import smoothed_cancellation
 from teleopdesign.design.chosen import Reason
 
@@ -45,9 +45,5 @@ def test_a_smoothed_cancellation_keeps_its_velocity_above_the_encoders(designed)
     assert b * (1 + k) >= a * k * (1 - 1e-9)
 
 
-def test_a_design_without_cancellation_tunes_force_feedback_alone(rod):
-    from teleopdesign.blocks import Value
-
-    unsure = {"device.coulomb.level": Value(0.548, stderr=0.3)}
-    made = design(replace(rod, model=rod.model.with_values(unsure)))
-    assert tune(made, simulations=6).cancellation is None
+def test_a_design_without_cancellation_tunes_force_feedback_alone(unsure):
+    assert tune(unsure, simulations=6).cancellation is None
