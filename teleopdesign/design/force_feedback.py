@@ -63,6 +63,13 @@ class Loop:
         return math.degrees(margin) if self.crossover else math.inf
 
 
+def whole_inertia(body: Body) -> float:
+    """Inertia of the body with what moves behind a compliance or gap, kg or kg m^2."""
+    for effect in [e for e in body.effects if e.role == "structure"]:
+        body = body.without_effect(effect.name)
+    return float(body.equation().inertia.subs(body.numbers()))
+
+
 def identified_delay(body: Body) -> float:
     """Delay at low frequency of the body's identified actuation (dead time and lag), s."""
     form, _ = body.actuation(S)
@@ -99,7 +106,7 @@ def force_feedback(
 
     load: m_H;  delay: T_d, s;  smoothing_velocity: a of the cancellation beside it, 0: none
     """
-    mass = float(body.equation().inertia.subs(body.numbers()))
+    mass = whole_inertia(body)
     share, bandwidth = load / (mass + load), assumptions.bandwidth
     factor = assumptions.delay_factor
     free = largest_gain(share=share, bandwidth=bandwidth, delay=delay, factor=factor)

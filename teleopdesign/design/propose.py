@@ -14,7 +14,7 @@ from .assumptions import Assumptions
 from .cancellation import acting_gain, cancelled_level, dahl_cancellation, smoothed_cancellation
 from .chosen import Chosen
 from .energy import energy_claim
-from .force_feedback import Loop, force_feedback, identified_delay
+from .force_feedback import Loop, force_feedback, identified_delay, whole_inertia
 from .friction_range import FrictionRange, friction_range
 from .from_answer import Diagnosed
 from .linear import transparency
@@ -27,6 +27,7 @@ from .sampling import sampling_of
 from .stated_motion import StatedMotion, stated_motion
 from .verdict import (
     cancellation_claims,
+    compliant_claim,
     feedback_claim,
     in_units_of,
     small_motion_damping,
@@ -111,7 +112,7 @@ def free_body(body: Body) -> Body:
 def settled(given: Assumptions, body: Body, reach: Reach) -> Assumptions:
     """The assumptions with those that are not stated taken from record and body."""
     period = given.sample_period or reach.sample_period
-    mass = float(body.equation().inertia.subs(body.numbers()))
+    mass = whole_inertia(body)
     delay = period if given.delay is None else given.delay
     filtered = given.velocity_bandwidth or min(FILTER, FILTER_SHARE / period)
     load = given.load or float(f"{LOAD * mass:.2g}")
@@ -196,13 +197,16 @@ def _claims(
     """Claims by case."""
     found: dict[str, list[Claim]] = {case: [] for case in four_cases(best.diagram)}
     if best.cancellation is not None and friction is not None:
+        gain = acting_gain(body, reach, errors=given.errors)
         found["MBC"] = cancellation_claims(
             best.cancellation,
             friction,
-            gain=acting_gain(body, reach, errors=given.errors),
+            gain=gain,
             late=_late(body, given),
             damping=small_motion_damping(body, errors=given.errors),
         )
+        compliant = compliant_claim(body, best.cancellation, friction, gain=gain)
+        found["MBC"] += [compliant] if compliant else []
     found["FF"] = [feedback_claim(body, best.force_feedback.controller)]
     for case, diagram in four_cases(best.prediction.hybrid).items():
         found[case].append(

@@ -14,6 +14,7 @@ from ..passivity import (
     Evidence,
     Proof,
     Refutation,
+    any_environment,
     bounded_compensation,
     dahl_compensation,
     delayed_small_motion,
@@ -35,6 +36,32 @@ def small_motion_damping(body: Body, *, errors: float) -> float:
             error = value.stderr if math.isfinite(value.stderr) else 0.0
             damping += max(value.value - errors * error, 0.0)
     return damping
+
+
+def compliant_claim(
+    body: Body, chosen: Chosen, friction: FrictionRange, *, gain: float
+) -> Claim | None:
+    """Is the cancellation passive through the identified compliance? None where there is none.
+
+    Friction is that of the motor side, as the effect has it; the link's, none, would only help.
+    """
+    values = {n: v.value for n, v in body.parameters.items()}
+    tip = values.get("transmission_compliance.tip_inertia", 0.0)
+    # the equation of the motor side: what moves behind the compliance has one of its own
+    motor = float(body.equation().inertia.subs(body.numbers()))
+    if tip <= 0 or motor <= 0 or chosen.law != "dahl":
+        return None
+    own = chosen.controller.names()
+    return any_environment(
+        motor_level=_decimal(rounded_down(friction.sure, digits=4)),
+        link_level=0,
+        transmission_stiffness=_decimal(values["transmission_compliance.stiffness"]),
+        transmission_damping=_decimal(values["transmission_compliance.damping"]),
+        compensator_level=_decimal(rounded_up(own["dahl.level"] * gain, digits=6)),
+        compensator_stiffness=_decimal(rounded_up(own["dahl.stiffness"] * gain, digits=6)),
+        motor_inertia=_decimal(motor),
+        link_inertia=_decimal(tip),
+    )
 
 
 def cancellation_claims(

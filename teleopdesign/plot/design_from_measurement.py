@@ -63,12 +63,14 @@ def _transparency(axis: Axes, design: Design) -> None:
     data = design.transparency.data
     for case in map(str, data["case"].values):
         colour, line, _ = CASES[case]
-        axis.loglog(
+        axis.semilogx(
             data["frequency"].values,
             data["magnitude"].sel(case=case).values,
             color=colour,
             linestyle=line,
         )
+    axis.axhline(1.0, color="#BFBFBF", linewidth=0.5, zorder=0)
+    axis.set_ylim(bottom=0.0)
     axis.set_xlim(float(data["frequency"][0]), float(data["frequency"][-1]))
     axis.set_xlabel("frequency (Hz)")
     axis.set_ylabel(r"$|R_M/R_D|$ (1)")

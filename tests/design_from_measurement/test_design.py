@@ -215,3 +215,12 @@ def test_a_dahl_cancellation_equals_a_damper_in_linear_theory():
     made = haptic_interface(body, cancellation=controller("dahl", {"level": 0.5, "stiffness": 1e6}))
     found = linear_cases(made, motion)["MBC"].values["Z_M.viscous.damping"]
     assert 50.0 - found == pytest.approx(4 * 0.5 / (np.pi * motion.peak_speed), rel=1e-3)
+
+
+def test_through_a_compliant_transmission_the_cancellation_is_proved_too(rod):
+    """P53: f_D within the friction of the motor side, whatever lies beyond."""
+    tip = {"tip_inertia": 0.05, "stiffness": 2e4, "damping": 1.0}
+    made = design(with_effect(rod, "transmission_compliance", tip))
+    statuses = {c.statement.split(",")[0]: c.status for c in made.claims["MBC"]}
+    assert statuses["a joint with motor friction 0.547 N"] == "proved"
+    assert made.prediction.rigid in ("", "transmission_compliance")

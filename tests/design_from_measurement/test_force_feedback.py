@@ -14,6 +14,7 @@ from teleopdesign.design.force_feedback import (
     force_feedback,
     identified_delay,
     largest_gain,
+    whole_inertia,
 )
 
 from .test_friction_range import REACH
@@ -63,6 +64,13 @@ def test_identified_lag_and_delay_of_the_actuator_count():
     body = body.with_effect(td.EFFECTS["actuator_lag"], {"time_constant": 3e-3})
     body = body.with_effect(td.EFFECTS["actuation_delay"], {"delay": 2e-3})
     assert identified_delay(body) == pytest.approx(5e-3)
+
+
+def test_the_loop_moves_what_is_behind_a_compliance_too():
+    body = Body("prismatic", {"inertia": Value(0.5)})
+    tip = {"tip_inertia": 0.4, "stiffness": 1e3, "damping": 1.0}
+    assert whole_inertia(body.with_effect(td.EFFECTS["transmission_compliance"], tip)) == 0.5
+    assert whole_inertia(body.with_effect(td.EFFECTS["added_inertia"], {"inertia": 0.2})) == 0.7
 
 
 @pytest.mark.parametrize("a", [0.0, 0.005, 0.5])
