@@ -14,8 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..blocks import Body
 from ..diagrams import Diagram
 from ..errors import ModelError
+from ..quantity import unit_of
 from ..simulate import Sampling, Simulation, simulate
 
 
@@ -26,6 +28,7 @@ class LargestStiffness:
     stiffness: inf where the largest one tried does not oscillate, 0 where the smallest does
     oscillates: the smallest that was seen to oscillate, inf where none was;  tried: simulations
     kick: initial speed, m/s;  decay: of the criterion
+    axis: of the device; on a revolute one N m/rad and rad/s
     """
 
     stiffness: float
@@ -33,13 +36,15 @@ class LargestStiffness:
     tried: int
     kick: float
     decay: float
+    axis: str = "prismatic"
 
     def __repr__(self) -> str:
+        unit, speed = unit_of("stiffness", self.axis), unit_of("velocity", self.axis)
         return (
-            f"Largest stiffness without oscillation: {self.stiffness:.4g} N/m, "
-            f"{self.oscillates:.4g} N/m oscillates ({self.tried} simulations of a kick of "
-            f"{self.kick:g} m/s; it oscillates where more than {self.decay:g} of the rms speed is "
-            "left)"
+            f"Largest stiffness without oscillation: {self.stiffness:.4g} {unit}, "
+            f"{self.oscillates:.4g} {unit} oscillates ({self.tried} simulations of a kick of "
+            f"{self.kick:g} {speed}; it oscillates where more than {self.decay:g} of the rms "
+            "speed is left)"
         )
 
 
@@ -91,7 +96,8 @@ def largest_stiffness_without_oscillation(
         return keeps_moving(run, decay=decay, floor=rest * abs(kick))
 
     found = _bisect(oscillates, smallest, largest, precision)
-    return LargestStiffness(*found, tried, kick, decay)
+    axis = next(b.body.axis for b in diagram.bodies if isinstance(b.body, Body))
+    return LargestStiffness(*found, tried, kick, decay, axis)
 
 
 def keeps_moving(run: Simulation, *, decay: float, floor: float) -> bool:
