@@ -46,6 +46,11 @@ def _friction(design: Design) -> list[str]:
     if design.cancellation is None:
         return [_none_proposed(friction, unit)]
     lines = []
+    if not design.reach.both_ways:
+        lines.append(
+            "The records move it one way only: its friction the other way is taken to be what the "
+            "model says, which no record has shown."
+        )
     if friction.highest > 1.001 * friction.lowest:
         lines.append(
             f"Friction lies between {friction.lowest:.4g} and {friction.highest:.4g} {unit} over "

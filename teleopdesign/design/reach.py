@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..diagnose.force_error import prepare
+from ..diagnose.motion_facts import RARE
 from ..errors import ExperimentError
 from ..measurement.experiment import Experiment
 from ..measurement.motion import TRAVEL
@@ -21,6 +22,7 @@ class Reach:
     unresolved: length below which the give of a contact before it slides cannot be told: within the
         steps that tell a motion, or half a period of the comparison's bandwidth after a reversal
     measures_force: whether the force of hand or environment is a channel
+    both_ways: whether it moves forward and backward for at least `RARE` of the time it moves
     """
 
     low: float
@@ -33,6 +35,7 @@ class Reach:
     step: float
     unresolved: float
     measures_force: bool
+    both_ways: bool = True
 
     @property
     def travel(self) -> float:
@@ -50,6 +53,7 @@ def reach_of(experiment: Experiment, place: str) -> Reach:
     speed = np.abs(np.concatenate([m.velocity for m in motions]))
     if not speed.any():
         raise ExperimentError(f"{experiment.folder.name}: {place}.position: it never moves")
+    told = np.concatenate([m.direction for m in motions])
     records, step = experiment.records, max(m.step for m in motions)
     acceleration = float(np.sqrt(np.mean(np.concatenate([m.acceleration**2 for m in motions]))))
     after_reversal = acceleration / (2 * motions[0].bandwidth) ** 2 / 2
@@ -63,5 +67,6 @@ def reach_of(experiment: Experiment, place: str) -> Reach:
         sample_period=records[0].sample_time,
         step=step,
         unresolved=max(TRAVEL * step, after_reversal),
+        both_ways=bool(min(np.sum(told > 0), np.sum(told < 0)) >= RARE * np.sum(told != 0)),
         measures_force=f"{place}.interaction_force" in experiment.channels,
     )

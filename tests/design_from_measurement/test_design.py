@@ -224,3 +224,11 @@ def test_through_a_compliant_transmission_the_cancellation_is_proved_too(rod):
     statuses = {c.statement.split(",")[0]: c.status for c in made.claims["MBC"]}
     assert statuses["a joint with motor friction 0.547 N"] == "proved"
     assert made.prediction.rigid in ("", "transmission_compliance")
+
+
+def test_friction_that_no_record_has_shown_backward_is_said(designed, rod):
+    from teleopdesign.design.notes import notes_on
+
+    one_way = replace(designed, reach=replace(designed.reach, both_ways=False))
+    assert not any("one way only" in n for n in designed.notes)
+    assert any("one way only" in n for n in notes_on(one_way, rod))
