@@ -26,6 +26,8 @@ The folders, each importing only from those before it:
     simulate      time
     measurement   experiment, record, motion
     diagnose      residual, noise floor, candidates, ladder, answer
+    identify      level and stiffness by the papers' own experiments
+    design        from an identified model to controllers, predictions and claims
     papers        statements of the two papers, each with its proof or check
     plot          draws result objects, computes nothing
     report        the diagnosis as one page that needs nothing else

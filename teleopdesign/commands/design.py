@@ -1,0 +1,150 @@
+"""propose a friction compensation for the device that a diagnosis identified"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import ExperimentError, did_you_mean
+from ._options import add_effect_files, add_folder, check_output, say
+
+if TYPE_CHECKING:
+    from ..design import Assumptions, Design, Diagnosed
+    from ..measurement import Experiment
+
+#: assumption -> (unit on the command line, what it is)
+STATED = {
+    "load": ("kg or kg*m^2", "of what stands for the hand (three times the device's inertia)"),
+    "sample_period": ("s", "of the controller (that of the record)"),
+    "delay": ("s", "from a sample to the change of the command (one sample period)"),
+    "bandwidth": ("Hz", "of the low-pass in H (20)"),
+    "velocity_bandwidth": ("Hz", "of the velocity filter (50, at most 0.1/period)"),
+    "errors": ("1", "standard errors that a level may be off to either side (1.96)"),
+    "fraction": ("1", "part of the least level that is cancelled (0.9)"),
+    "delay_factor": ("1", "times its delay that the loop of H bears (3)"),
+    "amplitude": ("m or rad", "of the motion that is predicted (a quarter of the travel)"),
+    "frequency": ("Hz", "of that motion (so that its rms speed is the recorded one)"),
+}
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    add_folder(parser)
+    parser.add_argument(
+        "--answer",
+        type=Path,
+        metavar="F",
+        help="an answer of `teleopdesign diagnose --json` for that folder, in place of a diagnosis",
+    )
+    parser.add_argument("--body", metavar="NAME", help="one body of a teleoperator (all of them)")
+    parser.add_argument("--json", type=Path, metavar="F", help="write the designs there")
+    parser.add_argument(
+        "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
+    )
+    parser.add_argument(
+        "--output", type=Path, metavar="DIR", help="write figures, data and controllers there"
+    )
+    for name, (unit, text) in STATED.items():
+        option = f"--{name.replace('_', '-')}"
+        parser.add_argument(option, type=float, metavar="X", help=f"{unit}: {text}")
+    add_effect_files(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the design of each body; write what was asked for."""
+    for path, endings in (
+        (options.answer, (".json",)),
+        (options.json, (".json",)),
+        (options.figure, (".png", ".pdf", ".svg")),
+    ):
+        if path is not None:
+            check_output(path, endings)
+    from ..effects import catalogue
+    from ..measurement import load_experiment
+
+    assumptions = _assumptions(options)
+    experiment = load_experiment(options.folder)
+    places = _places(options, experiment)
+    known = catalogue(options.effect)
+    found = _diagnosed(options.answer, experiment, known)
+    designs = {}
+    for place in places:
+        designs[place] = _design(found, place, assumptions)
+        print("" if len(designs) == 1 else "\n", end="")
+        print(designs[place])
+    _write(designs, options)
+    return 0
+
+
+def _assumptions(options: argparse.Namespace) -> Assumptions:
+    from ..design import Assumptions
+
+    own = {f.name for f in fields(Assumptions)}
+    given = {n: v for n in STATED if (v := getattr(options, n)) is not None and n in own}
+    return Assumptions(**given)
+
+
+def _places(options: argparse.Namespace, experiment: Experiment) -> list[str]:
+    bodies = list(experiment.bodies)
+    if options.body is None:
+        places = bodies
+    elif options.body in bodies:
+        places = [options.body]
+    else:
+        raise ExperimentError(
+            f'--body: no body "{options.body}", has {", ".join(bodies)}'
+            f"{did_you_mean(options.body, bodies)}"
+        )
+    if options.figure is not None and len(places) > 1:
+        raise ExperimentError(f"--figure: shows one body, choose --body {' or '.join(bodies)}")
+    return places
+
+
+def _diagnosed(answer: Path | None, experiment: Experiment, known: Any) -> Diagnosed:
+    from ..design import diagnosed, read_answer
+
+    if answer is not None:
+        return read_answer(answer, experiment, known)
+    from ..diagnose import find_missing
+    from ..model import Model
+
+    diagnosis = find_missing(experiment, Model.from_experiment(experiment, known), progress=say)
+    say("")
+    print(diagnosis)
+    print()
+    return diagnosed(diagnosis)
+
+
+def _design(found: Diagnosed, place: str, assumptions: Assumptions) -> Design:
+    from ..design import design
+
+    say(f"designing for {place}")
+    made = design(found, place=place, assumptions=assumptions)
+    say("")
+    return made
+
+
+def _write(designs: dict[str, Design], options: argparse.Namespace) -> None:
+    from ..plot import save_figure
+
+    content = {"bodies": {place: d.as_dict() for place, d in designs.items()}}
+    if options.json is not None:
+        options.json.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    if options.figure is not None:
+        save_figure(
+            next(iter(designs.values())).plot(), options.figure, suffixes=(options.figure.suffix,)
+        )
+    if options.output is None:
+        return
+    options.output.mkdir(parents=True, exist_ok=True)
+    for place, made in designs.items():
+        files = save_figure(
+            made.plot(), options.output / f"{place}_design", suffixes=(".pdf", ".svg", ".png")
+        )
+        made.to_json(options.output / f"{place}_design.json")
+        controllers = options.output / f"{place}_controllers.toml"
+        controllers.write_text(made.to_toml(), encoding="utf-8")
+        print(f"written: {', '.join(map(str, files))}, {controllers}")

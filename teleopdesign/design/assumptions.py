@@ -1,0 +1,53 @@
+"""What a design takes for granted because no record says it; every number can be stated."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..errors import ModelError
+
+
+@dataclass(frozen=True)
+class Assumptions:
+    """Assumptions of a design, SI. None: taken from the record, as `design` says.
+
+    load: inertia of what the hand stands for, kg or kg m^2; None: three times the device's
+    sample_period: of the controller, s; None: that of the record
+    delay: from a sample to the change of the command, s; None: one sample period
+    bandwidth: of the low-pass in H, Hz
+    velocity_bandwidth: of the filter on the differenced position, Hz; None: 50, at most 0.1/period
+    errors: standard errors to either side that a level may be off; 1.96: 95 %
+    fraction: part of the least level within these errors that is cancelled, at most 1
+    delay_factor: H stays stable with this many times the delay of its loop
+    count_force: part of the level by which one encoder count may move a smoothed cancellation
+    counts: encoder counts in the bristle length of a Dahl cancellation
+    amplitude, frequency: of the motion that is predicted, m or rad, Hz; None: from the record
+    """
+
+    load: float | None = None
+    sample_period: float | None = None
+    delay: float | None = None
+    bandwidth: float = 20.0
+    velocity_bandwidth: float | None = None
+    errors: float = 1.96
+    fraction: float = 0.9
+    delay_factor: float = 3.0
+    count_force: float = 0.25
+    counts: float = 10.0
+    amplitude: float | None = None
+    frequency: float | None = None
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if value is None:
+                continue
+            least = 0.0 if name in ("errors", "delay") else math.ulp(0.0)
+            most = 1.0 if name in ("fraction", "count_force") else math.inf
+            if not (math.isfinite(value) and least <= value <= most):
+                words = "above 0, at most 1" if most == 1.0 else "a finite number above 0"
+                raise ModelError(f"design: {name}: found {value:g}, expected {words}")
+        if self.delay_factor < 1.0:
+            raise ModelError(
+                f"design: delay_factor: found {self.delay_factor:g}, expected 1 or more"
+            )

@@ -1,0 +1,149 @@
+"""The motion-based cancellation C that identified friction allows.
+
+The level that is cancelled stays below the least level that friction may take, so that the pair of
+friction and cancellation takes energy: P37 to P39 for ideal Coulomb friction, whatever the law,
+P43 and P44 where friction is a spring before it slides.
+"""
+
+from __future__ import annotations
+
+import math
+
+import sympy as sp
+
+from ..blocks import Body
+from ..controllers import controller
+from ..effects import SIGNALS, delayed
+from ..quantity import unit_of
+from .assumptions import Assumptions
+from .chosen import Chosen, Reason
+from .friction_range import FrictionRange
+from .reach import Reach
+from .rounding import rounded_down, rounded_up
+
+#: part of the largest passive stiffness that a Dahl cancellation takes on a presliding device
+STIFFNESS_FRACTION = 0.9
+
+
+def acting_gain(body: Body, reach: Reach, *, errors: float) -> float:
+    """Largest steady force that acts per commanded force, within the interval of its gain."""
+    equation = body.equation()
+    acting = equation.acting.replace(delayed, lambda signal, _: signal)
+    settled = sp.solve([equation.rates[x] for x in equation.stages], *equation.stages)
+    acting = acting.subs(settled) if equation.stages else acting
+    symbols, largest = body.symbols(), 0.0
+    for position in (reach.low + reach.travel * k / 100 for k in range(101)):
+        # a small command: saturation only takes from it
+        there = {SIGNALS["command"]: 1e-3 * reach.command, SIGNALS["position"]: position}
+        gain = acting.subs(there) / (1e-3 * reach.command)
+        here = float(gain.subs(body.numbers()))
+        for name, value in body.parameters.items():
+            if gain.has(symbols[name]) and not value.fixed and math.isfinite(value.stderr):
+                slope = abs(float(sp.diff(gain, symbols[name]).subs(body.numbers())))
+                here += errors * slope * value.stderr
+        largest = max(largest, here)
+        if not acting.has(SIGNALS["position"]):
+            break
+    return largest
+
+
+def cancelled_level(
+    friction: FrictionRange, gain: float, assumptions: Assumptions, axis: str
+) -> Reason | None:
+    """The level to cancel, in commanded force; None where no level is sure.
+
+    None is where the least one may be zero, or where the records never come near the level.
+    """
+    if friction.sure <= 0 or not friction.slides:
+        return None
+    unit = unit_of("force", axis)
+    value = rounded_down(assumptions.fraction * friction.sure / gain)
+    least = f"the least level within {assumptions.errors:g} standard errors, {friction.sure:.4g}"
+    why = f"{assumptions.fraction:g} of {least} {unit} (at {friction.where_lowest}"
+    why += f"; the identified Coulomb level is {friction.identified:.4g} {unit})"
+    if gain != 1.0:
+        why += f", over the {gain:.4g} that acts of a commanded force of 1"
+    return Reason("level", value, unit, why + ", so that f_D <= f_C (P37 to P39)")
+
+
+def dahl_cancellation(
+    level: Reason,
+    friction: FrictionRange,
+    reach: Reach,
+    gain: float,
+    assumptions: Assumptions,
+    *,
+    axis: str,
+    late: float,
+    damping: float,
+) -> Chosen | None:
+    """A Dahl cancellation of that level; None where presliding leaves no stiffness to it.
+
+    gain: that acts of a command;  late: delay of its force, s;  damping: of small motion, lower end
+    """
+    acting = level.value * gain
+    unit = unit_of("position", axis)
+    lengths = {
+        f"{assumptions.counts:g} encoder steps of {reach.step:.3g} {unit}": (
+            assumptions.counts * reach.step
+        ),
+        f"{reach.unresolved:.3g} {unit}, below which the records tell no presliding, so that P43 "
+        "holds beside one": reach.unresolved,
+    }
+    longest = max(lengths, key=lengths.__getitem__)
+    limits = {f"a bristle length f_D/sigma_D of {longest}": acting / lengths[longest]}
+    if friction.has_presliding:
+        if friction.sure_stiffness <= 0 or (late > 0 and damping <= 0):
+            return None
+        passive = friction.sure_stiffness * math.sqrt(acting / friction.most)
+        why = f"{STIFFNESS_FRACTION:g} of the stiffest with sigma_D^2/f_D <= sigma_p^2/f_C over "
+        why += f"the whole interval, sigma_p >= {friction.sure_stiffness:.4g}, f_C <= "
+        why += f"{friction.most:.4g} (P43, P44)"
+        limits = {why: STIFFNESS_FRACTION * passive}
+        from ..passivity.delayed_compensation import SINC_LEAST
+
+        if late > 0:
+            needed = damping / (float(SINC_LEAST) * late)
+            limits[
+                f"damping of at least 0.2172 sigma_D tau in small motion, {damping:.4g} at "
+                f"{1e3 * late:.3g} ms (P49)"
+            ] = needed
+    why = min(limits, key=limits.__getitem__)
+    stiffness = rounded_down(limits[why] / gain)
+    made = controller("dahl", {"level": level.value, "stiffness": stiffness})
+    reason = Reason("dahl.stiffness", stiffness, unit_of("stiffness", axis), why)
+    return Chosen(made, (_named("dahl", level), reason))
+
+
+def smoothed_cancellation(
+    level: Reason,
+    reach: Reach,
+    assumptions: Assumptions,
+    *,
+    axis: str,
+    period: float,
+    filter_bandwidth: float,
+) -> Chosen:
+    """A smoothed Coulomb cancellation of that level.
+
+    period: of sampling, s;  filter_bandwidth: of the filter on the differenced position, Hz
+    """
+    from ..realise.kernel import velocity_smoothing
+
+    unit = unit_of("velocity", axis)
+    count = reach.step / period * velocity_smoothing(filter_bandwidth, period)
+    share = assumptions.count_force
+    value = rounded_up(count * (1 / share - 1), digits=2)
+    why = (
+        f"one encoder step of {reach.step:.3g} {unit_of('position', axis)} in a sample of "
+        f"{1e3 * period:g} ms, through the {filter_bandwidth:.3g} Hz velocity filter, is "
+        f"{count:.3g} {unit}: it moves the force by no more than {share:g} of the level"
+    )
+    values = {"level": level.value, "smoothing_velocity": value}
+    made = controller("smoothed_coulomb", values)
+    reason = Reason("smoothed_coulomb.smoothing_velocity", value, unit, why)
+    return Chosen(made, (_named("smoothed_coulomb", level), reason))
+
+
+def _named(law: str, level: Reason) -> Reason:
+    return Reason(f"{law}.{level.parameter}", level.value, level.unit, level.why)

@@ -1,0 +1,51 @@
+"""A proposed controller, each of its numbers with its reason."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..controllers import Controller
+
+
+@dataclass(frozen=True)
+class Reason:
+    """Why a parameter "law.parameter" has its value (SI)."""
+
+    parameter: str
+    value: float
+    unit: str
+    why: str
+
+    def __str__(self) -> str:
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return f"{self.parameter} = {self.value:.4g}{unit}: {self.why}"
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """A controller and the reasons for its numbers."""
+
+    controller: Controller
+    reasons: tuple[Reason, ...]
+
+    @property
+    def law(self) -> str:
+        """Name of its first law."""
+        return self.controller.stages[0].law.name
+
+    def __repr__(self) -> str:
+        names = ", ".join(stage.law.name for stage in self.controller.stages)
+        return "\n".join([names, *(f"  {r}" for r in self.reasons)])
+
+
+def toml_of(block: str, chosen: Chosen) -> str:
+    """The controller as TOML: a table a law, in the order from input to output."""
+    units = {r.parameter: r.unit for r in chosen.reasons}
+    lines = []
+    for stage in chosen.controller.stages:
+        lines += [f"[[{block}]]", f'law = "{stage.law.name}"']
+        for name, value in stage.values.items():
+            unit = units[f"{stage.law.name}.{name}"]
+            lines.append(f'{name} = {{ value = {value:.12g}, unit = "{unit}" }}')
+        lines.append("")
+    return "\n".join(lines)

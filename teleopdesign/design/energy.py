@@ -1,0 +1,80 @@
+"""Does the compensated device give out energy? Sought over sinusoids of several sizes and speeds.
+
+The hand moves the device along a prescribed sinusoid; the energy that it puts in over a settled
+cycle is negative where the device gives energy out. All is simulated: identified effects, encoder,
+sampling, delay. It is evidence for the motions tried, not a proof for others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..diagrams import Diagram
+from ..errors import ModelError
+from ..passivity import Claim, Evidence
+from ..quantity import unit_of
+from ..simulate import Sampling
+from .prediction import settled_cycle
+from .reach import Reach
+from .stated_motion import StatedMotion
+
+#: sizes and frequencies tried, over those of the stated motion
+SIZES, FREQUENCIES = (0.1, 0.3, 1.0), (1.0, 3.0, 10.0, 30.0)
+
+
+@dataclass(frozen=True)
+class Taken:
+    """Energy that the hand puts in per cycle of a motion, J; -inf: signals grow without bounds."""
+
+    motion: StatedMotion
+    energy: float
+
+
+def motions_around(motion: StatedMotion, reach: Reach) -> Iterator[StatedMotion]:
+    """Smaller and faster motions than the stated one, within the recorded speed."""
+    for size in SIZES:
+        for faster in FREQUENCIES:
+            one = replace(
+                motion, amplitude=size * motion.amplitude, frequency=faster * motion.frequency
+            )
+            if one.peak_speed <= reach.peak_speed:
+                yield one
+
+
+def energy_taken(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> Taken:
+    """Energy that the hand puts in over a settled cycle, simulated."""
+    try:
+        cycle = settled_cycle(diagram, motion, sampling)
+    except ModelError:
+        return Taken(motion, float("-inf"))
+    power = cycle["E"].values * cycle["L_velocity"].values
+    return Taken(motion, float(np.mean(power) / motion.frequency))
+
+
+def energy_claim(
+    diagram: Diagram, motion: StatedMotion, reach: Reach, sampling: Sampling, *, axis: str
+) -> Claim:
+    """Does the device take energy from the hand, whatever the motion? Evidence from those tried."""
+    tried = [energy_taken(diagram, m, sampling) for m in motions_around(motion, reach)]
+    gives = [t for t in tried if t.energy < 0]
+    # where it gives energy out, the slowest such motion says from where on
+    shown = min(gives, key=lambda t: t.motion.frequency) if gives else _least(tried)
+    size, unit = shown.motion.amplitude, unit_of("position", axis)
+    frequencies = [t.motion.frequency for t in tried]
+    words = "gives energy out along" if gives else "takes least along"
+    searched = (
+        f"{len(tried)} sinusoids, {min(frequencies):.3g} to {max(frequencies):.3g} Hz, simulated "
+        f"with sampling, delay and encoder; it {words} {size:.3g} {unit} at "
+        f"{shown.motion.frequency:.3g} Hz"
+    )
+    if gives:
+        searched += f" and {len(gives) - 1} more"
+    statement = "the device takes energy from the hand"
+    return Claim(statement, Evidence(not gives, searched, shown.energy, "J a cycle"))
+
+
+def _least(tried: list[Taken]) -> Taken:
+    return min(tried, key=lambda t: t.energy / t.motion.amplitude)

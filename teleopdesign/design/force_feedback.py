@@ -1,0 +1,133 @@
+"""The force feedback H that delay allows: a low-pass with a gain that falls with speed.
+
+At rest, where its gain is greatest, the loop of H between device (m) and load (m_H) is
+
+    k m_H/(m + m_H) / (tau s + 1) e^(-s T_d)
+
+T_d: computing delay, a sample period of hold (half of it the command's, half that of the error
+which the sampled low-pass takes in), and what the identified actuation adds.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ..blocks import Body
+from ..controllers import scheduled_force_feedback
+from ..quantity import unit_of
+from ..realise.lti import S
+from .assumptions import Assumptions
+from .chosen import Chosen, Reason
+from .reach import Reach
+from .rounding import rounded_down, rounded_up
+
+#: largest gain proposed: beyond it what is left of friction is a few percent already
+MOST_GAIN = 20.0
+#: times its delay that the loop bears where the device is held rigidly
+HELD_FACTOR = 1.5
+#: times the least scheduling velocity of P13 that b keeps
+SCHEDULE_MARGIN = 1.25
+
+
+@dataclass(frozen=True)
+class Loop:
+    """The loop of H at rest.
+
+    gain: k m_H/(m + m_H);  bandwidth: of the low-pass, Hz;  delay: T_d, s
+    """
+
+    gain: float
+    bandwidth: float
+    delay: float
+
+    @property
+    def crossover(self) -> float:
+        """Where the loop gain is 1, rad/s; 0 where it is below 1 everywhere."""
+        return 2 * math.pi * self.bandwidth * math.sqrt(max(self.gain**2 - 1.0, 0.0))
+
+    @property
+    def largest_delay(self) -> float:
+        """Delay with which the loop is at its limit of stability, s; inf where none is."""
+        w = self.crossover
+        if w == 0.0:
+            return math.inf
+        return (math.pi - math.atan(w / (2 * math.pi * self.bandwidth))) / w
+
+    @property
+    def phase_margin(self) -> float:
+        """Degrees; inf where the loop gain never reaches 1."""
+        margin = (self.largest_delay - self.delay) * self.crossover
+        return math.degrees(margin) if self.crossover else math.inf
+
+
+def whole_inertia(body: Body) -> float:
+    """Inertia of the body with what moves behind a compliance or gap, kg or kg m^2."""
+    for effect in [e for e in body.effects if e.role == "structure"]:
+        body = body.without_effect(effect.name)
+    return float(body.equation().inertia.subs(body.numbers()))
+
+
+def identified_delay(body: Body) -> float:
+    """Delay at low frequency of the body's identified actuation (dead time and lag), s."""
+    form, _ = body.actuation(S)
+    form = sp.sympify(form).subs(body.numbers())
+    return float(sp.limit(-sp.diff(form, S) / form, S, 0))
+
+
+def largest_gain(*, share: float, bandwidth: float, delay: float, factor: float) -> float:
+    """Largest k at which the loop bears `factor` times its delay.
+
+    share: m_H/(m + m_H);  bandwidth: of the low-pass, Hz;  delay: s
+    """
+    from scipy.optimize import brentq
+
+    def spare(k: float) -> float:
+        return Loop(k * share, bandwidth, delay).largest_delay - factor * delay
+
+    if spare(MOST_GAIN) >= 0:
+        return MOST_GAIN
+    # the least k whose loop gain exceeds 1 bears a delay without limit
+    return float(brentq(spare, (1 + 1e-9) / share, MOST_GAIN))
+
+
+def force_feedback(
+    body: Body,
+    reach: Reach,
+    assumptions: Assumptions,
+    *,
+    load: float,
+    delay: float,
+    smoothing_velocity: float,
+) -> tuple[Chosen, Loop]:
+    """H for that body and load, and its loop at rest.
+
+    load: m_H;  delay: T_d, s;  smoothing_velocity: a of the cancellation beside it, 0: none
+    """
+    mass = whole_inertia(body)
+    share, bandwidth = load / (mass + load), assumptions.bandwidth
+    factor = assumptions.delay_factor
+    free = largest_gain(share=share, bandwidth=bandwidth, delay=delay, factor=factor)
+    held = largest_gain(share=1.0, bandwidth=bandwidth, delay=delay, factor=HELD_FACTOR)
+    gain = rounded_down(min(free, held), digits=2)
+    loop = Loop(gain * share, bandwidth, delay)
+    least = smoothing_velocity * gain / (1 + gain)
+    scheduling = rounded_up(max(SCHEDULE_MARGIN * least, reach.rms_speed), digits=2)
+    made = scheduled_force_feedback(gain=gain, scheduling_velocity=scheduling, bandwidth=bandwidth)
+    kilo, speed = unit_of("inertia", body.axis), unit_of("velocity", body.axis)
+    with_load = f"with a load of {load:.3g} {kilo} on {mass:.3g} {kilo} bears {factor:g} times"
+    rigid = f"held rigidly bears {HELD_FACTOR:g} times"
+    why = f"the largest whose loop {with_load if free <= held else rigid} its delay of "
+    why += f"{1e3 * delay:.3g} ms"
+    if gain == MOST_GAIN:
+        why = f"no more than {MOST_GAIN:g}; " + why.replace("the largest whose", "its")
+    slow = f"b (1 + k) >= a k asks for {least:.3g} {speed} (P13)"
+    above = f"the recorded rms speed is {reach.rms_speed:.3g} {speed}; {slow}"
+    reasons = (
+        Reason("velocity_schedule.gain", gain, "1", why),
+        Reason("velocity_schedule.scheduling_velocity", scheduling, speed, above),
+        Reason("low_pass.bandwidth", bandwidth, "Hz", "assumed; more bears less gain"),
+    )
+    return Chosen(made, reasons), loop

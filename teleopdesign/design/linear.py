@@ -1,0 +1,113 @@
+"""What linear theory says: friction as a damper and a spring of the same first harmonic.
+
+Bode plots need linear blocks. Friction becomes the damper, with presliding also the spring, of its
+first harmonic along the stated motion; a Dahl cancellation less of both in the same way; smoothed
+friction and schedules are frozen at the mean speed of the motion.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..blocks import Body, Value
+from ..controllers import Controller
+from ..diagrams import Diagram, four_cases
+from ..effects import EFFECTS
+from ..frequency import FrequencyResponse, bode
+from ..passivity import given_out_late
+from .quasi_static import force_needed
+from .stated_motion import StatedMotion
+
+FRICTION = ("friction_level", "friction_factor", "friction_speed", "friction_shape")
+
+
+def linear_cases(hybrid: Diagram, motion: StatedMotion) -> dict[str, Diagram]:
+    """The four cases with friction, and a Dahl cancellation, as dampers of equal loss."""
+    return {case: _linear(diagram, motion) for case, diagram in four_cases(hybrid).items()}
+
+
+def mean_speed(motion: StatedMotion) -> float:
+    """Mean speed of the motion, m/s or rad/s."""
+    return 2 * motion.peak_speed / math.pi
+
+
+def linear_error(hybrid: Diagram, motion: StatedMotion) -> tuple[Mapping[str, float], str]:
+    """Rms force error of each case along the motion by abs(Zhat_M) A, and what was left out."""
+    at = np.array([motion.frequency])
+    found = bode(
+        linear_cases(hybrid, motion),
+        output="E",
+        input="L",
+        given="L",
+        frequency=at,
+        speed=mean_speed(motion),
+    )
+    size = found.data["magnitude"].values[:, 0] * motion.amplitude / math.sqrt(2)
+    gone = sorted({name.partition(".")[2] or name for v in found.left_out.values() for name in v})
+    return dict(zip(found.left_out, map(float, size), strict=True)), ", ".join(gone)
+
+
+def transparency(hybrid: Diagram, motion: StatedMotion) -> FrequencyResponse:
+    """T, from R_D to R_M, of the four cases; the diagram has a load in the place of the hand."""
+    frequency = np.geomspace(0.1, 100.0, 301)
+    return bode(linear_cases(hybrid, motion), frequency=frequency, speed=mean_speed(motion))
+
+
+def _linear(diagram: Diagram, motion: StatedMotion) -> Diagram:
+    (place,) = (b for b in diagram.bodies if b.name == "Z_M")
+    body = place.body
+    assert isinstance(body, Body)
+    damping, stiffness = _equal_friction(body, motion)
+    for block in diagram.controls:
+        assert isinstance(block.controller, Controller)
+        if block.controller.stages[0].law.name == "dahl":
+            values = block.controller.stages[0].values
+            less = _equal_dahl(values["level"], values["stiffness"], motion)
+            damping, stiffness = damping - less[0], stiffness - less[1]
+            diagram = diagram.without(block.name)
+    return diagram.with_block("Z_M", without_friction(body, damping=damping, stiffness=stiffness))
+
+
+def without_friction(body: Body, *, damping: float = 0.0, stiffness: float = 0.0) -> Body:
+    """The body without friction, with a damper (N s/m) and a spring (N/m) more, none below 0."""
+    for effect in [e for e in reversed(body.effects) if e.role in FRICTION]:
+        body = body.without_effect(effect.name)
+    for name, parameter, more in (
+        ("viscous", "damping", damping),
+        ("spring", "stiffness", stiffness),
+    ):
+        full = f"{name}.{parameter}"
+        if not body.has(name):
+            body = body.with_effect(EFFECTS[name])
+        value = max(body.parameters[full].value + more, 0.0)
+        body = body.with_values({full: Value(value)})
+    return body
+
+
+def _equal_friction(body: Body, motion: StatedMotion) -> tuple[float, float]:
+    """Damping and stiffness that friction amounts to along a cycle, N s/m and N/m (P16, P18)."""
+    _, friction = force_needed(body, motion)
+    _, _, velocity, _ = motion.cycle(len(friction))
+    if not velocity.any() or not friction.any():
+        return 0.0, 0.0
+    stiffness = body.parameters.get("presliding.stiffness")
+    if stiffness is not None and math.isfinite(stiffness.value):
+        # of a level that varies, that which takes the same energy while it slides
+        level = float(np.mean(friction * velocity) / np.mean(np.abs(velocity)))
+        return _equal_dahl(level, stiffness.value, motion)
+    return float(np.mean(friction * velocity) / np.mean(velocity**2)), 0.0
+
+
+def _equal_dahl(level: float, stiffness: float, motion: StatedMotion) -> tuple[float, float]:
+    """Damping and stiffness of the first harmonic of Dahl friction, N s/m and N/m (P18)."""
+    amplitude = motion.amplitude
+    cycle = math.pi * amplitude**2
+    loss = given_out_late(level=level, stiffness=stiffness, amplitude=amplitude, phase=0.0)
+    # late by a quarter of a period the spring's part does the work
+    spring = given_out_late(
+        level=level, stiffness=stiffness, amplitude=amplitude, phase=math.pi / 2
+    )
+    return loss / (cycle * motion.omega), -spring / cycle

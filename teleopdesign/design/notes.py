@@ -1,0 +1,161 @@
+"""What needs care in a design, in sentences made from its numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from ..diagnose.ladder import ADEQUATE
+from ..quantity import unit_of
+from .friction_range import FrictionRange
+from .from_answer import Diagnosed
+from .outcome import Design
+from .prediction import CasePrediction
+from .quasi_static import slow_body
+
+#: part of a predicted force by which two predictions may be apart and nothing is said
+CLOSE = 0.1
+
+
+def notes_on(design: Design, found: Diagnosed) -> tuple[str, ...]:
+    """The notes of a design, those on its model first."""
+    makers: tuple[Callable[[Design], list[str]], ...] = (_friction, _sensors, _left_out, _apart)
+    return (*_model(design, found), *(line for make in makers for line in make(design)))
+
+
+def _model(design: Design, found: Diagnosed) -> list[str]:
+    lines = []
+    if found.left > ADEQUATE:
+        lines.append(
+            f"The model leaves {found.left:.3g} noise floors unexplained (verdict "
+            f"{found.verdict}): standard errors hold within the model only, so the least level may "
+            f"be lower than they say, and the fraction of {design.assumptions.fraction:g} is the "
+            "only margin against that."
+        )
+    friction = design.friction
+    if friction is not None and friction.unknown:
+        names = ", ".join(friction.unknown)
+        lines.append(f"No standard error is known of {names}: taken as exact.")
+    return lines
+
+
+def _friction(design: Design) -> list[str]:
+    friction, unit = design.friction, unit_of("force", design.body.axis)
+    if friction is None:
+        return ["The model has no friction level: there is nothing to cancel."]
+    if design.cancellation is None:
+        return [_none_proposed(friction, unit)]
+    lines = []
+    if not design.reach.both_ways:
+        lines.append(
+            "The records move it one way only: its friction the other way is taken to be what the "
+            "model says, which no record has shown."
+        )
+    if friction.highest > 1.001 * friction.lowest:
+        lines.append(
+            f"Friction lies between {friction.lowest:.4g} and {friction.highest:.4g} {unit} over "
+            "the recorded speeds, directions, positions and loads: the least of it is cancelled, "
+            f"so that up to {friction.highest - friction.lowest:.3g} {unit} more than the margin "
+            "is left."
+        )
+    bias = design.body.parameters.get("bias.force")
+    if bias is not None and abs(bias.value) > 0:
+        lines.append(
+            f"A constant force of {bias.value:.3g} {unit} is taken for gravity or an offset: it "
+            "gives back what it takes. No record tells it from friction of two levels; then the "
+            f"lower one is {max(friction.sure - abs(bias.value), 0.0):.3g} {unit}, and motion that "
+            "only ever goes one way would need a level below that."
+        )
+    if design.cancellation.law == "smoothed_coulomb":
+        lines.append(
+            f"The records tell no presliding shorter than {design.reach.unresolved:.3g} "
+            f"{unit_of('position', design.body.axis)}. Beside one, a smoothed cancellation is a "
+            "negative damper in small motion: lower its level where the device hums at rest."
+        )
+    if friction.has_presliding:
+        lines.append(
+            "Friction is a spring before it slides: a smoothed Coulomb cancellation is not "
+            "proposed, for in small motion it is a negative damper that such a spring does not "
+            "stop."
+        )
+    if design.body.has("transmission_compliance") or design.body.has("backlash"):
+        lines.append(
+            "Behind the compliance only the friction of the motor side is cancelled; f_D within "
+            "that is passive whatever lies beyond (P53)."
+        )
+    return lines
+
+
+def _none_proposed(friction: FrictionRange, unit: str) -> str:
+    if not friction.slides:
+        why = (
+            f"friction does not come near its level within the recorded travel, half of which is "
+            f"{friction.bristle_lengths:.2g} bristle lengths: the level is a guess"
+        )
+    elif friction.sure <= 0:
+        why = (
+            f"the least level within the interval is {friction.sure:.3g} {unit} (at "
+            f"{friction.where_lowest}), so that no level is sure"
+        )
+    elif friction.sure_stiffness <= 0:
+        why = "the presliding stiffness is not told from zero, so no stiffness is sure (P43)"
+    else:
+        why = (
+            "friction is a spring in small motion, and no damping is identified that makes up for "
+            "the delay of a cancellation there (P49)"
+        )
+    return f"No cancellation is proposed: {why}."
+
+
+def _sensors(design: Design) -> list[str]:
+    if design.reach.measures_force:
+        return []
+    return [
+        "No interaction force is a channel of this experiment: H needs a force sensor between hand "
+        "and device; without one, the case MBC is what can be built."
+    ]
+
+
+def _left_out(design: Design) -> list[str]:
+    gone = design.prediction.left_out
+    slow = {e.name for e in slow_body(design.body).effects}
+    more = [e.name for e in design.body.effects if e.name not in slow]
+    lines = []
+    if gone:
+        lines.append(
+            f"Linear theory leaves out: {gone} (friction is a damper and spring of the same first "
+            "harmonic)."
+        )
+    if design.prediction.rigid:
+        lines.append(
+            f"{design.prediction.rigid} has no simulated form in a diagram: the simulation takes "
+            "the device for rigid, with the inertia of both sides."
+        )
+    if more:
+        lines.append(f"Slow motion leaves out: {', '.join(more)}.")
+    return lines
+
+
+def _apart(design: Design) -> list[str]:
+    """Where the quasi-static prediction and the simulation differ."""
+    unit, lines = unit_of("force", design.body.axis), list[str]()
+    said: list[CasePrediction] = []
+    for case, p in design.prediction.cases.items():
+        if p in said:  # without a cancellation two cases are the same as two others
+            continue
+        said.append(p)
+        if p.failed:
+            lines.append(f"{case}: not simulated: {p.failed}.")
+            continue
+        if p.apart <= CLOSE * p.simulated:
+            continue
+        where = "near reversals" if p.at_reversals > 0.5 else "away from reversals"
+        share = 100 * (p.at_reversals if p.at_reversals > 0.5 else 1 - p.at_reversals)
+        lines.append(
+            f"{case}: simulation and slow motion are {p.apart:.3g} {unit} rms apart, "
+            f"{100 * p.apart / p.simulated:.0f} % of the simulated error, {share:.0f} % of the "
+            f"squares {where} (below 0.3 of the peak speed)."
+        )
+        if not math.isclose(p.linear, p.simulated, rel_tol=CLOSE):
+            lines[-1] += f" Linear theory is off by {100 * (p.linear / p.simulated - 1):+.0f} %."
+    return lines

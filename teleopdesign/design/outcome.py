@@ -1,0 +1,97 @@
+"""The design that follows from a measurement: what is proposed, predicted and claimed."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..blocks import Body
+from ..frequency import FrequencyResponse
+from ..passivity import Claim
+from ..simulate import Sampling
+from .assumptions import Assumptions
+from .chosen import Chosen, toml_of
+from .force_feedback import Loop
+from .friction_range import FrictionRange
+from .prediction import Prediction
+from .reach import Reach
+from .residual_friction import ResidualFriction
+from .sampling import sampling_of
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+
+
+@dataclass(frozen=True)
+class Design:
+    """A compensation for the body at `place` of an experiment.
+
+    body: as the diagnosis identified it;  friction: range of its level, None: no friction level
+    cancellation: C, None where none is sure to be passive;  other: the law that was second,
+        leaving the hybrid a force error of other_left
+    force_feedback: H, with its loop at rest;  prediction: force errors of the four cases
+    residual: friction left in slow steady motion, at the middle of the travel
+    transparency: T of the four cases, by linear theory, with the load in the place of the hand
+    claims: on passivity, each with how it is known;  notes: what needs care, in sentences
+    """
+
+    experiment: str
+    place: str
+    body: Body
+    assumptions: Assumptions
+    reach: Reach
+    friction: FrictionRange | None
+    cancellation: Chosen | None
+    other: Chosen | None
+    other_left: float
+    force_feedback: Chosen
+    loop: Loop
+    prediction: Prediction
+    residual: ResidualFriction
+    transparency: FrequencyResponse
+    claims: Mapping[str, tuple[Claim, ...]]
+    notes: tuple[str, ...]
+
+    @property
+    def held(self) -> Loop:
+        """The loop of H at rest where the device is held rigidly: a load without limit."""
+        gain = self.force_feedback.controller.names()["velocity_schedule.gain"]
+        return replace(self.loop, gain=gain)
+
+    @property
+    def sampling(self) -> Sampling:
+        """How the controllers are sampled in simulation."""
+        return sampling_of(self.assumptions, self.reach)
+
+    def plot(self) -> matplotlib.figure.Figure:
+        """Force error over velocity in the four cases, what is left in slow motion, and T."""
+        from ..plot.design_from_measurement import plot_design
+
+        return plot_design(self)
+
+    def to_toml(self) -> str:
+        """The proposed controllers as TOML, a table a law."""
+        parts = [f"# {self.experiment}, {self.place}\n"]
+        if self.cancellation is not None:
+            parts.append(toml_of("cancellation", self.cancellation))
+        parts.append(toml_of("force_feedback", self.force_feedback))
+        return "\n".join(parts)
+
+    def as_dict(self) -> dict[str, Any]:
+        """The design as plain data; SI units."""
+        from .plain_data import design_data
+
+        return design_data(self)
+
+    def to_json(self, path: str | Path) -> None:
+        """Write it as JSON."""
+        text = json.dumps(self.as_dict(), indent=1, allow_nan=False) + "\n"
+        Path(path).write_text(text, encoding="utf-8")
+
+    def __repr__(self) -> str:
+        from .sentences import design_text
+
+        return design_text(self)

@@ -1,0 +1,90 @@
+"""A design as plain data, to be written as JSON; SI units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+from ..passivity import Claim
+from ..quantity import unit_of
+from .chosen import Chosen
+from .force_feedback import Loop
+from .outcome import Design
+
+
+def design_data(design: Design) -> dict[str, Any]:
+    """The design as plain data; a number that is not finite is null."""
+    axis = design.body.axis
+    residual = design.residual
+    content = {
+        "experiment": design.experiment,
+        "place": design.place,
+        "axis": axis,
+        "units": {q: unit_of(q, axis) for q in ("force", "position", "velocity", "stiffness")},
+        "model_parameters": {
+            n: {"value": v.value, "stderr": v.stderr, "unit": design.body.unit(n)}
+            for n, v in design.body.parameters.items()
+        },
+        "assumptions": asdict(design.assumptions),
+        "recorded": asdict(design.reach),
+        "friction": asdict(design.friction) if design.friction else None,
+        "cancellation": _chosen(design.cancellation),
+        "second_cancellation": _chosen(design.other),
+        "force_feedback": _chosen(design.force_feedback),
+        "loop": _loop(design.loop),
+        "loop_held_rigidly": _loop(design.held),
+        "motion": asdict(design.prediction.motion),
+        "prediction": {case: asdict(p) for case, p in design.prediction.cases.items()},
+        "taken_rigid_in_simulation": design.prediction.rigid,
+        "left_out_of_linear": design.prediction.left_out,
+        "residual_friction": {
+            "speed": residual.speeds.tolist(),
+            **{case: row.tolist() for case, row in residual.rows.items()},
+        },
+        "passivity": {case: [_claim(c) for c in claims] for case, claims in design.claims.items()},
+        "notes": list(design.notes),
+        "controllers_toml": design.to_toml(),
+    }
+    found = _finite(content)
+    assert isinstance(found, dict)
+    return found
+
+
+def _chosen(chosen: Chosen | None) -> dict[str, Any] | None:
+    if chosen is None:
+        return None
+    return {
+        "laws": [stage.law.name for stage in chosen.controller.stages],
+        "parameters": {
+            r.parameter: {"value": r.value, "unit": r.unit, "why": r.why} for r in chosen.reasons
+        },
+    }
+
+
+def _loop(loop: Loop) -> dict[str, Any]:
+    return {
+        **asdict(loop),
+        "crossover": loop.crossover,
+        "phase_margin": loop.phase_margin,
+        "largest_delay": loop.largest_delay,
+    }
+
+
+def _claim(claim: Claim) -> dict[str, Any]:
+    return {
+        "status": claim.status,
+        "holds": claim.holds,
+        "statement": claim.statement,
+        "how": str(claim.verdict),
+        "certificates": len(claim.certificates),
+    }
+
+
+def _finite(x: object) -> object:
+    if isinstance(x, Mapping):
+        return {k: _finite(v) for k, v in x.items()}
+    if isinstance(x, list | tuple):
+        return [_finite(v) for v in x]
+    return None if isinstance(x, float) and not math.isfinite(x) else x

@@ -1,0 +1,182 @@
+"""Before and after: force error of the four cases, by linear theory, slow motion, simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..blocks import Body
+from ..diagrams import Diagram, four_cases
+from ..errors import ModelError
+from ..simulate import ForceVelocity, Sampling, Simulation, force_velocity, simulate
+from .linear import linear_error
+from .quasi_static import quasi_static_error
+from .stated_motion import StatedMotion
+
+if TYPE_CHECKING:
+    import xarray
+
+#: cycles simulated; the last one counts
+CYCLES = 3
+#: part of the amplitude by which an ideal Coulomb contact gives before it slides
+GIVE = 1e-6
+#: part of the peak speed within which motion counts as a reversal
+REVERSAL = 0.3
+
+
+@dataclass(frozen=True)
+class CasePrediction:
+    """One case; forces in N or N m, rms about their mean over a cycle of the motion.
+
+    linear, quasi_static, simulated: the force error;  at_peak_speed: simulated
+    mean: simulated, what no linear theory holds (gravity, offsets)
+    energy: that the hand puts in per cycle, J, simulated
+    apart: rms of simulated less quasi-static;  at_reversals: part of its squares near reversals
+    failed: why there is no simulation, "" where there is one
+    """
+
+    linear: float
+    quasi_static: float
+    simulated: float
+    at_peak_speed: float
+    mean: float
+    energy: float
+    apart: float
+    at_reversals: float
+    failed: str = ""
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Predicted force errors by case; curves: simulated, over velocity; left_out: of linear.
+
+    hybrid: the diagram as simulated
+    rigid: a structure of the body that no simulation of a diagram holds yet, "" where none is
+    """
+
+    motion: StatedMotion
+    cases: Mapping[str, CasePrediction]
+    curves: ForceVelocity
+    left_out: str
+    hybrid: Diagram
+    rigid: str = ""
+
+
+def settled_cycle(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> xarray.Dataset:
+    """The signals of a settled cycle of a prescribed motion.
+
+    raises ModelError: it cannot be simulated
+    """
+    data = _simulated(diagram, motion, sampling, step=sampling.period / 10).data
+    return data.isel(time=data["time"].values >= (CYCLES - 1) / motion.frequency)
+
+
+def simulated_error(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> float:
+    """Rms force error of one diagram about its mean over a settled cycle, N or N m.
+
+    raises ModelError: it cannot be simulated
+    """
+    return float(np.std(settled_cycle(diagram, motion, sampling)["E"].values))
+
+
+def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Prediction:
+    """Predict the force error of the four cases along a motion that is prescribed.
+
+    hybrid: a device with C and H, either may be absent, without a hand
+    raises ModelError: not even the device alone can be simulated
+    """
+    linear, left_out = linear_error(hybrid, motion)
+    simulated, rigid = _simulable(hybrid, motion, sampling)
+    runs, failed = _all_simulated(simulated, motion, sampling)
+    curves = force_velocity(runs, after=(CYCLES - 1) / motion.frequency)
+    cases = {
+        case: _case(case, diagram, motion, linear[case], curves, failed.get(case, ""))
+        for case, diagram in four_cases(hybrid).items()
+    }
+    return Prediction(motion, cases, curves, left_out, simulated, rigid)
+
+
+def _all_simulated(
+    hybrid: Diagram, motion: StatedMotion, sampling: Sampling
+) -> tuple[dict[str, Simulation], dict[str, str]]:
+    """The cases on one grid of time, and why others could not be simulated."""
+    step = sampling.period / 10
+    while True:
+        runs: dict[str, Simulation] = {}
+        failed: dict[str, str] = {}
+        for case, diagram in four_cases(hybrid).items():
+            try:
+                runs[case] = _simulated(diagram, motion, sampling, step=step)
+            except ModelError as error:
+                if case == "none":
+                    raise
+                failed[case] = str(error)
+        finest = min(float(run.data.attrs["step_s"]) for run in runs.values())
+        if all(run.data.attrs["step_s"] == finest for run in runs.values()):
+            return runs, failed
+        step = finest  # a case that needs a finer step takes the others with it
+
+
+def _simulable(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> tuple[Diagram, str]:
+    """The diagram as far as it has a simulated form, and the structure that was taken rigid."""
+    (body,) = (b.body for b in hybrid.bodies if b.name == "Z_M")
+    assert isinstance(body, Body)
+    structure = next((e.name for e in body.effects if e.role == "structure"), "")
+    if structure:
+        try:
+            _simulated(four_cases(hybrid)["none"], motion, sampling, step=sampling.period / 10)
+        except ModelError:
+            # its inertia counts both sides
+            return hybrid.with_block("Z_M", body.without_effect(structure)), structure
+    return hybrid, ""
+
+
+def _simulated(
+    diagram: Diagram, motion: StatedMotion, sampling: Sampling, *, step: float
+) -> Simulation:
+    return simulate(
+        diagram,
+        duration=CYCLES / motion.frequency,
+        motion={"L": motion.motion},
+        computer=sampling,
+        step=step,
+        give=GIVE * motion.amplitude,
+        every_step=True,
+    )
+
+
+def _case(
+    case: str,
+    diagram: Diagram,
+    motion: StatedMotion,
+    linear: float,
+    curves: ForceVelocity,
+    failed: str,
+) -> CasePrediction:
+    none = float("nan")
+    slow = quasi_static_error(diagram, motion)
+    spread = float(np.std(slow))
+    if failed:
+        return CasePrediction(linear, spread, none, none, none, none, none, none, failed)
+    data = curves.data.sel(case=case)
+    time, force = data["time"].values, data["force"].values
+    velocity = data["velocity"].values
+    rows, _, _, _ = motion.cycle(len(slow))
+    # whole cycles: the phase of each row in the cycle
+    phase = np.mod(time, 1 / motion.frequency)
+    difference = force - np.interp(phase, rows, slow, period=1 / motion.frequency)
+    squares = difference**2
+    near = np.abs(velocity) < REVERSAL * motion.peak_speed
+    return CasePrediction(
+        linear=linear,
+        quasi_static=spread,
+        simulated=float(np.std(force)),
+        at_peak_speed=curves.at_peak_speed[case],
+        mean=float(np.mean(force)),
+        energy=float(np.mean(force * velocity) / motion.frequency),
+        apart=float(np.sqrt(np.mean(squares))),
+        at_reversals=float(squares[near].sum() / max(squares.sum(), 1e-300)),
+    )

@@ -1,0 +1,231 @@
+"""From an identified body to controllers, predictions and claims."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from ..blocks import Body
+from ..diagrams import Diagram, four_cases, haptic_interface
+from ..errors import ModelError
+from ..model import Model
+from ..passivity import Claim
+from .assumptions import Assumptions
+from .cancellation import acting_gain, cancelled_level, dahl_cancellation, smoothed_cancellation
+from .chosen import Chosen
+from .energy import energy_claim
+from .force_feedback import Loop, force_feedback, identified_delay, whole_inertia
+from .friction_range import FrictionRange, friction_range
+from .from_answer import Diagnosed
+from .linear import transparency
+from .notes import notes_on
+from .outcome import Design
+from .prediction import Prediction, predict
+from .reach import Reach, reach_of
+from .residual_friction import SHARES, residual_friction
+from .sampling import sampling_of
+from .stated_motion import StatedMotion, stated_motion
+from .verdict import (
+    cancellation_claims,
+    compliant_claim,
+    feedback_claim,
+    in_units_of,
+    small_motion_damping,
+)
+
+#: of the load that stands for a hand over the device's inertia, where none is stated
+LOAD = 3.0
+#: Hz and share of the sample rate: bandwidth of the velocity filter where none is stated
+FILTER, FILTER_SHARE = 50.0, 0.1
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One choice of C with the H that goes with it, and what both do."""
+
+    cancellation: Chosen | None
+    force_feedback: Chosen
+    loop: Loop
+    diagram: Diagram
+    prediction: Prediction
+
+    @property
+    def left(self) -> float:
+        """Rms force error of the hybrid in simulation; inf where it cannot be simulated."""
+        case = self.prediction.cases["hybrid"]
+        return float("inf") if case.failed else case.simulated
+
+
+def design(
+    found: Diagnosed, *, place: str | None = None, assumptions: Assumptions | None = None
+) -> Design:
+    """Propose C and H for a body that a diagnosis identified, and predict what they do.
+
+    place: which body; may be left out where there is one
+    Of the laws of C that are sure to be passive, the one that leaves the smaller force error.
+    raises ModelError: no such body, an assumption that cannot hold, a motion beyond the records
+    """
+    at = _place(found.model, place)
+    reach = reach_of(found.experiment, at)
+    body = free_body(found.model.body(at))
+    given = settled(assumptions or Assumptions(), body, reach)
+    motion = stated_motion(reach, given, body.axis)
+    friction = friction_range(body, reach, errors=given.errors)
+    options: list[Chosen | None] = [*cancellations(body, friction, reach, given)]
+    trials = [_trial(body, one, motion, reach, given) for one in options or [None]]
+    best = min(trials, key=lambda t: t.left)
+    others = [t for t in trials if t is not best]
+    made = Design(
+        experiment=found.experiment.title or found.experiment.folder.name,
+        place=at,
+        body=body,
+        assumptions=given,
+        reach=reach,
+        friction=friction,
+        cancellation=best.cancellation,
+        other=others[0].cancellation if others else None,
+        other_left=others[0].left if others else float("nan"),
+        force_feedback=best.force_feedback,
+        loop=best.loop,
+        prediction=best.prediction,
+        residual=residual_friction(
+            body,
+            cancellation=best.cancellation.controller if best.cancellation else None,
+            force_feedback=best.force_feedback.controller,
+            speeds=reach.peak_speed * SHARES,
+            position=motion.centre,
+        ),
+        transparency=transparency(_with_load(best, body, given), motion),
+        claims=_claims(best, body, friction, reach, given),
+        notes=(),
+    )
+    return replace(made, notes=notes_on(made, found))
+
+
+def free_body(body: Body) -> Body:
+    """The body in free space: without a modelled environment."""
+    for effect in [e for e in reversed(body.effects) if e.role in ("contact_shape", "contact")]:
+        body = body.without_effect(effect.name)
+    return body
+
+
+def settled(given: Assumptions, body: Body, reach: Reach) -> Assumptions:
+    """The assumptions with those that are not stated taken from record and body."""
+    period = given.sample_period or reach.sample_period
+    mass = whole_inertia(body)
+    delay = period if given.delay is None else given.delay
+    filtered = given.velocity_bandwidth or min(FILTER, FILTER_SHARE / period)
+    load = given.load or float(f"{LOAD * mass:.2g}")
+    return replace(given, sample_period=period, delay=delay, velocity_bandwidth=filtered, load=load)
+
+
+def cancellations(
+    body: Body, friction: FrictionRange | None, reach: Reach, given: Assumptions
+) -> list[Chosen]:
+    """The laws of C that are sure to be passive; none where no level is sure."""
+    if friction is None:
+        return []
+    gain = acting_gain(body, reach, errors=given.errors)
+    level = cancelled_level(friction, gain, given, body.axis)
+    if level is None:
+        return []
+    damping = small_motion_damping(body, errors=given.errors)
+    late = _late(body, given)
+    dahl = dahl_cancellation(
+        level, friction, reach, gain, given, axis=body.axis, late=late, damping=damping
+    )
+    found = [] if dahl is None else [dahl]
+    if friction.has_presliding:
+        # in small motion a smoothed cancellation is a negative damper that a bristle cannot stop
+        return found
+    assert given.sample_period is not None and given.velocity_bandwidth is not None
+    smoothed = smoothed_cancellation(
+        level,
+        reach,
+        given,
+        axis=body.axis,
+        period=given.sample_period,
+        filter_bandwidth=given.velocity_bandwidth,
+    )
+    return [*found, smoothed]
+
+
+def _trial(
+    body: Body, option: Chosen | None, motion: StatedMotion, reach: Reach, given: Assumptions
+) -> Trial:
+    assert given.load is not None and given.sample_period is not None and given.delay is not None
+    names = option.controller.names() if option else {}
+    h, loop = force_feedback(
+        body,
+        reach,
+        given,
+        load=given.load,
+        # the command is held for a sample, and so is the error that the low-pass takes in
+        delay=_late(body, given) + given.sample_period,
+        smoothing_velocity=names.get("smoothed_coulomb.smoothing_velocity", 0.0),
+    )
+    diagram = haptic_interface(
+        body,
+        cancellation=option.controller if option else None,
+        force_feedback=h.controller,
+    )
+    sampling = sampling_of(given, reach)
+    return Trial(option, h, loop, diagram, predict(diagram, motion, sampling))
+
+
+def _late(body: Body, given: Assumptions) -> float:
+    """Computing delay and what the identified actuation adds, s."""
+    assert given.delay is not None
+    return given.delay + identified_delay(body)
+
+
+def _with_load(best: Trial, body: Body, given: Assumptions) -> Diagram:
+    """The diagram with the load in the place of the hand."""
+    assert given.load is not None
+    inertia = replace(body.parameters["inertia"], value=given.load)
+    return haptic_interface(
+        body,
+        hand=Body(body.axis, {"inertia": inertia}),
+        cancellation=best.cancellation.controller if best.cancellation else None,
+        force_feedback=best.force_feedback.controller,
+    )
+
+
+def _claims(
+    best: Trial, body: Body, friction: FrictionRange | None, reach: Reach, given: Assumptions
+) -> Mapping[str, tuple[Claim, ...]]:
+    """Claims by case."""
+    found: dict[str, list[Claim]] = {case: [] for case in four_cases(best.diagram)}
+    if best.cancellation is not None and friction is not None:
+        gain = acting_gain(body, reach, errors=given.errors)
+        found["MBC"] = cancellation_claims(
+            best.cancellation,
+            friction,
+            gain=gain,
+            late=_late(body, given),
+            damping=small_motion_damping(body, errors=given.errors),
+        )
+        compliant = compliant_claim(body, best.cancellation, friction, gain=gain)
+        found["MBC"] += [compliant] if compliant else []
+    found["FF"] = [feedback_claim(body, best.force_feedback.controller)]
+    for case, diagram in four_cases(best.prediction.hybrid).items():
+        found[case].append(
+            energy_claim(
+                diagram,
+                best.prediction.motion,
+                reach,
+                sampling_of(given, reach),
+                axis=body.axis,
+            )
+        )
+    return {
+        case: tuple(in_units_of(body.axis, c) for c in claims) for case, claims in found.items()
+    }
+
+
+def _place(model: Model, place: str | None) -> str:
+    if place is None and len(model.bodies) > 1:
+        raise ModelError(f"design: body: one of {', '.join(model.bodies)} must be given")
+    at = next(iter(model.bodies)) if place is None else place
+    model.body(at)
+    return at

@@ -1,0 +1,99 @@
+"""What the laws say of slow motion: no filter, no sampling, no presliding, no compliance.
+
+    force error = (inertia a + forces + level sgn v - C(v)) / (1 + H(v))
+
+Each term is the law of the effect or controller itself. With Coulomb friction alone and without
+inertia this is the residual friction r(v) of P13.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from ..blocks import Body
+from ..controllers import SIGNALS as CONTROL_SIGNALS
+from ..controllers import Controller, parameter_symbol
+from ..diagrams import Diagram
+from ..effects import SIGNALS
+from ..measurement.filtering import Array
+from ..realise.simulated import without_absent
+from .stated_motion import StatedMotion
+
+#: what needs states that slow motion does not have: taken away, or at their settled value
+_ROLES = ("friction_shape", "friction_speed", "structure", "actuation", "contact", "contact_shape")
+
+
+def slow_body(body: Body) -> Body:
+    """The body in slow motion: without presliding, memory, compliance, actuation and contact."""
+    body = without_absent(body)
+    for effect in [e for e in body.effects if e.role in _ROLES]:
+        if body.has(effect.name):
+            body = body.without_effect(effect.name)
+    return body
+
+
+def force_needed(body: Body, motion: StatedMotion, *, rows: int = 2000) -> tuple[Array, Array]:
+    """Force that slow motion needs along a cycle, all of it and its friction, (rows,) each."""
+    body = slow_body(body)
+    equation = body.equation()
+    _, position, velocity, acceleration = motion.cycle(rows)
+    values = {
+        SIGNALS["time"]: np.zeros(rows),
+        SIGNALS["position"]: position,
+        SIGNALS["velocity"]: velocity,
+        SIGNALS["acceleration"]: acceleration,
+        SIGNALS["direction"]: np.sign(velocity),
+    }
+    friction = equation.friction
+    other = equation.inertia * SIGNALS["acceleration"] + equation.force
+    # a force that grows with the load is met at the load that the motion itself needs
+    carried = other + friction.subs(SIGNALS["acting_force"], other)
+    friction = friction.subs(SIGNALS["acting_force"], carried)
+    return _along(other, body, values) + (f := _along(friction, body, values)), f
+
+
+def _along(law: sp.Expr, body: Body, values: dict[sp.Symbol, Array]) -> Array:
+    call = sp.lambdify(list(values), sp.sympify(law).subs(body.numbers()), "numpy")
+    rows = next(iter(values.values())).shape
+    return np.broadcast_to(np.asarray(call(*values.values()), dtype=float), rows)
+
+
+def slow_output(controller: Controller, force: Array, velocity: Array) -> Array:
+    """Settled output of a controller at an input and a velocity, (n,) each.
+
+    States are where they settle at that velocity: a low-pass passes, a bristle slides.
+    """
+    signals = {n: CONTROL_SIGNALS[n] for n in CONTROL_SIGNALS}
+    equation = controller.equation("slow", signals)
+    speed, travel = CONTROL_SIGNALS["speed"], CONTROL_SIGNALS["velocity"]
+    output = equation.output
+    for state, rate in equation.rates.items():
+        here = rate.subs(CONTROL_SIGNALS["travel_rate"], travel).subs(sp.Abs(travel), speed)
+        output = output.subs(state, sp.solve(here, state)[0])
+    numbers = {parameter_symbol("slow", n): v for n, v in controller.names().items()}
+    call = sp.lambdify([CONTROL_SIGNALS["input"], travel, speed], output.subs(numbers), "numpy")
+    found = call(force, velocity, np.abs(velocity))
+    return np.broadcast_to(np.asarray(found, dtype=float), velocity.shape)
+
+
+def quasi_static_error(diagram: Diagram, motion: StatedMotion, *, rows: int = 2000) -> Array:
+    """Force error R_D - R_M along a cycle in slow motion at R_D = 0, (rows,)."""
+    _, _, velocity, _ = motion.cycle(rows)
+    (body,) = (b.body for b in diagram.bodies if b.name == "Z_M")
+    assert isinstance(body, Body)
+    force, _ = force_needed(body, motion, rows=rows)
+    return left_over(diagram, force, velocity)
+
+
+def left_over(diagram: Diagram, force: Array, velocity: Array) -> Array:
+    """Of a force against the motion, what C and H leave to the hand in slow motion, (n,)."""
+    gain = np.zeros_like(force)
+    for block in diagram.controls:
+        assert isinstance(block.controller, Controller)
+        if block.name == "C":
+            force = force - slow_output(block.controller, np.zeros_like(force), velocity)
+        elif block.name == "H":
+            gain = slow_output(block.controller, np.ones_like(force), velocity)
+    found: Array = force / (1 + gain)
+    return found

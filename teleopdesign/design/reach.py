@@ -1,0 +1,72 @@
+"""What the records of an experiment reached: travel, speed, command, sensors, sampling."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..diagnose.force_error import prepare
+from ..diagnose.motion_facts import RARE
+from ..errors import ExperimentError
+from ..measurement.experiment import Experiment
+from ..measurement.motion import TRAVEL
+
+
+@dataclass(frozen=True)
+class Reach:
+    """The recorded range of one body; SI.
+
+    low, high: of its position;  peak_speed, rms_speed;  command: largest commanded force
+    duration: of the longest record;  sample_period: s;  step: what one reading leaves open
+    unresolved: length below which the give of a contact before it slides cannot be told: within the
+        steps that tell a motion, or half a period of the comparison's bandwidth after a reversal
+    measures_force: whether the force of hand or environment is a channel
+    both_ways: whether it moves forward and backward for at least `RARE` of the time it moves
+    """
+
+    low: float
+    high: float
+    peak_speed: float
+    rms_speed: float
+    command: float
+    duration: float
+    sample_period: float
+    step: float
+    unresolved: float
+    measures_force: bool
+    both_ways: bool = True
+
+    @property
+    def travel(self) -> float:
+        """Length of the travel."""
+        return self.high - self.low
+
+
+def reach_of(experiment: Experiment, place: str) -> Reach:
+    """What the records of an experiment reached at one body.
+
+    raises ExperimentError: the body does not move in them
+    """
+    motions = [s.motion for s in prepare(experiment).stretches if s.motion.body == place]
+    position = np.concatenate([m.position for m in motions])
+    speed = np.abs(np.concatenate([m.velocity for m in motions]))
+    if not speed.any():
+        raise ExperimentError(f"{experiment.folder.name}: {place}.position: it never moves")
+    told = np.concatenate([m.direction for m in motions])
+    records, step = experiment.records, max(m.step for m in motions)
+    acceleration = float(np.sqrt(np.mean(np.concatenate([m.acceleration**2 for m in motions]))))
+    after_reversal = acceleration / (2 * motions[0].bandwidth) ** 2 / 2
+    return Reach(
+        low=float(position.min()),
+        high=float(position.max()),
+        peak_speed=float(speed.max()),
+        rms_speed=float(np.sqrt(np.mean(speed**2))),
+        command=float(max(np.abs(m.command).max() for m in motions)),
+        duration=max(r.duration for r in records),
+        sample_period=records[0].sample_time,
+        step=step,
+        unresolved=max(TRAVEL * step, after_reversal),
+        both_ways=bool(min(np.sum(told > 0), np.sum(told < 0)) >= RARE * np.sum(told != 0)),
+        measures_force=f"{place}.interaction_force" in experiment.channels,
+    )

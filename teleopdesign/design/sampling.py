@@ -1,0 +1,23 @@
+"""How the controllers of a design are sampled in simulation."""
+
+from __future__ import annotations
+
+from ..simulate import Sampling
+from .assumptions import Assumptions
+from .reach import Reach
+
+
+def sampling_of(given: Assumptions, reach: Reach) -> Sampling:
+    """The sampling that assumptions state, with the encoder of the record.
+
+    given: settled: period, delay and velocity filter are numbers
+    """
+    period, delay, filtered = given.sample_period, given.delay, given.velocity_bandwidth
+    assert period is not None and delay is not None and filtered is not None
+    return Sampling(
+        period=period,
+        # in tenths of a sample, the inner steps of the simulation
+        delay=round(10 * delay / period) * period / 10,
+        encoder_step=reach.step,
+        velocity_bandwidth=filtered,
+    )

@@ -1,0 +1,136 @@
+"""A design as text: proposals with their reasons, predictions, claims, notes."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+
+from ..quantity import unit_of
+from .outcome import Design
+
+WIDTH = 100
+#: every so many of the residual's speeds are printed: half a decade apart
+SHOWN = 10
+
+
+def design_text(design: Design) -> str:
+    """The whole design as text of at most `WIDTH` columns."""
+    parts = [
+        [f'Design for "{design.experiment}", {design.place}', *_friction(design)],
+        _assumptions(design),
+        _proposals(design),
+        _predictions(design),
+        _residuals(design),
+        _passivity(design),
+    ]
+    if design.notes:
+        parts.append(["to be read with care", *(f"- {n}" for n in design.notes)])
+    return "\n\n".join("\n".join(_wrapped(line) for line in part) for part in parts)
+
+
+def _wrapped(line: str) -> str:
+    if len(line) <= WIDTH:
+        return line
+    indent = " " * (len(line) - len(line.lstrip()) + 2)
+    return textwrap.fill(
+        line, WIDTH, subsequent_indent=indent, break_on_hyphens=False, break_long_words=False
+    )
+
+
+def _friction(design: Design) -> list[str]:
+    f, unit = design.friction, unit_of("force", design.body.axis)
+    if f is None:
+        return ["  no friction level in the model"]
+    level = f"{f.identified:.4g}"
+    if math.isfinite(f.identified_error):
+        level += f" +- {f.identified_error:.2g}"
+    lines = [
+        f"  Coulomb level {level} {unit}; over the identified shape {f.lowest:.4g} to "
+        f"{f.highest:.4g} {unit}; within {design.assumptions.errors:g} standard errors "
+        f"{f.sure:.4g} to {f.most:.4g} {unit}"
+    ]
+    if f.has_presliding:
+        stiff = unit_of("stiffness", design.body.axis)
+        lines.append(
+            f"  presliding stiffness {f.stiffness:.4g} {stiff}, at least {f.sure_stiffness:.4g}"
+        )
+    return lines
+
+
+def _assumptions(design: Design) -> list[str]:
+    a, axis = design.assumptions, design.body.axis
+    assert a.sample_period is not None and a.delay is not None
+    return [
+        f"assumed: load {a.load:.3g} {unit_of('inertia', axis)}, sample period "
+        f"{1e3 * a.sample_period:.3g} ms, computing delay {1e3 * a.delay:.3g} ms, velocity filter "
+        f"{a.velocity_bandwidth:.3g} Hz, encoder step {design.reach.step:.3g} "
+        f"{unit_of('position', axis)}"
+    ]
+
+
+def _proposals(design: Design) -> list[str]:
+    lines = ["proposed"]
+    if design.cancellation is None:
+        lines.append("  C: none")
+    else:
+        lines.append(f"  C: {design.cancellation.law}")
+        lines += [f"    {r}" for r in design.cancellation.reasons]
+    if design.other is not None:
+        unit = unit_of("force", design.body.axis)
+        left = design.prediction.cases["hybrid"].simulated
+        lines.append(
+            f"    rather than {design.other.law}, with which the hybrid leaves "
+            f"{design.other_left:.3g} {unit} rms, not {left:.3g}"
+        )
+    lines.append("  H: low-pass with a gain k b/(b + abs(v)) before it")
+    lines += [f"    {r}" for r in design.force_feedback.reasons]
+    lines.append(f"    {_loop(design)}")
+    return lines
+
+
+def _loop(design: Design) -> str:
+    loop = design.loop
+    if math.isinf(loop.phase_margin):
+        return f"loop gain {loop.gain:.3g} never reaches 1: stable with any delay"
+    held = design.held
+    return (
+        f"loop gain {loop.gain:.3g} at rest, crossing 1 at {loop.crossover / (2 * math.pi):.3g} Hz "
+        f"with a phase margin of {loop.phase_margin:.0f} deg; bears {1e3 * loop.largest_delay:.3g} "
+        f"ms. Held rigidly: {held.phase_margin:.0f} deg, {1e3 * held.largest_delay:.3g} ms"
+    )
+
+
+def _predictions(design: Design) -> list[str]:
+    p, axis = design.prediction, design.body.axis
+    unit, m = unit_of("force", axis), design.prediction.motion
+    lines = [
+        f"force error, {m.amplitude:.3g} {unit_of('position', axis)} at {m.frequency:.3g} Hz about "
+        f"{m.centre:.3g} {unit_of('position', axis)} (up to {m.peak_speed:.3g} "
+        f"{unit_of('velocity', axis)}), rms about the mean, {unit}",
+        f"  {'':<8}{'linear':>10}{'slow motion':>14}{'simulated':>12}{'at peak speed':>16}",
+    ]
+    for case, c in p.cases.items():
+        lines.append(
+            f"  {case:<8}{c.linear:>10.3g}{c.quasi_static:>14.3g}{c.simulated:>12.3g}"
+            f"{c.at_peak_speed:>16.3g}"
+        )
+    return lines
+
+
+def _residuals(design: Design) -> list[str]:
+    """Residual friction of the four cases in slow motion, at some speeds."""
+    unit, speed = unit_of("force", design.body.axis), unit_of("velocity", design.body.axis)
+    found = design.residual
+    head = "".join(f"{v:>11.3g}" for v in found.speeds[::SHOWN])
+    lines = [f"friction left in slow steady motion, {unit}", f"  at {speed:<6}{head}"]
+    for case, row in found.rows.items():
+        lines.append(f"  {case:<9}" + "".join(f"{x:>11.3g}" for x in row[::SHOWN]))
+    return lines
+
+
+def _passivity(design: Design) -> list[str]:
+    lines = ["passivity"]
+    for case, claims in design.claims.items():
+        for claim in claims:
+            lines.append(f"  {case}: {claim.status}: {claim.statement} ({claim.verdict})")
+    return lines

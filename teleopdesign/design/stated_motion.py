@@ -1,0 +1,83 @@
+"""The sinusoid that a design is predicted for, within what the records reached."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..errors import ModelError
+from ..measurement.filtering import Array
+from ..quantity import unit_of
+from ..simulate import Motion, sine
+from .assumptions import Assumptions
+from .reach import Reach
+from .rounding import rounded_down
+
+#: Hz, slowest motion chosen: slower ones cost time and say nothing else
+SLOWEST = 0.2
+
+
+@dataclass(frozen=True)
+class StatedMotion:
+    """centre + amplitude sin(2 pi frequency t); m or rad, Hz."""
+
+    centre: float
+    amplitude: float
+    frequency: float
+
+    @property
+    def omega(self) -> float:
+        """rad/s"""
+        return 2 * math.pi * self.frequency
+
+    @property
+    def peak_speed(self) -> float:
+        """m/s or rad/s"""
+        return self.omega * self.amplitude
+
+    @property
+    def motion(self) -> Motion:
+        """The motion as functions of time."""
+        about = sine(amplitude=self.amplitude, frequency=self.frequency)
+
+        def position(time: Array) -> Array:
+            return self.centre + about.position(time)
+
+        return replace(about, position=position)
+
+    def cycle(self, rows: int) -> tuple[Array, Array, Array, Array]:
+        """Time, position, velocity and acceleration over one cycle, each (rows,)."""
+        time = np.arange(rows) / rows / self.frequency
+        position, velocity, acceleration = (f(time) for f in self.motion.all)
+        return time, position, velocity, acceleration
+
+
+def stated_motion(reach: Reach, assumptions: Assumptions, axis: str) -> StatedMotion:
+    """The motion asked for, or one of a quarter of the travel at the recorded rms speed.
+
+    raises ModelError: it leaves the recorded travel or speed
+    """
+    speed = math.sqrt(2) * reach.rms_speed
+    speed = min(speed, 0.95 * reach.peak_speed)
+    amplitude, frequency = assumptions.amplitude, assumptions.frequency
+    if amplitude is None:
+        amplitude = reach.travel / 4
+        slow = frequency or SLOWEST
+        amplitude = rounded_down(min(amplitude, speed / (2 * math.pi * slow)), digits=2)
+    if frequency is None:
+        frequency = rounded_down(speed / (2 * math.pi * amplitude), digits=2)
+    found = StatedMotion((reach.low + reach.high) / 2, amplitude, frequency)
+    if 2 * amplitude > reach.travel:
+        raise ModelError(
+            f"design: amplitude: {amplitude:g} {unit_of('position', axis)} leaves the recorded "
+            f"travel of {reach.travel:.3g}, expected at most {reach.travel / 2:.3g}"
+        )
+    if found.peak_speed > reach.peak_speed:
+        unit = unit_of("velocity", axis)
+        raise ModelError(
+            f"design: frequency: {frequency:g} Hz at {amplitude:g} {unit_of('position', axis)} is "
+            f"{found.peak_speed:.3g} {unit}, recorded are at most {reach.peak_speed:.3g} {unit}"
+        )
+    return found

@@ -1,0 +1,142 @@
+"""Search the numbers of C and H that leave the least force error, within what keeps them safe.
+
+What is searched: the velocity a of a smoothed cancellation, or the stiffness of a Dahl one; gain k
+and velocity b of H. What is kept: the cancelled level (passivity), a not below its proposal (one
+encoder count), a stiffness not above it (P43, bristle length), k not above it (delay of the loop),
+and b (1 + k) >= a k (P13). The objective is the simulated force error of the hybrid along the
+stated motion, rms about its mean.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..controllers import Controller
+from ..errors import ModelError
+from .outcome import Design
+from .prediction import simulated_error
+
+#: how far from its proposal a number is searched, either way where it is free to
+FARTHEST = 30.0
+#: relative distance to a bound that counts as being there
+AT_BOUND = 0.01
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """C and H after the search.
+
+    before, after: force error of the hybrid as proposed and as tuned, N or N m, rms
+    at_bound: numbers that a condition, or the range of the search, holds back
+    simulations: how many the search took
+    """
+
+    cancellation: Controller | None
+    force_feedback: Controller
+    before: float
+    after: float
+    at_bound: tuple[str, ...]
+    simulations: int
+
+    def __repr__(self) -> str:
+        names = dict(self.cancellation.names()) if self.cancellation else {}
+        names |= self.force_feedback.names()
+        numbers = ", ".join(f"{n} = {v:.4g}" for n, v in names.items())
+        return (
+            f"Tuned by {self.simulations} simulations: force error {self.before:.4g} -> "
+            f"{self.after:.4g} rms\n  {numbers}\n  at a bound: {', '.join(self.at_bound) or 'none'}"
+        )
+
+
+def tune(design: Design, *, simulations: int = 60) -> Tuned:
+    """Search from the numbers that a design proposes, which keep every condition.
+
+    simulations: most that are run
+    raises ModelError: what was proposed cannot be simulated
+    """
+    from scipy.optimize import minimize
+
+    start, bounds = _range(design)
+    names = list(start)
+    low, high = np.log([bounds[n] for n in names]).T
+    diagram = design.prediction.hybrid
+    cost: dict[tuple[float, ...], float] = {}
+
+    def error(point: np.ndarray) -> float:
+        values = dict(zip(names, np.exp(np.clip(point, low, high)).tolist(), strict=True))
+        values = _falling(values)
+        key = tuple(values.values())
+        if key not in cost:
+            try:
+                cost[key] = simulated_error(
+                    diagram.with_values(values), design.prediction.motion, design.sampling
+                )
+            except ModelError:
+                cost[key] = math.inf  # grows beyond all bounds
+        return cost[key]
+
+    at = np.log([start[n] for n in names])
+    before = error(at)
+    if not math.isfinite(before):
+        raise ModelError("tune: the controllers that were proposed cannot be simulated")
+    # a simplex that reaches into the range from the proposal, which lies on some of its bounds
+    steps = np.where(at - low > high - at, -1.0, 1.0) * np.minimum(0.4, (high - low) / 2)
+    simplex = np.vstack([at, at + np.diag(steps)])
+    found = minimize(
+        error,
+        at,
+        method="Nelder-Mead",
+        bounds=list(zip(low, high, strict=True)),
+        options={"maxfev": simulations, "initial_simplex": simplex, "xatol": 0.01, "fatol": 1e-6},
+    )
+    best = _falling(dict(zip(names, np.exp(np.clip(found.x, low, high)).tolist(), strict=True)))
+    made = diagram.with_values(best)
+    held = [
+        n.partition(".")[2]
+        for n in names
+        if min(abs(best[n] / end - 1) for end in bounds[n]) < AT_BOUND
+    ]
+    controllers = {c.name: c.controller for c in made.controls}
+    cancellation, feedback = controllers.get("C"), controllers["H"]
+    assert isinstance(feedback, Controller)
+    return Tuned(
+        cancellation if isinstance(cancellation, Controller) else None,
+        feedback,
+        before,
+        float(found.fun),
+        tuple(held),
+        len(cost),
+    )
+
+
+def _range(design: Design) -> tuple[dict[str, float], dict[str, tuple[float, float]]]:
+    """Start and bounds of what is searched, by names of the diagram."""
+    h = design.force_feedback.controller.names()
+    k, b = h["velocity_schedule.gain"], h["velocity_schedule.scheduling_velocity"]
+    start = {"H.velocity_schedule.gain": k, "H.velocity_schedule.scheduling_velocity": b}
+    bounds = {
+        "H.velocity_schedule.gain": (k / FARTHEST, k),
+        "H.velocity_schedule.scheduling_velocity": (b / FARTHEST, b * FARTHEST),
+    }
+    if design.cancellation is not None:
+        c = design.cancellation.controller.names()
+        if "smoothed_coulomb.smoothing_velocity" in c:
+            a = c["smoothed_coulomb.smoothing_velocity"]
+            start["C.smoothed_coulomb.smoothing_velocity"] = a
+            bounds["C.smoothed_coulomb.smoothing_velocity"] = (a, a * FARTHEST)
+        else:
+            stiffness = c["dahl.stiffness"]
+            start["C.dahl.stiffness"] = stiffness
+            bounds["C.dahl.stiffness"] = (stiffness / FARTHEST, stiffness)
+    return start, bounds
+
+
+def _falling(values: dict[str, float]) -> dict[str, float]:
+    """The values with b no smaller than P13 asks for: b (1 + k) >= a k."""
+    a = values.get("C.smoothed_coulomb.smoothing_velocity", 0.0)
+    k = values["H.velocity_schedule.gain"]
+    b = max(values["H.velocity_schedule.scheduling_velocity"], a * k / (1 + k))
+    return {**values, "H.velocity_schedule.scheduling_velocity": b}

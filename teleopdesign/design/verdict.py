@@ -1,0 +1,134 @@
+"""Is the compensated device passive? Claims, each with how it is known."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+
+from ..blocks import Body
+from ..controllers import Controller
+from ..diagrams import haptic_interface
+from ..passivity import (
+    Claim,
+    Evidence,
+    Proof,
+    Refutation,
+    any_environment,
+    bounded_compensation,
+    dahl_compensation,
+    delayed_small_motion,
+    hand_port,
+    positive_real,
+)
+from .chosen import Chosen
+from .friction_range import FrictionRange
+from .linear import without_friction
+from .rounding import rounded_down, rounded_up
+
+
+def small_motion_damping(body: Body, *, errors: float) -> float:
+    """Lower end of the interval of damping in small motion, viscous and of bristles, N s/m."""
+    damping = 0.0
+    for name in ("viscous.damping", "presliding.bristle_damping"):
+        if name in body.parameters:
+            value = body.parameters[name]
+            error = value.stderr if math.isfinite(value.stderr) else 0.0
+            damping += max(value.value - errors * error, 0.0)
+    return damping
+
+
+def compliant_claim(
+    body: Body, chosen: Chosen, friction: FrictionRange, *, gain: float
+) -> Claim | None:
+    """Is the cancellation passive through the identified compliance? None where there is none.
+
+    Friction is that of the motor side, as the effect has it; the link's, none, would only help.
+    """
+    values = {n: v.value for n, v in body.parameters.items()}
+    tip = values.get("transmission_compliance.tip_inertia", 0.0)
+    # the equation of the motor side: what moves behind the compliance has one of its own
+    motor = float(body.equation().inertia.subs(body.numbers()))
+    if tip <= 0 or motor <= 0 or chosen.law != "dahl":
+        return None
+    own = chosen.controller.names()
+    return any_environment(
+        motor_level=_decimal(rounded_down(friction.sure, digits=4)),
+        link_level=0,
+        transmission_stiffness=_decimal(values["transmission_compliance.stiffness"]),
+        transmission_damping=_decimal(values["transmission_compliance.damping"]),
+        compensator_level=_decimal(rounded_up(own["dahl.level"] * gain, digits=6)),
+        compensator_stiffness=_decimal(rounded_up(own["dahl.stiffness"] * gain, digits=6)),
+        motor_inertia=_decimal(motor),
+        link_inertia=_decimal(tip),
+    )
+
+
+def cancellation_claims(
+    chosen: Chosen, friction: FrictionRange, *, gain: float, late: float, damping: float
+) -> list[Claim]:
+    """Claims on friction and its cancellation, at the worst ends of all intervals.
+
+    gain: that acts of a command;  late: of the cancellation's force, s;  damping: N s/m
+    """
+    level = chosen.controller.names()[f"{chosen.law}.level"] * gain
+    level = rounded_up(level, digits=6)
+    least = rounded_down(friction.sure, digits=4)
+    if chosen.law != "dahl" or not friction.has_presliding:
+        return [bounded_compensation(coulomb_level=_decimal(least), bound=_decimal(level))]
+    stiffness = rounded_up(chosen.controller.names()["dahl.stiffness"] * gain, digits=6)
+    presliding = _decimal(rounded_down(friction.sure_stiffness, digits=4))
+    claims = [
+        dahl_compensation(
+            coulomb_level=_decimal(least),
+            highest_level=_decimal(rounded_up(friction.most, digits=4)),
+            compensator_level=_decimal(level),
+            compensator_stiffness=_decimal(stiffness),
+            presliding_stiffness=presliding,
+        )
+    ]
+    if late > 0:
+        claims.append(
+            delayed_small_motion(
+                damping=_decimal(damping),
+                compensator_stiffness=_decimal(stiffness),
+                delay=_decimal(late),
+                presliding_stiffness=presliding,
+            )
+        )
+    return claims
+
+
+def feedback_claim(body: Body, force_feedback: Controller) -> Claim:
+    """Is the linear part of the device under force feedback passive, neither sampled nor late?"""
+    plain = without_friction(body)
+    for effect in [e for e in plain.effects if e.role in ("actuation", "structure", "contact")]:
+        plain = plain.without_effect(effect.name)
+    port, _ = hand_port(haptic_interface(plain, force_feedback=force_feedback))
+    claim = positive_real(port)
+    return replace(claim, statement=f"without friction, sampling and delay {claim.statement}")
+
+
+#: what a unit of claims is called on a revolute axis
+_REVOLUTE = {"N s/m": "N*m*s/rad", "N/m": "N*m/rad", "N": "N*m"}
+
+
+def in_units_of(axis: str, claim: Claim) -> Claim:
+    """The claim with the units of that axis; claims are stated for a prismatic one."""
+    if axis == "prismatic":
+        return claim
+
+    def turned(text: str) -> str:
+        return re.sub(r"\bN s/m\b|\bN/m\b|\bN\b", lambda m: _REVOLUTE[m[0]], text)
+
+    verdict = claim.verdict
+    if isinstance(verdict, Proof | Evidence):
+        verdict = replace(verdict, unit=turned(verdict.unit))
+    elif isinstance(verdict, Refutation):
+        verdict = replace(verdict, method=turned(verdict.method))
+    return Claim(turned(claim.statement), verdict)
+
+
+def _decimal(value: float) -> str:
+    """The number as it is read, so that claims are about that number exactly."""
+    return f"{value:.12g}"

@@ -1,0 +1,24 @@
+"""Identification as the papers do it: by hand-made experiments, one number at a time.
+
+    from teleopdesign.identify import coulomb_level, largest_stiffness_without_oscillation
+
+The diagnosis estimates all parameters at once from any motion; these are the classical ways, for a
+second opinion on the same data.
+"""
+
+from .coulomb_level import CoulombLevel, LevelAtSpeed, Line, coulomb_level
+from .largest_stiffness import LargestStiffness, largest_stiffness_without_oscillation
+from .mean_error import mean_error
+from .steady_runs import SteadyRun, steady_runs
+
+__all__ = [
+    "CoulombLevel",
+    "LargestStiffness",
+    "LevelAtSpeed",
+    "Line",
+    "SteadyRun",
+    "coulomb_level",
+    "largest_stiffness_without_oscillation",
+    "mean_error",
+    "steady_runs",
+]

@@ -1,0 +1,294 @@
+"""The Coulomb level from runs at constant speed, as the papers identify it.
+
+Half the difference of the forces that move a body forward and backward at one speed is its friction
+at that speed: gravity, offsets and whatever depends on the position alone cancel where both runs
+cover the same travel. Over speed it is the force-velocity curve; its value at rest, by a straight
+line through the speeds, is the Coulomb level, its slope the viscous damping.
+
+Bernstein, Lawrence, Pao, World Haptics 2005, section 5; Mahvash, Okamura, ICRA 2006, figure 2.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import ExperimentError
+from ..measurement.experiment import Experiment
+from ..measurement.filtering import Array
+from ..quantity import unit_of
+from .mean_error import mean_error
+from .steady_runs import SteadyRun, steady_runs
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: part of a run's travel that its partner must cover too
+OVERLAP = 0.3
+#: relative difference of two speeds that count as one
+SAME_SPEED = 0.1
+
+
+@dataclass(frozen=True)
+class LevelAtSpeed:
+    """Friction at one speed, from so many pairs of runs; SI, with standard errors.
+
+    friction: half the difference of forward and backward force;  middle: half their sum
+    """
+
+    speed: float
+    friction: float
+    friction_error: float
+    middle: float
+    middle_error: float
+    pairs: int
+
+
+@dataclass(frozen=True)
+class Line:
+    """force = level + damping speed, with standard errors; SI.
+
+    chi_squared: per degree of freedom; NaN where there is none
+    """
+
+    level: float
+    level_error: float
+    damping: float
+    damping_error: float
+    chi_squared: float
+
+
+@dataclass(frozen=True)
+class CoulombLevel:
+    """What constant-speed runs say of friction.
+
+    runs: all that were found;  speeds: friction at each speed that was run both ways
+    line: friction over speed: its level is the Coulomb level; None where not two speeds were run
+        both ways
+    forward, backward: force over speed of the runs that way; their level is that of friction and
+        whatever force is constant; None where not two speeds were run that way
+    """
+
+    experiment: str
+    axis: str
+    runs: tuple[SteadyRun, ...]
+    speeds: tuple[LevelAtSpeed, ...]
+    line: Line | None
+    forward: Line | None
+    backward: Line | None
+
+    def plot(self) -> Figure:
+        """Force against velocity: every run, and the line with the level at rest."""
+        from ..plot.force_velocity_curve import plot_force_velocity_curve
+
+        return plot_force_velocity_curve(self)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data, SI units."""
+        force, speed = unit_of("force", self.axis), unit_of("velocity", self.axis)
+        return {
+            "experiment": self.experiment,
+            "coulomb_level": None if self.level is None else list(self.level),
+            **{
+                name: None if line is None else {n: _finite(x) for n, x in vars(line).items()}
+                for name, line in self.lines.items()
+            },
+            "speeds": [vars(s) for s in self.speeds],
+            "runs": [
+                {"file": r.file, "start": r.start, "velocity": r.velocity, "duration": r.duration,
+                 "force": float(np.mean(r.force)), "stderr": mean_error(r.force)}
+                for r in self.runs
+            ],
+            "units": {"force": force, "velocity": speed},
+        }  # fmt: skip
+
+    def to_json(self, path: str | Path) -> None:
+        """Write it as JSON."""
+        text = json.dumps(self.as_dict(), indent=1, allow_nan=False) + "\n"
+        Path(path).write_text(text, encoding="utf-8")
+
+    @property
+    def level(self) -> tuple[float, float] | None:
+        """Coulomb level and its standard error; None where runs go one way only.
+
+        Of the line through speeds run both ways, else the mean of the lines of each way: that needs
+        no common speeds, but that constant forces are the same along all runs.
+        """
+        if self.line is not None:
+            return self.line.level, self.line.level_error
+        if self.forward is None or self.backward is None:
+            return None
+        error = float(np.hypot(self.forward.level_error, self.backward.level_error)) / 2
+        return (self.forward.level + self.backward.level) / 2, error
+
+    @property
+    def lines(self) -> dict[str, Line | None]:
+        """The three lines by name."""
+        return {"both ways": self.line, "forward": self.forward, "backward": self.backward}
+
+    def __repr__(self) -> str:
+        force, speed = unit_of("force", self.axis), unit_of("velocity", self.axis)
+        damping = unit_of("damping", self.axis)
+        lines = [f'Runs at constant speed of "{self.experiment}": {len(self.runs)}']
+        for name, line in self.lines.items():
+            if line is not None:
+                what = "Coulomb level" if name == "both ways" else "level and constant force"
+                lines.append(
+                    f"  {name}: {what} {line.level:.4g} +- {line.level_error:.2g} {force}, damping "
+                    f"{line.damping:.4g} +- {line.damping_error:.2g} {damping}"
+                )
+        if self.level is None:
+            lines.append("  no Coulomb level: runs at two speeds are needed both ways")
+        elif self.line is None:
+            level, error = self.level
+            lines.append(
+                f"  mean of both: Coulomb level {level:.4g} +- {error:.2g} {force}, for no two "
+                "speeds were run both ways over one travel"
+            )
+        for s in self.speeds:
+            lines.append(
+                f"  at {s.speed:.4g} {speed}: friction {s.friction:.4g} +- {s.friction_error:.2g} "
+                f"{force}, constant force {s.middle:.4g} +- {s.middle_error:.2g} {force} "
+                f"({s.pairs} pair{'s' * (s.pairs > 1)})"
+            )
+        return "\n".join(lines)
+
+
+def coulomb_level(
+    experiment: Experiment,
+    *,
+    body: str = "device",
+    tolerance: float = 0.05,
+    shortest: float = 0.3,
+) -> CoulombLevel:
+    """Friction over speed, and the Coulomb level, from runs at constant speed both ways.
+
+    tolerance, shortest: of runs, see `steady_runs`
+    raises ExperimentError: there is no such run
+    """
+    runs = steady_runs(experiment, body=body, tolerance=tolerance, shortest=shortest)
+    if not runs:
+        raise ExperimentError(
+            f"{experiment.folder.name}: coulomb_level: no run of {shortest:g} s at a speed within "
+            f"{100 * tolerance:g} %"
+        )
+    speeds = _by_speed(_pairs(runs))
+    ways = {
+        way: _line(
+            np.array([abs(r.velocity) for r in runs if r.direction == way]),
+            np.array([way * float(np.mean(r.force)) for r in runs if r.direction == way]),
+            np.array([mean_error(r.force) for r in runs if r.direction == way]),
+        )
+        for way in (1, -1)
+    }
+    return CoulombLevel(
+        experiment=experiment.title or experiment.folder.name,
+        axis=experiment.axis(body),
+        runs=runs,
+        speeds=speeds,
+        line=_line(
+            np.array([s.speed for s in speeds]),
+            np.array([s.friction for s in speeds]),
+            np.array([s.friction_error for s in speeds]),
+        ),
+        forward=ways[1],
+        backward=ways[-1],
+    )
+
+
+@dataclass(frozen=True)
+class _Pair:
+    """A run forward and one backward at one speed, over their common travel."""
+
+    speed: float
+    forward: float
+    backward: float
+    error: float
+
+
+def _pairs(runs: Sequence[SteadyRun]) -> list[_Pair]:
+    """Each forward run with the backward run nearest in time that fits it; each taken once."""
+    free = [r for r in runs if r.direction < 0]
+    found = []
+    for run in (r for r in runs if r.direction > 0):
+        fitting = [other for other in free if _fit(run, other)]
+        if not fitting:
+            continue
+        other = min(fitting, key=lambda r: (r.file != run.file, abs(r.start - run.start)))
+        free.remove(other)
+        found.append(_pair(run, other))
+    return found
+
+
+def _common(one: SteadyRun, other: SteadyRun) -> tuple[float, float]:
+    low = max(one.position.min(), other.position.min())
+    return float(low), float(min(one.position.max(), other.position.max()))
+
+
+def _fit(one: SteadyRun, other: SteadyRun) -> bool:
+    low, high = _common(one, other)
+    shorter = min(np.ptp(one.position), np.ptp(other.position))
+    close = abs(abs(one.velocity) - abs(other.velocity)) <= SAME_SPEED * abs(one.velocity)
+    return bool(close and high - low >= OVERLAP * shorter)
+
+
+def _pair(forward: SteadyRun, backward: SteadyRun) -> _Pair:
+    low, high = _common(forward, backward)
+    parts = [r.force[(r.position >= low) & (r.position <= high)] for r in (forward, backward)]
+    speed = (abs(forward.velocity) + abs(backward.velocity)) / 2
+    error = float(np.sqrt(sum(mean_error(p) ** 2 for p in parts))) / 2
+    return _Pair(speed, float(parts[0].mean()), float(parts[1].mean()), error)
+
+
+def _by_speed(pairs: Sequence[_Pair]) -> tuple[LevelAtSpeed, ...]:
+    """Pairs of one speed together; their scatter counts where it is larger than their errors."""
+    groups: list[list[_Pair]] = []
+    for pair in sorted(pairs, key=lambda p: p.speed):
+        if groups and pair.speed <= (1 + SAME_SPEED) * groups[-1][0].speed:
+            groups[-1].append(pair)
+        else:
+            groups.append([pair])
+    return tuple(_level(group) for group in groups)
+
+
+def _level(group: Sequence[_Pair]) -> LevelAtSpeed:
+    n = len(group)
+    half = np.array([(p.forward - p.backward) / 2 for p in group])
+    middle = np.array([(p.forward + p.backward) / 2 for p in group])
+    own = float(np.sqrt(np.mean([p.error**2 for p in group]) / n))
+    scatter = [float(np.std(x, ddof=1) / np.sqrt(n)) if n > 1 else 0.0 for x in (half, middle)]
+    return LevelAtSpeed(
+        speed=float(np.mean([p.speed for p in group])),
+        friction=float(half.mean()),
+        friction_error=max(own, scatter[0]),
+        middle=float(middle.mean()),
+        middle_error=max(own, scatter[1]),
+        pairs=n,
+    )
+
+
+def _line(speed: Array, force: Array, error: Array) -> Line | None:
+    """Weighted line through forces with these standard errors, (n,) each; None below two speeds."""
+    if len(speed) < 2 or speed.max() <= (1 + SAME_SPEED) * speed.min():
+        return None
+    # an error of 0 (noise-free data) must not take all the weight
+    weight = 1 / np.maximum(error, max(1e-3 * float(error.max()), 1e-12))
+    columns = weight[:, None] * np.column_stack([np.ones_like(speed), speed])
+    covariance = np.linalg.inv(columns.T @ columns)
+    level, damping = covariance @ columns.T @ (weight * force)
+    left = weight * force - columns @ np.array([level, damping])
+    freedom = len(speed) - 2
+    chi = float(left @ left / freedom) if freedom else float("nan")
+    # a line that does not fit is off by what it leaves, not by what single runs say
+    wider = np.sqrt(max(chi, 1.0)) if freedom else 1.0
+    errors = wider * np.sqrt(np.diag(covariance))
+    return Line(float(level), float(errors[0]), float(damping), float(errors[1]), chi)
+
+
+def _finite(x: float) -> float | None:
+    return x if np.isfinite(x) else None

@@ -1,0 +1,135 @@
+"""Stretches of a record in which a body moves at one speed.
+
+A run is a stretch over which the smoothed velocity keeps its sign and stays within a tolerance,
+less its two ends, where the speed is still settling.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..measurement.experiment import Experiment
+from ..measurement.filtering import Array
+from ..measurement.motion import Motion, motions
+from ..model import Model
+
+#: Hz: bandwidth at which runs are sought where the experiment states none
+BANDWIDTH = 20.0
+#: encoder steps that a run must travel
+STEPS = 20
+
+
+@dataclass(frozen=True)
+class SteadyRun:
+    """One run; SI.
+
+    velocity: mean, signed;  start: s, in its record;  position, force: along the run, (n,) each,
+    force: that moves the body: actuator and interaction force, less inertia times acceleration
+    """
+
+    file: str
+    start: float
+    velocity: float
+    time: Array
+    position: Array
+    force: Array
+
+    @property
+    def direction(self) -> int:
+        """+1 or -1"""
+        return 1 if self.velocity > 0 else -1
+
+    @property
+    def duration(self) -> float:
+        """s"""
+        return float(self.time[-1] - self.time[0])
+
+
+def steady_runs(
+    experiment: Experiment,
+    *,
+    body: str = "device",
+    tolerance: float = 0.05,
+    shortest: float = 0.3,
+    settling: float = 0.1,
+) -> tuple[SteadyRun, ...]:
+    """The runs at constant speed of one body, in all records, in order of time.
+
+    tolerance: relative departure of the speed from its middle, either way
+    shortest: of a run, s, without its ends;  settling: s left out at each end
+    """
+    inertia = Model.from_experiment(experiment).body(body).parameters["inertia"].value
+    resolution = experiment.channels[f"{body}.position"].resolution
+    found: list[SteadyRun] = []
+    for record in experiment.records:
+        bandwidth = min(experiment.bandwidth or BANDWIDTH, 0.2 / record.sample_time)
+        for motion in motions(record, body, bandwidth=bandwidth, resolution=resolution):
+            rows = max(round(settling / motion.sample_time), 1)
+            least = max(round(shortest / motion.sample_time), 10) + 2 * rows
+            for first, last in _steady(motion.velocity, tolerance, least):
+                run = _run(motion, slice(first + rows, last - rows), inertia)
+                if np.ptp(run.position) >= STEPS * motion.step:
+                    found.append(run)
+    return tuple(found)
+
+
+def _run(motion: Motion, rows: slice, inertia: float) -> SteadyRun:
+    force = motion.at_rows(motion.command)[rows] + motion.interaction[rows]
+    return SteadyRun(
+        file=motion.file,
+        start=float(motion.time[rows.start]),
+        velocity=float(np.mean(motion.velocity[rows])),
+        time=motion.time[rows],
+        position=motion.position[rows],
+        force=force - inertia * motion.acceleration[rows],
+    )
+
+
+def _steady(velocity: Array, tolerance: float, least: int) -> list[tuple[int, int]]:
+    """Disjoint ranges of at least so many rows over which velocity is steady, longest first kept.
+
+    returns: (first, last + 1) in order of time
+    """
+    earliest = _earliest(velocity, tolerance)
+    lengths = np.arange(len(velocity)) - earliest + 1
+    free = np.ones(len(velocity), dtype=bool)
+    kept: list[tuple[int, int]] = []
+    for last in np.argsort(-lengths, kind="stable"):
+        if lengths[last] < least:
+            break
+        first = int(earliest[last])
+        if free[first] and free[last] and free[first : last + 1].all():
+            kept.append((first, int(last) + 1))
+            free[first : last + 1] = False
+    return sorted(kept)
+
+
+def _earliest(velocity: Array, tolerance: float) -> np.ndarray:
+    """For each row the earliest one from which velocity has stayed within the tolerance."""
+    values = velocity.tolist()
+    high: deque[int] = deque()
+    low: deque[int] = deque()
+    first, found = 0, np.zeros(len(values), dtype=np.int64)
+    for k, v in enumerate(values):
+        while high and values[high[-1]] <= v:
+            high.pop()
+        while low and values[low[-1]] >= v:
+            low.pop()
+        high.append(k)
+        low.append(k)
+        while high and not _within(values[low[0]], values[high[0]], tolerance):
+            first += 1
+            if high[0] < first:
+                high.popleft()
+            if low[0] < first:
+                low.popleft()
+        found[k] = first
+    return found
+
+
+def _within(low: float, high: float, tolerance: float) -> bool:
+    middle = (low + high) / 2
+    return low * high > 0 and (high - low) / 2 <= tolerance * abs(middle)

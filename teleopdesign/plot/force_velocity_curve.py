@@ -1,0 +1,42 @@
+"""Force against velocity from runs at constant speed: points measured, line fitted."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..quantity import unit_of
+from .design import ONE_COLUMN, STYLE, unit_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..identify import CoulombLevel
+
+
+def plot_force_velocity_curve(found: CoulombLevel) -> Figure:
+    """Mean force of each run, friction at each speed, and the line through it."""
+    import matplotlib.pyplot as plt
+
+    with plt.style.context(STYLE):
+        figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.6))
+        axis.axhline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
+        axis.axvline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
+        axis.plot(
+            [r.velocity for r in found.runs],
+            [float(np.mean(r.force)) for r in found.runs],
+            ".",
+            color="0.55",
+            markersize=4,
+            label="runs",
+        )
+        for way, line in ((1, found.forward), (-1, found.backward)):
+            if line is not None:
+                speed = np.array([0.0, max(abs(r.velocity) for r in found.runs)])
+                force = way * (line.level + line.damping * speed)
+                axis.plot(way * speed, force, color="#0072B2", label="line" if way > 0 else None)
+        axis.set_xlabel(f"velocity ({unit_text(unit_of('velocity', found.axis))})")
+        axis.set_ylabel(f"force that moves it ({unit_text(unit_of('force', found.axis))})")
+        axis.legend(loc="lower right")
+    return figure

@@ -1,0 +1,120 @@
+"""`teleopdesign design`: from a folder to controllers, on the rod, simulated cases, recordings."""
+
+import json
+import tomllib
+
+import numpy as np
+import pytest
+from shared_data import shared_folder
+
+import teleopdesign as td
+from teleopdesign.cli import main
+from teleopdesign.effects import EFFECTS
+
+
+@pytest.fixture(scope="module")
+def answer(tmp_path_factory):
+    """The answer file of a diagnosis of the rod among few effects."""
+    from teleopdesign.diagnose.answer import write_answer
+
+    names = ("coulomb", "viscous", "stribeck", "bias", "spring")
+    rod = td.load_experiment(td.example("rod"))
+    model = td.Model.from_experiment(rod, {n: EFFECTS[n] for n in names})
+    path = tmp_path_factory.mktemp("rod") / "answer.json"
+    write_answer(td.find_missing(rod, model), path)
+    return path
+
+
+def designs(path):
+    return json.loads(path.read_text())["bodies"]
+
+
+def test_an_answer_leads_to_a_design_and_its_files(answer, tmp_path, capsys):
+    out = tmp_path / "out"
+    arguments = ["design", str(td.example("rod")), "--answer", str(answer)]
+    assert main([*arguments, "--json", str(tmp_path / "d.json"), "--output", str(out)]) == 0
+    assert "MBC: proved: Coulomb friction" in capsys.readouterr().out
+    assert {p.name for p in out.iterdir()} == {
+        f"device_{n}" for n in
+        ("design.json", "design.pdf", "design.svg", "design.png", "controllers.toml")
+    }  # fmt: skip
+    table = tomllib.loads((out / "device_controllers.toml").read_text())
+    made = designs(tmp_path / "d.json")["device"]
+    laws = [entry["law"] for entry in table["cancellation"]]
+    assert laws == made["cancellation"]["laws"]
+
+
+@pytest.mark.slow
+def test_the_rod_from_folder_to_controllers(tmp_path, capsys):
+    """The diagnosis finds Stribeck friction; its answer file leads to the same design."""
+    folder = td.example("rod")
+    assert main(["design", str(folder), "--json", str(tmp_path / "d.json")]) == 0
+    assert "verdict: effects_missing: stribeck" in capsys.readouterr().out
+    answer = tmp_path / "answer.json"
+    assert main(["diagnose", str(folder), "--json", str(answer)]) == 0
+    again = ["--answer", str(answer), "--json", str(tmp_path / "again.json")]
+    assert main(["design", str(folder), *again]) == 0
+    first, second = designs(tmp_path / "d.json"), designs(tmp_path / "again.json")
+    assert first["device"]["cancellation"] == second["device"]["cancellation"]
+    assert first["device"]["force_feedback"] == second["device"]["force_feedback"]
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        (["--body", "devise"], '--body: no body "devise", has device; did you mean "device"?'),
+        (["--fraction", "1.5"], "design: fraction: found 1.5, expected above 0, at most 1"),
+        (["--answer", "nothing.json"], "nothing.json: No such file or directory"),
+        (["--json", "design.txt"], "design.txt: found '.txt', expected .json"),
+    ],
+)
+def test_a_mistake_is_one_line(more, message, capsys):
+    assert main(["design", str(td.example("rod")), *more]) == 2
+    assert capsys.readouterr().err == f"teleopdesign: {message}\n"
+
+
+def written_case(folder, effect, kind="device"):
+    """A simulated case of tests/hidden, and its truth."""
+    from cases import make_case, write_case
+
+    case = make_case(np.random.default_rng(8), "clear", [effect], kind)
+    write_case(case, folder)
+    return json.loads((folder / "truth.json").read_text())
+
+
+@pytest.mark.slow
+def test_a_simulated_device_with_a_hidden_effect(tmp_path):
+    truth = written_case(tmp_path / "case", "coulomb_asymmetry")
+    assert main(["design", str(tmp_path / "case"), "--json", str(tmp_path / "d.json")]) == 0
+    made = designs(tmp_path / "d.json")["device"]
+    level = truth["model_parameters"]["device.coulomb.level"]
+    # by the truth, no more than the level is cancelled
+    assert made["cancellation"]["parameters"][
+        f"{made['cancellation']['laws'][0]}.level"
+    ]["value"] <= level  # fmt: skip
+    assert made["passivity"]["MBC"][0]["status"] == "proved"
+
+
+@pytest.mark.slow
+def test_each_body_of_a_teleoperator_is_a_device_of_its_own(tmp_path):
+    written_case(tmp_path / "case", "stribeck", "teleoperator")
+    assert main(["design", str(tmp_path / "case"), "--json", str(tmp_path / "d.json")]) == 0
+    made = designs(tmp_path / "d.json")
+    assert list(made) == ["master", "slave"]
+    for one in made.values():
+        errors = {case: p["simulated"] for case, p in one["prediction"].items()}
+        assert errors["hybrid"] < errors["none"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["emps", "hsm150", "mtm_wrist", "psm_insertion"])
+def test_a_real_recording_leads_to_a_design(name, tmp_path):
+    folder = shared_folder("data") / name
+    assert main(["design", str(folder), "--json", str(tmp_path / "d.json")]) == 0
+    made = designs(tmp_path / "d.json")["device"]
+    errors = {case: p["simulated"] for case, p in made["prediction"].items()}
+    assert errors["hybrid"] <= errors["MBC"] <= errors["none"]
+    # the wrist's friction never comes near its level within the recorded travel
+    assert (made["cancellation"] is None) == (name == "mtm_wrist")
+    if made["cancellation"] is not None:
+        assert made["passivity"]["MBC"][0]["status"] == "proved"

@@ -1,0 +1,234 @@
+"""A design: sure to be passive, predictions that agree where they should, answers read back."""
+
+import json
+import tomllib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.blocks import Body, Value
+from teleopdesign.controllers import CONTROLLERS, Controller, Stage
+from teleopdesign.design import Assumptions, design, read_answer
+from teleopdesign.design.propose import cancellations
+from teleopdesign.design.quasi_static import quasi_static_error
+from teleopdesign.design.stated_motion import StatedMotion
+from teleopdesign.diagrams import haptic_interface, world_haptics_2005
+from teleopdesign.errors import ExperimentError, ModelError
+
+
+def with_effect(found, name, values):
+    """The diagnosed rod with one effect more, its values taken as exact."""
+    return replace(found, model=found.model.with_effect(name, values=values))
+
+
+def test_the_cancelled_level_is_below_every_level_in_the_interval(designed):
+    level = designed.cancellation.controller.names()[f"{designed.cancellation.law}.level"]
+    assert level <= 0.9 * (0.548 - 1.96 * 5e-4)
+    assert designed.friction.lowest == pytest.approx(0.548, rel=1e-6)
+
+
+def test_passivity_of_the_cancellation_is_proved_with_a_certificate(designed):
+    proof = designed.claims["MBC"][0]
+    assert proof.status == "proved"
+    assert proof.certificates
+
+
+def test_energy_given_out_is_found_where_force_feedback_is_late(designed):
+    """Cancellation takes energy in every motion tried; behind a 20 Hz low-pass H does not."""
+    for case, holds in (("none", True), ("MBC", True), ("FF", False), ("hybrid", False)):
+        claim = designed.claims[case][-1]
+        assert claim.status == "evidence"
+        assert claim.holds is holds
+        assert (claim.verdict.margin > 0) is holds
+
+
+def test_every_number_has_its_reason_and_unit(designed):
+    for chosen in (designed.cancellation, designed.force_feedback):
+        assert {r.parameter for r in chosen.reasons} == set(chosen.controller.names())
+        for reason in chosen.reasons:
+            assert reason.value == chosen.controller.names()[reason.parameter]
+            assert len(reason.why) > 10 and reason.unit
+
+
+def test_compensation_leaves_less_force_error_in_this_order(designed):
+    left = {case: p.simulated for case, p in designed.prediction.cases.items()}
+    assert left["hybrid"] < left["FF"] < left["none"]
+    assert left["hybrid"] < left["MBC"] < left["none"]
+
+
+def test_predictions_agree_where_nothing_is_compensated(designed):
+    """Nothing is sampled there, so slow motion with inertia is the whole of it."""
+    none = designed.prediction.cases["none"]
+    # the contact gives by a millionth of the amplitude before it slides
+    assert none.simulated == pytest.approx(none.quasi_static, rel=0.005)
+    # a damper of equal loss has no third harmonic: 1/sqrt(1 + 1/9 + ..) = 0.90 of Coulomb's rms
+    assert 0.85 < none.linear / none.simulated < 1.0
+
+
+def test_the_text_says_where_predictions_differ(designed):
+    assert any(n.startswith("hybrid: simulation and slow motion") for n in designed.notes)
+    assert "near reversals" in " ".join(designed.notes)
+    assert all(len(line) <= 100 for line in repr(designed).splitlines())
+
+
+def test_the_quasi_static_error_is_p13_for_coulomb_friction():
+    """r(v) = F_C a (b + v)/((a + v)(b + v + k b)) without inertia, at the paper's readings."""
+    diagram = world_haptics_2005().with_values({"Z_M.inertia": 0.0})
+    motion = StatedMotion(0.0, 0.01, 1.5)
+    found = quasi_static_error(diagram, motion, rows=200)
+    v = np.abs(motion.cycle(200)[2])
+    a, b, k, level = 0.015, 0.08, 5.0, 0.5
+    expected = level * a * (b + v) / ((a + v) * (b + v + k * b))
+    assert np.abs(found) == pytest.approx(expected, rel=1e-9)
+
+
+def test_presliding_allows_a_dahl_cancellation_only_and_softer(rod):
+    found = with_effect(rod, "presliding", {"stiffness": 4000.0})
+    made = design(found, assumptions=Assumptions(delay=1e-4))
+    assert made.cancellation.law == "dahl"
+    stiffness = made.cancellation.controller.names()["dahl.stiffness"]
+    level = made.cancellation.controller.names()["dahl.level"]
+    # P44: against the largest level that friction may take
+    assert stiffness**2 / level <= 4000.0**2 / made.friction.most
+    assert [c.status for c in made.claims["MBC"][:2]] == ["proved", "proved"]
+    assert made.other is None
+
+
+def test_friction_that_may_be_none_is_not_cancelled(unsure):
+    assert unsure.cancellation is None
+    cases = unsure.prediction.cases
+    assert cases["MBC"].simulated == cases["none"].simulated
+    assert any("No cancellation is proposed" in n for n in unsure.notes)
+    assert "cancellation" not in tomllib.loads(unsure.to_toml())
+
+
+def test_an_actuator_that_gives_more_is_commanded_less(rod, designed):
+    """Force that acts is command times gain: so are the level and the stiffness of C."""
+    body = with_effect(rod, "actuator_gain", {"gain": 1.25}).model.body("device")
+    found = cancellations(body, designed.friction, designed.reach, designed.assumptions)
+    plain = cancellations(designed.body, designed.friction, designed.reach, designed.assumptions)
+    assert [c.law for c in found] == [c.law for c in plain] == ["dahl", "smoothed_coulomb"]
+    for one, own in zip(found, plain, strict=True):
+        values, wanted = one.controller.names(), own.controller.names()
+        key = f"{one.law}.level"
+        # rounded down to three digits
+        assert values[key] == pytest.approx(wanted[key] / 1.25, rel=0.005)
+    dahl, own = found[0].controller.names(), plain[0].controller.names()
+    assert dahl["dahl.stiffness"] == pytest.approx(own["dahl.stiffness"] / 1.25, rel=0.01)
+
+
+def test_the_controllers_read_back_from_their_toml(designed):
+    table = tomllib.loads(designed.to_toml())
+    for block, chosen in (
+        ("cancellation", designed.cancellation),
+        ("force_feedback", designed.force_feedback),
+    ):
+        stages = []
+        for entry in table[block]:
+            law = CONTROLLERS[entry.pop("law")]
+            stages.append(Stage(law, {n: v["value"] for n, v in entry.items()}))
+        assert Controller(tuple(stages)).names() == chosen.controller.names()
+
+
+def test_the_json_is_strict_and_holds_what_was_proposed(designed, tmp_path):
+    designed.to_json(tmp_path / "design.json")
+
+    def refuse(constant):
+        raise AssertionError(constant)
+
+    content = json.loads((tmp_path / "design.json").read_text(), parse_constant=refuse)
+    laws = [stage.law.name for stage in designed.cancellation.controller.stages]
+    assert content["cancellation"]["laws"] == laws
+    assert content["passivity"]["MBC"][0]["status"] == "proved"
+    assert content["controllers_toml"] == designed.to_toml()
+
+
+def test_the_figure_has_units_on_every_axis(designed):
+    figure = designed.plot()
+    labels = [t for a in figure.axes for t in (a.get_xlabel(), a.get_ylabel())]
+    assert len(labels) == 6
+    assert all("(" in t for t in labels)
+
+
+def test_a_motion_beyond_the_records_is_refused(rod):
+    with pytest.raises(ModelError, match="leaves the recorded travel"):
+        design(rod, assumptions=Assumptions(amplitude=1.0))
+    with pytest.raises(ModelError, match="recorded are at most"):
+        design(rod, assumptions=Assumptions(amplitude=0.01, frequency=50.0))
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("fraction", 1.1), ("load", -1.0), ("bandwidth", float("nan"))]
+)
+def test_an_assumption_without_sense_is_refused(name, value):
+    with pytest.raises(ModelError, match=f"design: {name}: found"):
+        Assumptions(**{name: value})
+
+
+def test_an_answer_gives_the_model_that_the_diagnosis_ended_with(experiment, tmp_path):
+    from teleopdesign.diagnose.answer import write_answer
+    from teleopdesign.effects import EFFECTS
+
+    known = {n: EFFECTS[n] for n in ("coulomb", "viscous", "stribeck", "bias")}
+    found = td.find_missing(experiment, td.Model.from_experiment(experiment, known))
+    write_answer(found, tmp_path / "answer.json")
+    read = read_answer(tmp_path / "answer.json", experiment)
+    assert read.model.effects == found.model.effects
+    for name, value in found.model.parameters.items():
+        other = read.model.parameters[name]
+        assert (other.value, other.stderr, other.fixed) == pytest.approx(
+            (value.value, value.stderr, value.fixed)
+        )
+    assert read.left == pytest.approx(found.left)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("not json", "line 1: no JSON"),
+        ("{}", "no answer of"),
+        (
+            '{"ladder": [], "candidates": [], "verdict": "undecided", "model_parameters": '
+            '{"device.mass": {"value": 1, "stderr": 1}}}',
+            'is not an answer to rod: model: no parameter "device.mass"',
+        ),
+    ],
+)
+def test_a_file_that_is_no_answer_is_named_in_one_line(experiment, tmp_path, text, message):
+    path = tmp_path / "answer.json"
+    path.write_text(text)
+    with pytest.raises(ExperimentError, match=message) as error:
+        read_answer(path, experiment)
+    assert str(error.value).startswith(str(path))
+
+
+def test_a_dahl_cancellation_equals_a_damper_in_linear_theory():
+    """Of a compensator that slides fully, the damper of equal loss: 4 f/(pi V)."""
+    from teleopdesign.controllers import controller
+    from teleopdesign.design.linear import linear_cases
+
+    body = Body("prismatic", {"inertia": Value(0.2), "viscous.damping": Value(50.0)},
+                (td.EFFECTS["viscous"],))  # fmt: skip
+    motion = StatedMotion(0.0, 0.02, 1.0)
+    made = haptic_interface(body, cancellation=controller("dahl", {"level": 0.5, "stiffness": 1e6}))
+    found = linear_cases(made, motion)["MBC"].values["Z_M.viscous.damping"]
+    assert 50.0 - found == pytest.approx(4 * 0.5 / (np.pi * motion.peak_speed), rel=1e-3)
+
+
+def test_through_a_compliant_transmission_the_cancellation_is_proved_too(rod):
+    """P53: f_D within the friction of the motor side, whatever lies beyond."""
+    tip = {"tip_inertia": 0.05, "stiffness": 2e4, "damping": 1.0}
+    made = design(with_effect(rod, "transmission_compliance", tip))
+    statuses = {c.statement.split(",")[0]: c.status for c in made.claims["MBC"]}
+    assert statuses["a joint with motor friction 0.547 N"] == "proved"
+    assert made.prediction.rigid in ("", "transmission_compliance")
+
+
+def test_friction_that_no_record_has_shown_backward_is_said(designed, rod):
+    from teleopdesign.design.notes import notes_on
+
+    one_way = replace(designed, reach=replace(designed.reach, both_ways=False))
+    assert not any("one way only" in n for n in designed.notes)
+    assert any("one way only" in n for n in notes_on(one_way, rod))

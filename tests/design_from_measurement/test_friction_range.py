@@ -1,0 +1,115 @@
+"""The least level that identified friction can take, and rounding to the safe side."""
+
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import teleopdesign as td
+from teleopdesign.blocks import Body, Value
+from teleopdesign.design import friction_range
+from teleopdesign.design.cancellation import acting_gain
+from teleopdesign.design.reach import Reach
+from teleopdesign.design.rounding import rounded_down, rounded_up
+
+REACH = Reach(
+    low=-0.05, high=0.05, peak_speed=0.3, rms_speed=0.1, command=3.0, duration=10.0,
+    sample_period=1e-3, step=5e-6, unresolved=2e-5, measures_force=True,
+)  # fmt: skip
+
+
+def body(level=1.0, stderr=0.0, **effects):
+    """A body of 0.2 kg with Coulomb friction and other effects, {name: {parameter: value}}."""
+    found = Body("prismatic", {"inertia": Value(0.2)})
+    found = found.with_effect(td.EFFECTS["coulomb"]).with_values(
+        {"coulomb.level": Value(level, stderr=stderr)}
+    )
+    for name, values in effects.items():
+        found = found.with_effect(td.EFFECTS[name], values)
+    return found
+
+
+def least(device, errors=0.0):
+    return friction_range(device, REACH, errors=errors).sure
+
+
+def test_coulomb_friction_is_its_level_less_the_errors():
+    assert least(body(1.0, 0.01), errors=2.0) == pytest.approx(0.98)
+    assert friction_range(body(1.0, 0.01), REACH, errors=2.0).most == pytest.approx(1.02)
+
+
+def test_stribeck_friction_is_least_in_fast_motion():
+    device = body(1.0, stribeck={"extra_static_level": 0.4, "stribeck_velocity": 0.02})
+    found = friction_range(device, REACH, errors=0.0)
+    assert found.lowest == pytest.approx(1.0)
+    assert found.highest == pytest.approx(1.4)
+
+
+def test_friction_of_two_levels_is_the_lower_one():
+    assert least(body(1.0, coulomb_asymmetry={"half_difference": 0.3})) == pytest.approx(0.7)
+    assert least(body(1.0, coulomb_asymmetry={"half_difference": -0.3})) == pytest.approx(0.7)
+
+
+def test_friction_along_the_travel_is_least_within_the_recorded_travel():
+    wave = {"amplitude": 0.2, "period": 0.05, "phase": 0.3}
+    # 401 positions on two periods: within 1e-3 of the trough
+    assert least(body(1.0, position_dependent_friction=wave)) == pytest.approx(0.8, abs=1e-3)
+    slope = {"amplitude": 0.2, "period": 10.0, "phase": 0.0}
+    assert least(body(1.0, position_dependent_friction=slope)) == pytest.approx(
+        1 - 0.2 * math.sin(2 * math.pi * 0.05 / 10), rel=1e-9
+    )
+
+
+def test_friction_that_warms_up_is_that_of_a_warm_machine():
+    drift = {"fraction": 0.3, "time_constant": 5.0}
+    assert least(body(1.0, friction_drift=drift)) == pytest.approx(0.7)
+
+
+def test_friction_that_grows_with_the_load_is_that_without_load():
+    assert least(body(1.0, load_dependent_friction={"coefficient": 0.1})) == pytest.approx(1.0)
+
+
+@settings(max_examples=20)
+@given(
+    errors=st.tuples(*[st.floats(0.0, 0.05)] * 3),
+    signs=st.tuples(*[st.sampled_from([-1.0, 1.0])] * 3),
+)
+def test_the_bound_holds_however_the_errors_are_correlated(errors, signs):
+    """Parameters one standard error off in any direction leave the level above the bound."""
+    values = {"coulomb.level": 1.0, "stribeck.extra_static_level": 0.3}
+    values["coulomb_asymmetry.half_difference"] = 0.2
+    device = body(
+        1.0,
+        stribeck={"extra_static_level": 0.3, "stribeck_velocity": 0.02},
+        coulomb_asymmetry={"half_difference": 0.2},
+    )
+    names = dict(zip(values, errors, strict=True))
+    sure = least(
+        device.with_values({n: Value(values[n], stderr=e) for n, e in names.items()}), errors=1.0
+    )
+    moved = {n: values[n] + s * e for (n, e), s in zip(names.items(), signs, strict=True)}
+    # rounding: the level is a sum of three terms
+    assert least(device.with_values(moved)) >= sure - 1e-12
+
+
+def test_a_body_without_friction_has_no_range():
+    assert friction_range(Body("prismatic", {"inertia": Value(1.0)}), REACH, errors=0.0) is None
+
+
+def test_a_strong_actuator_and_its_ripple_count():
+    device = body(1.0, actuator_gain={"gain": 1.1})
+    assert acting_gain(device, REACH, errors=0.0) == pytest.approx(1.1)
+    device = body(1.0, torque_ripple={"amplitude": 0.2, "period": 0.05, "phase": 0.0})
+    assert acting_gain(device, REACH, errors=0.0) == pytest.approx(1.2, abs=1e-3)
+    device = body(1.0, actuator_lag={"time_constant": 0.01}, actuation_delay={"delay": 2e-3})
+    assert acting_gain(device, REACH, errors=0.0) == pytest.approx(1.0)
+
+
+@given(st.floats(1e-9, 1e9), st.integers(1, 4))
+def test_rounding_stays_on_its_side(value, digits):
+    low, high = rounded_down(value, digits=digits), rounded_up(value, digits=digits)
+    # a part in 1e8: a number of few digits is left as it is
+    assert low <= value * (1 + 1e-8)
+    assert high >= value * (1 - 1e-8)
+    assert high - low <= 1.01 * 10.0 ** (math.floor(math.log10(value)) - digits + 1)

@@ -1,0 +1,49 @@
+"""The search for better numbers stays within what keeps the proposal safe."""
+
+from dataclasses import replace
+
+import pytest
+
+from teleopdesign.design import tune
+from teleopdesign.design.cancellation import smoothed_cancellation
+from teleopdesign.design.chosen import Reason
+
+
+def test_tuning_lowers_the_force_error_within_the_conditions(designed):
+    found = tune(designed, simulations=25)
+    assert found.after <= found.before
+    h, proposed = found.force_feedback.names(), designed.force_feedback.controller.names()
+    k, b = h["velocity_schedule.gain"], h["velocity_schedule.scheduling_velocity"]
+    assert k <= proposed["velocity_schedule.gain"] * (1 + 1e-9)
+    c, own = found.cancellation.names(), designed.cancellation.controller.names()
+    assert c["dahl.level"] == own["dahl.level"]
+    assert c["dahl.stiffness"] <= own["dahl.stiffness"] * (1 + 1e-9)
+    # the model has no cost of force feedback in fast motion: nothing speaks for a schedule
+    assert b > proposed["velocity_schedule.scheduling_velocity"]
+    assert "velocity_schedule.gain" in found.at_bound
+
+
+def test_the_error_before_is_the_one_predicted(designed):
+    found = tune(designed, simulations=4)
+    assert found.before == pytest.approx(designed.prediction.cases["hybrid"].simulated, rel=1e-9)
+
+
+def test_a_smoothed_cancellation_keeps_its_velocity_above_the_encoders(designed):
+    level = Reason("level", 0.49, "N", "made for a test")
+    smoothed = smoothed_cancellation(
+        level, designed.reach, designed.assumptions, axis="prismatic", period=1e-3,
+        filter_bandwidth=50.0,
+    )  # fmt: skip
+    hybrid = designed.prediction.hybrid.with_block("C", smoothed.controller)
+    prediction = replace(designed.prediction, hybrid=hybrid)
+    made = replace(designed, cancellation=smoothed, prediction=prediction)
+    found = tune(made, simulations=25)
+    a = smoothed.controller.names()["smoothed_coulomb.smoothing_velocity"]
+    assert found.cancellation.names()["smoothed_coulomb.smoothing_velocity"] >= a * (1 - 1e-9)
+    h = found.force_feedback.names()
+    k, b = h["velocity_schedule.gain"], h["velocity_schedule.scheduling_velocity"]
+    assert b * (1 + k) >= a * k * (1 - 1e-9)
+
+
+def test_a_design_without_cancellation_tunes_force_feedback_alone(unsure):
+    assert tune(unsure, simulations=6).cancellation is None
