@@ -16,6 +16,7 @@ from ..diagrams import Diagram
 from ..errors import ModelError
 from ..passivity import Claim, Evidence
 from ..quantity import unit_of
+from ..realise.tips import led
 from ..simulate import Sampling
 from .prediction import settled_cycle
 from .reach import Reach
@@ -50,7 +51,7 @@ def energy_taken(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> 
         cycle = settled_cycle(diagram, motion, sampling)
     except ModelError:
         return Taken(motion, float("-inf"))
-    power = cycle["E"].values * cycle["L_velocity"].values
+    power = cycle["E"].values * cycle[f"{led(diagram, 'L')}_velocity"].values
     return Taken(motion, float(np.mean(power) / motion.frequency))
 
 

@@ -128,7 +128,7 @@ def _left_out(design: Design) -> list[str]:
         )
     if design.prediction.rigid:
         lines.append(
-            f"{design.prediction.rigid} has no simulated form in a diagram: the simulation takes "
+            f"{design.prediction.rigid} cannot be simulated at these values: the simulation takes "
             "the device for rigid, with the inertia of both sides."
         )
     if more:

@@ -11,6 +11,7 @@ import numpy as np
 from ..blocks import Body
 from ..diagrams import Diagram, four_cases
 from ..errors import ModelError
+from ..realise.tips import led
 from ..simulate import ForceVelocity, Sampling, Simulation, force_velocity, simulate
 from .linear import linear_error
 from .quasi_static import quasi_static_error
@@ -54,7 +55,7 @@ class Prediction:
     """Predicted force errors by case; curves: simulated, over velocity; left_out: of linear.
 
     hybrid: the diagram as simulated
-    rigid: a structure of the body that no simulation of a diagram holds yet, "" where none is
+    rigid: a structure of the body that could not be simulated and was taken rigid, "" where none
     """
 
     motion: StatedMotion
@@ -91,7 +92,8 @@ def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Predic
     linear, left_out = linear_error(hybrid, motion)
     simulated, rigid = _simulable(hybrid, motion, sampling)
     runs, failed = _all_simulated(simulated, motion, sampling)
-    curves = force_velocity(runs, after=(CYCLES - 1) / motion.frequency)
+    speed = f"{led(simulated, 'L')}_velocity"
+    curves = force_velocity(runs, velocity=speed, after=(CYCLES - 1) / motion.frequency)
     cases = {
         case: _case(case, diagram, motion, linear[case], curves, failed.get(case, ""))
         for case, diagram in four_cases(hybrid).items()
@@ -140,7 +142,7 @@ def _simulated(
     return simulate(
         diagram,
         duration=CYCLES / motion.frequency,
-        motion={"L": motion.motion},
+        motion={led(diagram, "L"): motion.motion},
         computer=sampling,
         step=step,
         give=GIVE * motion.amplitude,

@@ -31,6 +31,15 @@ def tip(motion: str) -> str:
     return f"{motion}_tip"
 
 
+def led(diagram: Diagram, motion: str) -> str:
+    """The motion that a hand leads: the tip's where a structure lies between, else itself."""
+    for part in diagram.blocks:
+        if isinstance(part, Moving) and part.motion == motion and isinstance(part.body, Body):
+            if any(e.role == "structure" for e in part.body.effects):
+                return tip(motion)
+    return motion
+
+
 def with_tips(diagram: Diagram, *, prescribed: Iterable[str] = ()) -> Diagram:
     """The diagram with every body that has a structure as two bodies.
 

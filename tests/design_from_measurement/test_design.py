@@ -223,7 +223,10 @@ def test_through_a_compliant_transmission_the_cancellation_is_proved_too(rod):
     made = design(with_effect(rod, "transmission_compliance", tip))
     statuses = {c.statement.split(",")[0]: c.status for c in made.claims["MBC"]}
     assert statuses["a joint with motor friction 0.547 N"] == "proved"
-    assert made.prediction.rigid in ("", "transmission_compliance")
+    assert made.prediction.rigid == ""
+    # the tip is led: at 3 Hz the transmission gives by 1 N on 20 N/mm, far below the motion
+    none = made.prediction.cases["none"]
+    assert none.simulated == pytest.approx(none.quasi_static, rel=0.2)
 
 
 def test_friction_that_no_record_has_shown_backward_is_said(designed, rod):
