@@ -4,6 +4,7 @@ from .noncommutative import counterexample, on_matrices, proved_equal
 from .printing import as_latex, as_text, block_symbol
 from .transfer_functions import (
     TransferFunctions,
+    has_actuation,
     return_difference,
     transfer,
     transfer_functions,
@@ -15,6 +16,7 @@ __all__ = [
     "as_text",
     "block_symbol",
     "counterexample",
+    "has_actuation",
     "on_matrices",
     "proved_equal",
     "return_difference",
