@@ -1,5 +1,6 @@
 """Transfer functions and impedances from the wiring, symbolic."""
 
+from .all_transfers import Transfer, Transfers, all_transfers
 from .noncommutative import counterexample, on_matrices, proved_equal
 from .printing import as_latex, as_text, block_symbol
 from .transfer_functions import (
@@ -11,7 +12,10 @@ from .transfer_functions import (
 )
 
 __all__ = [
+    "Transfer",
     "TransferFunctions",
+    "Transfers",
+    "all_transfers",
     "as_latex",
     "as_text",
     "block_symbol",

@@ -6,14 +6,18 @@ inverse appears only where a signal stands on both sides of its equation.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from time import monotonic
 from types import MappingProxyType
 
 import sympy as sp
 
 from ..diagrams import Attached, Control, Diagram, Moving
+from ..diagrams.wiring import Part
 from ..errors import ModelError
+from .noncommutative import counterexample
 from .printing import as_latex, as_text, block_symbol, with_gamma
 
 #: signal -> coefficient, acting from the left; the sum over all is zero
@@ -27,16 +31,24 @@ def rows(diagram: Diagram) -> list[Row]:
     for part in diagram.parts:
         if isinstance(part, Moving):
             command = -block_symbol(f"A_{part.name}") if has_actuation(part) else sp.S(-1)
-            row = {part.motion: block_symbol(part.name), part.command: command}
-            row |= {s: sp.S(-sign) for s, sign in part.loads.items()}
+            terms = [(part.motion, block_symbol(part.name)), (part.command, command)]
+            terms += [(s, sp.S(-sign)) for s, sign in part.loads.items()]
         elif isinstance(part, Attached):
-            row = {part.force: sp.S(1), part.motion: -part.sign * block_symbol(part.name)}
+            terms = [(part.force, sp.S(1)), (part.motion, -part.sign * block_symbol(part.name))]
         elif isinstance(part, Control):
-            row = {part.output: sp.S(1), part.input: -block_symbol(part.name)}
+            terms = [(part.output, sp.S(1)), (part.input, -block_symbol(part.name))]
         else:
-            row = {part.output: sp.S(1), **{s: sp.S(-g) for s, g in part.terms.items()}}
-        found.append(row)
+            terms = [(part.output, sp.S(1)), *((s, sp.S(-g)) for s, g in part.terms.items())]
+        found.append(_row(terms))
     return found
+
+
+def _row(terms: list[tuple[str, sp.Expr]]) -> Row:
+    """Terms by their signal: a part may take the signal that it makes."""
+    row: Row = {}
+    for signal, coefficient in terms:
+        row[signal] = row.get(signal, sp.S(0)) + coefficient
+    return {signal: c for signal, c in row.items() if c != 0}
 
 
 def has_actuation(part: Moving) -> bool:
@@ -45,13 +57,21 @@ def has_actuation(part: Moving) -> bool:
 
 
 def transfer(
-    diagram: Diagram, output: str, inputs: tuple[str, ...] | None = None, *, given: str = ""
+    diagram: Diagram,
+    output: str,
+    inputs: tuple[str, ...] | None = None,
+    *,
+    given: str = "",
+    seconds: float = math.inf,
 ) -> dict[str, sp.Expr]:
     """Coefficients of `output` = sum of coefficient * input.
 
     inputs: signals from outside (default: all); those left out are zero
     given: a motion that is prescribed, in place of the outside force that drives it
+    seconds: after which it is given up
+    raises ModelError: unknown signal, a loop without a solution, or more seconds than given
     """
+    until = monotonic() + seconds
     diagram.signal(output)
     free = dict.fromkeys(diagram.outside)
     if given:
@@ -66,9 +86,11 @@ def transfer(
     system = [*rows(diagram), {_OUTPUT: sp.S(1), output: sp.S(-1)}]
     unknown = [s for s in diagram.signals if s not in free]
     for signal in _order(unknown, output, diagram):
+        if monotonic() > until:
+            raise ModelError(f'{diagram.name}: "{output}" was not derived within {seconds:g} s')
         _eliminate(system, signal, diagram)
     row = next(r for r in system if _OUTPUT in r)
-    return {s: -row.get(s, sp.S(0)) for s in chosen}
+    return {s: _product(sp.S(-1), row.get(s, sp.S(0))) for s in chosen}
 
 
 def _driver(diagram: Diagram, motion: str) -> str:
@@ -88,9 +110,9 @@ def _order(unknown: list[str], output: str, diagram: Diagram) -> list[str]:
 
 def _eliminate(system: list[Row], signal: str, diagram: Diagram) -> None:
     having = [r for r in system if signal in r]
-    able = [r for r in having if _OUTPUT not in r]
+    able = [r for r in having if _OUTPUT not in r and not _vanishes(r[signal])]
     if not able:
-        raise ModelError(f'{diagram.name}: the wiring does not determine "{signal}"')
+        raise ModelError(_undetermined(diagram, signal))
     plain = [r for r in able if r[signal] in (sp.S(1), sp.S(-1))]
     own = [r for r in plain if next(iter(r)) == signal]  # the equation that makes the signal
     pivot = (own or plain or able)[0]
@@ -106,6 +128,50 @@ def _eliminate(system: list[Row], signal: str, diagram: Diagram) -> None:
                 row.pop(s, None)
             else:
                 row[s] = total
+
+
+def _vanishes(coefficient: sp.Expr) -> bool:
+    """Whether a sum with inverses in it is zero, as seen exactly on random rational matrices."""
+    if not (coefficient.is_Add and any(p.exp < 0 for p in coefficient.atoms(sp.Pow))):
+        return False
+    return counterexample(coefficient, sp.S(0), tries=1) is None
+
+
+def _undetermined(diagram: Diagram, signal: str) -> str:
+    loop = loop_of(diagram, signal)
+    if not loop:
+        return f'{diagram.name}: the wiring does not determine "{signal}"'
+    return f"{diagram.name}: the loop {' -> '.join((*loop, loop[0]))} has no solution"
+
+
+def loop_of(diagram: Diagram, signal: str) -> tuple[str, ...]:
+    """The shortest loop through a signal, of junctions alone where there is one; () if none."""
+    for parts in (diagram.junctions, diagram.parts):
+        makers = {s: part for part in parts for s in part.outputs}
+        before: dict[str, str] = {}
+        reached = [signal]
+        for at in reached:
+            part = makers.get(at)
+            for taken in () if part is None else _taken(part):
+                if taken == signal:
+                    return _back(before, at, signal)
+                if taken not in before:
+                    before[taken] = at
+                    reached.append(taken)
+    return ()
+
+
+def _taken(part: Part) -> tuple[str, ...]:
+    # of a controller the motion only sets where its law is frozen
+    return (part.input,) if isinstance(part, Control) else part.inputs
+
+
+def _back(before: Mapping[str, str], at: str, signal: str) -> tuple[str, ...]:
+    """From the signal along the search, which ran against the wires, so in their order."""
+    way = [at]
+    while way[-1] != signal:
+        way.append(before[way[-1]])
+    return (signal, *way[:-1])
 
 
 def _mostly_negative(expression: sp.Expr) -> bool:
@@ -170,18 +236,45 @@ def transfer_functions(diagram: Diagram) -> TransferFunctions:
     Those for which the diagram has the blocks; each is derived from the diagram without the others.
     Bernstein, Lawrence, Pao, World Haptics 2005, eqs (2) to (5) and (7), figure 4.
     """
+    cases = named_cases(diagram)
+    found = {name: case.derived() for name, case in cases.items()}
+    texts = {name: case.text for name, case in cases.items()}
+    return TransferFunctions(diagram, MappingProxyType(found), MappingProxyType(texts))
+
+
+@dataclass(frozen=True)
+class Case:
+    """What a transfer function is of: from `input` to `output` of a diagram, all else zero.
+
+    given: a motion that is prescribed, as in `transfer`;  text: for a reader
+    """
+
+    diagram: Diagram
+    output: str
+    input: str
+    given: str
+    text: str
+
+    def derived(self, *, seconds: float = math.inf) -> sp.Expr:
+        """The expression in the blocks; arguments and errors as of `transfer`."""
+        own = transfer(self.diagram, self.output, (self.input,), given=self.given, seconds=seconds)
+        return own[self.input]
+
+
+def named_cases(diagram: Diagram) -> dict[str, Case]:
+    """The transfer functions of a haptic interface that have a name, see `transfer_functions`."""
     force = diagram.opened("K")
-    found: dict[str, sp.Expr] = {}
+    found: dict[str, Case] = {}
     if diagram.has("Z_H"):
         cases = {"T_o": ("C", "H"), "T_MBC": ("H",), "T_FF": ("C",), "T_H": ()}
         for name, gone in cases.items():
             if all(diagram.has(b) for b in {"C", "H"} - set(gone)):
-                found[name] = transfer(force.without(*gone), "R_M", ("R_D",))["R_D"]
-    found["Zhat_M"] = transfer(force, "E", ("L",), given="L")["L"]
+                found[name] = Case(force.without(*gone), "R_M", "R_D", "", _TEXTS[name])
+    found["Zhat_M"] = Case(force, "E", "L", "L", _TEXTS["Zhat_M"])
     if diagram.has("K"):
-        found |= {f"L/{s}": e for s, e in transfer(diagram, "L", ("L_D", "R_V")).items()}
-    texts = {n: _TEXTS.get(n, "position loop closed") for n in found}
-    return TransferFunctions(diagram, MappingProxyType(found), MappingProxyType(texts))
+        for signal in ("L_D", "R_V"):
+            found[f"L/{signal}"] = Case(diagram, "L", signal, "", "position loop closed")
+    return found
 
 
 _TEXTS = {
