@@ -33,6 +33,9 @@ class Transfer:
         """name = expression"""
         return f"{self.name} = {as_text(with_gamma(self.expression))}"
 
+    def __repr__(self) -> str:
+        return self.text()
+
     def latex(self) -> str:
         """One line of an align environment."""
         return f"{name_as_latex(self.name)} &= {as_latex(with_gamma(self.expression))}"

@@ -38,17 +38,23 @@ def _ordered(expression: sp.Add) -> list[tuple[bool, sp.Expr]]:
     return [(negative, -t if negative else t) for negative, t in rank]
 
 
+def _begun(terms: str) -> str:
+    """The sum without the plus that it begins with; a minus stands at its term."""
+    return f"-{terms[3:]}" if terms.startswith(" - ") else terms.removeprefix(" + ")
+
+
 class _Text(StrPrinter):
     def _print_Add(self, expr: sp.Add, order: Any = None) -> str:
         out = ""
         for negative, term in _ordered(expr):
             one = "I" if term == 1 else self.parenthesize(term, PRECEDENCE["Add"])
             out += (" - " if negative else " + ") + one
-        return out.removeprefix(" + ")
+        return _begun(out)
 
     def _print_Mul(self, expr: sp.Mul) -> str:
-        negative = expr.as_coeff_Mul()[0] == -1
-        factors = [a for a in expr.args if a != -1]
+        number = expr.as_coeff_Mul()[0]
+        negative = bool(number < 0)
+        factors = [abs(a) if a == number else a for a in expr.args if a != -1]
         text = " ".join(self.parenthesize(a, PRECEDENCE["Mul"]) for a in factors)
         return f"-{text}" if negative else text
 
@@ -61,7 +67,7 @@ class _Latex(LatexPrinter):
         out = ""
         for negative, term in _ordered(expr):
             out += (" - " if negative else " + ") + ("I" if term == 1 else self._print(term))
-        return out.removeprefix(" + ")
+        return _begun(out)
 
 
 def as_text(expression: sp.Expr) -> str:
