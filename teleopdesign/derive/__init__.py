@@ -1,13 +1,12 @@
 """Transfer functions and impedances from the wiring, symbolic."""
 
 from .all_transfers import Transfer, Transfers, all_transfers
+from .elimination import has_actuation, transfer
 from .noncommutative import counterexample, on_matrices, proved_equal
 from .printing import as_latex, as_text, block_symbol
 from .transfer_functions import (
     TransferFunctions,
-    has_actuation,
     return_difference,
-    transfer,
     transfer_functions,
 )
 

@@ -19,8 +19,8 @@ from teleopdesign.derive import (
     return_difference,
     transfer,
 )
+from teleopdesign.derive.elimination import rows
 from teleopdesign.derive.printing import name_as_latex, polynomial_as_text
-from teleopdesign.derive.transfer_functions import rows
 from teleopdesign.diagrams import (
     ANY,
     SHIPPED,

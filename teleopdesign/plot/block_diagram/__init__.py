@@ -6,9 +6,13 @@ save_figure(draw_diagram(diagram).plot(), "loop")     # PDF and PNG in house sty
 
 from __future__ import annotations
 
+import math
+
 from ...diagrams import Diagram
+from ...errors import ModelError
 from .cells import place
-from .network import Network, Node, network
+from .from_diagram import network
+from .network import Network, Node
 from .paths import Path, paths
 from .routes import route
 from .shapes import Drawing
@@ -16,7 +20,8 @@ from .sheet import sheet
 
 __all__ = ["Drawing", "draw_diagram"]
 
-MOST_TRIALS = 12  # placements tried, each a few hundredths of a second
+#: placements tried, each a few hundredths of a second, and fewer of large diagrams
+MOST_TRIALS, MOST_NODES = 12, 150
 
 
 def draw_diagram(diagram: Diagram) -> Drawing:
@@ -27,6 +32,8 @@ def draw_diagram(diagram: Diagram) -> Drawing:
     follows. Of control laws that also see a velocity, only the wired input is drawn.
     """
     parts = network(diagram)
+    if not parts.nodes:
+        return Drawing((), 0.0, 0.0, diagram.name)
     ways = paths(parts)
     ways += _arrow_out(parts, ways[0])
     cells = place(parts, ways, _best_sides(parts, ways))
@@ -54,17 +61,25 @@ def _best_sides(parts: Network, ways: list[Path]) -> dict[int, int]:
         if i and any(parts.nodes[n].kind in ("box", "sum") for n in p.nodes)
     ]
     best: dict[int, int] = {}
-    least = route(parts, place(parts, ways, best))[2]
+    least = _cost(parts, ways, best)
     trials, better = 1, True
-    while better and trials < MOST_TRIALS:
+    most = min(MOST_TRIALS, MOST_NODES // len(parts.nodes))
+    while better and trials < most:
         better = False
         for i in able:
             for side in (1, -1):
-                if best.get(i) == side or trials >= MOST_TRIALS:
+                if best.get(i) == side or trials >= most:
                     continue
                 trial = {**best, i: side}
-                cost = route(parts, place(parts, ways, trial))[2]
+                cost = _cost(parts, ways, trial)
                 trials += 1
                 if cost < least - 1e-9:
                     best, least, better = trial, cost, True
     return best
+
+
+def _cost(parts: Network, ways: list[Path], sides: dict[int, int]) -> float:
+    try:
+        return route(parts, place(parts, ways, sides))[2]
+    except ModelError:  # no way for some wire: any other placement is better
+        return math.inf

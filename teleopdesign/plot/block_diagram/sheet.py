@@ -90,14 +90,14 @@ def _room(network: Network, cells: Cells, routes: Sequence[Route], column: int, 
         node = network.nodes[name]
         spare = half - node.size[0] / 2
         net = network.net_of(name)
+        signs = [_weight(r.weight) for r in routes if r.target == name and node.kind == "sum"]
+        sign = max((width((Run(s, 0, False),), "sign") for s in signs), default=0.0)
         if cells.heading[name] == side:
             named = net is not None and node.kind != "source" and label(net)
             text = width(label(net), "signal") if named and net is not None else 0.0
-            need = max(need, text + 2 * LABEL_BEHIND - spare)
+            need = max(need, text + 2 * LABEL_BEHIND - spare, sign - spare)
         else:
-            signs = [_weight(r.weight) for r in routes if r.target == name]
-            wide = max((width((Run(s, 0, False),), "sign") for s in signs), default=0.0)
-            need = max(need, APPROACH + max(0.0, wide - 8.0) - spare)
+            need = max(need, APPROACH + max(0.0, sign - 8.0) - spare)
     return need
 
 
