@@ -8,7 +8,7 @@ import sympy as sp
 from design.devices import body
 from design.test_wiring import pair
 from diagrams.random_diagrams import diagrams
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import HealthCheck, Phase, assume, given, settings
 
 from teleopdesign.controllers import controller
 from teleopdesign.derive import (
@@ -62,8 +62,10 @@ def numeric(expression, blocks):
     return np.array(on_matrices(expression, blocks).tolist(), dtype=float)
 
 
-# what hypothesis draws is rarely without a solution; a diagram of many blocks takes seconds
-@settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck))
+# no search for a smaller example: with inverses of matrices in it, that takes minutes
+@settings(
+    max_examples=15, deadline=None, suppress_health_check=list(HealthCheck), phases=[Phase.generate]
+)
 @given(diagrams())
 def test_transfers_solve_the_equations_of_the_wiring_for_matrices(diagram):
     """Against numpy: all equations of the wiring at once, 2 x 2 blocks, one column an input."""
@@ -87,14 +89,15 @@ def test_transfers_solve_the_equations_of_the_wiring_for_matrices(diagram):
         assume("within" not in str(error))
         assert singular, str(error)
         return
-    assume(not singular)
+    assume(not singular and np.linalg.cond(left) < 1e6)
     solved = -np.linalg.solve(left, right)
     k = 2 * unknown.index(output)
     for i, signal in enumerate(diagram.outside):
         expected = solved[k : k + 2, 2 * i : 2 * i + 2]
         own = numeric(sp.sympify(found[signal]), values)
-        # numpy's solution loses as many digits as its matrix has condition
-        limit = 1e-13 * np.linalg.cond(left) * (1 + np.abs(expected).max())
+        # weights such as 0.5 are floating numbers, and inverses one inside the other lose digits;
+        # a wrong term is off by the size of the blocks
+        limit = 1e-7 * (1 + np.abs(expected).max())
         np.testing.assert_allclose(own, expected, rtol=0, atol=limit)
 
 
