@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import pkgutil
 import sys
 from collections.abc import Sequence
@@ -17,10 +18,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         options = _parser().parse_args(arguments)
         status: int = options.run(options)
+        sys.stdout.flush()
         return status
     except TeleopDesignError as error:
         print(f"teleopdesign: {error}", file=sys.stderr)
         return 2
+    except BrokenPipeError:
+        # who reads has enough, as `head` does; what is left to write goes nowhere
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
     except KeyboardInterrupt:
         print("teleopdesign: stopped", file=sys.stderr)
         return 130

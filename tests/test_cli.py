@@ -293,3 +293,9 @@ def test_the_demo_names_the_effect_and_writes_its_files(tmp_path, capsys):
     found = json.loads((tmp_path / "demo" / "answer.json").read_text())
     assert violations(found) == []
     assert found["verdict"] == "effects_missing"
+
+
+def test_a_reader_that_stops_early_is_no_error():
+    command = f"{sys.executable} -m teleopdesign.cli effects | head -1"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True)
+    assert done.stderr == ""

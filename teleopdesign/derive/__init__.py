@@ -1,21 +1,26 @@
 """Transfer functions and impedances from the wiring, symbolic."""
 
+from .all_transfers import Transfer, Transfers, all_transfers
+from .elimination import has_actuation, transfer
 from .noncommutative import counterexample, on_matrices, proved_equal
 from .printing import as_latex, as_text, block_symbol
 from .transfer_functions import (
     TransferFunctions,
     return_difference,
-    transfer,
     transfer_functions,
 )
 from .two_port import two_port_functions
 
 __all__ = [
+    "Transfer",
     "TransferFunctions",
+    "Transfers",
+    "all_transfers",
     "as_latex",
     "as_text",
     "block_symbol",
     "counterexample",
+    "has_actuation",
     "on_matrices",
     "proved_equal",
     "return_difference",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import sympy as sp
@@ -37,16 +38,23 @@ def _ordered(expression: sp.Add) -> list[tuple[bool, sp.Expr]]:
     return [(negative, -t if negative else t) for negative, t in rank]
 
 
+def _begun(terms: str) -> str:
+    """The sum without the plus that it begins with; a minus stands at its term."""
+    return f"-{terms[3:]}" if terms.startswith(" - ") else terms.removeprefix(" + ")
+
+
 class _Text(StrPrinter):
     def _print_Add(self, expr: sp.Add, order: Any = None) -> str:
         out = ""
         for negative, term in _ordered(expr):
-            out += (" - " if negative else " + ") + self.parenthesize(term, PRECEDENCE["Add"])
-        return out.removeprefix(" + ").replace("+ 1", "+ I")
+            one = "I" if term == 1 else self.parenthesize(term, PRECEDENCE["Add"])
+            out += (" - " if negative else " + ") + one
+        return _begun(out)
 
     def _print_Mul(self, expr: sp.Mul) -> str:
-        negative = expr.as_coeff_Mul()[0] == -1
-        factors = [a for a in expr.args if a != -1]
+        number = expr.as_coeff_Mul()[0]
+        negative = bool(number < 0)
+        factors = [abs(a) if a == number else a for a in expr.args if a != -1]
         text = " ".join(self.parenthesize(a, PRECEDENCE["Mul"]) for a in factors)
         return f"-{text}" if negative else text
 
@@ -59,7 +67,7 @@ class _Latex(LatexPrinter):
         out = ""
         for negative, term in _ordered(expr):
             out += (" - " if negative else " + ") + ("I" if term == 1 else self._print(term))
-        return out.removeprefix(" + ")
+        return _begun(out)
 
 
 def as_text(expression: sp.Expr) -> str:
@@ -70,3 +78,29 @@ def as_text(expression: sp.Expr) -> str:
 def as_latex(expression: sp.Expr) -> str:
     """LaTeX."""
     return str(_Latex().doprint(expression))
+
+
+def name_as_latex(name: str) -> str:
+    """The name of a transfer function: That_M and R_M/R_D with their indices in braces."""
+    return "/".join(_named(part) for part in name.split("/"))
+
+
+def _named(name: str) -> str:
+    head, _, index = name.partition("_")
+    head = rf"\hat {head.removesuffix('hat')}" if head.endswith("hat") else head
+    if not index:
+        return head
+    return f"{head}_{{{index}}}" if len(index) == 1 else rf"{head}_{{\mathrm{{{index}}}}}"
+
+
+def polynomial_as_text(coefficients: Sequence[float], variable: str = "s") -> str:
+    """2 s^2 + 3.5 s - 1, from the highest power; four digits."""
+    n, out = len(coefficients) - 1, ""
+    for k, c in enumerate(coefficients):
+        if c == 0 and n > 0:
+            continue
+        power = {0: "", 1: variable}.get(n - k, f"{variable}^{n - k}")
+        size = f"{abs(c):.4g}" if abs(c) != 1 or not power else ""
+        out += (" - " if c < 0 else " + ") + " ".join(w for w in (size, power) if w)
+    out = out or " + 0"
+    return out[3:] if out.startswith(" + ") else f"-{out[3:]}"

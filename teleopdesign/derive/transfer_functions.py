@@ -1,143 +1,18 @@
-"""Transfer functions and impedances from the wiring, symbolic; blocks need not commute.
-
-Every block acts from the left on its signal. Signals are eliminated one by one in a fixed order; an
-inverse appears only where a signal stands on both sides of its equation.
-"""
+"""The transfer functions and impedances of a haptic interface that have a name."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
 import sympy as sp
 
-from ..diagrams import Attached, Control, Diagram, Kinematics, Linked, Moving, position_symbol
+from ..diagrams import Control, Diagram
 from ..errors import ModelError
+from .elimination import product, transfer
 from .printing import as_latex, as_text, block_symbol, with_gamma
-
-#: signal -> coefficient, acting from the left; the sum over all is zero
-Row = dict[str, sp.Expr]
-_OUTPUT = "output asked for"
-
-
-def rows(diagram: Diagram) -> list[Row]:
-    """One equation (sum = 0) for each block and junction."""
-    found: list[Row] = []
-    for part in diagram.parts:
-        if isinstance(part, Moving):
-            command = -block_symbol(f"A_{part.name}") if has_actuation(part) else sp.S(-1)
-            row = {part.motion: block_symbol(part.name), part.command: command}
-            row |= {s: sp.S(-sign) for s, sign in part.loads.items()}
-        elif isinstance(part, Attached):
-            row = {part.force: sp.S(1), part.motion: -part.sign * block_symbol(part.name)}
-        elif isinstance(part, Linked):
-            found += _linked(part)
-            continue
-        elif isinstance(part, Control):
-            row = {part.output: sp.S(1), part.input: -block_symbol(part.name)}
-        elif isinstance(part, Kinematics):
-            slopes = {s: sp.diff(part.expression, position_symbol(s)) for s in part.inputs}
-            row = {part.output: sp.S(1), **{s: -diagram.here(g) for s, g in slopes.items()}}
-        else:
-            row = {part.output: sp.S(1), **{s: -diagram.here(g) for s, g in part.terms.items()}}
-        found.append(row)
-    return found
-
-
-def _linked(part: Linked) -> list[Row]:
-    found: list[Row] = [{force: sp.S(1)} for force in part.forces]
-    for i, j in part.entries:
-        found[i][part.motions[j]] = -part.sign * block_symbol(part.entry_name(i, j))
-    return found
-
-
-def has_actuation(part: Moving) -> bool:
-    """Whether effects stand between the command and the force that acts on this body."""
-    return any(e.role == "actuation" for e in getattr(part.body, "effects", ()))
-
-
-def transfer(
-    diagram: Diagram,
-    output: str,
-    inputs: tuple[str, ...] | None = None,
-    *,
-    given: str | tuple[str, ...] = (),
-) -> dict[str, sp.Expr]:
-    """Coefficients of `output` = sum of coefficient * input.
-
-    inputs: signals from outside (default: all); those left out are zero
-    given: motions that are prescribed, in place of the outside forces that drive them
-    """
-    diagram.signal(output)
-    free = dict.fromkeys(diagram.outside)
-    prescribed = given if isinstance(given, tuple) else (given,) if given else ()
-    for motion in prescribed:
-        free[motion] = None
-        free.pop(_driver(diagram, motion), None)
-    for name in inputs or ():
-        diagram.signal(name)
-        if name not in free:
-            raise ModelError(f'{diagram.name}: signal "{name}" is not from outside')
-    chosen = tuple(free) if inputs is None else inputs
-    # a name of its own for the output, so that what is inverted is an impedance, as in the papers
-    system = [*rows(diagram), {_OUTPUT: sp.S(1), output: sp.S(-1)}]
-    unknown = [s for s in diagram.signals if s not in free]
-    for signal in _order(unknown, output, diagram):
-        _eliminate(system, signal, diagram)
-    row = next(r for r in system if _OUTPUT in r)
-    return {s: _product(sp.S(-1), row.get(s, sp.S(0))) for s in chosen}
-
-
-def _driver(diagram: Diagram, motion: str) -> str:
-    for block in diagram.blocks:
-        if isinstance(block, Moving) and block.motion == motion:
-            return block.driver
-    raise ModelError(f'{diagram.name}: "{motion}" is no motion of a body that forces move')
-
-
-def _order(unknown: list[str], output: str, diagram: Diagram) -> list[str]:
-    """Forces first, then the output, motions last."""
-    motions = [b.motion for b in diagram.blocks if isinstance(b, Moving)]
-    forces = [s for s in unknown if s not in motions]
-    forces.sort(key=lambda s: s == output)
-    return [*forces, *(m for m in motions if m in unknown)]
-
-
-def _eliminate(system: list[Row], signal: str, diagram: Diagram) -> None:
-    having = [r for r in system if signal in r]
-    able = [r for r in having if _OUTPUT not in r]
-    if not able:
-        raise ModelError(f'{diagram.name}: the wiring does not determine "{signal}"')
-    plain = [r for r in able if r[signal] in (sp.S(1), sp.S(-1))]
-    own = [r for r in plain if next(iter(r)) == signal]  # the equation that makes the signal
-    pivot = (own or plain or able)[0]
-    system[:] = [r for r in system if r is not pivot]
-    sign = sp.S(-1 if _mostly_negative(pivot[signal]) else 1)
-    inverse = sp.Pow(_product(sign, pivot[signal]), -1)
-    value = {s: _product(inverse, _product(-sign, c)) for s, c in pivot.items() if s != signal}
-    for row in (r for r in having if r is not pivot):
-        factor = row.pop(signal)
-        for s, c in value.items():
-            total = row.get(s, sp.S(0)) + _product(factor, c)
-            if total == 0:
-                row.pop(s, None)
-            else:
-                row[s] = total
-
-
-def _mostly_negative(expression: sp.Expr) -> bool:
-    terms = sp.Add.make_args(expression)
-    return 2 * sum(bool(t.as_coeff_Mul()[0] < 0) for t in terms) > len(terms)
-
-
-def _product(left: sp.Expr, right: sp.Expr) -> sp.Expr:
-    # a plain number is carried into a sum, so that like terms meet
-    if right.is_Add and left.is_Number:
-        return sp.Add(*(left * a for a in right.args))
-    if left.is_Add and right.is_Number:
-        return sp.Add(*(a * right for a in left.args))
-    return left * right
 
 
 @dataclass(frozen=True)
@@ -188,18 +63,45 @@ def transfer_functions(diagram: Diagram) -> TransferFunctions:
     Those for which the diagram has the blocks; each is derived from the diagram without the others.
     Bernstein, Lawrence, Pao, World Haptics 2005, eqs (2) to (5) and (7), figure 4.
     """
+    cases = named_cases(diagram)
+    found = {name: case.derived() for name, case in cases.items()}
+    texts = {name: case.text for name, case in cases.items()}
+    return TransferFunctions(diagram, MappingProxyType(found), MappingProxyType(texts))
+
+
+@dataclass(frozen=True)
+class Case:
+    """What a transfer function is of: from `input` to `output` of a diagram, all else zero.
+
+    given: motions that are prescribed, as in `transfer`;  text: for a reader
+    """
+
+    diagram: Diagram
+    output: str
+    input: str
+    given: str | tuple[str, ...]
+    text: str
+
+    def derived(self, *, seconds: float = math.inf) -> sp.Expr:
+        """The expression in the blocks; arguments and errors as of `transfer`."""
+        own = transfer(self.diagram, self.output, (self.input,), given=self.given, seconds=seconds)
+        return own[self.input]
+
+
+def named_cases(diagram: Diagram) -> dict[str, Case]:
+    """The transfer functions of a haptic interface that have a name, see `transfer_functions`."""
     force = diagram.opened("K")
-    found: dict[str, sp.Expr] = {}
+    found: dict[str, Case] = {}
     if diagram.has("Z_H"):
         cases = {"T_o": ("C", "H"), "T_MBC": ("H",), "T_FF": ("C",), "T_H": ()}
         for name, gone in cases.items():
             if all(diagram.has(b) for b in {"C", "H"} - set(gone)):
-                found[name] = transfer(force.without(*gone), "R_M", ("R_D",))["R_D"]
-    found["Zhat_M"] = transfer(force, "E", ("L",), given="L")["L"]
+                found[name] = Case(force.without(*gone), "R_M", "R_D", "", _TEXTS[name])
+    found["Zhat_M"] = Case(force, "E", "L", "L", _TEXTS["Zhat_M"])
     if diagram.has("K"):
-        found |= {f"L/{s}": e for s, e in transfer(diagram, "L", ("L_D", "R_V")).items()}
-    texts = {n: _TEXTS.get(n, "position loop closed") for n in found}
-    return TransferFunctions(diagram, MappingProxyType(found), MappingProxyType(texts))
+        for signal in ("L_D", "R_V"):
+            found[f"L/{signal}"] = Case(diagram, "L", signal, "", "position loop closed")
+    return found
 
 
 _TEXTS = {
@@ -217,4 +119,4 @@ def return_difference(diagram: Diagram, name: str) -> sp.Expr:
     if not isinstance(block, Control):
         raise ModelError(f"{diagram.name}: {name} is no controller, its loop cannot be opened")
     back = transfer(diagram.opened(name), block.input, (block.output,))[block.output]
-    return sp.S(1) - _product(block_symbol(name), back)
+    return sp.S(1) - product(block_symbol(name), back)

@@ -12,12 +12,11 @@ the place of velocities and the force on the slave in the place of its reaction.
 from __future__ import annotations
 
 from types import MappingProxyType
-from typing import Any
 
 from ..diagrams import Diagram
 from ..errors import ModelError
 from .printing import block_symbol
-from .transfer_functions import TransferFunctions, transfer
+from .transfer_functions import Case, TransferFunctions
 
 _TEXTS = {
     "Z_mm": "X_m to F_m, slave held",
@@ -33,8 +32,8 @@ _TEXTS = {
 }
 
 
-def two_port_functions(diagram: Diagram) -> TransferFunctions:
-    """Every function of a teleoperator; the last two where it has an environment Z_E.
+def two_port_cases(diagram: Diagram) -> dict[str, Case]:
+    """Each function of a teleoperator but the transparency error, as what it is of.
 
     raises ModelError: the diagram has no master's X_m, F_m or no slave's X_s, F_s
     """
@@ -43,16 +42,24 @@ def two_port_functions(diagram: Diagram) -> TransferFunctions:
             raise ModelError(f'{diagram.name}: no teleoperator: it has no signal "{name}"')
     ports = diagram.without("Z_H", "Z_E")
     both = ("X_m", "X_s")
-    found: dict[str, Any] = {}
-    for side in "ms":
-        row = transfer(ports, f"F_{side}", both, given=both)
-        found |= {f"Z_{side}{other}": row[f"X_{other}"] for other in "ms"}
-    for number, output in ((1, "F_m"), (2, "X_s")):
-        row = transfer(ports, output, ("X_m", "F_d"), given="X_m")
-        found |= {f"h_{number}1": row["X_m"], f"h_{number}2": row["F_d"]}
+    of: dict[str, tuple[str, str, tuple[str, ...]]]
+    of = {f"Z_{i}{j}": (f"F_{i}", f"X_{j}", both) for i in "ms" for j in "ms"}
+    for row, output in ((1, "F_m"), (2, "X_s")):
+        of |= {f"h_{row}1": (output, "X_m", ("X_m",)), f"h_{row}2": (output, "F_d", ("X_m",))}
+    found = {n: Case(ports, *case, _TEXTS[n]) for n, case in of.items()}
     if diagram.has("Z_E"):
         touched = diagram.without("Z_H")
-        found["Z_t"] = transfer(touched, "F_m", ("X_m",), given="X_m")["X_m"]
+        found["Z_t"] = Case(touched, "F_m", "X_m", ("X_m",), _TEXTS["Z_t"])
+    return found
+
+
+def two_port_functions(diagram: Diagram) -> TransferFunctions:
+    """Every function of a teleoperator; the last two where it has an environment Z_E.
+
+    raises ModelError: the diagram has no master's X_m, F_m or no slave's X_s, F_s
+    """
+    found = {name: case.derived() for name, case in two_port_cases(diagram).items()}
+    if "Z_t" in found:
         found["Z_t - Z_E"] = found["Z_t"] - block_symbol("Z_E")
     texts = {name: _TEXTS[name] for name in found}
     return TransferFunctions(diagram, MappingProxyType(found), MappingProxyType(texts))

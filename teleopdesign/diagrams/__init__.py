@@ -16,13 +16,17 @@ from .parts import (
     Part,
     position_symbol,
 )
+from .shipped import SHIPPED, shipped
 from .teleoperator import teleoperator
+from .toml_reading import read_diagram
+from .toml_writing import write_diagram
 from .wiring import Diagram
 from .world_haptics_2005 import READINGS, Reading, reading, world_haptics_2005
 
 __all__ = [
     "ANY",
     "READINGS",
+    "SHIPPED",
     "AnyBlock",
     "Arm",
     "Attached",
@@ -41,8 +45,11 @@ __all__ = [
     "joint",
     "parallel_rods",
     "position_symbol",
+    "read_diagram",
     "reading",
+    "shipped",
     "teleoperator",
     "teleoperator_of_arms",
     "world_haptics_2005",
+    "write_diagram",
 ]

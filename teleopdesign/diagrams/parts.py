@@ -190,10 +190,3 @@ Part = Moving | Attached | Linked | Control | Junction | Kinematics
 
 def _names(expression: Weight) -> tuple[str, ...]:
     return tuple(sorted(s.name for s in sp.sympify(expression).free_symbols))
-
-
-def followed(block: Block) -> tuple[str, ...]:
-    """Motions that the block follows without making them."""
-    if isinstance(block, Attached | Control):
-        return (block.motion,)
-    return block.motions if isinstance(block, Linked) else ()

@@ -26,7 +26,6 @@ from .parts import (
     Moving,
     Part,
     Weight,
-    followed,
     position_symbol,
 )
 
@@ -73,9 +72,6 @@ class Diagram:
                 )
         for name in ("outside", "texts", "pose"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
-        for block in self.blocks:
-            for motion in followed(block):
-                self.position(motion)
 
     @property
     def parts(self) -> tuple[Part, ...]:

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
+from ..derive.elimination import rows
 from ..derive.printing import block_symbol
-from ..derive.transfer_functions import rows
 from ..diagrams import Diagram, Moving
 from ..errors import ModelError
 from ..realise.lti import S, linear_blocks

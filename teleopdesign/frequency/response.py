@@ -96,13 +96,13 @@ def bode(
     *,
     output: str = "R_M",
     input: str = "R_D",
-    given: str = "",
+    given: str | tuple[str, ...] = "",
     frequency: np.ndarray | None = None,
     speed: float = 0.0,
 ) -> FrequencyResponse:
     """Frequency response from one signal to another, for one diagram or several cases.
 
-    given: a motion that is prescribed; output "E", input and given "L" is the apparent mechanism
+    given: motions that are prescribed; output "E", input and given "L" is the apparent mechanism
         impedance Zhat_M
     frequency: Hz, default 0.1 to 1000;  speed: where smoothed friction and schedules are frozen
     """
@@ -151,7 +151,7 @@ def transfer_function(
     *,
     output: str = "R_M",
     input: str = "R_D",
-    given: str = "",
+    given: str | tuple[str, ...] = "",
     speed: float = 0.0,
     delay_order: int = 4,
 ) -> tuple[control.TransferFunction, tuple[str, ...]]:
@@ -164,7 +164,7 @@ def transfer_function(
 
 
 def _scalar(
-    diagram: Diagram, output: str, source: str, given: str, speed: float
+    diagram: Diagram, output: str, source: str, given: str | tuple[str, ...], speed: float
 ) -> tuple[sp.Expr, LinearBlocks]:
     """Symbolic transfer function with each block's linear form in place; one degree of freedom."""
     linear = linear_blocks(diagram, speed=speed)

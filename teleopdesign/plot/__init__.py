@@ -1,10 +1,13 @@
 """Draw result objects; compute nothing."""
 
+from .block_diagram import Drawing, draw_diagram
 from .design import plot_force_velocity, plot_simulation, save_figure
 from .frequency import plot_bode, plot_nyquist
 from .frequency_impedance import plot_impedance, plot_spread
 
 __all__ = [
+    "Drawing",
+    "draw_diagram",
     "plot_bode",
     "plot_force_velocity",
     "plot_impedance",

@@ -1,0 +1,102 @@
+"""derive every transfer function of a diagram"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import ModelError, did_you_mean
+from ._options import check_output
+
+if TYPE_CHECKING:
+    from ..derive import Transfers
+    from ..diagrams import Diagram
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument(
+        "diagram", help="a TOML file, or a shipped one: haptic-interface, world-haptics-2005, ..."
+    )
+    parser.add_argument("--latex", action="store_true", help="print LaTeX, an align's body")
+    parser.add_argument("--json", type=Path, metavar="F", help="write expressions and numbers")
+    parser.add_argument(
+        "--figure", type=Path, metavar="F", help="draw the diagram (.svg, .pdf, .png)"
+    )
+    parser.add_argument(
+        "--speed",
+        type=float,
+        default=0.0,
+        metavar="V",
+        help="m/s or rad/s at which smoothed friction and schedules are frozen (default 0)",
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the transfer functions, with numbers where the blocks have values."""
+    for path, endings in ((options.json, (".json",)), (options.figure, (".svg", ".pdf", ".png"))):
+        if path is not None:
+            check_output(path, endings)
+    from ..derive import all_transfers
+
+    diagram = _diagram(options.diagram)
+    found = all_transfers(diagram)
+    print(found.latex() if options.latex else _page(found, options.speed))
+    if options.json is not None:
+        text = json.dumps(found.as_data(speed=options.speed), indent=1)
+        options.json.write_text(f"{text}\n", encoding="utf-8")
+    if options.figure is not None:
+        _draw(diagram, options.figure)
+    return 0
+
+
+def _diagram(name: str) -> Diagram:
+    from ..diagrams import SHIPPED, read_diagram, shipped
+
+    if name in SHIPPED:
+        return shipped(name)
+    path = Path(name)
+    if path.suffix == ".toml" or path.exists():
+        return read_diagram(path)
+    raise ModelError(
+        f'found "{name}", expected a file NAME.toml or one of {", ".join(SHIPPED)}'
+        f"{did_you_mean(name, SHIPPED)}"
+    )
+
+
+def _draw(diagram: Diagram, path: Path) -> None:
+    from ..plot import draw_diagram, save_figure
+
+    drawing = draw_diagram(diagram)
+    if path.suffix == ".svg":
+        drawing.to_svg(path)
+    else:
+        save_figure(drawing.plot(), path, suffixes=(path.suffix,))
+
+
+def _page(found: Transfers, speed: float) -> str:
+    lines = [repr(found.diagram), "", found.text()]
+    if found.has_values:
+        lines += ["", f"With values, one degree of freedom, SI, frozen at speed {abs(speed):g}:"]
+        lines += _numbers(found, speed)
+    return "\n".join(lines)
+
+
+def _numbers(found: Transfers, speed: float) -> list[str]:
+    from ..derive.printing import polynomial_as_text
+
+    lines, gone = [], set()
+    for name, one in found.found.items():
+        try:
+            system, left_out = one.system(speed=speed)
+        except ModelError as error:
+            lines.append(str(error))
+            continue
+        gone |= set(left_out)
+        above, below = (polynomial_as_text(p[0][0]) for p in (system.num, system.den))
+        lines.append(f"{name} = ({above}) / ({below})")
+    if gone:
+        lines.append(f"Left out, for they have no linear form: {', '.join(sorted(gone))}")
+    return lines

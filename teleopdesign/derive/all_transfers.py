@@ -1,0 +1,178 @@
+"""Every transfer function and impedance of a diagram, whatever its wiring."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+
+from ..diagrams import AnyBlock, Attached, Control, Diagram, Moving
+from ..diagrams.short_form import kind_of
+from ..errors import ModelError, did_you_mean
+from .printing import as_latex, as_text, block_symbol, name_as_latex, with_gamma
+from .transfer_functions import Case, named_cases
+from .two_port import two_port_cases
+
+if TYPE_CHECKING:
+    import control
+
+SECONDS = 2.0  # that the derivation of one output may take
+
+
+@dataclass(frozen=True)
+class Transfer:
+    """One transfer function:  output = expression * input, all other inputs zero."""
+
+    name: str
+    case: Case
+    expression: sp.Expr
+
+    def text(self) -> str:
+        """name = expression"""
+        return f"{self.name} = {as_text(with_gamma(self.expression))}"
+
+    def __repr__(self) -> str:
+        return self.text()
+
+    def latex(self) -> str:
+        """One line of an align environment."""
+        return f"{name_as_latex(self.name)} &= {as_latex(with_gamma(self.expression))}"
+
+    def system(self, *, speed: float = 0.0) -> tuple[control.TransferFunction, tuple[str, ...]]:
+        """With values in place, one degree of freedom, and what has no linear form.
+
+        speed: m/s or rad/s, at which smoothed friction and schedules are frozen
+        raises ModelError: a block has no values, or a loop no solution at its values
+        """
+        from ..frequency import transfer_function
+
+        case = self.case
+        try:
+            return transfer_function(
+                case.diagram, output=case.output, input=case.input, given=case.given, speed=speed
+            )
+        except (ZeroDivisionError, TypeError, sp.PolynomialError) as error:
+            # what sympy makes of 1/0 is no number and no polynomial
+            raise ModelError(f"{self.name}: a loop has no solution at these values") from error
+
+
+@dataclass(frozen=True)
+class Transfers:
+    """Transfer functions of a diagram by name;  undone: name -> why it was not derived."""
+
+    diagram: Diagram
+    found: Mapping[str, Transfer]
+    undone: Mapping[str, str]
+
+    def __getitem__(self, name: str) -> Transfer:
+        if name not in self.found:
+            raise ModelError(f'transfer functions: no "{name}"{did_you_mean(name, self.found)}')
+        return self.found[name]
+
+    @property
+    def has_values(self) -> bool:
+        """Whether every block has values, so that each transfer function is a system too."""
+        contents = [b.controller if isinstance(b, Control) else b.body for b in self.diagram.blocks]
+        return not any(isinstance(c, AnyBlock) for c in contents)
+
+    def text(self) -> str:
+        """One line for each, with what it is."""
+        lines = [f"{t.text()}    ({t.case.text})" for t in self.found.values()]
+        if self._uses_gamma():
+            lines.append("Gamma = I + H")
+        return "\n".join([*lines, *(f"{n}: {why}" for n, why in self.undone.items())])
+
+    def latex(self) -> str:
+        """Body of an align environment."""
+        lines = [t.latex() for t in self.found.values()]
+        if self._uses_gamma():
+            lines.append(r"\Gamma &= I + H")
+        return " \\\\\n".join(lines)
+
+    def as_data(self, *, speed: float = 0.0) -> dict[str, Any]:
+        """Plain data for JSON, coefficients in SI from the highest power of s."""
+        return {
+            "diagram": self.diagram.name,
+            "speed": abs(speed),
+            "transfers": [self._one(t, speed) for t in self.found.values()],
+            "not_derived": dict(self.undone),
+        }
+
+    def _one(self, one: Transfer, speed: float) -> dict[str, Any]:
+        case = one.case
+        data: dict[str, Any] = {
+            "name": one.name,
+            "output": case.output,
+            "input": case.input,
+            "given": case.given,
+            "meaning": case.text,
+            "blocks": [b.name for b in case.diagram.blocks],
+            "text": as_text(with_gamma(one.expression)),
+            "latex": as_latex(with_gamma(one.expression)),
+        }
+        if self.has_values:
+            try:
+                system, left_out = one.system(speed=speed)
+            except ModelError as error:
+                return {**data, "no_system": str(error)}
+            data["numerator"] = [float(c) for c in system.num[0][0]]
+            data["denominator"] = [float(c) for c in system.den[0][0]]
+            data["left_out"] = list(left_out)
+        return data
+
+    def _uses_gamma(self) -> bool:
+        gamma = block_symbol("Gamma")
+        return any(gamma in with_gamma(t.expression).free_symbols for t in self.found.values())
+
+    def __repr__(self) -> str:
+        return self.text()
+
+    def _repr_latex_(self) -> str:
+        return f"$$\\begin{{aligned}}{self.latex()}\\end{{aligned}}$$"
+
+
+def all_transfers(diagram: Diagram, *, seconds: float = SECONDS) -> Transfers:
+    """Every transfer function of a diagram, and the impedance at the driver of each moving body.
+
+    From each outside signal to each measured signal and to each force of an attached body.
+
+    Of a haptic interface or teleoperator first those that have a name (`transfer_functions`,
+    `two_port_functions`). Blocks need not commute. What takes longer than `seconds`, or has no
+    solution, is named in `undone`.
+    """
+    found: dict[str, Transfer] = {}
+    undone: dict[str, str] = {}
+    named = {"haptic interface": named_cases, "teleoperator": two_port_cases}
+    if (kind := kind_of(diagram)) is not None:
+        for name, case in named[kind](diagram).items():
+            _derive(name, case, found, undone, seconds)
+    outputs = [*diagram.measured]
+    outputs += [b.force for b in diagram.blocks if isinstance(b, Attached)]
+    for output in dict.fromkeys(outputs):
+        for signal, case in _from_outside(diagram, output).items():
+            if f"{output}/{signal}" not in found:
+                _derive(f"{output}/{signal}", case, found, undone, seconds)
+    for block in diagram.blocks:
+        if isinstance(block, Moving) and block.driver in diagram.outside:
+            text = f"impedance that {block.driver} works against, all else zero"
+            case = Case(diagram, block.driver, block.motion, block.motion, text)
+            _derive(f"{block.driver}/{block.motion}", case, found, undone, seconds)
+    return Transfers(diagram, MappingProxyType(found), MappingProxyType(undone))
+
+
+def _from_outside(diagram: Diagram, output: str) -> dict[str, Case]:
+    return {
+        s: Case(diagram, output, s, "", f"{s} to {output}") for s in diagram.outside if s != output
+    }
+
+
+def _derive(
+    name: str, case: Case, found: dict[str, Transfer], undone: dict[str, str], seconds: float
+) -> None:
+    try:
+        found[name] = Transfer(name, case, case.derived(seconds=seconds))
+    except ModelError as error:
+        undone[name] = str(error)

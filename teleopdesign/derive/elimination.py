@@ -1,0 +1,171 @@
+"""Transfer functions and impedances from the wiring, symbolic; blocks need not commute.
+
+Every block acts from the left on its signal. Signals are eliminated one by one in a fixed order; an
+inverse appears only where a signal stands on both sides of its equation.
+"""
+
+from __future__ import annotations
+
+import math
+from time import monotonic
+
+import sympy as sp
+
+from ..diagrams import Attached, Control, Diagram, Kinematics, Linked, Moving, position_symbol
+from ..errors import ModelError
+from .loops import loop_of
+from .noncommutative import counterexample
+from .printing import block_symbol
+
+#: signal -> coefficient, acting from the left; the sum over all is zero
+Row = dict[str, sp.Expr]
+_OUTPUT = "output asked for"
+
+
+def rows(diagram: Diagram) -> list[Row]:
+    """One equation (sum = 0) for each block and junction."""
+    found: list[Row] = []
+    for part in diagram.parts:
+        if isinstance(part, Moving):
+            command = -block_symbol(f"A_{part.name}") if has_actuation(part) else sp.S(-1)
+            terms = [(part.motion, block_symbol(part.name)), (part.command, command)]
+            terms += [(s, sp.S(-sign)) for s, sign in part.loads.items()]
+        elif isinstance(part, Attached):
+            terms = [(part.force, sp.S(1)), (part.motion, -part.sign * block_symbol(part.name))]
+        elif isinstance(part, Linked):
+            found += _linked(part)
+            continue
+        elif isinstance(part, Control):
+            terms = [(part.output, sp.S(1)), (part.input, -block_symbol(part.name))]
+        elif isinstance(part, Kinematics):
+            slopes = {s: sp.diff(part.expression, position_symbol(s)) for s in part.inputs}
+            terms = [(part.output, sp.S(1)), *((s, -diagram.here(g)) for s, g in slopes.items())]
+        else:
+            weights = ((s, -diagram.here(g)) for s, g in part.terms.items())
+            terms = [(part.output, sp.S(1)), *weights]
+        found.append(_row(terms))
+    return found
+
+
+def _linked(part: Linked) -> list[Row]:
+    found: list[Row] = [{force: sp.S(1)} for force in part.forces]
+    for i, j in part.entries:
+        found[i][part.motions[j]] = -part.sign * block_symbol(part.entry_name(i, j))
+    return found
+
+
+def _row(terms: list[tuple[str, sp.Expr]]) -> Row:
+    """Terms by their signal: a part may take the signal that it makes."""
+    row: Row = {}
+    for signal, coefficient in terms:
+        row[signal] = row.get(signal, sp.S(0)) + coefficient
+    return {signal: c for signal, c in row.items() if c != 0}
+
+
+def has_actuation(part: Moving) -> bool:
+    """Whether effects stand between the command and the force that acts on this body."""
+    return any(e.role == "actuation" for e in getattr(part.body, "effects", ()))
+
+
+def transfer(
+    diagram: Diagram,
+    output: str,
+    inputs: tuple[str, ...] | None = None,
+    *,
+    given: str | tuple[str, ...] = (),
+    seconds: float = math.inf,
+) -> dict[str, sp.Expr]:
+    """Coefficients of `output` = sum of coefficient * input.
+
+    inputs: signals from outside (default: all); those left out are zero
+    given: motions that are prescribed, in place of the outside forces that drive them
+    seconds: after which it is given up
+    raises ModelError: unknown signal, a loop without a solution, or more seconds than given
+    """
+    until = monotonic() + seconds
+    diagram.signal(output)
+    free = dict.fromkeys(diagram.outside)
+    prescribed = given if isinstance(given, tuple) else (given,) if given else ()
+    for motion in prescribed:
+        free[motion] = None
+        free.pop(_driver(diagram, motion), None)
+    for name in inputs or ():
+        diagram.signal(name)
+        if name not in free:
+            raise ModelError(f'{diagram.name}: signal "{name}" is not from outside')
+    chosen = tuple(free) if inputs is None else inputs
+    # a name of its own for the output, so that what is inverted is an impedance, as in the papers
+    system = [*rows(diagram), {_OUTPUT: sp.S(1), output: sp.S(-1)}]
+    unknown = [s for s in diagram.signals if s not in free]
+    for signal in _order(unknown, output, diagram):
+        if monotonic() > until:
+            raise ModelError(f'{diagram.name}: "{output}" was not derived within {seconds:g} s')
+        _eliminate(system, signal, diagram)
+    row = next(r for r in system if _OUTPUT in r)
+    return {s: product(sp.S(-1), row.get(s, sp.S(0))) for s in chosen}
+
+
+def _driver(diagram: Diagram, motion: str) -> str:
+    for block in diagram.blocks:
+        if isinstance(block, Moving) and block.motion == motion:
+            return block.driver
+    raise ModelError(f'{diagram.name}: "{motion}" is no motion of a body that forces move')
+
+
+def _order(unknown: list[str], output: str, diagram: Diagram) -> list[str]:
+    """Forces first, then the output, motions last."""
+    motions = [b.motion for b in diagram.blocks if isinstance(b, Moving)]
+    forces = [s for s in unknown if s not in motions]
+    forces.sort(key=lambda s: s == output)
+    return [*forces, *(m for m in motions if m in unknown)]
+
+
+def _eliminate(system: list[Row], signal: str, diagram: Diagram) -> None:
+    having = [r for r in system if signal in r]
+    able = [r for r in having if _OUTPUT not in r and not _vanishes(r[signal])]
+    if not able:
+        raise ModelError(_undetermined(diagram, signal))
+    plain = [r for r in able if r[signal] in (sp.S(1), sp.S(-1))]
+    own = [r for r in plain if next(iter(r)) == signal]  # the equation that makes the signal
+    pivot = (own or plain or able)[0]
+    system[:] = [r for r in system if r is not pivot]
+    sign = sp.S(-1 if _mostly_negative(pivot[signal]) else 1)
+    inverse = sp.Pow(product(sign, pivot[signal]), -1)
+    value = {s: product(inverse, product(-sign, c)) for s, c in pivot.items() if s != signal}
+    for row in (r for r in having if r is not pivot):
+        factor = row.pop(signal)
+        for s, c in value.items():
+            total = row.get(s, sp.S(0)) + product(factor, c)
+            if total == 0:
+                row.pop(s, None)
+            else:
+                row[s] = total
+
+
+def _vanishes(coefficient: sp.Expr) -> bool:
+    """Whether a sum with inverses in it is zero, as seen exactly on random rational matrices."""
+    if not (coefficient.is_Add and any(p.exp < 0 for p in coefficient.atoms(sp.Pow))):
+        return False
+    return counterexample(coefficient, sp.S(0), tries=1) is None
+
+
+def _undetermined(diagram: Diagram, signal: str) -> str:
+    loop = loop_of(diagram, signal)
+    if not loop:
+        return f'{diagram.name}: the wiring does not determine "{signal}"'
+    return f"{diagram.name}: the loop {' -> '.join((*loop, loop[0]))} has no solution"
+
+
+def _mostly_negative(expression: sp.Expr) -> bool:
+    terms = sp.Add.make_args(expression)
+    return 2 * sum(bool(t.as_coeff_Mul()[0] < 0) for t in terms) > len(terms)
+
+
+def product(left: sp.Expr, right: sp.Expr) -> sp.Expr:
+    """The product, a plain number carried into a sum."""
+    # a plain number is carried into a sum, so that like terms meet
+    if right.is_Add and left.is_Number:
+        return sp.Add(*(left * a for a in right.args))
+    if left.is_Add and right.is_Number:
+        return sp.Add(*(a * right for a in left.args))
+    return left * right

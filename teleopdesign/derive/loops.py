@@ -1,0 +1,37 @@
+"""Loops of a diagram, by the names of their signals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..diagrams import Control, Diagram, Part
+
+
+def loop_of(diagram: Diagram, signal: str) -> tuple[str, ...]:
+    """The shortest loop through a signal, of junctions alone where there is one; () if none."""
+    for parts in (diagram.junctions, diagram.parts):
+        makers = {s: part for part in parts for s in part.outputs}
+        before: dict[str, str] = {}
+        reached = [signal]
+        for at in reached:
+            part = makers.get(at)
+            for taken in () if part is None else _taken(part):
+                if taken == signal:
+                    return _back(before, at, signal)
+                if taken not in before:
+                    before[taken] = at
+                    reached.append(taken)
+    return ()
+
+
+def _taken(part: Part) -> tuple[str, ...]:
+    # of a controller the motion only sets where its law is frozen
+    return (part.input,) if isinstance(part, Control) else part.inputs
+
+
+def _back(before: Mapping[str, str], at: str, signal: str) -> tuple[str, ...]:
+    """From the signal along the search, which ran against the wires, so in their order."""
+    way = [at]
+    while way[-1] != signal:
+        way.append(before[way[-1]])
+    return (signal, *way[:-1])

@@ -1,0 +1,71 @@
+"""Kinds of diagram whose wiring is the package's own: a file gives the blocks only."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+from ..blocks import Body, MatrixImpedance
+from ..controllers import Controller
+from .haptic_interface import haptic_interface
+from .parts import AnyBlock, Control
+from .teleoperator import teleoperator
+from .wiring import Diagram
+
+Content = Body | MatrixImpedance | Controller | AnyBlock
+
+
+@dataclass(frozen=True)
+class ShortForm:
+    """What wires a kind of diagram, and which of its arguments each block is.
+
+    has_analog: whether it can be told which controllers no computer samples
+    """
+
+    make: Callable[..., Diagram]
+    bodies: Mapping[str, str]
+    controls: Mapping[str, str]
+    has_analog: bool = False
+
+    def wired(self, blocks: Mapping[str, Content], analog: tuple[str, ...]) -> Diagram:
+        """The diagram with these blocks; analog: controllers that no computer samples."""
+        arguments = {**self.bodies, **self.controls}
+        given: dict[str, Any] = {arguments[name]: block for name, block in blocks.items()}
+        return self.make(**given, **({"analog": analog} if self.has_analog else {}))
+
+
+KINDS: Mapping[str, ShortForm] = MappingProxyType(
+    {
+        "haptic interface": ShortForm(
+            haptic_interface,
+            MappingProxyType({"Z_M": "device", "Z_H": "hand"}),
+            MappingProxyType({"C": "cancellation", "H": "force_feedback", "K": "position_loop"}),
+            has_analog=True,
+        ),
+        "teleoperator": ShortForm(
+            teleoperator,
+            MappingProxyType(
+                {"Z_m": "master", "Z_s": "slave", "Z_H": "hand", "Z_E": "environment"}
+            ),
+            MappingProxyType(
+                {"P": "coupling", "C_m": "master_cancellation", "C_s": "slave_cancellation"}
+            ),
+        ),
+    }
+)
+
+
+def kind_of(diagram: Diagram) -> str | None:
+    """The kind whose wiring, given the blocks of this diagram, is this diagram; None if none."""
+    contents: dict[str, Content] = {
+        b.name: b.controller if isinstance(b, Control) else b.body for b in diagram.blocks
+    }
+    analog = tuple(b.name for b in diagram.controls if b.analog)
+    for kind, form in KINDS.items():
+        known = {b.name for b in diagram.bodies} <= set(form.bodies)
+        known = known and {b.name for b in diagram.controls} <= set(form.controls)
+        if known and form.wired(contents, analog) == diagram:
+            return kind
+    return None

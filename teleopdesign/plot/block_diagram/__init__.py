@@ -1,0 +1,85 @@
+"""Any diagram drawn by itself: laid out along its signals, wires at right angles, no hand at work.
+
+draw_diagram(diagram).to_svg("loop.svg")
+save_figure(draw_diagram(diagram).plot(), "loop")     # PDF and PNG in house style
+"""
+
+from __future__ import annotations
+
+import math
+
+from ...diagrams import Diagram
+from ...errors import ModelError
+from .cells import place
+from .from_diagram import network
+from .network import Network, Node
+from .paths import Path, paths
+from .routes import route
+from .shapes import Drawing
+from .sheet import sheet
+
+__all__ = ["Drawing", "draw_diagram"]
+
+#: placements tried, each a few hundredths of a second, and fewer of large diagrams
+MOST_TRIALS, MOST_NODES = 12, 150
+
+
+def draw_diagram(diagram: Diagram) -> Drawing:
+    """The block diagram of a wiring; the same diagram gives the same drawing.
+
+    Blocks are boxes with their name and the laws in them, junctions circles with a sign at
+    every term. Z_M^-1 stands for a body that forces move, -Z_H for one that resists the motion it
+    follows. Of control laws that also see a velocity, only the wired input is drawn.
+    """
+    parts = network(diagram)
+    if not parts.nodes:
+        return Drawing((), 0.0, 0.0, diagram.name)
+    ways = paths(parts)
+    ways += _arrow_out(parts, ways[0])
+    cells = place(parts, ways, _best_sides(parts, ways))
+    grid, routes, _ = route(parts, cells)
+    return sheet(parts, cells, grid, routes, diagram.name)
+
+
+def _arrow_out(parts: Network, spine: Path) -> list[Path]:
+    """The end of an arrow that shows what the spine gives, unless it ends with one already."""
+    last = spine.nodes[-1]
+    net = parts.net_of(last)
+    if net is None or any(parts.nodes[t].kind == "sink" for t, _ in net.targets):
+        return []
+    name = f"to {net.name}"
+    parts.nodes[name] = Node(name, "sink")
+    net.targets.append((name, 1.0))
+    return [Path((name,), last, None)]
+
+
+def _best_sides(parts: Network, ways: list[Path]) -> dict[int, int]:
+    """Which paths lie above and which below, for the least length, bends and crossings."""
+    able = [
+        i
+        for i, p in enumerate(ways)
+        if i and any(parts.nodes[n].kind in ("box", "sum") for n in p.nodes)
+    ]
+    best: dict[int, int] = {}
+    least = _cost(parts, ways, best)
+    trials, better = 1, True
+    most = min(MOST_TRIALS, MOST_NODES // len(parts.nodes))
+    while better and trials < most:
+        better = False
+        for i in able:
+            for side in (1, -1):
+                if best.get(i) == side or trials >= most:
+                    continue
+                trial = {**best, i: side}
+                cost = _cost(parts, ways, trial)
+                trials += 1
+                if cost < least - 1e-9:
+                    best, least, better = trial, cost, True
+    return best
+
+
+def _cost(parts: Network, ways: list[Path], sides: dict[int, int]) -> float:
+    try:
+        return route(parts, place(parts, ways, sides))[2]
+    except ModelError:  # no way for some wire: any other placement is better
+        return math.inf

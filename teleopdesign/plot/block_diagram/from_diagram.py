@@ -1,0 +1,175 @@
+"""From a diagram to the nodes and nets that are drawn.
+
+A body that forces move is a sum of its forces and a box with its inverse impedance. A junction of
+one signal, taken as it is, is no node: its net carries both names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ...blocks import Body
+from ...controllers import Controller
+from ...derive import has_actuation
+from ...diagrams import Attached, Block, Control, Diagram, Linked, Moving
+from ...errors import ModelError
+from .network import MINUS, Net, Network, Node, joined
+from .shapes import Run, symbol
+
+MOST_AT_A_SUM = 3  # inputs of a circle: from behind, from above, from below
+
+
+def network(diagram: Diagram) -> Network:
+    """The nodes and nets of a diagram.
+
+    raises ModelError: a part that has no drawing yet
+    """
+    joined_parts = [b.name for b in diagram.blocks if isinstance(b, Linked)]
+    joined_parts += [k.name for k in diagram.kinematics]
+    joined_parts += [j.name for j in diagram.junctions if j.arms]
+    if joined_parts:
+        raise ModelError(f"{diagram.name}: {joined_parts[0]} has no drawing")
+    making = _Making(diagram, _same_signals(diagram))
+    making.sources()
+    for block in diagram.blocks:
+        making.box(block)
+    for block in diagram.blocks:
+        if isinstance(block, Moving):
+            making.forces(block)
+        else:
+            assert isinstance(block, Attached | Control)
+            taken = block.motion if isinstance(block, Attached) else block.input
+            making.join(making.net(taken), _box(block))
+    for junction in diagram.junctions:
+        if junction.output not in making.same:
+            making.wire(junction.name, junction.output)
+            making.sum(junction.name, making.nets(junction.terms))
+    making.ends()
+    return making.made
+
+
+@dataclass
+class _Making:
+    """A network while it is made;  same: signal -> the one that it only passes on."""
+
+    diagram: Diagram
+    same: Mapping[str, str]
+    made: Network = field(default_factory=Network)
+    wants: list[tuple[str, str, float]] = field(default_factory=list)
+
+    def net(self, signal: str) -> str:
+        """Name of the net that carries a signal."""
+        return f"signal {self.same.get(signal, signal)}"
+
+    def nets(self, terms: Mapping[str, float]) -> list[tuple[str, float]]:
+        return [(self.net(signal), float(weight)) for signal, weight in terms.items()]
+
+    def join(self, net: str, node: str, weight: float = 1.0) -> None:
+        """Lead a net to a node, once all nets are there."""
+        self.wants.append((net, node, weight))
+
+    def wire(self, node: str, signal: str = "") -> None:
+        """A net from a node, for a signal and those that pass it on; else named by its node."""
+        key = self.net(signal) if signal else node
+        self.made.nets[key] = Net(key, node, self.names(signal) if signal else [])
+
+    def names(self, signal: str) -> list[str]:
+        return [signal, *(s for s in self.diagram.signals if self.same.get(s) == signal)]
+
+    def sources(self) -> None:
+        drivers = {b.driver for b in self.diagram.blocks if isinstance(b, Moving)}
+        for signal in self.diagram.outside:
+            name, title = f"from {signal}", joined(self.names(signal))
+            self.made.nodes[name] = Node(name, "source", title, driver=signal in drivers)
+            self.wire(name, signal)
+
+    def box(self, block: Block) -> None:
+        name, moving = _box(block), isinstance(block, Moving)
+        self.made.nodes[name] = Node(name, "box", _title(block), _notes(block), moving=moving)
+        self.wire(name, block.outputs[0])
+
+    def forces(self, block: Moving) -> None:
+        """What acts on a body: its command, by way of its actuation, and its loads."""
+        command = self.net(block.command)
+        if has_actuation(block):
+            stage = f"stage A_{block.name}"
+            effects = block.body.effects if isinstance(block.body, Body) else ()
+            notes = _said(tuple(e.name for e in effects if e.role == "actuation"))
+            self.made.nodes[stage] = Node(stage, "box", symbol(f"A_{block.name}"), notes)
+            self.join(command, stage)
+            self.wire(stage)
+            command = stage
+        if not block.loads:
+            self.join(command, _box(block))
+            return
+        total = f"forces on {block.name}"
+        self.wire(total)
+        self.sum(total, [(command, 1.0), *self.nets(block.loads)])
+        self.join(total, _box(block))
+
+    def sum(self, name: str, terms: list[tuple[str, float]]) -> None:
+        """A circle, or several in series where there are more terms than sides."""
+        self.made.nodes[name] = Node(name, "sum")
+        if len(terms) > MOST_AT_A_SUM:
+            part = f"part of {name}"
+            self.wire(part)
+            self.sum(part, terms[:-2])
+            terms = [(part, 1.0), *terms[-2:]]
+        for net, weight in terms:
+            self.join(net, name, weight)
+
+    def ends(self) -> None:
+        """Lead every net where it is wanted, or to the end of an arrow."""
+        for net, node, weight in self.wants:
+            self.made.nets[net].targets.append((node, weight))
+        for one in self.made.nets.values():
+            if not one.targets:
+                name = f"to {one.name}"
+                self.made.nodes[name] = Node(name, "sink")
+                one.targets.append((name, 1.0))
+
+
+def _same_signals(diagram: Diagram) -> dict[str, str]:
+    """Output of a junction that only passes a signal on -> the signal it passes on."""
+    passed = {
+        j.output: next(iter(j.terms))
+        for j in diagram.junctions
+        if len(j.terms) == 1 and next(iter(j.terms.values())) == 1
+    }
+    found = {}
+    for output in passed:
+        origin, seen = output, set()
+        while origin in passed and origin not in seen:
+            seen.add(origin)
+            origin = passed[origin]
+        if origin not in passed:  # else signals that only pass each other on, in a ring
+            found[output] = origin
+    return found
+
+
+def _box(block: Block) -> str:
+    return f"block {block.name}"
+
+
+def _title(block: Block) -> tuple[Run, ...]:
+    if isinstance(block, Moving):
+        return *symbol(block.name), Run(f"{MINUS}1", 1, False)
+    if isinstance(block, Attached) and block.sign < 0:
+        return Run(MINUS, 0, False), *symbol(block.name)
+    return symbol(block.name)
+
+
+def _notes(block: Block) -> tuple[str, ...]:
+    if isinstance(block, Control):
+        if not isinstance(block.controller, Controller):
+            return ()
+        return _said(tuple(stage.law.name for stage in block.controller.stages))
+    if not isinstance(block.body, Body):
+        return ()
+    return _said(("inertia", *(e.name for e in block.body.effects if e.role != "actuation")))
+
+
+def _said(names: tuple[str, ...]) -> tuple[str, ...]:
+    shown = [n.replace("_", " ") for n in names]
+    return tuple(shown) if len(shown) <= 4 else (*shown[:3], f"{len(shown) - 3} more")

@@ -1,0 +1,78 @@
+"""What is drawn of a diagram: nodes, and the nets of wires that join them; no places yet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from .shapes import Run, symbol, width
+
+RADIUS = 7.0
+MINUS = "\u2212"
+
+
+@dataclass(frozen=True)
+class Node:
+    """A box, a circle, a name where a signal comes from outside, or the end of an arrow.
+
+    moving: a body whose motion the diagram ends with;  driver: last choice of where to begin
+    """
+
+    name: str
+    kind: Literal["box", "sum", "source", "sink"]
+    title: tuple[Run, ...] = ()
+    notes: tuple[str, ...] = ()
+    moving: bool = False
+    driver: bool = False
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height, points."""
+        if self.kind == "sum":
+            return 2 * RADIUS, 2 * RADIUS
+        if self.kind == "sink":
+            return 0.0, 0.0
+        if self.kind == "source":
+            return width(self.title, "signal") + 4.0, 13.0
+        notes = [width((Run(n, 0, False),), "law") for n in self.notes]
+        wide = max(34.0, width(self.title, "block") + 14.0, *(n + 10.0 for n in notes), 0.0)
+        return wide, 28.0 + 8.5 * len(self.notes)
+
+
+@dataclass
+class Net:
+    """Wires from one node to others;  targets: (node, weight in its sum, 1 elsewhere)."""
+
+    name: str
+    source: str
+    signals: list[str]
+    targets: list[tuple[str, float]] = field(default_factory=list)
+
+
+@dataclass
+class Network:
+    """Nodes and nets by name, in the order of the diagram."""
+
+    nodes: dict[str, Node] = field(default_factory=dict)
+    nets: dict[str, Net] = field(default_factory=dict)
+
+    def following(self, node: str) -> list[str]:
+        """Nodes that the output of a node goes to."""
+        return [t for net in self.nets.values() if net.source == node for t, _ in net.targets]
+
+    def net_of(self, node: str) -> Net | None:
+        """The net that a node makes."""
+        return next((n for n in self.nets.values() if n.source == node), None)
+
+
+def joined(signals: list[str]) -> tuple[Run, ...]:
+    """Names of one net: R_D = R_A."""
+    runs: tuple[Run, ...] = symbol(signals[0])
+    for signal in signals[1:]:
+        runs = (*runs, Run(" = ", 0, False), *symbol(signal))
+    return runs
+
+
+def label(net: Net) -> tuple[Run, ...]:
+    """What is written on the wire of a net; empty where it has no name."""
+    return joined(net.signals) if net.signals else ()

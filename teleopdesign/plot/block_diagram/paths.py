@@ -1,0 +1,98 @@
+"""The paths that a diagram is laid out along: one from its first input to a motion, then the rest.
+
+Every node is on one path. The first, the spine, is the longest way from an input to a moving body;
+every further one starts at placed nodes or inputs and ends where it meets a placed node.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from .network import Network
+
+MOST_STEPS = 4000  # of a search for a longest path; more would not be seen in the drawing
+
+
+@dataclass(frozen=True)
+class Path:
+    """Nodes in the order of their signals;  start, end: placed nodes before and after, if any."""
+
+    nodes: tuple[str, ...]
+    start: str | None
+    end: str | None
+
+
+def paths(network: Network) -> list[Path]:
+    """The spine first, then all others, each after those that it starts and ends at."""
+    spine = _spine(network)
+    found = [Path(spine, None, None)]
+    placed = set(spine)
+    while len(placed) < len(network.nodes):
+        path = _next(network, placed)
+        found.append(path)
+        placed |= set(path.nodes)
+    return found
+
+
+def _spine(network: Network) -> tuple[str, ...]:
+    sources = [n for n in network.nodes.values() if n.kind == "source"]
+    moving = {n.name for n in network.nodes.values() if n.moving}
+    # commands before what acts on bodies from outside; of those the first one named
+    commands = [n for n in sources if not n.driver]
+    for among in (commands, *([n] for n in sources)):
+        found: list[str] = []
+        for source in among:
+            way = _longest(network, source.name, set(), lambda n: not moving or n in moving)
+            found = way if len(way) > len(found) else found
+        if found:
+            return tuple(found)
+    first = next(iter(network.nodes))
+    return tuple(_longest(network, first, set(), lambda _: True))
+
+
+def _next(network: Network, placed: set[str]) -> Path:
+    """The longest path through what is not placed yet; those between placed nodes first."""
+    best: tuple[tuple[bool, bool, int], Path] | None = None
+    starts: list[tuple[str | None, str]] = []
+    for node in network.nodes:
+        if node in placed:
+            starts += [(node, n) for n in network.following(node) if n not in placed]
+        elif network.nodes[node].kind == "source":
+            starts.append((None, node))
+    left = next(n for n in network.nodes if n not in placed)
+    for start, first in starts or [(None, left)]:
+        meets = _longest(
+            network, first, placed, lambda n: any(f in placed for f in network.following(n))
+        )
+        way = meets or _longest(network, first, placed, lambda _: True)
+        rank = (start is not None, bool(meets), len(way))
+        if best is None or rank > best[0]:
+            end = next((n for n in network.following(way[-1]) if n in placed), None)
+            best = rank, Path(tuple(way), start, end)
+    assert best is not None
+    return best[1]
+
+
+def _longest(
+    network: Network, first: str, closed: set[str], ends: Callable[[str], bool]
+) -> list[str]:
+    """The longest simple path from a node to one that `ends`, as far as a bounded search sees."""
+    best: list[str] = []
+    steps = 0
+    way = [first]
+    choices = [iter(network.following(first))]
+    if ends(first):
+        best = [first]
+    while choices and steps < MOST_STEPS:
+        steps += 1
+        node = next(choices[-1], None)
+        if node is None:
+            choices.pop()
+            way.pop()
+        elif node not in closed and node not in way:
+            way.append(node)
+            choices.append(iter(network.following(node)))
+            if len(way) > len(best) and ends(node):
+                best = list(way)
+    return best

@@ -1,0 +1,227 @@
+"""Wires along a grid of lines: shortest ways with few bends and crossings, none over another.
+
+Every column and every row of cells has a line through its middle, and a few lines run between them.
+Where nets meet they cross at right angles; no two share a piece of a line, and none runs through a
+cell in which a node stands. What is cheapest is found net by net (A*).
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+from ...errors import ModelError
+from .cells import LEFT, RIGHT, Cells
+from .network import Net, Network
+
+Vertex = tuple[int, int]
+#: steps right, down, left, up
+STEPS: tuple[Vertex, ...] = ((1, 0), (0, 1), (-1, 0), (0, -1))
+BEND, CROSSING, TAKE_OFF, AGAIN = 5.0, 9.0, 2.0, 0.5  # AGAIN: a second one at the same place
+#: lengths on the grid: between lines side by side, and from a cell's middle to the next line
+BESIDE, MIDDLE = 1.0, 4.0
+#: lines between cells, more where fewer leave no way; each with some orders, what failed first
+TRACKS, TRIALS = (3, 5, 8, 12), 4
+#: a name from outside may leave its text to any side, best to the right
+BESIDE_RIGHT = 3.0
+
+
+@dataclass(frozen=True)
+class Route:
+    """The way to one target: vertices from a take-off (or the source) to the target's cell."""
+
+    net: str
+    target: str
+    weight: float
+    vertices: tuple[Vertex, ...]
+    taken_off: bool
+
+
+@dataclass
+class Grid:
+    """Lines of the grid around the cells, and what lies on it."""
+
+    cells: Cells
+    tracks: int
+    blocked: dict[Vertex, str] = field(default_factory=dict)
+    #: vertex beside a node -> the node and the step to it: nobody else may turn there
+    doors: dict[Vertex, tuple[str, int]] = field(default_factory=dict)
+    #: (vertex, step) of every piece of wire, from both of its ends
+    edges: set[tuple[Vertex, int]] = field(default_factory=set)
+    #: vertex -> net -> steps by which the net leaves it
+    used: dict[Vertex, dict[str, set[int]]] = field(default_factory=dict)
+    #: nets of which a wire lies on the grid: all others of it are taken off that one
+    begun: set[str] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        columns, rows = zip(*self.cells.at.values(), strict=True)
+        self.first = min(columns), min(rows)
+        pitch = self.tracks + 1
+        self.size = tuple(
+            (max(all_) - min(all_) + 1) * pitch + self.tracks for all_ in (columns, rows)
+        )
+        self.along = tuple(self._lengths(n) for n in self.size)
+        self.blocked = {self.vertex(node): node for node in self.cells.at}
+        for (x, y), node in self.blocked.items():
+            for d, (dx, dy) in enumerate(STEPS):
+                self.doors[x + dx, y + dy] = node, (d + 2) % 4
+
+    def vertex(self, node: str) -> Vertex:
+        """The middle of a node's cell."""
+        x, y = (
+            (c - first) * (self.tracks + 1) + self.tracks
+            for c, first in zip(self.cells.at[node], self.first, strict=True)
+        )
+        return x, y
+
+    def _lengths(self, lines: int) -> list[float]:
+        """Where every line lies, in lengths from the first."""
+        found = [0.0]
+        for line in range(1, lines):
+            middle = any(k % (self.tracks + 1) == self.tracks for k in (line, line - 1))
+            found.append(found[-1] + (MIDDLE if middle else BESIDE))
+        return found
+
+    def between(self, a: Vertex, b: Vertex) -> float:
+        """Length of the shortest way there is if nothing stands in it."""
+        x, y = self.along
+        return abs(x[a[0]] - x[b[0]]) + abs(y[a[1]] - y[b[1]])
+
+    def lay(self, net: str, vertices: tuple[Vertex, ...]) -> None:
+        """Put a wire on the grid."""
+        self.begun.add(net)
+        for a, b in zip(vertices, vertices[1:], strict=False):
+            d = STEPS.index((b[0] - a[0], b[1] - a[1]))
+            self.edges |= {(a, d), (b, (d + 2) % 4)}
+            self.used.setdefault(a, {}).setdefault(net, set()).add(d)
+            self.used.setdefault(b, {}).setdefault(net, set()).add((d + 2) % 4)
+
+
+def route(network: Network, cells: Cells) -> tuple[Grid, list[Route], float]:
+    """All wires, the grid that they lie on, and their cost."""
+    jobs = [(net, t, w) for net in network.nets.values() for t, w in net.targets]
+    for tracks in TRACKS:
+        grid = Grid(cells, tracks)
+        jobs.sort(key=lambda job: _far(job[0], job[1], grid))
+        for _ in range(TRIALS):
+            grid = Grid(cells, tracks)
+            routes, total, failed = _routes(network, grid, jobs)
+            if failed is None:
+                return grid, routes, total
+            jobs.insert(0, jobs.pop(failed))
+    raise ModelError("block diagram: no way was found for every wire")
+
+
+def _routes(
+    network: Network, grid: Grid, jobs: Sequence[tuple[Net, str, float]]
+) -> tuple[list[Route], float, int | None]:
+    """Routes in the order of the jobs, their cost, and the number of the job that found no way."""
+    routes: list[Route] = []
+    total = 0.0
+    for i, (net, target, weight) in enumerate(jobs):
+        found = _cheapest(network, grid, net, target)
+        if found is None:
+            return routes, total, i
+        vertices, cost = found
+        taken_off = vertices[0] != grid.vertex(net.source)
+        grid.lay(net.name, vertices)
+        routes.append(Route(net.name, target, weight, vertices, taken_off))
+        total += cost
+    return routes, total, None
+
+
+def _far(net: Net, target: str, grid: Grid) -> tuple[bool, int]:
+    (x0, y0), (x, y) = grid.vertex(net.source), grid.vertex(target)
+    ahead = (x - x0) * grid.cells.heading[net.source] > 0
+    return not (y == y0 and ahead), abs(x - x0) + abs(y - y0)
+
+
+def _out(network: Network, grid: Grid, node: str) -> dict[int, float]:
+    """Steps by which a wire may leave a node, with what each costs more than the best."""
+    ahead = 0 if grid.cells.heading[node] == RIGHT else 2
+    if network.nodes[node].kind != "source":
+        return {ahead: 0.0}
+    return {d: (0.0 if d == ahead else BESIDE_RIGHT) for d in range(4)}
+
+
+def _into(network: Network, grid: Grid, node: str) -> set[int]:
+    """Steps by which a wire may come to a node."""
+    kind = network.nodes[node].kind
+    ahead = 2 if grid.cells.heading[node] == LEFT else 0
+    if kind == "box":
+        return {ahead}
+    if kind == "sum":
+        return {0, 1, 2, 3} - {(ahead + 2) % 4}
+    return {0, 1, 2, 3}
+
+
+def _cheapest(
+    network: Network, grid: Grid, net: Net, target: str
+) -> tuple[tuple[Vertex, ...], float] | None:
+    goal, entries = grid.vertex(target), _into(network, grid, target)
+    heap: list[tuple[float, float, Vertex, int]] = []
+    costs: dict[tuple[Vertex, int], float] = {}
+    before: dict[tuple[Vertex, int], tuple[Vertex, int] | None] = {}
+
+    # an entry (vertex, d) means: leave this vertex by step d
+    def offer(cost: float, vertex: Vertex, d: int, came: tuple[Vertex, int] | None) -> None:
+        if (vertex, d) not in grid.edges and cost < costs.get((vertex, d), float("inf")):
+            costs[vertex, d] = cost
+            before[vertex, d] = came
+            heapq.heappush(heap, (cost + grid.between(vertex, goal), cost, vertex, d))
+
+    for vertex, d, cost in _starts(network, grid, net):
+        offer(cost, vertex, d, None)
+    while heap:
+        _, cost, vertex, d = heapq.heappop(heap)
+        if cost > costs[vertex, d]:
+            continue
+        after = vertex[0] + STEPS[d][0], vertex[1] + STEPS[d][1]
+        if not (0 <= after[0] < grid.size[0] and 0 <= after[1] < grid.size[1]):
+            continue
+        cost += grid.between(vertex, after)
+        if after == goal and d in entries:
+            return _way(before, (vertex, d), after), cost
+        if after in grid.blocked:
+            continue
+        there = grid.used.get(after, {})
+        if not there:
+            door, inwards = grid.doors.get(after, ("", -1))
+            turns = [e for e in ((d + 3) % 4, (d + 1) % 4) if not door or e == inwards]
+            if vertex in grid.blocked:  # just out of its own door
+                turns = [(d + 3) % 4, (d + 1) % 4]
+            for e in (d, *turns):
+                offer(cost + (0.0 if e == d else BEND), after, e, (vertex, d))
+        elif net.name not in there and len(there) == 1:
+            (steps,) = there.values()
+            if steps == {(d + 1) % 4, (d + 3) % 4}:
+                offer(cost + CROSSING, after, d, (vertex, d))
+    return None
+
+
+def _starts(network: Network, grid: Grid, net: Net) -> Iterator[tuple[Vertex, int, float]]:
+    """Where a wire of a net may begin, with what that costs: its source, or a wire of its own."""
+    if net.name not in grid.begun:
+        source = grid.vertex(net.source)
+        for d, cost in _out(network, grid, net.source).items():
+            yield source, d, cost
+    for vertex, nets in grid.used.items():
+        _, inwards = grid.doors.get(vertex, ("", -1))
+        own_door = inwards == -1 or inwards in nets.get(net.name, ())
+        if set(nets) == {net.name} and vertex not in grid.blocked and own_door:
+            for d in {0, 1, 2, 3} - nets[net.name]:
+                yield vertex, d, TAKE_OFF if len(nets[net.name]) == 2 else AGAIN
+
+
+def _way(
+    before: dict[tuple[Vertex, int], tuple[Vertex, int] | None],
+    last: tuple[Vertex, int],
+    goal: Vertex,
+) -> tuple[Vertex, ...]:
+    way = [goal]
+    at: tuple[Vertex, int] | None = last
+    while at is not None:
+        way.append(at[0])
+        at = before[at]
+    return tuple(reversed(way))

@@ -1,0 +1,159 @@
+"""A drawing as a small list of shapes, which an SVG writer and a matplotlib painter both render.
+
+Lengths in points, x to the right, y downwards.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Point = tuple[float, float]
+#: "block": name of a block, "signal": name of a signal, "sign": at a junction, "law": in a box
+Role = Literal["block", "signal", "sign", "law"]
+SIZES: dict[Role, float] = {"block": 11.0, "signal": 10.0, "sign": 10.0, "law": 7.0}
+SMALLER = 0.72  # size of an index against that of its letter
+
+
+@dataclass(frozen=True)
+class Box:
+    """A block, by its middle."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    block: str
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A summing junction."""
+
+    x: float
+    y: float
+    radius: float
+
+
+@dataclass(frozen=True)
+class Wire:
+    """One way of a signal along horizontal and vertical lines; arrow: at its last point.
+
+    signal: unlike that of every other signal, also for wires without a name
+    """
+
+    points: tuple[Point, ...]
+    signal: str
+    arrow: bool = True
+
+
+@dataclass(frozen=True)
+class Dot:
+    """Where a wire is taken off another of the same signal."""
+
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
+class Run:
+    """Characters of one kind: 0 on the line, -1 index, 1 exponent."""
+
+    text: str
+    level: int
+    italic: bool
+
+
+@dataclass(frozen=True)
+class Text:
+    """A text, y at the middle of its letters; anchor: what of it lies at x."""
+
+    x: float
+    y: float
+    runs: tuple[Run, ...]
+    role: Role
+    anchor: Literal["start", "middle", "end"] = "middle"
+
+    @property
+    def plain(self) -> str:
+        """The characters without indices and slant."""
+        return "".join(run.text for run in self.runs)
+
+    @property
+    def width(self) -> float:
+        """Width as estimated, on the safe side for the house font."""
+        return width(self.runs, self.role)
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """left, top, right, bottom"""
+        start = {"start": 0.0, "middle": -0.5, "end": -1.0}[self.anchor] * self.width
+        half = 0.5 * SIZES[self.role]
+        return self.x + start, self.y - half, self.x + start + self.width, self.y + half
+
+
+Shape = Box | Circle | Wire | Dot | Text
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Shapes on a sheet of that size;  title: alternative text."""
+
+    shapes: tuple[Shape, ...]
+    width: float
+    height: float
+    title: str
+
+    def svg(self) -> str:
+        """The drawing as a text of SVG; the same drawing gives the same text."""
+        from .svg import svg
+
+        return svg(self)
+
+    def plot(self) -> Figure:
+        """The drawing as a matplotlib figure in its own size, for `save_figure`."""
+        from .figure import figure
+
+        return figure(self)
+
+    def to_svg(self, path: str | Path) -> None:
+        """Write the drawing to an SVG file."""
+        Path(path).write_text(self.svg(), encoding="utf-8")
+
+
+def symbol(name: str) -> tuple[Run, ...]:
+    """A name as papers write it: R_FF with FF as its index, single letters slanted."""
+    name = readable(name)
+    head, _, index = name.partition("_")
+    if not head or not index:
+        return (Run(name, 0, _is_letter(name)),)
+    return Run(head, 0, _is_letter(head)), Run(index.replace("_", " "), -1, _is_letter(index))
+
+
+def readable(text: str) -> str:
+    """The text with a question mark for what no font has; XML may not hold it, not even escaped."""
+    return "".join(c if c.isprintable() else "?" for c in text)
+
+
+def _is_letter(text: str) -> bool:
+    return re.fullmatch(r"[^\W\d_]\d?", text) is not None
+
+
+def width(runs: tuple[Run, ...], role: Role) -> float:
+    """Estimated width of a text: the house font is a Times, its letters about half as wide."""
+    return sum(
+        SIZES[role] * (SMALLER if run.level else 1.0) * sum(map(_em, run.text)) for run in runs
+    )
+
+
+def _em(character: str) -> float:
+    if character in "ijl.,:;|!'()[] ":
+        return 0.34
+    if character in "mwMW":
+        return 0.92
+    return 0.74 if character.isupper() or ord(character) > 0x2000 else 0.53
