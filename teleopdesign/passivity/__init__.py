@@ -34,6 +34,14 @@ from .hand_port import hand_port
 from .impedance import Impedance, impedance
 from .kyp import Kyp, kyp, storage_function
 from .lugre import lugre_passivity
+from .observer import (
+    PassivityControlled,
+    PortEnergy,
+    observe,
+    observe_record,
+    observe_simulation,
+    passivity_controlled,
+)
 from .positive_real import Excess, damping_excess, mobility_excess, positive_real
 from .quantised_spring import quantised_spring
 from .rate_independent import Coulomb, Cycle, Dahl, DahlBehindSpring, Spring, symmetric_cycle
@@ -62,6 +70,8 @@ __all__ = [
     "Given",
     "Impedance",
     "Kyp",
+    "PassivityControlled",
+    "PortEnergy",
     "Proof",
     "Refutation",
     "Region",
@@ -93,9 +103,13 @@ __all__ = [
     "largest_ratio",
     "lugre_passivity",
     "mobility_excess",
+    "observe",
+    "observe_record",
+    "observe_simulation",
     "onset_amplitude",
     "over_frequency",
     "passive",
+    "passivity_controlled",
     "positive_real",
     "quantised_spring",
     "read_certificate",

@@ -70,8 +70,8 @@ def identified(body: Body) -> IdentifiedDevice:
     """Read levels, presliding and damping off a body, with the errors of its parameters.
 
     The level is the body's own law over 4000 draws of the speed, position, time and other signals
-    it depends on; its error at each is that of the parameters, taken as independent. Damping is
-    the `viscous` effect's.
+    it depends on, up to 10 SI units (time: a day); its error at each is that of the parameters,
+    taken as independent. Damping is the `viscous` effect's.
     raises ModelError: a body without friction, or one whose interval reaches down to no friction
     """
     level = body.level()
@@ -110,13 +110,15 @@ def _range(body: Body, level: sp.Expr) -> tuple[Interval, Interval]:
     parameters = [s for s in numbers if s in level.free_symbols]
     signals = sorted(level.free_symbols - set(parameters), key=str)
     rng = np.random.default_rng(0)
-    # speeds, positions and times of every size, and zero: laws settle or repeat beyond them
-    sizes = 10 ** rng.uniform(-6, 4, (_DRAWS, max(len(signals), 1)))
+    # every size up to 10 SI units, and zero: laws of speed and position settle or repeat beyond
+    sizes = 10 ** rng.uniform(-6, 1, (_DRAWS, max(len(signals), 1)))
     draws = sizes * rng.choice((-1.0, 1.0), sizes.shape)
     draws[0] = 0.0
     for k, s in enumerate(signals):
-        if s.name == "time" or s.name.startswith("friction_memory"):
-            draws[:, k] = np.abs(draws[:, k])
+        if s.name == "direction":
+            draws[:, k] = np.where(draws[:, k] < 0, -1.0, 1.0)
+        elif s.name == "time" or s.name.startswith("friction_memory"):
+            draws[:, k] = np.abs(draws[:, k]) * (1e4 if s.name == "time" else 1.0)
 
     def at(values: dict[sp.Symbol, float]) -> np.ndarray:
         expression = level.subs(values)
