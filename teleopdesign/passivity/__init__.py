@@ -43,7 +43,7 @@ from .observer import (
     passivity_controlled,
 )
 from .positive_real import Excess, damping_excess, mobility_excess, positive_real
-from .quantised_spring import quantised_spring
+from .quantised_spring import quantised_spring, stiffest_spring
 from .rate_independent import Coulomb, Cycle, Dahl, DahlBehindSpring, Spring, symmetric_cycle
 from .record import read_record, write_record
 from .regions import Region, region
@@ -121,6 +121,7 @@ __all__ = [
     "search_counterexample",
     "second_opinion",
     "self_motion_speed",
+    "stiffest_spring",
     "storage_function",
     "symmetric_cycle",
     "teleoperator",

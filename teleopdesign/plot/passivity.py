@@ -263,3 +263,45 @@ def plot_port_energy(observed: PortEnergy) -> matplotlib.figure.Figure:
         axis.set_ylabel("energy (J)")
         axis.legend(loc="best")
     return figure
+
+
+def plot_passive_walls(data: xarray.Dataset) -> matplotlib.figure.Figure:
+    """Passive walls over period and over damping, as friction is and with most of it cancelled."""
+    import matplotlib.pyplot as plt
+    from matplotlib.colors import ListedColormap
+
+    k = data["stiffness"].values
+    colours = ("#CFE3F1", "#8FCDB8")
+    with plt.style.context(STYLE):
+        figure, axes = plt.subplots(1, 2, sharey=True, figsize=(TWO_COLUMNS, 3.1))
+        for axis, name, limit, label in (
+            (axes[0], "over_period", "limit_over_period", "sample period $T$ (s)"),
+            (axes[1], "over_damping", "limit_over_damping", "damping $b$ (N s/m)"),
+        ):
+            x = data[data[limit].dims[-1]].values
+            for force, colour in zip(data["cancelled"].values, colours, strict=True):
+                status = data[name].sel(cancelled=force).values
+                refuted = _ones_where(status == "proved")
+                axis.pcolormesh(x, k, refuted, shading="nearest", cmap=ListedColormap([colour]))
+                axis.plot([], [], "s", color=colour, label=_cancelled(float(force)))
+                axis.plot(x, data[limit].sel(cancelled=force).values, color=THEORY)
+            axis.plot([], [], color=THEORY, label=r"$\min(2b/T,\ 2(f_C-f_D)/\Delta)$")
+            axis.set(xscale="log", yscale="log", xlim=(x[0], x[-1]), ylim=(k[0], k[-1]))
+            axis.set_xlabel(label)
+        axes[0].set_title(f"(a) $b$ = {data.attrs['fixed_damping']:g} N s/m", loc="left", pad=3)
+        axes[1].set_title(f"(b) $T$ = {1e3 * data.attrs['fixed_period']:g} ms", loc="left", pad=3)
+        axes[0].set_ylabel("wall stiffness $K$ (N/m)")
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return figure
+
+
+def _ones_where(shown: np.ndarray) -> np.ma.MaskedArray[tuple[int, ...], np.dtype[np.float64]]:
+    """Ones where something is shown, masked elsewhere."""
+    import numpy as np
+
+    return np.ma.masked_where(~shown, np.ones(shown.shape))
+
+
+def _cancelled(force: float) -> str:
+    about = f"{force:g} N of friction cancelled" if force else "no compensation"
+    return f"proved, {about}"

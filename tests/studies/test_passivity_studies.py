@@ -1,4 +1,4 @@
-"""The four studies of passivity, run quickly, against the features that their figures must show."""
+"""The studies of passivity, run quickly, against the features that their figures must show."""
 
 import importlib.util
 from pathlib import Path
@@ -93,6 +93,7 @@ def test_cycles_through_a_cable_give_out_energy_where_the_plain_limit_says(study
         "passive_region_with_presliding",
         "forward_euler_against_exact",
         "compensation_through_a_cable",
+        "passive_walls",
     ],
 )
 def test_a_study_writes_its_figure_and_its_numbers(study, name, tmp_path, monkeypatch):
@@ -101,3 +102,12 @@ def test_a_study_writes_its_figure_and_its_numbers(study, name, tmp_path, monkey
     plot = {n: f for n, f in vars(module).items() if n.startswith("plot_")}
     module.write_study(module.__file__, module.__doc__, module.run, *plot.values())
     assert {p.suffix for p in tmp_path.iterdir()} == {".pdf", ".svg", ".png", ".nc"}
+
+
+def test_walls_are_proved_up_to_the_limit_and_refuted_beyond(study):
+    found = study("passive_walls").run(quick=True)
+    k = found["stiffness"].values
+    for name in ("period", "damping"):
+        status, limit = found[f"over_{name}"].values, found[f"limit_over_{name}"].values
+        expected = np.where(k[None, :, None] <= limit[:, None, :], "proved", "refuted")
+        assert np.array_equal(status, expected)
