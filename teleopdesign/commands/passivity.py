@@ -105,6 +105,12 @@ def _sound(options: argparse.Namespace) -> None:
         raise ExperimentError(f"--period: found {options.period:g}, expected more than 0 s")
     if min(options.delay, options.encoder_step) < 0:
         raise ExperimentError("--delay, --encoder-step: expected no negative number")
+    late = options.delay / options.period if options.period else 0.0
+    if abs(late - round(late)) > 1e-6:
+        raise ExperimentError(
+            f"--delay: found {late:.4g} periods, expected a whole number: what is proved of a "
+            "sampled law holds for those"
+        )
     if options.period is None and (options.wall or options.delay or options.encoder_step):
         raise ExperimentError("--wall, --delay, --encoder-step: they need --period")
 
@@ -211,7 +217,7 @@ def _z_width(device: IdentifiedDevice, period: float, delay: float) -> str:
         damping=device.damping.low,
         sample_time=period,
         inertia=device.body.parameters["inertia"].value,
-        delay=math.ceil(delay / period - 1e-9),
+        delay=round(delay / period),
     )
     k, b = found.stiffest
     checked = "exact test agrees at each limit" if found.verified else "evidence"

@@ -78,7 +78,7 @@ def compensation_claims(
 ) -> list[Settled]:
     """Claims about friction compensation, for every level in the 95 % interval at once.
 
-    computer: period, delay and encoder of the compensator; None: continuous
+    computer: period, delay (whole periods) and encoder of the compensator; None: continuous
     """
     found: list[Settled] = []
     if device.presliding is None:  # which no bound on the force alone covers
@@ -88,7 +88,7 @@ def compensation_claims(
         found.append(Settled("estimate", _dahl(device, compensator, certain=False)))
         found.append(Settled("95 % interval", _dahl(device, compensator, certain=True)))
         if computer is not None and device.presliding is not None:
-            whole = math.ceil(computer.delay / computer.period - 1e-9)
+            whole = round(computer.delay / computer.period)
             claim = sampled_passivity(
                 -sp.Float(compensator.second) * Z**-whole,
                 damping=device.damping.low,

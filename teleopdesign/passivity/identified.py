@@ -91,7 +91,13 @@ def identified(body: Body) -> IdentifiedDevice:
         _interval(stiff) if stiff is not None else None,
         _interval(body.parameters.get("viscous.damping", Value(0.0, fixed=True))),
         tuple(e.name for e in body.effects if e.role not in _COVERED and e.name not in _HARMLESS),
-        tuple(n for n, v in body.parameters.items() if not v.fixed and math.isnan(v.stderr)),
+        tuple(
+            n
+            for n, v in body.parameters.items()
+            if not v.fixed
+            and math.isnan(v.stderr)
+            and not (v.value == 0 and body.parameter(n).optional)  # one that is not there
+        ),
     )
 
 

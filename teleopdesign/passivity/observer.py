@@ -75,7 +75,7 @@ class PortEnergy:
 
     def plot(self) -> matplotlib.figure.Figure:
         """Energy over time with its band, and the times in which it came out."""
-        from ..plot.passivity import plot_port_energy
+        from ..plot.port_energy import plot_port_energy
 
         return plot_port_energy(self)
 
