@@ -15,11 +15,11 @@ The second panel gives both contacts presliding; the capstan's friction, a motor
 the cable's tension, adds its share to what may be cancelled.
 
 Finding: plain cycles are refuted exactly where P55 says. Steps at the reversals lower the limit, by
-3 % at sigma_D = 2 k and by no more than 0.3 % from 3 k on. The available storage settles up to
-where cycles with steps begin to give out energy (within 1.4 %), so a storage function exists almost
-up to there: evidence for the open question, not a proof, and P55 itself has none at its limit. The
-capstan raises the limit. With presliding at both contacts the same limit stays, and a second one
-appears below it, sigma_D^2/f_D <= sigma_1^2/f_1, as for one contact alone.
+3 % at sigma_D = 2 k; elsewhere by less than the bisection resolves (0.5 %). The available storage
+settles up to where cycles with steps begin to give out energy (within 1.3 %), so a storage function
+exists almost up to there: evidence for the open question, not a proof, and P55 itself has none at
+its limit. The capstan raises the limit. With presliding at both contacts the same limit stays, and
+a second one appears below it, sigma_D^2/f_D <= sigma_1^2/f_1, as for one contact alone.
 
     python studies/compensation_through_a_cable.py [--quick] [--output DIR]
 """
