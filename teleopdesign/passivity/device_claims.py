@@ -15,7 +15,7 @@ from ..diagrams import haptic_interface
 from ..effects import EFFECTS
 from ..errors import ModelError
 from ..simulate import Sampling
-from .claim import Claim, Refutation, Unknown
+from .claim import Claim, Evidence, Refutation, Unknown
 from .counterexample import SimulatedMotion, confirmed_motion, search_counterexample
 from .friction_compensation import bounded_compensation, dahl_compensation
 from .identified import IdentifiedDevice
@@ -84,6 +84,7 @@ def compensation_claims(
     if device.presliding is None:  # which no bound on the force alone covers
         bounded = bounded_compensation(coulomb_level=device.lowest.low, bound=compensator.level)
         found.append(Settled("any law within the level", bounded))
+        found.append(Settled("the same, damping counted", _at_every_speed(device, compensator)))
     if compensator.law == "dahl":
         found.append(Settled("estimate", _dahl(device, compensator, certain=False)))
         found.append(Settled("95 % interval", _dahl(device, compensator, certain=True)))
@@ -98,6 +99,18 @@ def compensation_claims(
             found.append(Settled("small motion, sampled", claim))
     found = [_replayed(settled) for settled in found]
     return [*found, _searched(device, compensator, computer, rng, tries)]
+
+
+def _at_every_speed(device: IdentifiedDevice, compensator: Compensator) -> Claim:
+    """Whether level and damping together cover the compensator, at the speeds looked at."""
+    least, unit = device.least_resistance.low, device.force_unit
+    margin = least - compensator.level
+    statement = (
+        f"ideal friction of the device and its viscous damping resist with more than "
+        f"{compensator.level:g} {unit} at every speed, so that no law within it drives a motion"
+    )
+    searched = f"the least resistance over 4000 speeds is {least:.4g} {unit} in the 95 % interval"
+    return Claim(statement, Evidence(margin >= 0, searched, margin, unit))
 
 
 def _searched(
@@ -241,7 +254,8 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
     ]
     own = device.presliding
     if own is None:
-        return found
+        text = "largest f_D that drives no motion, viscous damping counted"
+        return [*found, Margin(text, device.least_resistance.low, force)]
     if compensator is not None and compensator.law != "dahl":
         return []  # no limit is known for such a law on a contact that gives
     level = min(compensator.level if compensator else math.inf, device.lowest.low)

@@ -9,6 +9,7 @@ import numpy as np
 import sympy as sp
 
 from ..blocks import Body, Value
+from ..effects import SIGNALS
 from ..errors import ModelError
 from ..quantity import unit_of
 
@@ -36,6 +37,7 @@ class IdentifiedDevice:
     """Friction of a device as far as passivity asks for it.
 
     lowest, highest: friction level that can occur, over all speeds, positions and times, N or N m
+    least_resistance: the least that level and viscous damping together come to at any speed
     presliding: stiffness before it slides, N/m; None where friction was identified as ideal
     damping: viscous, N s/m, 0 where the model has none
     set_aside: effects that the claims do not speak of;  unknown: parameters without standard error
@@ -44,6 +46,7 @@ class IdentifiedDevice:
     body: Body
     lowest: Interval
     highest: Interval
+    least_resistance: Interval
     presliding: Interval | None
     damping: Interval
     set_aside: tuple[str, ...]
@@ -88,6 +91,7 @@ def identified(body: Body) -> IdentifiedDevice:
         body,
         lowest,
         highest,
+        _range(body, _resistance(body, level))[0],
         _interval(stiff) if stiff is not None else None,
         _interval(body.parameters.get("viscous.damping", Value(0.0, fixed=True))),
         tuple(e.name for e in body.effects if e.role not in _COVERED and e.name not in _HARMLESS),
@@ -108,6 +112,13 @@ def _stderr(value: Value) -> float:
 def _interval(value: Value) -> Interval:
     half = WITHIN * _stderr(value)
     return Interval(value.value, max(value.value - half, 0.0), value.value + half)
+
+
+def _resistance(body: Body, level: sp.Expr) -> sp.Expr:
+    """Level and viscous friction against a motion of that velocity."""
+    if not body.has("viscous"):
+        return level
+    return level + sp.sign(SIGNALS["velocity"]) * body.effect("viscous").expression()
 
 
 def _range(body: Body, level: sp.Expr) -> tuple[Interval, Interval]:

@@ -2,11 +2,13 @@
 
 import json
 
+import numpy as np
 import pytest
 
 import teleopdesign as td
 from teleopdesign.cli import main
 from teleopdesign.errors import ModelError
+from teleopdesign.passivity.device_claims import Compensator, compensation_claims
 from teleopdesign.passivity.identified import identified
 
 
@@ -137,3 +139,26 @@ def test_a_level_that_may_be_zero_covers_no_compensation():
         identified(body)
     with pytest.raises(ModelError, match="no friction to compensate"):
         identified(body_with(viscous__damping=1.0))
+
+
+def test_damping_covers_what_the_lowest_level_does_not():
+    """Stribeck friction at low speed, viscous damping at high speed: 0.5 N alone never acts."""
+    body = body_with(
+        coulomb__level=0.5,
+        stribeck__extra_static_level=0.2,
+        stribeck__stribeck_velocity=0.05,
+        viscous__damping=2.0,
+    )
+    found = identified(body)
+    v = np.linspace(0, 1, 100001)
+    least = np.min(0.5 + 0.2 * np.exp(-((v / 0.05) ** 2)) + 2.0 * v)
+    # 4000 draws over seven decades of speed: 0.4 % apart, at a minimum that is flat
+    assert found.least_resistance.estimate == pytest.approx(least, rel=1e-4)
+    claims = compensation_claims(
+        found, Compensator("dahl", 0.6, 1e4), rng=np.random.default_rng(1), tries=6
+    )
+    by_topic = {c.topic: c.claim for c in claims}
+    assert by_topic["any law within the level"].status == "refuted"
+    counted = by_topic["the same, damping counted"]
+    assert (counted.status, counted.holds) == ("evidence", True)
+    assert by_topic["search by simulation"].holds
