@@ -125,7 +125,7 @@ def plot_forward_euler(data: xarray.Dataset) -> matplotlib.figure.Figure:
         beyond = x >= 1
         axis.plot(
             x[beyond],
-            2 * x[beyond] - 1,
+            data["first_step"].values[beyond],
             color=GREY,
             linestyle="--",
             label=r"first step after a reversal, $2q-1$",

@@ -76,6 +76,7 @@ def test_a_motion_that_gives_out_energy_is_found_and_replays(friction, compensat
     assert claim.record.as_dict()["turning_points"]
 
 
+@pytest.mark.slow
 def test_viscous_damping_hides_over_compensation_from_fast_motion_only():
     """At speeds above (f_D - f_C)/B damping takes more than is given out: slow motion gives."""
     claim = searched(joint(0.5, None, (0.6, 1e5), damping=1.0), tries=30)
@@ -83,6 +84,7 @@ def test_viscous_damping_hides_over_compensation_from_fast_motion_only():
     assert claim.record.strokes.speed < 0.3
 
 
+@pytest.mark.slow
 def test_a_sampled_compensator_within_the_level_is_passive_too():
     diagram = joint(0.5, None, (0.45, 1e4))
     claim = searched(diagram, computer=Sampling(period=1e-3, delay=1e-3), tries=6)

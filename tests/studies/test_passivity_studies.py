@@ -104,6 +104,7 @@ def test_a_study_writes_its_figure_and_its_numbers(study, name, tmp_path, monkey
     assert {p.suffix for p in tmp_path.iterdir()} == {".pdf", ".svg", ".png", ".nc"}
 
 
+@pytest.mark.slow
 def test_walls_are_proved_up_to_the_limit_and_refuted_beyond(study):
     found = study("passive_walls").run(quick=True)
     k = found["stiffness"].values
