@@ -9,15 +9,24 @@
 A refuted claim holds a motion that gives out energy: `claim.record.replay()`.
 """
 
+from .available_storage import AvailableStorage, available_storage
 from .certificate import Certificate, read_certificate
 from .claim import Claim, Evidence, Proof, Refutation, Unknown
 from .compliant_transmission import any_environment, free_motion, free_motion_margin
+from .counterexample import (
+    Given,
+    SimulatedMotion,
+    confirmed_motion,
+    given_out,
+    search_counterexample,
+)
 from .delayed_compensation import delayed_small_motion, given_out_late, inertia_given_out
 from .delayed_coupling import delayed_spring
 from .friction_compensation import (
     bounded_compensation,
     dahl_compensation,
     largest_passive_level,
+    largest_ratio,
     onset_amplitude,
     self_motion_speed,
 )
@@ -25,12 +34,22 @@ from .hand_port import hand_port
 from .impedance import Impedance, impedance
 from .kyp import Kyp, kyp, storage_function
 from .lugre import lugre_passivity
+from .observer import (
+    PassivityControlled,
+    PortEnergy,
+    observe,
+    observe_record,
+    observe_simulation,
+    passivity_controlled,
+)
 from .positive_real import Excess, damping_excess, mobility_excess, positive_real
-from .quantised_spring import quantised_spring
+from .quantised_spring import quantised_spring, stiffest_spring
+from .rate_independent import Coulomb, Cycle, Dahl, DahlBehindSpring, Spring, symmetric_cycle
 from .record import read_record, write_record
 from .regions import Region, region
 from .sampled_data import required_damping, sampled_coupling, sampled_passivity
 from .second_opinion import SecondOpinion, second_opinion
+from .stroke_motion import Strokes
 from .two_port import FrequencyMargins, TwoPort, over_frequency, teleoperator, two_port
 from .two_port_claims import absolutely_stable, passive
 from .z_width import WALL_DAMPING, WALL_STIFFNESS, ZWidth, z_width
@@ -38,40 +57,59 @@ from .z_width import WALL_DAMPING, WALL_STIFFNESS, ZWidth, z_width
 __all__ = [
     "WALL_DAMPING",
     "WALL_STIFFNESS",
+    "AvailableStorage",
     "Certificate",
     "Claim",
+    "Coulomb",
+    "Cycle",
+    "Dahl",
+    "DahlBehindSpring",
     "Evidence",
     "Excess",
     "FrequencyMargins",
+    "Given",
     "Impedance",
     "Kyp",
+    "PassivityControlled",
+    "PortEnergy",
     "Proof",
     "Refutation",
     "Region",
     "SecondOpinion",
+    "SimulatedMotion",
+    "Spring",
+    "Strokes",
     "TwoPort",
     "Unknown",
     "ZWidth",
     "absolutely_stable",
     "any_environment",
+    "available_storage",
     "bounded_compensation",
+    "confirmed_motion",
     "dahl_compensation",
     "damping_excess",
     "delayed_small_motion",
     "delayed_spring",
     "free_motion",
     "free_motion_margin",
+    "given_out",
     "given_out_late",
     "hand_port",
     "impedance",
     "inertia_given_out",
     "kyp",
     "largest_passive_level",
+    "largest_ratio",
     "lugre_passivity",
     "mobility_excess",
+    "observe",
+    "observe_record",
+    "observe_simulation",
     "onset_amplitude",
     "over_frequency",
     "passive",
+    "passivity_controlled",
     "positive_real",
     "quantised_spring",
     "read_certificate",
@@ -80,9 +118,12 @@ __all__ = [
     "required_damping",
     "sampled_coupling",
     "sampled_passivity",
+    "search_counterexample",
     "second_opinion",
     "self_motion_speed",
+    "stiffest_spring",
     "storage_function",
+    "symmetric_cycle",
     "teleoperator",
     "two_port",
     "write_record",

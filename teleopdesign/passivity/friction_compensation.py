@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import sympy as sp
@@ -18,7 +18,15 @@ from ..errors import ModelError
 from . import dahl_certificates as shown
 from .claim import Claim, Proof, Refutation, Unknown
 from .impedance import decimal, exact
-from .rate_independent import Coulomb, Cycle, Dahl, Element, dahl_loss, symmetric_cycle
+from .rate_independent import (
+    Coulomb,
+    Cycle,
+    Dahl,
+    Element,
+    dahl_loss,
+    lost_share,
+    symmetric_cycle,
+)
 
 
 def bounded_compensation(*, coulomb_level: Any, bound: Any) -> Claim:
@@ -104,6 +112,17 @@ def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: 
         return float("inf")
     k = int(np.searchsorted(levels, above[0]))
     return float(brentq(out, levels[max(k - 1, 0)], above[0], xtol=1e-12 * coulomb_level))
+
+
+def largest_ratio(u: float, *, motion: Literal["cycles", "any"] = "cycles") -> float:
+    """Largest f_D/f_C that gives out no energy within u = sigma_D A/f_D bristle lengths either way.
+
+    motion: "cycles": exact for plain cycles of that amplitude, 1/(1 - tanh(u)/u);
+        "any": enough for every motion that stays within it, 1/(1 - e^(-2 u))^2 (P56)
+    """
+    if u <= 0:
+        raise ModelError(f"largest_ratio: expected an amplitude > 0, found u = {u:g}")
+    return 1 / lost_share(u) if motion == "cycles" else 1 / math.expm1(-2 * u) ** 2
 
 
 def onset_amplitude(

@@ -108,6 +108,22 @@ def quantised_spring(
     return Claim(statement, Refutation("two positions in turn", best))
 
 
+def stiffest_spring(
+    *,
+    damping: float,
+    sample_time: float,
+    step: float,
+    coulomb_level: float,
+    compensator_level: float = 0.0,
+) -> float:
+    """Stiffest spring that is passive, N/m: min(2 b/T, 2 (f_C - f_D)/Delta), 0 where none is.
+
+    Arguments as in `quantised_spring`, which proves or refutes it.
+    """
+    by_steps = 2 * (coulomb_level - compensator_level) / step if step else math.inf
+    return max(min(2 * damping / sample_time, by_steps), 0.0)
+
+
 def _certificate(
     k: sp.Expr, b: sp.Expr, late: sp.Expr, delta: sp.Expr, f_c: sp.Expr, f_d: sp.Expr
 ) -> Certificate:

@@ -71,6 +71,34 @@ class Spring:
         return end, s * (force + end) / 2 * give + self.level * (abs(travel) - give)
 
 
+@dataclass(frozen=True)
+class DahlBehindSpring:
+    """A contact of Dahl friction (level, stiffness) that is pulled through a spring.
+
+    With y = 1 - s f/level and r = stiffness/spring a travel x of sign s leads to
+    ln y' + r y' = ln y + r y - stiffness abs(x)/level.
+    """
+
+    level: float
+    stiffness: float
+    spring: float
+
+    def leg(self, force: float, travel: float) -> tuple[float, float]:
+        """Exact over any travel, by Wright's omega function."""
+        from scipy.special import wrightomega
+
+        if not travel:
+            return force, 0.0
+        s = math.copysign(1.0, travel)
+        y, r = max(1 - s * force / self.level, 1e-300), self.stiffness / self.spring
+        x = self.stiffness * abs(travel) / self.level
+        after = float(wrightomega(math.log(y) + r * y - x + math.log(r))) / r
+        end = s * self.level * (1 - after)
+        slipped = x - r * (y - after)  # ln(y/y')
+        lost = self.level**2 / self.stiffness * (slipped - (y - after))
+        return end, (end**2 - force**2) / (2 * self.spring) + lost
+
+
 def _beyond_linear(y: float) -> float:
     """y - (1 - e^-y), without cancellation where y is small."""
     if y > 0.1:

@@ -1,0 +1,264 @@
+"""say how much friction may be compensated before a device can give out energy, and prove it"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import ExperimentError
+from ._answer import body_of_answer
+from ._options import add_effect_files, check_output, say
+
+if TYPE_CHECKING:
+    from ..blocks import Body
+    from ..passivity.device_claims import Compensator, Margin, Settled
+    from ..passivity.identified import IdentifiedDevice
+    from ..simulate import Sampling
+
+#: columns of the terminal
+WIDTH = 100
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument(
+        "source",
+        nargs="?",
+        type=Path,
+        help="folder with experiment.toml, which is diagnosed, or a diagnosis's answer (.json)",
+    )
+    parser.add_argument("--body", help="which body of the answer: device, master or slave")
+    law = parser.add_mutually_exclusive_group()
+    law.add_argument(
+        "--dahl",
+        nargs=2,
+        type=float,
+        metavar=("LEVEL", "STIFFNESS"),
+        help="Dahl compensator, N and N/m",
+    )
+    law.add_argument(
+        "--smoothed-coulomb",
+        nargs=2,
+        type=float,
+        metavar=("LEVEL", "A"),
+        help="smoothed Coulomb, N and m/s",
+    )
+    parser.add_argument("--period", type=float, metavar="S", help="sample period, s")
+    parser.add_argument("--delay", type=float, default=0.0, metavar="S", help="computing delay, s")
+    parser.add_argument(
+        "--encoder-step", type=float, default=0.0, metavar="M", help="step of the encoder, m or rad"
+    )
+    parser.add_argument(
+        "--wall",
+        nargs=2,
+        type=float,
+        metavar=("K", "B"),
+        help="virtual wall, N/m and N s/m; needs --period",
+    )
+    parser.add_argument(
+        "--json", type=Path, metavar="F", help="write claims, certificates and motions"
+    )
+    parser.add_argument(
+        "--check", type=Path, metavar="F", help="check the certificates of such a file, no more"
+    )
+    add_effect_files(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print claims and margins; write what was asked for. The verdicts do not change the status."""
+    if options.check is not None:
+        return _check(options.check)
+    _sound(options)
+    from ..passivity.device_claims import margins
+    from ..passivity.identified import identified
+
+    device = identified(_body(options))
+    compensator = _compensator(options)
+    settled = _settled(options, device, compensator)
+    found = margins(device, compensator)
+    print(_text(device, settled, found))
+    if options.period is not None and device.damping.low > 0:
+        print("\n" + _z_width(device, options.period, options.delay))
+    if options.json is not None:
+        content = {"claims": [plain(s) for s in settled], "margins": [vars(m) for m in found]}
+        options.json.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+def _sound(options: argparse.Namespace) -> None:
+    if options.source is None:
+        raise ExperimentError("passivity: expected a folder, an answer (.json), or --check F")
+    if options.json is not None:
+        check_output(options.json, (".json",))
+    for name in ("dahl", "smoothed_coulomb"):
+        values = getattr(options, name)
+        if values is not None and not all(math.isfinite(x) and x > 0 for x in values):
+            raise ExperimentError(
+                f"--{name.replace('_', '-')}: found {values}, expected two numbers > 0"
+            )
+    if options.period is not None and not (math.isfinite(options.period) and options.period > 0):
+        raise ExperimentError(f"--period: found {options.period:g}, expected more than 0 s")
+    if min(options.delay, options.encoder_step) < 0:
+        raise ExperimentError("--delay, --encoder-step: expected no negative number")
+    late = options.delay / options.period if options.period else 0.0
+    if abs(late - round(late)) > 1e-6:
+        raise ExperimentError(
+            f"--delay: found {late:.4g} periods, expected a whole number: what is proved of a "
+            "sampled law holds for those"
+        )
+    if options.period is None and (options.wall or options.delay or options.encoder_step):
+        raise ExperimentError("--wall, --delay, --encoder-step: they need --period")
+
+
+def _body(options: argparse.Namespace) -> Body:
+    """The diagnosed body: read from an answer, or from a diagnosis that is made now."""
+    source: Path = options.source
+    if source.suffix == ".json":
+        return body_of_answer(source, options.body)
+    if source.suffix == ".toml" and source.name != "experiment.toml":
+        raise ExperimentError(f"{source}: expected a folder with experiment.toml, or an answer")
+    from ..diagnose import find_missing
+    from ..effects import catalogue
+    from ..measurement import load_experiment
+    from ..model import Model
+
+    experiment = load_experiment(source)
+    model = Model.from_experiment(experiment, catalogue(options.effect))
+    bodies = list(model.bodies)
+    if options.body is None and len(bodies) > 1:
+        raise ExperimentError(f"{source}: bodies {', '.join(bodies)}: choose one with --body")
+    diagnosis = find_missing(experiment, model, progress=say)
+    say("")
+    print(diagnosis)
+    print()
+    return diagnosis.after.model.body(options.body or bodies[0])
+
+
+def _compensator(options: argparse.Namespace) -> Compensator | None:
+    from ..passivity.device_claims import Compensator
+
+    for law in ("dahl", "smoothed_coulomb"):
+        if (values := getattr(options, law)) is not None:
+            return Compensator(law, *values)
+    return None
+
+
+def _settled(
+    options: argparse.Namespace, device: IdentifiedDevice, compensator: Compensator | None
+) -> list[Settled]:
+    import numpy as np
+
+    from ..passivity.device_claims import compensation_claims, device_claims, wall_claims
+
+    computer = _computer(options)
+    found = device_claims(device)
+    if compensator is not None:
+        rng = np.random.default_rng(1)
+        found += compensation_claims(device, compensator, computer=computer, rng=rng)
+    if options.wall is not None and computer is not None:
+        stiffness, damping = options.wall
+        taken = compensator.level if compensator else 0.0
+        found += wall_claims(
+            device, stiffness=stiffness, damping=damping, computer=computer, cancelled=taken
+        )
+    return found
+
+
+def _computer(options: argparse.Namespace) -> Sampling | None:
+    from ..simulate import Sampling
+
+    if options.period is None:
+        return None
+    return Sampling(options.period, options.delay, options.encoder_step)
+
+
+def _text(device: IdentifiedDevice, settled: Sequence[Settled], found: Sequence[Margin]) -> str:
+    from ..quantity import unit_of
+
+    force, stiff = device.force_unit, device.stiffness_unit
+    lines = [
+        f"friction level {device.lowest} {force} at its lowest, {device.highest} at its highest"
+    ]
+    if device.presliding is None:
+        lines.append(
+            "presliding was not identified: friction is taken as ideal, however small the motion"
+        )
+    else:
+        lines.append(f"presliding stiffness {device.presliding} {stiff}")
+    lines.append(f"damping {device.damping} {unit_of('damping', device.body.axis)}")
+    if device.set_aside:
+        lines.append(f"not spoken of by the claims: {', '.join(device.set_aside)}")
+    if device.unknown:
+        lines.append(f"no standard error, taken as exact: {', '.join(device.unknown)}")
+    for one in settled:
+        lines += ["", f"{one.claim.status:<9} {one.topic}"]
+        lines += _folded(one.claim.statement) + _folded(str(one.claim.verdict))
+        if one.motion is not None:
+            lines += _folded(f"replayed in simulation: gives out {one.replayed:.6g} J")
+    return "\n".join([*lines, "", *map(str, found)])
+
+
+def _folded(text: str) -> list[str]:
+    space = " " * 10
+    return textwrap.wrap(
+        text, WIDTH, initial_indent=space, subsequent_indent=space, break_on_hyphens=False
+    )
+
+
+def _z_width(device: IdentifiedDevice, period: float, delay: float) -> str:
+    from ..passivity import z_width
+
+    found = z_width(
+        damping=device.damping.low,
+        sample_time=period,
+        inertia=device.body.parameters["inertia"].value,
+        delay=round(delay / period),
+    )
+    k, b = found.stiffest
+    checked = "exact test agrees at each limit" if found.verified else "evidence"
+    return (
+        f"Z-width at {period:g} s: stiffest passive wall {k:.4g} with damping {b:.4g} (SI), "
+        f"{found.width(1.0):.1f} dB above the free device at 1 Hz ({checked})"
+    )
+
+
+def plain(settled: Settled) -> dict[str, Any]:
+    """A settled claim as plain data, with its certificates and the motions that refute it."""
+    claim = settled.claim
+    return {
+        "topic": settled.topic,
+        "statement": claim.statement,
+        "status": claim.status,
+        "holds": claim.holds,
+        "verdict": str(claim.verdict),
+        "certificates": [dict(c.content) for c in claim.certificates],
+        "motion": claim.record.as_dict() if claim.status == "refuted" else None,
+        "replayed": None if settled.motion is None else settled.motion.as_dict(),
+    }
+
+
+def _check(path: Path) -> int:
+    """Check each certificate of a file of claims with the small checker alone."""
+    from ..passivity.check_certificate import check
+
+    try:
+        claims = json.loads(path.read_text(encoding="utf-8"))["claims"]
+        found = [(c["statement"], c["certificates"]) for c in claims]
+    except (OSError, ValueError, KeyError, TypeError) as problem:
+        raise ExperimentError(f"{path}: no file of claims: {problem!r}") from problem
+    count = 0
+    for statement, certificates in found:
+        for certificate in certificates:
+            try:
+                shown = check(certificate)
+            except Exception as problem:  # whatever a tampered one trips over, it proves nothing
+                raise ExperimentError(f"{path}: {statement}: {problem}") from problem
+            count += 1
+            print("\n".join(textwrap.wrap(f"proved: {shown}", WIDTH, subsequent_indent="    ")))
+    print(f"\n{count} certificate{'s' * (count != 1)} of {len(found)} claims verified")
+    return 0

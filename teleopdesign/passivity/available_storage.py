@@ -1,0 +1,155 @@
+"""Available storage of rate-independent friction: the most energy that any motion can take out.
+
+Willems: a system is passive from rest where this is finite, and then it is a storage function. With
+friction that depends on the path alone, every motion is a sequence of small travels forward or
+back, so that the available storage V of the forces x solves
+
+    V(x) = max(0, max over both directions of (given out over the travel + V(x after it)))
+
+It is iterated on a grid of the forces, with linear interpolation. Where it settles, a storage
+function has been found numerically. Where it grows without end, energy comes out or the grid is too
+coarse: interpolation lies above a convex V, so that limits found this way lie on the safe side.
+Evidence either way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ModelError
+from .claim import Evidence
+from .rate_independent import Coulomb, Dahl, Element
+
+Array = NDArray[np.float64]
+#: gain, as a share of the compensator's level, below which the storage counts as settled
+_BLUR = 1e-3
+
+
+@dataclass(frozen=True)
+class AvailableStorage:
+    """What the iteration came to.
+
+    storage: J, an axis for each force with a state, compensator first, from -level to level
+    gain: energy given out per travel once everything has settled, N; 0 where it is finite
+    travel: m, of one move;  moves: how many were made
+    """
+
+    storage: Array
+    gain: float
+    travel: float
+    moves: int
+    tolerance: float
+
+    @property
+    def settled(self) -> bool:
+        """Whether the storage is finite, within the tolerance of the grid."""
+        return self.gain <= self.tolerance
+
+    def evidence(self) -> Evidence:
+        """As the verdict of a claim."""
+        axes = " x ".join(map(str, self.storage.shape))
+        searched = f"available storage iterated over {self.moves} moves on a grid of {axes} forces"
+        return Evidence(self.settled, searched, self.tolerance - self.gain, "N")
+
+
+def available_storage(
+    compensator: Dahl,
+    friction: Sequence[Element],
+    *,
+    points: int = 61,
+    moves: int | None = None,
+    load_coefficient: float = 0.0,
+) -> AvailableStorage:
+    """Iterate the available storage of friction beside a compensator.
+
+    friction: Coulomb friction has no state, every other element one
+    points: of each force;  moves: default: six strokes of what gives furthest, both ways
+    load_coefficient: the first element of friction grows by this much of
+        the size of the last one's force (capstan: a contact pressed by the cable's tension)
+    """
+    stateful: list[Element] = [compensator, *(e for e in friction if not isinstance(e, Coulomb))]
+    if len(stateful) > 3:
+        raise ModelError(f"available_storage: at most 3 forces with a state, found {len(stateful)}")
+    lengths = [_length(e) for e in stateful]
+    # two cells of the stiffest force's grid: shorter moves would only be blurred by interpolation
+    travel = 4 * min(lengths) / (points - 1)
+    moves = moves or int(24 * max(lengths) / travel) + 10 * points
+    step = [
+        _move(stateful, friction, s * travel, points=points, load=load_coefficient) for s in (1, -1)
+    ]
+    # iterated is V less what springs hold, which interpolation would blur most
+    held = _held(stateful, points)
+    v = half = -held
+    for n in range(moves):
+        if n == moves // 2:
+            half = v
+        v = np.maximum(-held, np.maximum(step[0](v), step[1](v)))
+    gain = float((v - half).max()) / (travel * (moves - moves // 2))
+    return AvailableStorage(v + held, gain, travel, moves, _BLUR * compensator.level)
+
+
+def _length(element: Element) -> float:
+    """Travel over which its force changes by about its level, m."""
+    return element.level * _compliance(element)
+
+
+def _compliance(element: Element) -> float:
+    """Travel per force near rest, m/N."""
+    parts = (getattr(element, n, np.inf) for n in ("stiffness", "spring"))
+    return float(sum(1 / x for x in parts))
+
+
+def _held(stateful: Sequence[Element], points: int) -> Array:
+    """What the springs of friction hold at each node, less that of the compensator, J."""
+    total: Array = np.zeros((1,) * len(stateful))
+    for axis, element in enumerate(stateful):
+        forces = np.linspace(-element.level, element.level, points)
+        one = forces**2 * _compliance(element) / 2
+        shape = [points if k == axis else 1 for k in range(len(stateful))]
+        total = total + (-one if axis == 0 else one).reshape(shape)
+    return total
+
+
+def _move(
+    stateful: Sequence[Element],
+    friction: Sequence[Element],
+    travel: float,
+    *,
+    points: int,
+    load: float,
+) -> Callable[[Array], Array]:
+    """One travel as a map from storage after it to storage before it."""
+    given: Array = np.zeros((1,) * len(stateful))
+    cells = []
+    for axis, element in enumerate(stateful):
+        forces = np.linspace(-element.level, element.level, points)
+        legs = np.array([element.leg(float(f), travel) for f in forces])
+        shape = [points if k == axis else 1 for k in range(len(stateful))]
+        lost = legs[:, 1] - (legs[:, 0] ** 2 - forces**2) * _compliance(element) / 2
+        given = given + (lost if axis == 0 else -lost).reshape(shape)
+        left, right_share = _cells(forces, legs[:, 0])
+        cells.append((left, right_share.reshape(shape)))
+        if load and axis == len(stateful) - 1:
+            pressed = load * np.abs(forces + legs[:, 0]) / 2 * abs(travel)
+            given = given - pressed.reshape(shape)
+    given = given - sum(e.leg(0.0, travel)[1] for e in friction if isinstance(e, Coulomb))
+
+    def before(after: Array) -> Array:
+        moved = after
+        for axis, (left, right_share) in enumerate(cells):
+            low, high = np.take(moved, left, axis), np.take(moved, left + 1, axis)
+            moved = low + right_share * (high - low)
+        return np.asarray(given + moved)
+
+    return before
+
+
+def _cells(nodes: Array, at: Array) -> tuple[NDArray[np.intp], Array]:
+    """Left neighbour among the nodes, and the share of the right one, of each point (n,)."""
+    position = np.clip((at - nodes[0]) / (nodes[1] - nodes[0]), 0, len(nodes) - 1)
+    left = np.minimum(position.astype(np.intp), len(nodes) - 2)
+    return left, position - left

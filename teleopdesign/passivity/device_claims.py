@@ -1,0 +1,269 @@
+"""The claims that matter for one identified device and one compensator, and the margins."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import sympy as sp
+
+from ..blocks import Body, Value
+from ..controllers import Controller, controller
+from ..diagrams import haptic_interface
+from ..effects import EFFECTS
+from ..errors import ModelError
+from ..simulate import Sampling
+from .claim import Claim, Evidence, Refutation, Unknown
+from .counterexample import SimulatedMotion, confirmed_motion, search_counterexample
+from .friction_compensation import bounded_compensation, dahl_compensation
+from .identified import IdentifiedDevice
+from .lugre import lugre_passivity
+from .quantised_spring import quantised_spring
+from .rate_independent import Coulomb, Cycle, Dahl
+from .sampled_data import Z, sampled_passivity
+from .stroke_motion import Strokes
+
+#: N/m; gives a scale of length to friction that was identified as ideal
+_RIGID = 1e5
+
+
+@dataclass(frozen=True)
+class Compensator:
+    """law: "dahl" or "smoothed_coulomb";  level: N;  second: stiffness (N/m), or smoothing (m/s)"""
+
+    law: str
+    level: float
+    second: float
+
+    @property
+    def controller(self) -> Controller:
+        """The control law with these values."""
+        name = "stiffness" if self.law == "dahl" else "smoothing_velocity"
+        return controller(self.law, {"level": self.level, name: self.second})
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A claim in its topic; replayed: energy (J) that its motion gave out in simulation, NaN where
+    none was replayed; motion: that simulated motion.
+    """
+
+    topic: str
+    claim: Claim
+    replayed: float = float("nan")
+    motion: SimulatedMotion | None = None
+
+
+@dataclass(frozen=True)
+class Margin:
+    """A number that a designer asks for, and what it is; value: SI, in `unit`."""
+
+    text: str
+    value: float
+    unit: str
+
+    def __str__(self) -> str:
+        return f"{self.text}: {self.value:.4g} {self.unit}".rstrip()
+
+
+def compensation_claims(
+    device: IdentifiedDevice,
+    compensator: Compensator,
+    *,
+    computer: Sampling | None = None,
+    rng: np.random.Generator,
+    tries: int = 15,
+) -> list[Settled]:
+    """Claims about friction compensation, for every level in the 95 % interval at once.
+
+    computer: period, delay (whole periods) and encoder of the compensator; None: continuous
+    """
+    found: list[Settled] = []
+    if device.presliding is None:  # which no bound on the force alone covers
+        bounded = bounded_compensation(coulomb_level=device.lowest.low, bound=compensator.level)
+        found.append(Settled("any law within the level", bounded))
+        found.append(Settled("the same, damping counted", _at_every_speed(device, compensator)))
+    if compensator.law == "dahl":
+        found.append(Settled("estimate", _dahl(device, compensator, certain=False)))
+        found.append(Settled("95 % interval", _dahl(device, compensator, certain=True)))
+        if computer is not None and device.presliding is not None:
+            whole = round(computer.delay / computer.period)
+            claim = sampled_passivity(
+                -sp.Float(compensator.second) * Z**-whole,
+                damping=device.damping.low,
+                sample_time=computer.period,
+                stiffness=device.presliding.low,
+            )
+            found.append(Settled("small motion, sampled", claim))
+    found = [_replayed(settled) for settled in found]
+    return [*found, _searched(device, compensator, computer, rng, tries)]
+
+
+def _at_every_speed(device: IdentifiedDevice, compensator: Compensator) -> Claim:
+    """Whether level and damping together cover the compensator, at the speeds looked at."""
+    least, unit = device.least_resistance.low, device.force_unit
+    margin = least - compensator.level
+    statement = (
+        f"ideal friction of the device and its viscous damping resist with more than "
+        f"{compensator.level:g} {unit} at every speed, so that no law within it drives a motion"
+    )
+    searched = f"the least resistance over 4000 speeds is {least:.4g} {unit} in the 95 % interval"
+    return Claim(statement, Evidence(margin >= 0, searched, margin, unit))
+
+
+def _searched(
+    device: IdentifiedDevice,
+    compensator: Compensator,
+    computer: Sampling | None,
+    rng: np.random.Generator,
+    tries: int,
+) -> Settled:
+    """The whole device with its compensator, as simulated."""
+    topic, lengths = "search by simulation", [device.lowest.estimate / _RIGID]
+    if device.presliding is not None:
+        lengths = [device.lowest.estimate / device.presliding.estimate]
+    if compensator.law == "dahl":
+        lengths.append(compensator.level / compensator.second)
+    stroke = 100 * max(lengths)
+    try:
+        claim = search_counterexample(
+            haptic_interface(device.body, cancellation=compensator.controller),
+            stroke=stroke,
+            speed=10 * stroke,  # a stroke takes a third of a second, or up to a hundred times that
+            rng=rng,
+            computer=computer or "continuous",
+            give=min(lengths) / 100,
+            tries=tries,
+        )
+    except ModelError as problem:  # a body that this simulation does not take
+        return Settled(topic, Claim("the device as simulated is passive", Unknown(str(problem))))
+    record = claim.verdict.record if isinstance(claim.verdict, Refutation) else None
+    if not isinstance(record, SimulatedMotion):
+        return Settled(topic, claim)
+    return Settled(topic, claim, record.replay(), record)
+
+
+def _dahl(device: IdentifiedDevice, compensator: Compensator, *, certain: bool) -> Claim:
+    """The pair at the estimates, or for all levels within the intervals."""
+    own = device.presliding
+    low = device.lowest.low if certain else device.lowest.estimate
+    high = device.highest.high if certain else device.highest.estimate
+    stiffness = None if own is None else own.low if certain else own.estimate
+    return dahl_compensation(
+        coulomb_level=low,
+        compensator_level=compensator.level,
+        compensator_stiffness=compensator.second,
+        presliding_stiffness=stiffness,
+        highest_level=None if own is None else high,
+    )
+
+
+def replay_cycle(cycle: Cycle) -> SimulatedMotion | None:
+    """A refuting cycle of one friction element, replayed by the compiled simulation.
+
+    None where simulation does not confirm it, as next to a limit, or for several elements.
+    """
+    if len(cycle.friction) != 1 or not isinstance(cycle.friction[0], Coulomb | Dahl):
+        return None
+    friction, helps = cycle.friction[0], cycle.compensator
+    body = Body("prismatic", {"inertia": Value(1e-3)})
+    body = body.with_effect(EFFECTS["coulomb"], {"level": friction.level})
+    lengths = [helps.level / helps.stiffness]
+    if isinstance(friction, Dahl):
+        presliding = EFFECTS["presliding"].without("bristle_damping")
+        body = body.with_effect(presliding, {"stiffness": friction.stiffness})
+        lengths.append(friction.level / friction.stiffness)
+    law = controller("dahl", {"level": helps.level, "stiffness": helps.stiffness})
+    # friction does not depend on speed: a stroke takes about 10 ms
+    strokes = Strokes(cycle.turning_points, speed=300 * max(map(abs, cycle.turning_points)))
+    give = min(*lengths, *map(abs, cycle.turning_points)) / 1000
+    return confirmed_motion(haptic_interface(body, cancellation=law), strokes, give=give)
+
+
+def _replayed(settled: Settled) -> Settled:
+    record = settled.claim.record if settled.claim.status == "refuted" else None
+    motion = replay_cycle(record) if isinstance(record, Cycle) else None
+    return settled if motion is None else replace(settled, replayed=motion.energy, motion=motion)
+
+
+def device_claims(device: IdentifiedDevice) -> list[Settled]:
+    """Claims about the device itself: LuGre friction, where all of its parts were identified."""
+    values = {n: v.value for n, v in device.body.parameters.items()}
+    needed = ("coulomb.level", "stribeck.extra_static_level", "presliding.stiffness")
+    if not all(n in values for n in needed):
+        return []
+    claim = lugre_passivity(
+        coulomb_level=values["coulomb.level"],
+        static_level=values["coulomb.level"] + values["stribeck.extra_static_level"],
+        stiffness=values["presliding.stiffness"],
+        bristle_damping=values.get("presliding.bristle_damping", 0.0),
+        viscous_damping=values.get("viscous.damping", 0.0),
+        stribeck_velocity=values["stribeck.stribeck_velocity"],
+    )
+    return [Settled("the device's own friction", claim)]
+
+
+def wall_claims(
+    device: IdentifiedDevice,
+    *,
+    stiffness: float,
+    damping: float,
+    computer: Sampling,
+    cancelled: float = 0.0,
+) -> list[Settled]:
+    """Claims about a virtual wall: the sampled law, and its encoder steps beside friction.
+
+    stiffness, damping: K, N/m, and B, N s/m;  cancelled: friction that a compensator takes, N
+    """
+    late = computer.period
+    whole = round(computer.delay / late)
+    law = (sp.Float(stiffness) + sp.Float(damping) * (Z - 1) / (late * Z)) * Z**-whole
+    found = [
+        Settled(
+            "virtual wall, damping alone",
+            sampled_passivity(law, damping=device.damping.low, sample_time=late),
+        )
+    ]
+    if computer.encoder_step and not damping and not whole:
+        found.append(
+            Settled(
+                "virtual wall, encoder steps",
+                quantised_spring(
+                    stiffness=stiffness,
+                    damping=device.damping.low,
+                    sample_time=late,
+                    step=computer.encoder_step,
+                    coulomb_level=device.lowest.low,
+                    compensator_level=cancelled,
+                ),
+            )
+        )
+    return found
+
+
+def margins(device: IdentifiedDevice, compensator: Compensator | None = None) -> Sequence[Margin]:
+    """What may be chosen so that it is passive for every value within the 95 % intervals."""
+    force, stiff = device.force_unit, device.stiffness_unit
+    found = [
+        Margin("largest f_D that is passive at the estimates", device.lowest.estimate, force),
+        Margin(
+            "largest f_D that is passive for every level in the interval", device.lowest.low, force
+        ),
+    ]
+    own = device.presliding
+    if own is None:
+        text = "largest f_D that drives no motion, viscous damping counted"
+        return [*found, Margin(text, device.least_resistance.low, force)]
+    if compensator is not None and compensator.law != "dahl":
+        return []  # no limit is known for such a law on a contact that gives
+    level = min(compensator.level if compensator else math.inf, device.lowest.low)
+    softest = own.low * math.sqrt(level / device.highest.high)
+    found.append(Margin(f"largest sigma_D at f_D = {level:.4g} {force}", softest, stiff))
+    if compensator is not None:
+        least = device.highest.high * (compensator.second / own.low) ** 2
+        found.append(
+            Margin(f"least f_D at sigma_D = {compensator.second:.4g} {stiff}", least, force)
+        )
+    return found

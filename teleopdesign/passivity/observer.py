@@ -1,0 +1,236 @@
+"""Passivity observer: the energy that has gone into a port so far, and when it came out again.
+
+    E[n] = E[n-1] + f[n] (x[n+1] - x[n])          force held between samples: exact
+    E[n] = E[n-1] + (f[n] + f[n+1])/2 (x[n+1] - x[n])    force sampled
+
+with the force ON the device along its motion. A device that began at rest has given out energy
+where E < 0. Hannaford and Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1, who put a damper into each
+sample where it would: `passivity_controlled`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ExperimentError, ModelError
+from ..measurement import Experiment, Record
+from ..simulate import Simulation
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+    import xarray
+
+Array = NDArray[np.float64]
+#: standard errors of a rounding: of a step's width
+_ROUNDED = 12**-0.5
+
+
+@dataclass(frozen=True)
+class PortEnergy:
+    """Energy into a port.
+
+    data: `energy` (J, from the start), `stderr` (J, of the sensors' noise, 0 where none was given)
+    and `power` (W) over `time` (s)
+    """
+
+    data: xarray.Dataset
+
+    @property
+    def lowest(self) -> float:
+        """Least energy, J: below zero by what the port has given out more than it took in."""
+        return float(self.data["energy"].min())
+
+    @property
+    def when(self) -> float:
+        """Time of the least energy, s."""
+        return float(self.data["time"][int(self.data["energy"].values.argmin())])
+
+    @property
+    def certain(self) -> bool:
+        """Whether the least energy is below zero by more than 1.96 standard errors."""
+        k = int(self.data["energy"].values.argmin())
+        return self.lowest < -1.96 * float(self.data["stderr"][k])
+
+    def given_out(self) -> list[tuple[float, float, float]]:
+        """Begin and end (s) of each time in which the energy fell, and by how much (J), > 0.
+
+        Falls within 1.96 standard errors of the energy, and within a millionth of all that was
+        turned over, are left out.
+        """
+        t, e = self.data["time"].values, self.data["energy"].values
+        change = np.diff(e)
+        doubt = max(
+            1.96 * float(self.data["stderr"].values[-1]), 1e-6 * float(np.abs(change).sum())
+        )
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], (change < 0).astype(int), [0]])))
+        pairs = edges.reshape(-1, 2)
+        return [
+            (float(t[a]), float(t[b]), float(e[a] - e[b])) for a, b in pairs if e[a] - e[b] > doubt
+        ]
+
+    def plot(self) -> matplotlib.figure.Figure:
+        """Energy over time with its band, and the times in which it came out."""
+        from ..plot.port_energy import plot_port_energy
+
+        return plot_port_energy(self)
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write energy, error and power with their units."""
+        self.data.to_netcdf(path)
+
+    def __repr__(self) -> str:
+        final = float(self.data["energy"][-1])
+        error = float(self.data["stderr"][-1])
+        told = "gave out energy" if self.certain else "gave out no energy beyond doubt"
+        return (
+            f"Energy into the port: {final:.4g} +- {error:.2g} J in the end, "
+            f"least {self.lowest:.4g} J at {self.when:.4g} s: {told}"
+        )
+
+
+def observe(
+    time: Array,
+    position: Array,
+    force: Array,
+    *,
+    held: bool = False,
+    position_noise: float = 0.0,
+    force_noise: float = 0.0,
+) -> PortEnergy:
+    """Energy into the port from samples.
+
+    time, position, force: (n,), s, m or rad, N or N m; the force acts ON the device along position
+    held: the force stays until the next sample (a command); else it is a sampled signal
+    position_noise, force_noise: rms of each sample, independent, in their units
+    raises ModelError: samples of different number, or fewer than three
+    """
+    import xarray
+
+    n = len(time)
+    if not (n == len(position) == len(force)) or n < 3:
+        raise ModelError(
+            f"observe: expected three samples or more of each, found {n}, {len(position)}, "
+            f"{len(force)}"
+        )
+    travel = np.diff(position)
+    acting = force[:-1] if held else (force[1:] + force[:-1]) / 2
+    work = acting * travel
+    energy = np.concatenate([[0.0], np.cumsum(work)])
+    errors = _stderr(acting, travel, held, position_noise, force_noise)
+    power = np.gradient(energy, time)
+    coordinates = {"time": ("time", np.asarray(time), {"units": "s"})}
+    return PortEnergy(
+        xarray.Dataset(
+            {
+                "energy": ("time", energy, {"units": "J", "text": "into the port"}),
+                "stderr": ("time", errors, {"units": "J"}),
+                "power": ("time", power, {"units": "W"}),
+            },
+            coordinates,
+        )
+    )
+
+
+def _stderr(
+    acting: Array, travel: Array, held: bool, position_noise: float, force_noise: float
+) -> Array:
+    """Standard error of the energy at each sample, (n,), to first order in the noise.
+
+    A position x[k] inside enters with acting[k-1] - acting[k], the last one with acting alone; a
+    force f[k] with the travel that it acts along.
+    """
+    steps = np.concatenate([[0.0], (acting[:-1] - acting[1:]) ** 2])
+    inside = np.concatenate([[0.0], np.cumsum(steps)])
+    ends = np.concatenate([[0.0], acting[0] ** 2 + acting**2])
+    along = travel if held else np.concatenate([travel[:1] / 2, (travel[1:] + travel[:-1]) / 2])
+    pulled = np.concatenate([[0.0], np.cumsum(along**2)])
+    variance = position_noise**2 * (inside + ends) + force_noise**2 * pulled
+    return np.asarray(np.sqrt(variance))
+
+
+def observe_simulation(
+    simulation: Simulation, *, motion: str = "L", force: str = "R_V"
+) -> PortEnergy:
+    """Energy into a port of a simulated diagram; best with rows at every step."""
+    return observe(
+        simulation.data["time"].values, simulation[motion].values, simulation[force].values
+    )
+
+
+def observe_record(
+    experiment: Experiment,
+    record: Record,
+    *,
+    body: str = "device",
+    force: str = "interaction_force",
+) -> PortEnergy:
+    """Energy that came into a body through a measured force, over one record without interruption.
+
+    force: "interaction_force", sampled, or "actuator_force", held between samples
+    The errors are those of the resolution and noise that the experiment states for the channels.
+    raises ExperimentError: the record has no such force or position, or has several segments
+    """
+    names = f"{body}.position", f"{body}.{force}"
+    for name in names:
+        if name not in record.signals:
+            raise ExperimentError(
+                f"{record.file}: has no {name}, found {', '.join(sorted(record.signals))}"
+            )
+    if len(record.segments) > 1:
+        raise ExperimentError(
+            f"{record.file}: {len(record.segments)} segments, energy is counted over one"
+        )
+    errors = []
+    for name in names:
+        channel = experiment.channels[name]
+        errors.append(float(np.hypot(_ROUNDED * (channel.resolution or 0.0), channel.noise or 0.0)))
+    return observe(
+        record.time,
+        record.signals[names[0]],
+        record.signals[names[1]],
+        held=force == "actuator_force",
+        position_noise=errors[0],
+        force_noise=errors[1],
+    )
+
+
+@dataclass(frozen=True)
+class PassivityControlled:
+    """What the passivity controller made of a force.
+
+    force: with the damper, (n,), N;  damping: that it added at each sample, N s/m, (n,)
+    energy: into the port with it, J, (n,): below zero only where speed or `largest` forbid it
+    """
+
+    force: Array
+    damping: Array
+    energy: Array
+
+
+def passivity_controlled(
+    velocity: Array, force: Array, *, period: float, largest: float = np.inf
+) -> PassivityControlled:
+    """Add a damper to each sample over which more would have come out than went in.
+
+    velocity: travel of each sample over the period, (n,);  force: ON the device that moves it so,
+        held over the sample, (n,), N;  largest: damping that may be added, N s/m
+    """
+    if period <= 0 or len(velocity) != len(force):
+        raise ModelError(
+            f"passivity_controlled: expected a period > 0 and as many forces as velocities, found "
+            f"{period}, {len(force)}, {len(velocity)}"
+        )
+    damping, energy = np.zeros(len(force)), np.zeros(len(force))
+    total = 0.0
+    for n, (v, f) in enumerate(zip(velocity, force, strict=True)):
+        total += period * f * v
+        if total < 0 and v:
+            damping[n] = min(-total / (period * v * v), largest)
+            total += period * damping[n] * v * v
+        energy[n] = total
+    return PassivityControlled(force + damping * velocity, damping, energy)

@@ -1,0 +1,118 @@
+"""The passivity observer on motions that refute, on proved cases, and on a recording."""
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.controllers import controller
+from teleopdesign.diagrams import haptic_interface
+from teleopdesign.errors import ExperimentError, ModelError
+from teleopdesign.passivity import (
+    Strokes,
+    confirmed_motion,
+    observe,
+    observe_record,
+    observe_simulation,
+    passivity_controlled,
+)
+from teleopdesign.simulate import simulate
+
+STROKES = Strokes((2e-3, -2e-3), speed=0.3, rounds=12)
+
+
+def joint(level, stiffness):
+    body = td.Body("prismatic", {"inertia": td.Value(1e-3)})
+    body = body.with_effect(td.EFFECTS["coulomb"], {"level": 0.5})
+    presliding = td.EFFECTS["presliding"].without("bristle_damping")
+    body = body.with_effect(presliding, {"stiffness": 2e4})
+    law = controller("dahl", {"level": level, "stiffness": stiffness})
+    return haptic_interface(body, cancellation=law)
+
+
+def moved(diagram, strokes=STROKES):
+    """The diagram along the strokes, with a row at every step."""
+    return simulate(
+        diagram,
+        duration=np.ceil(strokes.duration / 1e-3) * 1e-3,
+        motion={"L": strokes.motion()},
+        computer="continuous",
+        step=5e-5,
+        every_step=True,
+    )
+
+
+@pytest.mark.parametrize(("level", "stiffness"), [(0.4, 1.5e4), (0.5, 1.9e4), (0.3, 1e4)])
+def test_no_energy_comes_out_where_the_claim_is_proved(level, stiffness):
+    found = observe_simulation(moved(joint(level, stiffness)))
+    # the inertia's energy is held in between; rounding of the steps is a part in 1e6 of it
+    assert found.lowest >= -1e-6 * float(found.data["energy"].max())
+
+
+@pytest.mark.parametrize(("level", "stiffness", "size"), [(0.6, 1.5e4, 2e-3), (0.2, 1.5e4, 1e-5)])
+def test_energy_comes_out_along_a_motion_that_refutes(level, stiffness, size):
+    diagram = joint(level, stiffness)
+    motion = confirmed_motion(diagram, Strokes((size, -size), speed=150 * size))
+    assert motion is not None
+    found = observe_simulation(moved(diagram, motion.strokes))
+    assert found.certain
+    # trapezoids of steps of another length than those of the search
+    assert float(found.data["energy"][-1]) == pytest.approx(-motion.energy, rel=0.05)
+    assert found.given_out()
+
+
+def test_a_held_force_is_counted_exactly():
+    """Two samples of 3 N along 0.1 m and back with -1 N: 0.3 + 0.1 J, whatever lies between."""
+    t, x, f = np.arange(3.0), np.array([0.0, 0.1, 0.0]), np.array([3.0, -1.0, 9.0])
+    found = observe(t, x, f, held=True)
+    assert found.data["energy"].values == pytest.approx([0.0, 0.3, 0.4])
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_the_error_of_the_energy_is_that_of_noisy_sensors(held):
+    rng = np.random.default_rng(3)
+    t = np.linspace(0, 1, 301)
+    x, f = 0.01 * np.sin(9 * t), 2 * np.cos(9 * t + 0.3)
+
+    def energy(a, b):
+        return observe(t, x + a, f + b, held=held).data["energy"].values[-1]
+
+    drawn = [energy(rng.normal(0, 1e-5, 301), rng.normal(0, 0.02, 301)) for _ in range(600)]
+    told = observe(t, x, f, held=held, position_noise=1e-5, force_noise=0.02)
+    # 600 draws know a standard deviation to 3 %: three of those
+    assert float(told.data["stderr"][-1]) == pytest.approx(np.std(drawn), rel=0.09)
+
+
+def test_energy_into_a_recorded_device_covers_its_friction_and_is_certain():
+    """The hand works on the rod; its motor's work is observed as well, held between samples."""
+    experiment = td.load_experiment(td.example("rod"))
+    record = experiment.fit_records[0]
+    hand = observe_record(experiment, record)
+    motor = observe_record(experiment, record, force="actuator_force")
+    total = float(hand.data["energy"][-1] + motor.data["energy"][-1])
+    travelled = float(np.abs(np.diff(record.signals["device.position"])).sum())
+    # all that both put in is lost: at 0.55 N of Coulomb friction and more at speed
+    assert total > 0.5 * travelled
+    assert 0 < float(hand.data["stderr"][-1]) < 0.05 * total
+    with pytest.raises(ExperimentError, match="has no device.torque"):
+        observe_record(experiment, record, force="torque")
+
+
+def test_the_passivity_controller_adds_damping_only_where_energy_would_come_out():
+    found = moved(joint(0.6, 1.5e4))
+    period = float(np.diff(found.data["time"].values[:2])[0])
+    velocity = np.diff(found["L"].values) / period
+    force = found["R_V"].values[:-1]
+    assert np.cumsum(period * force * velocity)[-1] < 0
+    controlled = passivity_controlled(velocity, force, period=period)
+    assert controlled.energy.min() >= -1e-12
+    assert (controlled.damping > 0).any()
+    assert np.sum(period * controlled.force * velocity) == pytest.approx(controlled.energy[-1])
+    quiet = passivity_controlled(velocity, np.abs(force) * np.sign(velocity), period=period)
+    assert not quiet.damping.any()
+
+
+def test_what_cannot_be_observed_is_refused():
+    with pytest.raises(ModelError, match="three samples or more"):
+        observe(np.arange(2.0), np.arange(2.0), np.arange(2.0))
+    with pytest.raises(ModelError, match="a period > 0"):
+        passivity_controlled(np.ones(2), np.ones(2), period=0.0)

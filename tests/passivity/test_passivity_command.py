@@ -1,0 +1,164 @@
+"""`teleopdesign passivity`: claims, margins and certificates for a diagnosed device."""
+
+import json
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.cli import main
+from teleopdesign.errors import ModelError
+from teleopdesign.passivity.device_claims import Compensator, compensation_claims
+from teleopdesign.passivity.identified import identified
+
+
+def number(value, stderr, unit):
+    return {"value": value, "stderr": stderr, "unit": unit}
+
+
+@pytest.fixture
+def answer(tmp_path):
+    """An answer: 0.5 N of friction known to 0.01 N, that gives with 20 000 N/m known to 500."""
+    path = tmp_path / "answer.json"
+    content = {
+        "verdict": "effects_missing",
+        "missing": [{"effect": "presliding", "at": "device"}],
+        "model_parameters": {
+            "device.inertia": number(0.15, 0.001, "kg"),
+            "device.coulomb.level": number(0.5, 0.01, "N"),
+            "device.viscous.damping": number(2.0, 0.05, "N*s/m"),
+        },
+        "candidates": [
+            {
+                "effect": "presliding",
+                "at": "device",
+                "parameters": {"stiffness": number(2e4, 500.0, "N/m")},
+            },
+            {"effect": "bias", "at": "device", "parameters": {"force": number(1, 1, "N")}},
+        ],
+    }
+    path.write_text(json.dumps(content))
+    return path
+
+
+def claims_of(path):
+    return {c["topic"]: c for c in json.loads(path.read_text())["claims"]}
+
+
+def test_a_compensator_within_all_intervals_is_proved(answer, tmp_path, capsys):
+    out = tmp_path / "claims.json"
+    assert main(["passivity", str(answer), "--dahl", "0.47", "1.8e4", "--json", str(out)]) == 0
+    claims = claims_of(out)
+    assert claims["estimate"]["status"] == claims["95 % interval"]["status"] == "proved"
+    assert claims["search by simulation"]["status"] == "evidence"
+    text = capsys.readouterr().out
+    # 0.5 - 1.96 * 0.01 N
+    assert "largest f_D that is passive for every level in the interval: 0.4804 N" in text
+    assert main(["passivity", "--check", str(out)]) == 0
+    assert "2 certificates of 3 claims verified" in capsys.readouterr().out
+
+
+def test_the_estimate_may_be_passive_where_the_interval_is_not(answer, tmp_path):
+    out = tmp_path / "claims.json"
+    assert main(["passivity", str(answer), "--dahl", "0.49", "1.5e4", "--json", str(out)]) == 0
+    claims = claims_of(out)
+    assert claims["estimate"]["status"] == "proved"
+    assert claims["95 % interval"]["status"] == "refuted"
+    assert claims["95 % interval"]["motion"]["energy"] > 0
+    assert claims["95 % interval"]["replayed"]["energy"] > 0
+
+
+def test_a_sampled_wall_and_the_z_width_need_a_period(answer, tmp_path, capsys):
+    assert main(["passivity", str(answer), "--wall", "1000", "0"]) == 2
+    assert "need --period" in capsys.readouterr().err
+    out = tmp_path / "claims.json"
+    wall = ["--wall", "4000", "0", "--period", "1e-3", "--encoder-step", "1e-5"]
+    assert main(["passivity", str(answer), *wall, "--json", str(out)]) == 0
+    claims = claims_of(out)
+    # 2 b/T = 3804 N/m at the low end of the damping's interval
+    assert claims["virtual wall, damping alone"]["status"] == "refuted"
+    assert claims["virtual wall, encoder steps"]["status"] == "refuted"
+    assert "stiffest passive wall 3804" in capsys.readouterr().out
+
+
+def test_a_tampered_certificate_is_refused(answer, tmp_path, capsys):
+    out = tmp_path / "claims.json"
+    main(["passivity", str(answer), "--dahl", "0.47", "1.8e4", "--json", str(out)])
+    content = json.loads(out.read_text())
+    content["claims"][0]["certificates"][0]["supply"] += " + 1"
+    out.write_text(json.dumps(content))
+    capsys.readouterr()
+    assert main(["passivity", "--check", str(out)]) == 2
+    assert "changed since it was written" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([], "expected a folder, an answer"),
+        (["missing.json"], "no answer"),
+        (["--check", "missing.json"], "no file of claims"),
+        (["x.json", "--dahl", "0", "1"], "expected two numbers > 0"),
+        (["x.json", "--period", "0"], "more than 0 s"),
+        (["x.json", "--period", "1e-3", "--delay", "1.5e-3"], "1.5 periods"),
+        (["diagram.toml"], "expected a folder with experiment.toml"),
+    ],
+)
+def test_bad_input_is_one_line_and_status_2(arguments, said, capsys):
+    assert main(["passivity", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+def body_with(**values):
+    body = td.Body("prismatic", {"inertia": td.Value(0.1)})
+    for effect in dict.fromkeys(n.partition("__")[0] for n in values):
+        own = {n.partition("__")[2]: v for n, v in values.items() if n.startswith(f"{effect}__")}
+        body = body.with_effect(td.EFFECTS[effect], own)
+    return body
+
+
+def test_the_lowest_level_is_that_of_the_whole_law():
+    """Stribeck adds at rest, asymmetry takes from one direction."""
+    found = identified(
+        body_with(
+            coulomb__level=0.5,
+            stribeck__extra_static_level=0.2,
+            stribeck__stribeck_velocity=0.01,
+        )
+    )
+    assert (found.lowest.estimate, found.highest.estimate) == pytest.approx((0.5, 0.7))
+    found = identified(body_with(coulomb__level=0.5, coulomb_asymmetry__half_difference=0.1))
+    assert (found.lowest.estimate, found.highest.estimate) == pytest.approx((0.4, 0.6))
+
+
+def test_a_level_that_may_be_zero_covers_no_compensation():
+    body = body_with(coulomb__level=0.5).with_values({"coulomb.level": td.Value(0.5, stderr=0.3)})
+    with pytest.raises(ModelError, match="as low as"):
+        identified(body)
+    with pytest.raises(ModelError, match="no friction to compensate"):
+        identified(body_with(viscous__damping=1.0))
+
+
+def test_damping_covers_what_the_lowest_level_does_not():
+    """Stribeck friction at low speed, viscous damping at high speed: 0.5 N alone never acts."""
+    body = body_with(
+        coulomb__level=0.5,
+        stribeck__extra_static_level=0.2,
+        stribeck__stribeck_velocity=0.05,
+        viscous__damping=2.0,
+    )
+    found = identified(body)
+    v = np.linspace(0, 1, 100001)
+    least = np.min(0.5 + 0.2 * np.exp(-((v / 0.05) ** 2)) + 2.0 * v)
+    # 4000 draws over seven decades of speed: 0.4 % apart, at a minimum that is flat
+    assert found.least_resistance.estimate == pytest.approx(least, rel=1e-4)
+    claims = compensation_claims(
+        found, Compensator("dahl", 0.6, 1e4), rng=np.random.default_rng(1), tries=3
+    )
+    by_topic = {c.topic: c.claim for c in claims}
+    assert by_topic["any law within the level"].status == "refuted"
+    counted = by_topic["the same, damping counted"]
+    assert (counted.status, counted.holds) == ("evidence", True)
+    assert by_topic["search by simulation"].holds
