@@ -81,13 +81,16 @@ def whole_score(before: Fit, after: Fit) -> float:
 
 #: part of a new parameter's column that must lie outside the span of the model's own
 TOLD = 0.02
+#: standard errors by which a parameter that makes an effect what it is must differ from zero
+SURELY = 5.0
 
 
 def is_told(found: Fit, base: Fit) -> bool:
     """Whether the new parameters are determined and do what the base's cannot imitate.
 
     Each must be further from absence than its standard error (an angle within half a turn) unless
-    the effect is there without it, and some must change the residual in a way of its own.
+    the effect is there without it, what is essential to it surely so, and some must change the
+    residual in a way of its own.
     """
     new = [i for i, n in enumerate(found.free) if n not in base.free]
     for i in new:
@@ -96,7 +99,7 @@ def is_told(found: Fit, base: Fit) -> bool:
         if declared.optional:
             continue
         away = np.pi if declared.quantity == "angle" else found.model.from_absence(name)
-        if not value.stderr < away:
+        if not value.stderr * (SURELY if declared.essential else 1.0) < away:
             return False
     old = [i for i, n in enumerate(found.free) if n in base.free]
     for i in new:
