@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -138,12 +138,14 @@ def rank_candidates(
     base: Fit,
     prepared: Prepared,
     *,
+    among: Collection[Candidate] | None = None,
     stated: Model | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Ranking:
     """Try every candidate on top of a fitted model.
 
     base: the fitted model that something may be missing in
+    among: those that are tried, of all that the model could take
     stated: the model as its user gave it; its values are starts too
     progress: called with a line of text before each candidate
     """
@@ -154,9 +156,13 @@ def rank_candidates(
         added = base.model.with_effect(candidate.effect, at=candidate.at)
         return candidate, estimate_from_starts(added, prepared, base, stated)
 
+    possible = candidates(base.model, [s.motion for s in prepared.of("fit")])
+    if among is not None:
+        wanted = {c.key for c in among}
+        possible = tuple(c for c in possible if c.key in wanted)
     # transforms and kernels release the interpreter's lock, so threads share the cores
     with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
-        fits = list(pool.map(tried, candidates(base.model, [s.motion for s in prepared.of("fit")])))
+        fits = list(pool.map(tried, possible))
         leading = (1.0 + CONTENDING) * min((fit_squares(f) for _, f in fits), default=0.0)
         fits = list(pool.map(lambda cf: _refined(cf, leading, prepared, stated), fits))
     told = {c.key: is_told(f, base) for c, f in fits}
