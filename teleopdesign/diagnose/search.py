@@ -35,6 +35,8 @@ MOVED = 0.25
 #: factors on each parameter of such an effect from which a better place is sought, how often at
 #: most, and the part of the squares that it must take away to go on
 JOLTS, SWEEPS, ONWARD = (0.85, 1.18), 2, 0.1
+#: part of the squares before that it leaves at most where that is worth the time
+JOLTED = 0.5
 FIRST_STEPS = Effort(1e-3, 4)
 
 
@@ -65,7 +67,7 @@ def estimate_from_starts(
         models = _best_stepped(models, prepared, kept)
     rough = [estimate(m, prepared, effort=ROUGH) for m in models]
     best = min(rough, key=fit_squares)
-    if rugged:
+    if rugged and base is not None and fit_squares(best) < JOLTED * fit_squares(base):
         best = _jolted(best, model.absent, prepared)
     return best if base is not None else estimate(best.model, prepared, effort=FINE)
 
