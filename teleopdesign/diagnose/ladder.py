@@ -14,6 +14,7 @@ from ..measurement.experiment import Experiment
 from ..model import Model
 from .candidates import Candidate
 from .excerpt import excerpt
+from .exchange import best_exchange, rivals_of
 from .fit import Fit, estimate, fit_squares
 from .force_error import Prepared, force_error, prepare
 from .noise_floor import NoiseFloor, noise_floor
@@ -42,6 +43,8 @@ MOST = 6
 LONG, WINDOWS = 200_000, 60_000
 #: candidates that are added on trial where none is supported alone: each may mask another
 TRIED = 3
+#: most exchanges of an accepted effect for another
+EXCHANGES = 2
 
 
 @dataclass(frozen=True)
@@ -143,6 +146,7 @@ def find_missing(
     stated = model or Model.from_experiment(experiment)
     rungs = [Rung(None, estimate_from_starts(stated, prepared))]
     first: NoiseFloor | None = None
+    exchanges = EXCHANGES
     while True:
         here = rungs[-1].fit
         floor = noise_floor(here.model, prepared, np.random.default_rng(seed))
@@ -157,9 +161,14 @@ def find_missing(
         if not supported:
             # beside effects that are accepted already a pair costs more time than it is worth
             pair = _pair(rungs[0], ranking, prepared, floor, stated, saying) if step == 1 else []
-            if not pair:
-                break
             rungs += pair
+            if pair:
+                continue
+            exchanged = _exchanged(rungs, prepared, floor, stated, saying) if exchanges else []
+            if not exchanged:
+                break
+            exchanges -= 1
+            rungs = exchanged
             continue
         best = min(alike(supported), key=simplicity)
         rungs.append(Rung(best.candidate, best.fit, ranking, equals_of(best, ranking, here, floor)))
@@ -233,6 +242,34 @@ def _explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
     """Part of the squares above the noise floor that the effects between the two explain."""
     whole, left = before.check_error**2, after.check_error**2
     return (whole - left) / max(whole - floor.value**2, 1e-300)
+
+
+def _exchanged(
+    rungs: list[Rung],
+    prepared: Prepared,
+    floor: NoiseFloor,
+    stated: Model,
+    say: Callable[[str], None],
+) -> list[Rung]:
+    """The rungs with one effect exchanged for a better; none where there is none, or only noise."""
+    last = rungs[-1].fit
+    if last.check_error <= ADEQUATE * floor.value:
+        return []
+    there = [r.added for r in rungs if r.added is not None]
+    # the last was ranked beside all the others already
+    rivals = {
+        r.added: rivals_of(r.ranking, there, floor)
+        for r in rungs[1:-1]
+        if r.added is not None and r.ranking is not None
+    }
+    found = best_exchange(last, rivals, prepared, floor, stated=stated, progress=say)
+    if found is None:
+        return []
+    best = found.taken
+    equals = equals_of(best, found.ranking, found.without, floor)
+    taken = Rung(best.candidate, best.fit, found.ranking, equals)
+    kept = [r for r in rungs if r.added is not found.dropped]
+    return _pruned(_refitted([*kept, taken], taken.fit, prepared), prepared, floor)
 
 
 def _said(say: Callable[[str], None], before: str, text: str) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -81,13 +81,16 @@ def whole_score(before: Fit, after: Fit) -> float:
 
 #: part of a new parameter's column that must lie outside the span of the model's own
 TOLD = 0.02
+#: standard errors by which a parameter that makes an effect what it is must differ from zero
+SURELY = 5.0
 
 
 def is_told(found: Fit, base: Fit) -> bool:
     """Whether the new parameters are determined and do what the base's cannot imitate.
 
     Each must be further from absence than its standard error (an angle within half a turn) unless
-    the effect is there without it, and some must change the residual in a way of its own.
+    the effect is there without it, what is essential to it surely so, and some must change the
+    residual in a way of its own.
     """
     new = [i for i, n in enumerate(found.free) if n not in base.free]
     for i in new:
@@ -96,7 +99,7 @@ def is_told(found: Fit, base: Fit) -> bool:
         if declared.optional:
             continue
         away = np.pi if declared.quantity == "angle" else found.model.from_absence(name)
-        if not value.stderr < away:
+        if not value.stderr * (SURELY if declared.essential else 1.0) < away:
             return False
     old = [i for i, n in enumerate(found.free) if n in base.free]
     for i in new:
@@ -135,12 +138,14 @@ def rank_candidates(
     base: Fit,
     prepared: Prepared,
     *,
+    among: Collection[Candidate] | None = None,
     stated: Model | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Ranking:
     """Try every candidate on top of a fitted model.
 
     base: the fitted model that something may be missing in
+    among: those that are tried, of all that the model could take
     stated: the model as its user gave it; its values are starts too
     progress: called with a line of text before each candidate
     """
@@ -151,9 +156,13 @@ def rank_candidates(
         added = base.model.with_effect(candidate.effect, at=candidate.at)
         return candidate, estimate_from_starts(added, prepared, base, stated)
 
+    possible = candidates(base.model, [s.motion for s in prepared.of("fit")])
+    if among is not None:
+        wanted = {c.key for c in among}
+        possible = tuple(c for c in possible if c.key in wanted)
     # transforms and kernels release the interpreter's lock, so threads share the cores
     with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
-        fits = list(pool.map(tried, candidates(base.model, [s.motion for s in prepared.of("fit")])))
+        fits = list(pool.map(tried, possible))
         leading = (1.0 + CONTENDING) * min((fit_squares(f) for _, f in fits), default=0.0)
         fits = list(pool.map(lambda cf: _refined(cf, leading, prepared, stated), fits))
     told = {c.key: is_told(f, base) for c, f in fits}

@@ -7,7 +7,9 @@ made of what ranks first.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
@@ -26,8 +28,15 @@ WORTH = 0.01
 #: that is linear in no strength
 PREDICTED, STEPPED = 2, 1
 CURVED_PREDICTED, CURVED_STEPPED = 4, 2
+#: where hidden states are corrected they may still fall out of step, and squares are rugged
+CORRECTED_PREDICTED, CORRECTED_STEPPED = 8, 4
 #: part by which a user's value may be wrong: what moved further may have been led astray
 MOVED = 0.25
+#: factors on each parameter of such an effect from which a better place is sought, how often at
+#: most, and the part of the squares that it must take away to go on
+JOLTS, SWEEPS, ONWARD = (0.85, 1.18), 2, 0.1
+#: part of the squares before that it leaves at most where that is worth the time
+JOLTED = 0.5
 FIRST_STEPS = Effort(1e-3, 4)
 
 
@@ -41,13 +50,15 @@ def estimate_from_starts(
     """
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     models = started(model, unit)
-    kept = CURVED_STEPPED
+    rugged = any(model.body(at).effect(name).corrections() for name, at in model.absent)
+    kept = CORRECTED_STEPPED if rugged else CURVED_STEPPED
     if base is not None:
         curved = _with_strength(model, base) is None
-        kept = CURVED_STEPPED if curved else STEPPED
+        kept = kept if curved else STEPPED
         if curved and stated is not None and _moved(base, stated):
             models += [at_stated(m, stated) for m in models]
-        models = _promising(model, models, prepared, base, unit)
+        most = CORRECTED_PREDICTED if rugged else CURVED_PREDICTED
+        models = _promising(model, models, prepared, base, unit, most)
         if not models:
             return unchanged(model, base)
     elif len(models) == 1:
@@ -56,6 +67,8 @@ def estimate_from_starts(
         models = _best_stepped(models, prepared, kept)
     rough = [estimate(m, prepared, effort=ROUGH) for m in models]
     best = min(rough, key=fit_squares)
+    if rugged and base is not None and fit_squares(best) < JOLTED * fit_squares(base):
+        best = _jolted(best, model.absent, prepared)
     return best if base is not None else estimate(best.model, prepared, effort=FINE)
 
 
@@ -72,16 +85,24 @@ def unchanged(model: Model, base: Fit) -> Fit:
 
 
 def _promising(
-    model: Model, models: list[Model], prepared: Prepared, base: Fit, unit: dict[str, float]
+    model: Model,
+    models: list[Model],
+    prepared: Prepared,
+    base: Fit,
+    unit: dict[str, float],
+    most: int,
 ) -> list[Model]:
-    """The starts from which one linear step promises most; none where none promises a gain."""
+    """The starts from which one linear step promises most; none where none promises a gain.
+
+    most: how many, for an effect that has no strength
+    """
     linear = _with_strength(model, base)
     if linear is not None:
         return _by_strength(models, *linear, prepared, base)
     promised = sorted((_promise(m, prepared, base, unit), i) for i, m in enumerate(models))
     if promised[0][0] > (1.0 - WORTH) * fit_squares(base):
         return []
-    return [models[i] for _, i in promised[:CURVED_PREDICTED]]
+    return [models[i] for _, i in promised[:most]]
 
 
 def _with_strength(model: Model, base: Fit) -> tuple[Effect, str] | None:
@@ -151,3 +172,26 @@ def _best_stepped(models: list[Model], prepared: Prepared, kept: int) -> list[Mo
         found.append((squares, i, dict(zip(free, solution.values.tolist(), strict=True))))
     found.sort(key=lambda f: f[:2])
     return [models[i].with_values(values) for _, i, values in found[:kept]]
+
+
+def _jolted(found: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> Fit:
+    """The fit at the best place near by: squares that are rugged have many shallow ones.
+
+    new: (effect, place) whose parameters are jolted, one at a time
+    """
+    stretches, free = prepared.of("fit"), free_parameters(found.model)
+    names = [n for effect, at in new for n in free if n.startswith(f"{at}.{effect}.")]
+    model, least = found.model, fit_squares(found)
+    for _ in range(SWEEPS):
+        before = least
+        for name, factor in product(names, JOLTS):
+            jolted = model.with_values({name: model.parameters[name].value * factor})
+            solution = solve(jolted, free, prepared, stretches, FIRST_STEPS)
+            squares = float(solution.residual @ solution.residual)
+            if squares < least:
+                least = squares
+                values = dict(zip(free, solution.values.tolist(), strict=True))
+                model = model.with_values(values)
+        if least > (1.0 - ONWARD) * before:
+            break
+    return found if model is found.model else estimate(model, prepared, effort=ROUGH)

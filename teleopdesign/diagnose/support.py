@@ -26,7 +26,20 @@ def is_supported(base: Fit, ranked: Ranked, floor: NoiseFloor) -> bool:
     there: it describes the records, but is no missing physics beside the model's own.
     """
     displaced = set(ranked.fit.at_bound) - set(base.at_bound)
-    return ranked.told and not displaced and is_better(base, ranked.fit, floor)
+    return (
+        ranked.told
+        and not any(_is_there(base, name) for name in displaced)
+        and is_better(base, ranked.fit, floor)
+    )
+
+
+def _is_there(base: Fit, name: str) -> bool:
+    """Whether the records tell the effect that a parameter belongs to from its absence."""
+    effect = name.rpartition(".")[0]
+    values = {n: v for n, v in base.model.parameters.items() if n.rpartition(".")[0] == effect}
+    return name not in base.model.parameters or all(
+        v.fixed or not v.stderr >= base.model.from_absence(n) for n, v in values.items()
+    )
 
 
 def is_better(base: Fit, other: Fit, floor: NoiseFloor) -> bool:

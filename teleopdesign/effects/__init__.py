@@ -12,12 +12,26 @@ from pathlib import Path
 from types import MappingProxyType, ModuleType
 
 from ..errors import ModelError, did_you_mean
-from ._effect import CONTACT_ROLES, ROLES, SIGNALS, Effect, Parameter, Role, State, delayed, ordered
+from ._effect import (
+    CONTACT_ROLES,
+    INERTIA,
+    ROLES,
+    SIGNALS,
+    UNEXPLAINED,
+    Effect,
+    Parameter,
+    Role,
+    State,
+    delayed,
+    ordered,
+)
 
 __all__ = [
     "CONTACT_ROLES",
     "EFFECTS",
+    "INERTIA",
     "SIGNALS",
+    "UNEXPLAINED",
     "Effect",
     "Parameter",
     "Role",
@@ -68,6 +82,9 @@ def _checked(module: ModuleType, path: Path) -> Effect:
         for law in (effect.expression(), *effect.rates().values()):
             if strangers := law.free_symbols - allowed:
                 raise ModelError(f"{path}: law uses {', '.join(map(str, strangers))}")
+        for law in effect.corrections().values():
+            if strangers := law.free_symbols - allowed - {INERTIA, UNEXPLAINED}:
+                raise ModelError(f"{path}: correction uses {', '.join(map(str, strangers))}")
     except (AttributeError, TypeError) as error:
         raise ModelError(f"{path}: law: {error}") from error
     return effect

@@ -76,6 +76,9 @@ SIGNALS = {
         "level penetration".split()
     )
 }
+#: what corrections may use besides: the inertia of the effect's body, and the force that is left
+#: unexplained along a measured motion
+INERTIA, UNEXPLAINED = sp.symbols("inertia unexplained", real=True)
 #: delayed(signal, delay): the signal a fixed time earlier
 delayed = sp.Function("delayed", real=True)
 
@@ -89,6 +92,7 @@ class Parameter:
     within: upper bound of a search in that scale, where a larger value would mean something else
     chosen: set at its first start, not estimated: others are meant relative to it
     optional: the effect is there where this is zero too, which it is unless a value is given
+    essential: where this is zero the effect would be another one: it must be surely more
     """
 
     quantity: str
@@ -100,6 +104,7 @@ class Parameter:
     within: float = float("inf")
     chosen: bool = False
     optional: bool = False
+    essential: bool = False
 
 
 @dataclass(frozen=True)
@@ -107,11 +112,14 @@ class State:
     """A hidden state: its quantity and rate law(now, p), where `now` also carries the states.
 
     start: the signal that it equals when a record starts; "": it starts settled, or at rest
+    correction: correction(now, p), the rate by which the force that is left unexplained, also in
+        `now`, leads the state back along a measured motion; None: it runs free
     """
 
     quantity: str
     rate: Callable[[Any, Any], sp.Expr]
     start: str = ""
+    correction: Callable[[Any, Any], sp.Expr] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,6 +138,8 @@ class Effect:
     absent: parameter values at which the effect is not there at all.
     canonical: of parameter values that mean the same, those to report.
     needs: effects that the model must have for this one to mean anything.
+    led: inertia(p) of a body among the hidden states whose position is corrected: the force that it
+        would take to lead it so is left unexplained as well
     """
 
     role: Role
@@ -141,6 +151,7 @@ class Effect:
     needs: frozenset[str] = frozenset()
     always: frozenset[str] = frozenset()
     canonical: Callable[[Mapping[str, float]], dict[str, float]] = dict
+    led: Callable[[Any], sp.Expr] | None = None
     source: str = ""
     name: str = ""
     text: str = ""
@@ -185,7 +196,9 @@ class Effect:
         return {s: sp.Symbol(f"{self.name}_{s}", real=True) for s in self.states}
 
     def _now(self, signals: Mapping[str, Any] | None) -> SimpleNamespace:
-        return SimpleNamespace(**{**SIGNALS, **self.state_symbols(), **(signals or {})})
+        more = {"inertia": INERTIA, "unexplained": UNEXPLAINED}
+        own = {**SIGNALS, **more, **self.state_symbols()}
+        return SimpleNamespace(**{**own, **(signals or {})})
 
     def _parameters(self, values: Mapping[str, Any] | None) -> SimpleNamespace:
         return SimpleNamespace(**{**self.symbols(), **(values or {})})
@@ -202,6 +215,21 @@ class Effect:
         """Hidden state -> its rate of change, on symbols or on what is given."""
         now, p = self._now(signals), self._parameters(values)
         return {name: sp.sympify(state.rate(now, p)) for name, state in self.states.items()}
+
+    def corrections(self) -> dict[str, sp.Expr]:
+        """Hidden state -> rate by which it is corrected, on symbols; {} where all run free."""
+        now, p = self._now(None), self._parameters(None)
+        return {
+            name: sp.sympify(state.correction(now, p))
+            for name, state in self.states.items()
+            if state.correction is not None
+        }
+
+    def led_momentum(self) -> sp.Expr:
+        """Momentum that corrections stand for, on symbols; 0 where there are none."""
+        if self.led is None:
+            return sp.S(0)
+        return self.led(self._parameters(None)) * sum(self.corrections().values(), sp.S(0))
 
     def is_absent(self, values: Mapping[sp.Symbol, float]) -> bool:
         """Whether these parameter values (by symbol) mean that the effect is not there."""
@@ -251,10 +279,16 @@ def _without(effect: Effect, parameter: str) -> Effect:
     def given(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
         return lambda now, p: law(now, SimpleNamespace(**{**vars(p), parameter: sp.S(0)}))
 
+    def corrected(state: State) -> Callable[[Any, Any], sp.Expr] | None:
+        return None if state.correction is None else given(state.correction)
+
     return replace(
         effect,
         law=given(effect.law),
-        states={n: replace(s, rate=given(s.rate)) for n, s in effect.states.items()},
+        states={
+            n: replace(s, rate=given(s.rate), correction=corrected(s))
+            for n, s in effect.states.items()
+        },
         parameters={n: p for n, p in effect.parameters.items() if n != parameter},
     )
 

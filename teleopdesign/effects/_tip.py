@@ -9,13 +9,23 @@ coupling is the rigid body. Needs a parameter `tip_inertia`.
 from collections.abc import Callable
 from typing import Any
 
+from sympy import sqrt
+
 from ._effect import State
 
 Expression = Callable[[Any, Any], Any]
+#: rate at which a tip is led back, over its natural frequency in contact and its part of the body's
+#: inertia: a lighter tip, whose force shows less, is led by less
+FOLLOWING = 3.0
 
 
-def behind(coupling: Expression) -> tuple[Expression, dict[str, State]]:
-    """Law and hidden states of a structure whose coupling(now, p) joins it to its tip."""
+def behind(
+    coupling: Expression, correction: Expression | None = None
+) -> tuple[Expression, dict[str, State]]:
+    """Law and hidden states of a structure whose coupling(now, p) joins it to its tip.
+
+    correction: velocity by which the tip is led back to its course along a measured motion
+    """
 
     def law(now: Any, p: Any) -> Any:
         return coupling(now, p) + now.interaction_force - p.tip_inertia * now.acceleration
@@ -27,6 +37,16 @@ def behind(coupling: Expression) -> tuple[Expression, dict[str, State]]:
         return (coupling(now, p) + now.interaction_force) / p.tip_inertia
 
     return law, {
-        "tip_position": State("position", tip_position, "position"),
+        "tip_position": State("position", tip_position, "position", correction),
         "tip_velocity": State("velocity", tip_velocity, "velocity"),
     }
+
+
+def led_back(now: Any, p: Any) -> Any:
+    """Velocity of a tip towards where the unexplained force r says that it is: -rate r / K.
+
+    What it takes to lead the tip so, m_t rate / K dr/dt, is left unexplained as well: an effect
+    says so by `led`. Needs a parameter `stiffness`.
+    """
+    rate = FOLLOWING * sqrt(p.stiffness / p.tip_inertia) * p.tip_inertia / now.inertia
+    return -rate * now.unexplained / p.stiffness

@@ -5,12 +5,15 @@
 
 Gears and worn joints. Told from `transmission_compliance` by small motion, in which the tip does
 not follow at all.
+
+When the two meet next depends on the last time by more than sensors tell: along a measured motion
+the tip is led back to its course (`_tip.py`).
 """
 
 from sympy import Piecewise
 
 from ._effect import Effect, Parameter
-from ._tip import behind
+from ._tip import behind, led_back
 
 
 def coupling(now, p):
@@ -22,11 +25,12 @@ def coupling(now, p):
     )
 
 
-LAW, TIP = behind(coupling)
+LAW, TIP = behind(coupling, led_back)
 EFFECT = Effect(
     role="structure",
     law=LAW,
     states=TIP,
+    led=lambda p: p.tip_inertia,
     parameters={
         "tip_inertia": Parameter("inertia", "m_t: inertia of the tip side", starts=(0.3,)),
         "stiffness": Parameter(
@@ -38,7 +42,9 @@ EFFECT = Effect(
         "damping": Parameter(
             "damping", "C: contact damping", starts=(0.03,), scale="resonance_damping"
         ),
-        "gap": Parameter("position", "g: width of the gap", starts=(0.01, 0.03, 0.1, 0.3)),
+        "gap": Parameter(
+            "position", "g: width of the gap", starts=(0.01, 0.03, 0.1, 0.3), essential=True
+        ),
     },
     absent={"tip_inertia": 0.0},
     source="two masses with lost motion",

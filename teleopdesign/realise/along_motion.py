@@ -22,7 +22,7 @@ import numpy as np
 import sympy as sp
 
 from ..blocks import Body
-from ..effects import SIGNALS, Effect, Role, delayed, ordered
+from ..effects import SIGNALS, UNEXPLAINED, Effect, Role, delayed, ordered
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from .balance import balanced
@@ -168,13 +168,21 @@ def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
     given[SIGNALS["interaction_force"]] = plain(motion.interaction)
     inertia = law_of(symbols["inertia"] * SIGNALS["acceleration"])
     needed = acting + plain(motion.interaction) - inertia(given, values, columns)
-    for effect in (*_present(body, "force", values), *_present(body, "structure", values)):
+    for effect in _present(body, "force", values):
         needed = needed - _force(effect, given, values, columns, motion.sample_time)
     contact = body.contact()
     if contact != 0:
         needed = needed - law_of(contact)(given, values, columns)
-    friction = _friction(body, motion, given, needed, values, columns)
-    return Residual(motion, needed - friction, friction, acting)
+    low, high = _friction_bounds(body, motion, given, values, columns)
+    structures = _present(body, "structure", values)
+    for effect in structures:
+        rest = (needed, low, high)
+        needed = needed - _force(effect, given, values, columns, motion.sample_time, rest)
+    friction = _friction(motion, needed, low, high)
+    residual = needed - friction
+    for effect in structures:
+        residual = residual - _led(effect, motion, residual, values, columns)
+    return Residual(motion, residual, friction, acting)
 
 
 def _force(
@@ -183,11 +191,32 @@ def _force(
     values: Mapping[Any, float],
     columns: list[Any],
     step: float,
+    rest: Sequence[Traced] = (),
 ) -> Traced:
-    """Force of an effect along the motion, its hidden states simulated."""
-    hidden = ode_scan(effect, given, values, columns, step) if effect.states else {}
+    """Force of an effect along the motion, its hidden states simulated.
+
+    rest: force needed without it and the bounds of friction, to correct its states by
+    """
+    hidden = ode_scan(effect, given, values, columns, step, rest) if effect.states else {}
     law = law_of(effect.expression(), (*SIGNALS.values(), *hidden), _TRACED | set(hidden))
     return law({**given, **hidden}, values, columns)
+
+
+def _led(
+    effect: Effect,
+    motion: Motion,
+    unexplained: Traced,
+    values: Mapping[Any, float],
+    columns: list[Any],
+) -> Traced:
+    """Force that it takes to lead a hidden body as its position is corrected."""
+    momentum = effect.led_momentum()
+    if momentum == 0:
+        return Traced(np.zeros_like(unexplained.value), np.zeros_like(unexplained.tangent))
+    law = law_of(momentum, (UNEXPLAINED,), frozenset({UNEXPLAINED}))
+    slope = motion.spectrum.derivative(1) * motion.smoothing
+    led = law({UNEXPLAINED: unexplained}, values, columns)
+    return through(lambda y: motion.spectrum.multiply(y, slope), led)
 
 
 def _present(body: Body, role: Role, values: Mapping[Any, float]) -> list[Effect]:
@@ -249,18 +278,19 @@ def _shifted(
     return Traced(value, tangent)
 
 
-def _friction(
+def _friction_bounds(
     body: Body,
     motion: Motion,
     given: Mapping[Any, Traced],
-    needed: Traced,
     values: Mapping[Any, float],
     columns: list[Any],
-) -> Traced:
+) -> tuple[Traced, Traced]:
+    """Least and largest friction at each row; they coincide where the motion tells it."""
     level = body.level()
-    zero = np.zeros_like(needed.tangent)
+    zero = np.zeros((len(columns), len(motion.time)))
     if level == 0:
-        return Traced(np.zeros_like(needed.value), zero)
+        none = Traced(np.zeros(len(motion.time)), zero)
+        return none, none
     hidden: dict[Any, Traced] = {}
     for effect in ordered(body.effects, "friction_speed"):
         if effect.is_absent(values):
@@ -270,7 +300,7 @@ def _friction(
     law = law_of(level, (*SIGNALS.values(), *hidden), _TRACED | set(hidden))
 
     def towards(way: float) -> Traced:
-        ways = {SIGNALS["direction"]: Traced(np.full_like(needed.value, way), zero)}
+        ways = {SIGNALS["direction"]: Traced(np.full(len(motion.time), way), zero)}
         found = law({**given, **hidden, **ways}, values, columns)
         found.tangent[:, found.value < 0] = 0.0
         return Traced(np.maximum(found.value, 0.0), found.tangent)
@@ -279,9 +309,14 @@ def _friction(
     backward = towards(-1.0) if level.has(SIGNALS["direction"]) else forward
     shapes = _present(body, "friction_shape", values)
     if shapes:
-        low, high = shape_bounds(shapes[0], motion, given, forward, backward, values, columns)
-    else:
-        low, high = _sliding_bounds(motion, forward, backward)
+        return shape_bounds(shapes[0], motion, given, forward, backward, values, columns)
+    return _sliding_bounds(motion, forward, backward)
+
+
+def _friction(motion: Motion, needed: Traced, low: Traced, high: Traced) -> Traced:
+    """Friction within its bounds that balances what is needed."""
+    if low is high:
+        return low
     both = balanced(
         needed.rows(),
         low.rows(),

@@ -2,20 +2,24 @@
 
 Runge-Kutta steps; the signals that drive them are interpolated between rows, and sub-steps keep
 the fastest mode well within the method's stability. Generated from the effect's rates.
+
+A state that declares a correction is led back by the force r that is left unexplained, as by an
+observer: dz/dt = rate + correction(r), r = rest - law - friction, 0 where friction can take it up.
+Without it two bodies that part and meet fall out of step with the machine after a few meetings.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import sympy as sp
 
-from ..effects import SIGNALS, Effect
+from ..effects import INERTIA, SIGNALS, UNEXPLAINED, Effect
 from .compiled import compiled
-from .scan import code_of, columns_of, indented
+from .scan import code_of, indented
 
 if TYPE_CHECKING:
     from .along_motion import Traced
@@ -25,28 +29,56 @@ MODE_STEP, MOST_STEPS = 1.0, 16
 
 
 def _drivers(effect: Effect) -> list[str]:
-    rates = effect.rates().values()
-    return [n for n, s in SIGNALS.items() if any(r.has(s) for r in rates)]
+    laws = list(effect.rates().values())
+    if corrections := effect.corrections():
+        laws += [*corrections.values(), effect.expression()]
+    return [n for n, s in SIGNALS.items() if any(law.has(s) for law in laws)]
+
+
+def _parameters(effect: Effect) -> list[sp.Symbol]:
+    """The effect's parameters, and the body's inertia where corrections are relative to it."""
+    own = list(effect.symbols().values())
+    return [*own, INERTIA] if any(c.has(INERTIA) for c in effect.corrections().values()) else own
+
+
+def _slope(law: sp.Expr, states: Sequence[sp.Symbol], parameters: Sequence[sp.Symbol]) -> str:
+    """Code of the law's tangent in column c, from those of the states, d[j, c]."""
+    by = [(sp.diff(law, s), f"d[{j}, c]") for j, s in enumerate(states)]
+    by += [(sp.diff(law, s), f"(columns[{j}] == c)") for j, s in enumerate(parameters)]
+    return " + ".join(f"({code_of(slope)}) * {by_what}" for slope, by_what in by if slope != 0)
+
+
+def _rate_lines(effect: Effect) -> list[str]:
+    """Code of f, the rates of the states z, and of g, their tangents."""
+    states = list(effect.state_symbols().values())
+    parameters = _parameters(effect)
+    corrections = effect.corrections()
+    left, lines = UNEXPLAINED.name, []
+    if corrections:
+        law = effect.expression()
+        lines += [
+            f"{left} = u[-3] - ({code_of(law)})",
+            f"bound = -2 if {left} < u[-2] else -1 if {left} > u[-1] else 0",
+            f"{left} = {left} - u[bound] if bound else 0.0",
+        ]
+    rates = [rate + corrections.get(name, sp.S(0)) for name, rate in effect.rates().items()]
+    lines += [f"f[{i}] = {code_of(rate)}" for i, rate in enumerate(rates)]
+    lines.append("for c in range(d.shape[1]):")
+    if corrections:
+        moved = _slope(law, states, parameters)
+        lines.append(f"    d{left} = v[-3, c] - v[bound, c] - ({moved}) if bound else 0.0")
+    for i, rate in enumerate(rates):
+        lines.append(f"    g[{i}, c] = {_slope(rate, states, parameters) or 0.0}")
+        if rate.has(UNEXPLAINED):
+            lines.append(f"    g[{i}, c] += ({code_of(sp.diff(rate, UNEXPLAINED))}) * d{left}")
+    return lines
 
 
 @lru_cache(maxsize=32)
 def _source(effect: Effect) -> str:
-    states = list(effect.state_symbols().values())
-    rates = list(effect.rates().values())
-    parameters = list(effect.symbols().values())
-    drivers = _drivers(effect)
-    unpack = [f"{s} = z[{i}]" for i, s in enumerate(states)]
-    unpack += [f"{s} = p[{i}]" for i, s in enumerate(parameters)]
-    unpack += [f"{d} = u[{i}]" for i, d in enumerate(drivers)]
-    slopes = [f"f[{i}] = {code_of(r)}" for i, r in enumerate(rates)]
-    for i, rate in enumerate(rates):
-        by_state = [f"({code_of(sp.diff(rate, s))}) * d[{j}, c]" for j, s in enumerate(states)]
-        by_parameter = [
-            f"({code_of(sp.diff(rate, s))}) * (columns[{j}] == c)" for j, s in enumerate(parameters)
-        ]
-        slopes_of_tangent = " + ".join(by_state + by_parameter)
-        unpack_tangent = f"g[{i}, c] = {slopes_of_tangent}"
-        slopes.append(f"for c in range(d.shape[1]):\n        {unpack_tangent}")
+    unpack = [f"{s} = z[{i}]" for i, s in enumerate(effect.state_symbols().values())]
+    unpack += [f"{s} = p[{i}]" for i, s in enumerate(_parameters(effect))]
+    unpack += [f"{d} = u[{i}]" for i, d in enumerate(_drivers(effect))]
     return f'''"""Generated from an effect's rates; do not edit."""
 from math import *
 
@@ -55,19 +87,20 @@ from numba import njit
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def rate(z, d, u, p, columns, f, g):
+def rate(z, d, u, v, p, columns, f, g):
 {indented(unpack, 4)}
-{indented(slopes, 4)}
+{indented(_rate_lines(effect), 4)}
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def scan(h, steps, p, columns, drive, z, out, dout):
+def scan(h, steps, p, columns, drive, ddrive, z, out, dout):
     m, n = drive.shape
-    s, q = len(z), dout.shape[1]
+    s, q, t = len(z), dout.shape[1], len(ddrive)
     d = np.zeros((s, q))
     f = np.zeros((4, s))
     g = np.zeros((4, s, q))
     u = np.zeros(m)
+    v = np.zeros((t, q))
     w = h / steps
     zs = np.zeros(s)
     ds = np.zeros((s, q))
@@ -84,12 +117,15 @@ def scan(h, steps, p, columns, drive, z, out, dout):
                 here = (step + part) / steps
                 for i in range(m):
                     u[i] = drive[i, k] + here * (drive[i, k + 1] - drive[i, k])
+                for i in range(t):
+                    for c in range(q):
+                        v[i, c] = ddrive[i, k, c] + here * (ddrive[i, k + 1, c] - ddrive[i, k, c])
                 before = max(stage - 1, 0)
                 for i in range(s):
                     zs[i] = z[i] + part * w * f[before, i]
                     for c in range(q):
                         ds[i, c] = d[i, c] + part * w * g[before, i, c]
-                rate(zs, ds, u, p, columns, f[stage], g[stage])
+                rate(zs, ds, u, v, p, columns, f[stage], g[stage])
             for i in range(s):
                 z[i] += w / 6 * (f[0, i] + 2 * f[1, i] + 2 * f[2, i] + f[3, i])
                 for c in range(q):
@@ -105,10 +141,15 @@ def _fastest(effect: Effect) -> Any:
 
     Laws with gaps or stops are judged where they are stiffest, by the largest of their pieces.
     """
-    states = list(effect.state_symbols().values())
-    rates = [r.replace(sp.Piecewise, lambda *pieces: pieces[0][0]) for r in effect.rates().values()]
-    matrix = sp.Matrix(rates).jacobian(states)
-    return sp.lambdify(list(effect.symbols().values()), matrix, "numpy")
+    # a correction is fastest where little is left unexplained, and then linear in it
+    law, corrections = effect.expression(), effect.corrections()
+    rates = [
+        rate - law * sp.diff(corrections.get(name, sp.S(0)), UNEXPLAINED).subs(UNEXPLAINED, 0)
+        for name, rate in effect.rates().items()
+    ]
+    rates = [r.replace(sp.Piecewise, lambda *pieces: pieces[0][0]) for r in rates]
+    matrix = sp.Matrix(rates).jacobian(list(effect.state_symbols().values()))
+    return sp.lambdify(_parameters(effect), matrix, "numpy")
 
 
 def ode_scan(
@@ -117,26 +158,35 @@ def ode_scan(
     values: Mapping[Any, float],
     columns: list[Any],
     step: float,
+    rest: Sequence[Traced] = (),
 ) -> dict[sp.Symbol, Traced]:
     """The effect's hidden states at the rows, with tangents, driven by the measured signals.
 
     given: signals at the rows, which carry no tangents themselves;  step: s between rows
+    rest: what corrections need: force at the rows that the effect and friction have to take up,
+        and the least and largest that friction can; with tangents
     """
     from .along_motion import Traced
 
-    own = effect.symbols()
-    parameters = np.array([values[s] for s in own.values()], dtype=float)
-    places = columns_of(effect, columns)
+    own = _parameters(effect)
+    parameters = np.array([values[s] for s in own], dtype=float)
+    places = np.array([columns.index(s) if s in columns else -1 for s in own], dtype=int)
     modes = np.linalg.eigvals(np.nan_to_num(np.array(_fastest(effect)(*parameters), dtype=float)))
     needed = step * float(np.abs(modes).max()) / MODE_STEP
     steps = int(np.clip(np.ceil(needed), 1, MOST_STEPS))
-    drive = np.ascontiguousarray([given[SIGNALS[n]].value for n in _drivers(effect)])
+    corrected = rest if effect.corrections() else ()
+    drivers = [given[SIGNALS[n]].value for n in _drivers(effect)]
+    drive = np.ascontiguousarray([*drivers, *(r.value for r in corrected)])
+    n, count = drive.shape[1], len(effect.states)
+    moving = np.zeros((len(corrected), n, len(columns)))
+    for i, r in enumerate(corrected):
+        moving[i] = r.tangent.T
     start = np.array(
         [given[SIGNALS[s.start]].value[0] if s.start else 0.0 for s in effect.states.values()]
     )
-    n, count = drive.shape[1], len(effect.states)
     out, tangent = np.empty((count, n)), np.empty((count, len(columns), n))
-    compiled(_source(effect), "scan")(step, steps, parameters, places, drive, start, out, tangent)
+    scan = compiled(_source(effect), "scan")
+    scan(step, steps, parameters, places, drive, moving, start, out, tangent)
     if needed > 2.0 * MOST_STEPS or not np.isfinite(out).all():
         # too fast for the record's rate: no number at all rather than a wrong one
         out[:], tangent[:] = np.nan, np.nan

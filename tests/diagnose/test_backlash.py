@@ -1,0 +1,106 @@
+"""A tip behind a gap stays in step with the machine, and what keeps it there explains nothing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnose.own_cases import truth_of, write_own
+
+from teleopdesign import Model, find_missing, load_experiment
+from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.force_error import force_error, prepare, residuals
+from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.diagnose.rank import is_told
+from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.effects import EFFECTS
+
+BACKLASH = EFFECTS["backlash"]
+OWN = tuple(f"device.backlash.{n}" for n in BACKLASH.parameters)
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    """Prepared records, the user's model, the true model with its gap, and the truth."""
+    folder = write_own(tmp_path_factory.mktemp("backlash") / "case", "backlash", seed=3)
+    experiment, truth = load_experiment(folder), truth_of(folder)
+    stated = Model.from_experiment(experiment)
+    true = stated.with_values(truth["model_parameters"])
+    (hidden,) = truth["effects"]
+    values = {n: hidden["parameters"][n]["value"] for n in BACKLASH.parameters}
+    true = true.with_effect(BACKLASH, at="device")
+    true = true.with_values({f"device.backlash.{n}": v for n, v in values.items()})
+    return experiment, prepare(experiment), stated, true
+
+
+def free_running(model):
+    """The model with a tip that nothing leads back."""
+    states = {n: replace(s, correction=None) for n, s in BACKLASH.states.items()}
+    free = replace(BACKLASH, states=states, led=None)
+    body = model.body("device")
+    effects = tuple(free if e.name == "backlash" else e for e in body.effects)
+    return model._with_body("device", replace(body, effects=effects))
+
+
+def test_a_true_model_leaves_what_its_sensors_leave(case):
+    _, prepared, _, true = case
+    left = force_error(true, prepared.of("check"))
+    floor = noise_floor(true, prepared, np.random.default_rng(0)).value
+    # measured on ten machines: 0.9 to 1.5 floors
+    assert left < 2.0 * floor
+    # its meetings last: without correction it falls out of step
+    assert left < 0.5 * force_error(free_running(true), prepared.of("check"))
+
+
+def test_tangents_of_the_led_tip_are_the_slopes_of_the_residual(case):
+    _, prepared, _, true = case
+    stretches = prepared.of("check")[:1]
+    names = ("device.inertia", "device.coulomb.level", *OWN)
+    ((_, tangents),) = residuals(true, stretches, names)
+    for name, tangent in zip(names, tangents, strict=True):
+        value = true.parameters[name].value
+        # so small that no meeting moves past a sub-step, where its damping is a jump
+        step = 1e-8 * value
+        ends = [
+            residuals(true.with_values({name: value + way * step}), stretches)[0][0]
+            for way in (1.0, -1.0)
+        ]
+        slope = (ends[0] - ends[1]) / (2 * step)
+        # rounding of the difference: 1e-16 of the force over 1e-8
+        assert np.linalg.norm(tangent - slope) < 1e-3 * np.linalg.norm(slope)
+
+
+def test_a_tip_without_inertia_follows_nothing():
+    symbols = BACKLASH.symbols()
+    momentum = BACKLASH.led_momentum()
+    assert momentum.subs(symbols["tip_inertia"], 0) == 0
+    assert BACKLASH.corrections()["tip_position"].subs(symbols["tip_inertia"], 0) == 0
+
+
+def test_structures_without_a_gap_run_free():
+    assert not EFFECTS["transmission_compliance"].corrections()
+
+
+@pytest.mark.slow
+def test_a_gap_is_found_with_its_width(case):
+    experiment, _, stated, true = case
+    known = {n: EFFECTS[n] for n in ("backlash", "transmission_compliance", "added_inertia")}
+    known |= {n: EFFECTS[n] for n, _ in stated.effects}
+    found = find_missing(experiment, Model.from_experiment(experiment, known))
+    assert [c.effect.name for c in found.missing] == ["backlash"]
+    for name in ("tip_inertia", "stiffness", "gap"):
+        full = f"device.backlash.{name}"
+        expected = true.parameters[full].value
+        assert found.model.parameters[full].value == pytest.approx(expected, rel=0.1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("effect", ["transmission_compliance", "spring", None])
+def test_no_gap_is_told_where_there_is_none(effect, tmp_path):
+    folder = write_own(tmp_path / "case", effect, seed=5)
+    experiment = load_experiment(folder)
+    prepared, stated = prepare(experiment), Model.from_experiment(experiment)
+    base = estimate_from_starts(stated, prepared)
+    added = base.model.with_effect(BACKLASH, at="device")
+    found = estimate_from_starts(added, prepared, base, stated)
+    if ("backlash", "device") not in found.model.absent:
+        assert not is_told(estimate(found.model, prepared), base)

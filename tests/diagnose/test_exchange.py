@@ -1,0 +1,59 @@
+"""An effect that only stood in for another gives way to it, and a right one stays."""
+
+import numpy as np
+import pytest
+from diagnose.own_cases import write_own
+
+from teleopdesign import Model, load_experiment
+from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.exchange import best_exchange
+from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.effects import EFFECTS
+
+
+def candidate(name):
+    return Candidate(EFFECTS[name], "device")
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    """Prepared records of a machine with a spring, the user's model, and its noise floor."""
+    folder = write_own(tmp_path_factory.mktemp("spring") / "case", "spring", seed=3)
+    experiment = load_experiment(folder)
+    prepared, stated = prepare(experiment), Model.from_experiment(experiment)
+    base = estimate(stated, prepared)
+    return prepared, base, noise_floor(base.model, prepared, np.random.default_rng(0))
+
+
+def fitted(base, prepared, *names):
+    """The fit with these effects, added one after the other."""
+    for name in names:
+        added = base.model.with_effect(EFFECTS[name], at="device")
+        base = estimate_from_starts(added, prepared, base)
+    return base
+
+
+def test_a_stand_in_gives_way_to_the_spring_that_it_stood_for(scene):
+    prepared, base, floor = scene
+    found = fitted(base, prepared, "hardening_spring", "quadratic_drag")
+    rivals = {candidate("hardening_spring"): [candidate("spring"), candidate("added_inertia")]}
+    exchange = best_exchange(found, rivals, prepared, floor)
+    assert exchange is not None
+    assert exchange.dropped.key == ("hardening_spring", "device")
+    assert exchange.taken.candidate.key == ("spring", "device")
+    assert exchange.taken.fit.check_error < 0.5 * found.check_error
+
+
+def test_the_spring_gives_way_to_nothing(scene):
+    prepared, base, floor = scene
+    found = fitted(base, prepared, "spring")
+    rivals = {candidate("spring"): [candidate("hardening_spring"), candidate("quadratic_drag")]}
+    assert best_exchange(found, rivals, prepared, floor) is None
+
+
+def test_where_nothing_was_a_rival_nothing_is_tried(scene):
+    prepared, base, floor = scene
+    assert best_exchange(base, {candidate("spring"): []}, prepared, floor) is None
