@@ -74,8 +74,8 @@ def run(options: argparse.Namespace) -> int:
 def _fitted(experiment: Experiment, model: Model, *, as_is: bool) -> tuple[Fit, Prepared, str]:
     """The fit that is described, with a line that says which model it is."""
     from ..diagnose import find_missing
+    from ..diagnose.diagnosis import ADEQUATE
     from ..diagnose.force_error import prepare
-    from ..diagnose.ladder import ADEQUATE
     from ..diagnose.search import estimate_from_starts
 
     if as_is:

@@ -86,7 +86,7 @@ def _write_report(diagnosis: Diagnosis, path: Path) -> None:
 
 def _next_commands(diagnosis: Diagnosis, folder: Path) -> list[str]:
     """What helps on from here: nothing where all is explained."""
-    from ..diagnose.ladder import ADEQUATE
+    from ..diagnose.diagnosis import ADEQUATE
 
     lines = []
     if diagnosis.groups:

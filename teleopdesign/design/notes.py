@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from ..diagnose.ladder import ADEQUATE
+from ..diagnose.diagnosis import ADEQUATE
 from ..quantity import unit_of
 from .friction_range import FrictionRange
 from .from_answer import Diagnosed

@@ -5,9 +5,10 @@ from __future__ import annotations
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .comparison import Comparison, compare
+from .diagnosis import Diagnosis, Rung
 from .fit import Fit
 from .force_error import prepare
-from .ladder import Diagnosis, Rung, find_missing
+from .ladder import find_missing
 from .rank import Ranked, Ranking, rank_candidates
 from .search import estimate_from_starts
 from .soundness_check import check_experiment

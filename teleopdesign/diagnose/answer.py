@@ -14,8 +14,8 @@ import numpy as np
 
 from ..model import Model
 from ..realise.along_motion import residual_along
+from .diagnosis import ADEQUATE, Diagnosis
 from .fit import Fit
-from .ladder import ADEQUATE, Diagnosis
 from .probability import CandidateEvidence, evidence_of
 
 

@@ -14,9 +14,9 @@ from ..finding import Finding
 from ..model import Model
 from ..quantity import unit_of
 from .candidates import Candidate, candidates
+from .diagnosis import ADEQUATE
 from .fit import ROUGH, Fit, estimate
 from .force_error import Prepared
-from .ladder import ADEQUATE
 from .motion_facts import RARE, describe_motion, lacking
 from .noise_floor import noise_floor
 from .visibility import Visibility, visibilities

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import ModelError
 from ..measurement.experiment import Experiment
 from ..model import Model
-from .candidates import Candidate
+from .diagnosis import ADEQUATE, MOSTLY, Diagnosis, Rung, explained, verdict
 from .excerpt import excerpt
 from .exchange import best_exchange, rivals_of
 from .fit import Fit, estimate, fit_squares
@@ -27,16 +26,9 @@ from .reading_error import widened
 from .search import estimate_from_starts
 from .support import alike, equals_of, is_better, is_supported, simplicity
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-#: what is left counts as noise up to this many noise floors
-ADEQUATE = 1.8
 #: an effect that makes sensors count for this much more than they do in the user's model, and for
 #: this part of what that leaves, hides what it leaves in their noise
 LOUDER, HIDDEN = 1.8, 0.1
-#: what is named must explain this part of the squares above the noise floor
-MOSTLY = 0.5
 #: most effects that one diagnosis adds
 MOST = 6
 #: samples of all records together above which effects are sought on windows of so many
@@ -45,81 +37,6 @@ LONG, WINDOWS = 200_000, 60_000
 TRIED = 3
 #: most exchanges of an accepted effect for another
 EXCHANGES = 2
-
-
-@dataclass(frozen=True)
-class Rung:
-    """One step of the ladder: what was added (None: the user's model), the fit, and the ranking.
-
-    ranking: the candidates that were compared on this step; equals: those as good as the added one
-    """
-
-    added: Candidate | None
-    fit: Fit
-    ranking: Ranking | None = None
-    equals: tuple[Candidate, ...] = ()
-
-
-@dataclass(frozen=True)
-class Diagnosis:
-    """What a recording says about a model.
-
-    verdict: "effects_missing", "model_adequate" or "undecided"
-    rungs: the user's model re-estimated, then one rung an effect
-    last: ranking after the last rung, none of which was accepted
-    left: error of the last rung over the noise floor
-    """
-
-    experiment: Experiment
-    prepared: Prepared
-    verdict: str
-    rungs: tuple[Rung, ...]
-    last: Ranking
-    floor: NoiseFloor
-
-    @property
-    def before(self) -> Fit:
-        """The user's model, re-estimated."""
-        return self.rungs[0].fit
-
-    @property
-    def after(self) -> Fit:
-        """The model with every accepted effect."""
-        return self.rungs[-1].fit
-
-    @property
-    def model(self) -> Model:
-        """The model that the diagnosis ends with."""
-        return self.after.model
-
-    @property
-    def missing(self) -> tuple[Candidate, ...]:
-        """Effects that can be named, in the order added; none where the verdict is undecided."""
-        added = [r for r in self.rungs if r.added is not None]
-        if self.verdict != "effects_missing":
-            return ()
-        return tuple(r.added for r in added if r.added is not None)
-
-    @property
-    def groups(self) -> tuple[tuple[Candidate, ...], ...]:
-        """Effects that explain the records equally well, named one first."""
-        return tuple((r.added, *r.equals) for r in self.rungs if r.added is not None and r.equals)
-
-    @property
-    def left(self) -> float:
-        """Error that is left, in noise floors."""
-        return self.after.check_error / self.floor.value if self.floor.value else float("inf")
-
-    def plot(self) -> Figure:
-        """The figure: forces, residual over time, velocity and position, ladder (a Figure)."""
-        from ..plot.diagnosis import plot_diagnosis
-
-        return plot_diagnosis(self)
-
-    def __repr__(self) -> str:
-        from .answer import ladder_text
-
-        return ladder_text(self)
 
 
 def find_missing(
@@ -178,7 +95,7 @@ def find_missing(
     if long:
         say("errors on the whole records")
         rungs = [replace(r, fit=_on_all(r.fit, whole)) for r in rungs]
-    return Diagnosis(experiment, whole, _verdict(rungs, floor), tuple(rungs), ranking, floor)
+    return Diagnosis(experiment, whole, verdict(rungs, floor), tuple(rungs), ranking, floor)
 
 
 def _on_all(found: Fit, whole: Prepared) -> Fit:
@@ -229,19 +146,13 @@ def _stands(base: Fit, rungs: list[Rung], prepared: Prepared, floor: NoiseFloor)
     """Whether two effects together explain most of what is missing and both are needed."""
     both, first = rungs[-1].fit, rungs[0].added
     assert first is not None
-    if not is_better(base, both, floor) or _explained(base, both, floor) < MOSTLY:
+    if not is_better(base, both, floor) or explained(base, both, floor) < MOSTLY:
         return False
     try:
         without = estimate(both.model.without_effect(first.effect.name, at=first.at), prepared)
     except ModelError:
         return True  # the second needs the first
     return is_better(without, both, floor)
-
-
-def _explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
-    """Part of the squares above the noise floor that the effects between the two explain."""
-    whole, left = before.check_error**2, after.check_error**2
-    return (whole - left) / max(whole - floor.value**2, 1e-300)
 
 
 def _exchanged(
@@ -300,13 +211,3 @@ def _refitted(rungs: list[Rung], last: Fit, prepared: Prepared) -> list[Rung]:
         model = model.without_effect(later.added.effect.name, at=later.added.at)
         found.append(replace(rung, fit=estimate(model, prepared)))
     return [rungs[0], *reversed(found)]
-
-
-def _verdict(rungs: list[Rung], floor: NoiseFloor) -> str:
-    added = [r for r in rungs if r.added is not None]
-    if not added:
-        left = rungs[-1].fit.check_error
-        return "model_adequate" if left <= ADEQUATE * floor.value else "undecided"
-    if _explained(rungs[0].fit, rungs[-1].fit, floor) < MOSTLY or all(r.equals for r in added):
-        return "undecided"
-    return "effects_missing"

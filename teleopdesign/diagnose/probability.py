@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .diagnosis import ADEQUATE, Diagnosis, Rung
 from .evidence import chance
-from .ladder import ADEQUATE, Diagnosis, Rung
 from .rank import Ranked, Ranking
 
 #: of 74 effects that were accepted with nothing but noise left, 73 were true: (73 + 1)/(74 + 2)

@@ -19,9 +19,9 @@ import numpy as np
 from ..measurement.filtering import Array
 from ..model import Model
 from .candidates import Candidate
+from .diagnosis import ADEQUATE
 from .fit import Fit, weighted
 from .force_error import Prepared, Stretch, referred
-from .ladder import ADEQUATE
 from .rank import TOLD
 from .scales import scales
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..diagnose.ladder import Diagnosis
+    from ..diagnose.diagnosis import Diagnosis
 
 STYLE = Path(__file__).with_name("teleopdesign.mplstyle")
 MEASURED, BEFORE, AFTER = "0.55", "#D55E00", "#0072B2"

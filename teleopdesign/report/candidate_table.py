@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ..diagnose import Diagnosis
 from ..diagnose.answer import answer
-from ..diagnose.ladder import Rung
+from ..diagnose.diagnosis import Rung
 from ..diagnose.rank import Ranked, Ranking
 from .words import step_name
 

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from ..diagnose.diagnosis import Diagnosis, Rung
 from ..diagnose.fit import Fit
-from ..diagnose.ladder import Diagnosis, Rung
 from ..diagnose.rank import Ranked, whole_score
 from ..diagnose.support import CLOSE
 from ..effects import CONTACT_ROLES

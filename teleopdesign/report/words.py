@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..diagnose.ladder import ADEQUATE, Diagnosis, Rung
+from ..diagnose.diagnosis import ADEQUATE, Diagnosis, Rung
 
 _SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 MINUS = "\u2212"

@@ -165,7 +165,7 @@ def test_a_rich_record_shows_what_is_tried_and_says_from_which_size(rod, few):
 def test_the_least_size_that_shows_is_where_the_error_reaches_the_bound(rod, few):
     """Planted at that size, an effect raises a fitted model's error to 1.8 noise floors."""
     from teleopdesign.diagnose.candidates import candidates
-    from teleopdesign.diagnose.ladder import ADEQUATE
+    from teleopdesign.diagnose.diagnosis import ADEQUATE
     from teleopdesign.diagnose.visibility import visibilities
 
     model = Model.from_experiment(rod, few).with_effect("stribeck")

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.diagnose.ladder import ADEQUATE
+from teleopdesign.diagnose.diagnosis import ADEQUATE
 from teleopdesign.diagnose.probability import CandidateEvidence, evidence_of, shares
 
 

@@ -6,7 +6,8 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..ladder import Diagnosis, find_missing
+from ..diagnosis import Diagnosis
+from ..ladder import find_missing
 from .prediction import extended, run_twice
 from .proposal import Proposal
 from .rivals import Rival

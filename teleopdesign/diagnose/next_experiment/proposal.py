@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...finding import Finding
 from ...measurement.filtering import Array
-from ..ladder import Diagnosis
+from ..diagnosis import Diagnosis
 from .limits import Limits
 from .prediction import Curves, Determined, Separation
 from .remedies import Remedy

@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import ModelError, did_you_mean
 from ...measurement.experiment import Experiment
 from ...quantity import si_factor
-from ..ladder import Diagnosis
+from ..diagnosis import Diagnosis
 from ..sensors import sensors_of
 from .family import Part, Setting, Show, family
 from .following import servo_of

@@ -9,8 +9,8 @@ from ...effects import SIGNALS
 from ...errors import ModelError
 from ...model import Model
 from ..candidates import Candidate
+from ..diagnosis import Diagnosis, Rung
 from ..fit import Fit, estimate
-from ..ladder import Diagnosis, Rung
 from ..rank import Ranked
 from ..support import is_supported
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...finding import Finding, Graph, Series
 from ...quantity import si_factor
-from ..ladder import ADEQUATE
+from ..diagnosis import ADEQUATE
 
 if TYPE_CHECKING:
     from .prediction import Separation

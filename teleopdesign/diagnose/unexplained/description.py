@@ -9,8 +9,8 @@ import numpy as np
 
 from ...finding import Finding, Graph
 from ...model import Model
+from ..diagnosis import ADEQUATE
 from ..force_error import Prepared
-from ..ladder import ADEQUATE
 from ..noise_floor import noise_floor
 from .amounts import number
 from .curve import Curve, curve_of, shortened

@@ -1,0 +1,115 @@
+"""What a recording says about a model: the ladder of effects, and the verdict on it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..measurement.experiment import Experiment
+from ..model import Model
+from .candidates import Candidate
+from .fit import Fit
+from .force_error import Prepared
+from .noise_floor import NoiseFloor
+from .rank import Ranking
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: what is left counts as noise up to this many noise floors
+ADEQUATE = 1.8
+#: what is named must explain this part of the squares above the noise floor
+MOSTLY = 0.5
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One step of the ladder: what was added (None: the user's model), the fit, and the ranking.
+
+    ranking: the candidates that were compared on this step; equals: those as good as the added one
+    """
+
+    added: Candidate | None
+    fit: Fit
+    ranking: Ranking | None = None
+    equals: tuple[Candidate, ...] = ()
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What a recording says about a model.
+
+    verdict: "effects_missing", "model_adequate" or "undecided"
+    rungs: the user's model re-estimated, then one rung an effect
+    last: ranking after the last rung, none of which was accepted
+    left: error of the last rung over the noise floor
+    """
+
+    experiment: Experiment
+    prepared: Prepared
+    verdict: str
+    rungs: tuple[Rung, ...]
+    last: Ranking
+    floor: NoiseFloor
+
+    @property
+    def before(self) -> Fit:
+        """The user's model, re-estimated."""
+        return self.rungs[0].fit
+
+    @property
+    def after(self) -> Fit:
+        """The model with every accepted effect."""
+        return self.rungs[-1].fit
+
+    @property
+    def model(self) -> Model:
+        """The model that the diagnosis ends with."""
+        return self.after.model
+
+    @property
+    def missing(self) -> tuple[Candidate, ...]:
+        """Effects that can be named, in the order added; none where the verdict is undecided."""
+        added = [r for r in self.rungs if r.added is not None]
+        if self.verdict != "effects_missing":
+            return ()
+        return tuple(r.added for r in added if r.added is not None)
+
+    @property
+    def groups(self) -> tuple[tuple[Candidate, ...], ...]:
+        """Effects that explain the records equally well, named one first."""
+        return tuple((r.added, *r.equals) for r in self.rungs if r.added is not None and r.equals)
+
+    @property
+    def left(self) -> float:
+        """Error that is left, in noise floors."""
+        return self.after.check_error / self.floor.value if self.floor.value else float("inf")
+
+    def plot(self) -> Figure:
+        """The figure: forces, residual over time, velocity and position, ladder (a Figure)."""
+        from ..plot.diagnosis import plot_diagnosis
+
+        return plot_diagnosis(self)
+
+    def __repr__(self) -> str:
+        from .answer import ladder_text
+
+        return ladder_text(self)
+
+
+def explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
+    """Part of the squares above the noise floor that the effects between the two explain."""
+    whole, left = before.check_error**2, after.check_error**2
+    return (whole - left) / max(whole - floor.value**2, 1e-300)
+
+
+def verdict(rungs: Sequence[Rung], floor: NoiseFloor) -> str:
+    """ "effects_missing", "model_adequate" or "undecided"."""
+    added = [r for r in rungs if r.added is not None]
+    if not added:
+        left = rungs[-1].fit.check_error
+        return "model_adequate" if left <= ADEQUATE * floor.value else "undecided"
+    if explained(rungs[0].fit, rungs[-1].fit, floor) < MOSTLY or all(r.equals for r in added):
+        return "undecided"
+    return "effects_missing"
