@@ -17,6 +17,7 @@ from .exchange import best_exchange, rivals_of
 from .fit import Fit, estimate, fit_squares
 from .force_error import Prepared, force_error, prepare
 from .noise_floor import NoiseFloor, noise_floor
+from .outside_tone import tone_left
 from .rank import (
     Ranking,
     check_squares,
@@ -72,7 +73,12 @@ def find_missing(
         step = len(rungs)
         saying = partial(_said, say, f"step {step}: ")
         ranking = rank_candidates(here, prepared, stated=stated, progress=saying)
-        supported = [r for r in ranking.ranked if is_supported(here, r, floor)]
+        tone = tone_left(here, prepared)
+        supported = [
+            r
+            for r in ranking.ranked
+            if is_supported(here, r, floor) and check_squares(r.fit) < tone
+        ]
         if len(rungs) > MOST:
             break
         if not supported:
@@ -147,6 +153,8 @@ def _stands(base: Fit, rungs: list[Rung], prepared: Prepared, floor: NoiseFloor)
     both, first = rungs[-1].fit, rungs[0].added
     assert first is not None
     if not is_better(base, both, floor) or explained(base, both, floor) < MOSTLY:
+        return False
+    if check_squares(both) >= tone_left(base, prepared):
         return False
     try:
         without = estimate(both.model.without_effect(first.effect.name, at=first.at), prepared)

@@ -1,0 +1,101 @@
+"""A tone from outside: a force of one frequency, whatever the motion, such as mains hum.
+
+It moves the machine a little, at its own frequency. A body with a lightly damped tip that resonates
+there moves so without any force, and effects that are not there can stand in for the tone. So an
+effect counts only if it leaves less than a plain tone does, where motion holds next to nothing at
+the tone's frequency that could have brought it about.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy import fft
+from scipy.optimize import minimize_scalar
+
+from ..measurement.filtering import Array
+from .fit import Fit
+from .force_error import Prepared, Stretch
+
+#: frequencies tried per inverse of the longest stretch
+FINENESS = 4
+#: part of the squares of velocity near the tone above which the motion itself may have brought it
+MOVED = 0.01
+
+
+def tone_left(found: Fit, prepared: Prepared) -> float:
+    """Check squares (as `check_squares`) that are left beside the best tone on one of the bodies.
+
+    Its frequency is found on the fit records; amplitude and phase are those of each check stretch.
+    inf: the motion holds that frequency itself
+    """
+    fit, check = prepared.of("fit"), prepared.of("check")
+    if not check:
+        return float("inf")
+    before = _parts(found.fit_residual, fit)
+    after = _parts(found.check_residual, check)
+    whole = float(found.check_residual @ found.check_residual)
+    least = float("inf")
+    for body in {s.motion.body for s in fit}:
+        own = [(s, r) for s, r in zip(fit, before, strict=True) if s.motion.body == body]
+        there = [(s, r) for s, r in zip(check, after, strict=True) if s.motion.body == body]
+        frequency = _frequency(own)
+        if frequency > 0 and all(_share(s, frequency) < MOVED for s, _ in own + there):
+            taken = sum(_taken(s, r, frequency) for s, r in there)
+            least = min(least, whole - taken)
+    return least
+
+
+def _parts(residual: Array, stretches: Sequence[Stretch]) -> list[Array]:
+    return np.split(residual, np.cumsum([len(s.keep) for s in stretches])[:-1])
+
+
+def _time(stretch: Stretch) -> Array:
+    time = stretch.motion.time[stretch.keep]
+    return np.asarray(time - time[0]) if len(time) else time
+
+
+def _frequency(parts: Sequence[tuple[Stretch, Array]]) -> float:
+    """Frequency (Hz) of the tone that takes most from these residuals; 0: there are no rows."""
+    parts = [(s, r) for s, r in parts if len(r) > 2 and r.any()]
+    if not parts:
+        return 0.0
+    interval = parts[0][0].motion.sample_time
+    rows = max(len(s.motion.time) for s, _ in parts)
+    length = fft.next_fast_len(FINENESS * rows, real=True)
+    grid = fft.rfftfreq(length, interval)
+    power = np.zeros(len(grid))
+    for stretch, residual in parts:
+        line = np.zeros(len(stretch.motion.time))
+        line[stretch.keep] = residual
+        power += np.abs(fft.rfft(line, length)) ** 2
+    thinned = min(float(np.median(np.diff(s.keep))) for s, _ in parts)
+    power[(grid < 2 / (rows * interval)) | (grid > 0.5 / (thinned * interval))] = 0.0
+    step, found = float(grid[1]), float(grid[int(np.argmax(power))])
+
+    def lost(frequency: float) -> float:
+        return -sum(_taken(s, r, frequency) for s, r in parts)
+
+    bounds = (found - step, found + step)
+    return float(minimize_scalar(lost, bounds=bounds, method="bounded").x)
+
+
+def _taken(stretch: Stretch, residual: Array, frequency: float) -> float:
+    """Squares that a tone of any amplitude and phase takes from one residual."""
+    if len(residual) < 3:
+        return 0.0
+    angle = 2 * np.pi * frequency * _time(stretch)
+    waves = np.column_stack([np.sin(angle), np.cos(angle)])
+    size, *_ = np.linalg.lstsq(waves, residual, rcond=None)
+    return float(residual @ residual - np.sum((residual - waves @ size) ** 2))
+
+
+def _share(stretch: Stretch, frequency: float) -> float:
+    """Part of the squares of the body's velocity within two lines of that frequency."""
+    velocity = stretch.motion.velocity
+    line = 1.0 / (len(velocity) * stretch.motion.sample_time)
+    power = np.abs(np.fft.rfft(velocity * np.hanning(len(velocity)))) ** 2
+    near = np.abs(np.fft.rfftfreq(len(velocity), stretch.motion.sample_time) - frequency)
+    whole = float(power.sum())
+    return float(power[near <= 3 * line].sum()) / whole if whole > 0 else 0.0

@@ -1,0 +1,65 @@
+"""A tone from outside: told from what the motion itself brings about."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.diagnose.fit import weighted
+from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.diagnose.outside_tone import tone_left
+from teleopdesign.diagnose.rank import check_squares
+from teleopdesign.diagnose.search import estimate_from_starts
+
+
+@pytest.fixture(scope="module")
+def rod():
+    experiment = td.load_experiment(td.example("rod"))
+    prepared = prepare(experiment)
+    return prepared, estimate_from_starts(td.Model.from_experiment(experiment), prepared)
+
+
+def with_residual(found, prepared, force):
+    """The fit with force(time) as what it leaves, N."""
+
+    def left(use):
+        stretches = prepared.of(use)
+        return weighted(stretches, [force(s.motion.time[s.keep]) for s in stretches])
+
+    return replace(found, fit_residual=left("fit"), check_residual=left("check"))
+
+
+@pytest.mark.parametrize("frequency", [17.0, 23.0])
+def test_a_tone_is_taken_away_whatever_its_phase_on_each_record(rod, frequency):
+    prepared, found = rod
+    noise = np.random.default_rng(1)
+    hum = with_residual(
+        found,
+        prepared,
+        lambda t: np.sin(2 * np.pi * frequency * t + t[0]) + 0.1 * noise.standard_normal(len(t)),
+    )
+    # noise of a tenth: a hundredth of twice the squares
+    assert tone_left(hum, prepared) < 0.03 * check_squares(hum)
+
+
+def test_noise_is_no_tone(rod):
+    prepared, found = rod
+    noise = np.random.default_rng(2)
+    plain = with_residual(found, prepared, lambda t: noise.standard_normal(len(t)))
+    assert tone_left(plain, prepared) > 0.98 * check_squares(plain)
+
+
+def test_what_repeats_with_the_motion_is_no_tone_from_outside(rod):
+    """The motion's own strongest frequency."""
+    prepared, found = rod
+    motion = prepared.of("fit")[0].motion
+    power = np.abs(np.fft.rfft(motion.velocity))
+    own = np.fft.rfftfreq(len(motion.velocity), motion.sample_time)[int(np.argmax(power))]
+    swing = with_residual(found, prepared, lambda t: np.sin(2 * np.pi * own * t))
+    assert tone_left(swing, prepared) == float("inf")
+
+
+def test_the_effect_that_is_missing_leaves_less_than_a_tone(rod):
+    prepared, found = rod
+    assert tone_left(found, prepared) > 0.9 * check_squares(found)
