@@ -14,6 +14,7 @@ from .claim import Claim, Evidence, Proof, Refutation, Unknown
 from .compliant_transmission import any_environment, free_motion, free_motion_margin
 from .delayed_compensation import delayed_small_motion, given_out_late, inertia_given_out
 from .delayed_coupling import delayed_spring
+from .delayed_inertia import cancelled_inertia, damping_given_out, largest_passive_inertia
 from .friction_compensation import (
     bounded_compensation,
     dahl_compensation,
@@ -55,8 +56,10 @@ __all__ = [
     "absolutely_stable",
     "any_environment",
     "bounded_compensation",
+    "cancelled_inertia",
     "dahl_compensation",
     "damping_excess",
+    "damping_given_out",
     "delayed_small_motion",
     "delayed_spring",
     "free_motion",
@@ -66,6 +69,7 @@ __all__ = [
     "impedance",
     "inertia_given_out",
     "kyp",
+    "largest_passive_inertia",
     "largest_passive_level",
     "lugre_passivity",
     "mobility_excess",
