@@ -49,12 +49,16 @@ def _given_out(axis: Axes, data: xarray.Dataset) -> None:
 
 def _felt(axis: Axes, data: xarray.Dataset) -> None:
     f = data["felt_frequency"].values
-    for name, colour in zip(data["case"].values, COLOURS[1:] + COLOURS[:1], strict=False):
-        axis.plot(f, data["felt"].sel(case=name).values, color=colour, label=str(name))
+    for name, colour in zip(data["case"].values, COLOURS, strict=False):
+        one = data.sel(case=name)
+        axis.plot(f, one["felt"].values, color=colour, label=str(name))
+        axis.plot(f, one["apparent_mass"].values, ":", color=colour)
+    axis.plot([], [], "-", color=BLACK, label="impedance")
+    axis.plot([], [], ":", color=BLACK, label="mass alone")
     axis.axhline(1.0, color=GREY, linestyle="--", linewidth=0.8)
-    axis.set(xscale="log", xlim=(f[0], f[-1]), ylim=(0, 1.75))
+    axis.set(xscale="log", xlim=(f[0], f[-1]), ylim=(-0.2, 2.2))
     axis.set_xlabel("frequency (Hz)")
-    axis.set_ylabel("impedance felt, re no cancellation (1)")
+    axis.set_ylabel("felt, re no cancellation (1)")
     _plain(axis, y=False)
 
 

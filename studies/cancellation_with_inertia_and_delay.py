@@ -7,12 +7,13 @@ gives out pi mhat A^2 omega^2 sin(omega tau), for omega tau < pi. Device and han
 Finding: without delay all of the inertia may go, and no more. A millisecond late, 1 % is refuted,
 and any damping loses: omega sin(omega tau) has no bound. A low-pass of order r and bandwidth f_c
 mends that, and then the delay hardly matters: the share r b/(2 pi f_c m) is passive whatever the
-delay, exact for order 1, a third more at best for order 2. With 0.15 kg and 1 N s/m that is 21 % at
-10 Hz (order 2), which takes at most 18 % from the impedance felt, and 2.1 % at 100 Hz: inertia can
-be cancelled for any hand only where the device's damping is felt anyway. In a computer of period T,
-differences without low-pass allow 8 b T/(9 m), 0.6 %. With one hand that is known far more is
-stable, and there delay costs: with a fingertip and 30 Hz 72 % at 0.5 ms, 47 % at 20 ms; 90 % would
-leave 0.15 of the impedance at 4 Hz. Beyond omega tau = pi the sign of P48 turns, as simulated.
+delay, exact for order 1, at most 1.4 times that for order 2. For 0.15 kg and 1 N s/m that is 21 %
+at 10 Hz (order 2), which takes at most 18 % from the impedance felt, and 2.1 % at 100 Hz: inertia
+can be cancelled for any hand only where the device's damping is felt anyway. In a computer of
+period T, differences without low-pass allow 8 b T/(9 m), 0.6 %. With one hand that is known far
+more is stable, and there delay costs: with a fingertip and 30 Hz 72 % at 0.5 ms, 47 % at 20 ms.
+90 % would leave 0.15 of the impedance at 4 Hz. Beyond omega tau = pi the sign of P48 turns, as
+simulated.
 
     python studies/cancellation_with_inertia_and_delay.py [--quick] [--output DIR]
 """
@@ -60,8 +61,8 @@ BESIDE = (0.9, 1.1)  # share over its limit; growth and decay are then seen with
 class LateInertia:
     """What a late, low-passed cancellation of inertia brings and costs.
 
-    data: `given_out` (N s/m) over frequency, `felt` (1) over frequency, `passive_share` over the
-    low-pass's bandwidth, `stable_share` over delay, and simulated points beside them
+    data: `given_out` (N s/m), `felt` and `apparent_mass` (1) over frequency, `passive_share` over
+    the low-pass's bandwidth, `stable_share` over delay, and simulated points beside them
     claims: sentence of each claim of passivity -> how it is settled
     """
 
@@ -133,10 +134,13 @@ def given_out() -> dict[str, xarray.DataArray]:
     }
 
 
-def felt() -> xarray.DataArray:
-    """Impedance that the hand feels over that without cancellation, absolute value."""
+def felt() -> dict[str, xarray.DataArray]:
+    """What is felt in free space over what it is without cancellation: impedance, and mass alone.
+
+    The apparent mass is the force in phase with acceleration, over acceleration.
+    """
     cases = {"90 %, low-pass 30 Hz": (0.9, SLOW)}
-    for bandwidth in (2.0, 10.0, 50.0):
+    for bandwidth in (2.0, 10.0):
         share = passive_share(bandwidth)
         cases[f"{100 * share:.0f} %, low-pass {bandwidth:g} Hz, passive"] = (share, bandwidth)
     diagrams = {
@@ -144,11 +148,14 @@ def felt() -> xarray.DataArray:
     }
     diagrams["none"] = late.device(0.0, bandwidth=SLOW, delay=DELAY)
     frequency = FREQUENCIES / 10
-    response = bode(diagrams, output="E", input="L", given="L", frequency=frequency)
-    found = response.data["magnitude"].sel(case=list(cases)) / response.data["magnitude"].sel(
-        case="none", drop=True
-    )
-    return found.rename({"frequency": "felt_frequency"}).assign_attrs(units="1")
+    response = bode(diagrams, output="E", input="L", given="L", frequency=frequency).data
+    response = response.rename({"frequency": "felt_frequency"})
+    size, phase = response["magnitude"], np.radians(response["phase"])
+    found = {"felt": size, "apparent_mass": size * np.cos(phase)}
+    return {
+        name: (x.sel(case=list(cases)) / x.sel(case="none", drop=True)).assign_attrs(units="1")
+        for name, x in found.items()
+    }
 
 
 def passive_share(bandwidth: float, *, delay: float = DELAY, order: int = 2) -> float:
@@ -240,7 +247,7 @@ def run(*, quick: bool = False) -> LateInertia:
     data = xarray.Dataset(
         {
             **given_out(),
-            "felt": felt(),
+            **felt(),
             "passive_share": passive_shares(BANDWIDTHS[::every]),
             "stable_share": stable_shares(DELAYS[::every]),
         }

@@ -61,6 +61,7 @@ def test_the_inverse_depends_on_the_hand_it_was_made_for(study):
         assert np.abs(medium / abs(study.low_pass(10.0)) - 1).max() > 0.3
 
 
+@pytest.mark.slow  # five coupled rods compile in some ten seconds
 @pytest.mark.parametrize("inverted", [False, True])
 def test_without_friction_the_simulation_is_the_response(study, inverted):
     wanted, frequency = np.array([1.0, -0.5, 0.3, 0.8, -0.2]), 5.0
@@ -78,6 +79,7 @@ def test_without_friction_the_simulation_is_the_response(study, inverted):
     assert np.linalg.norm(found - due) < 1e-3 * np.linalg.norm(due)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("frequency", [2.0, 4.0])
 def test_the_inverse_needs_friction_compensation_first(study, frequency):
     wanted = study.WANTED * np.eye(5)[3]  # rotation about x: resonates first
@@ -93,6 +95,7 @@ def test_the_inverse_needs_friction_compensation_first(study, frequency):
     assert both < 0.5 * error("hybrid", False)
 
 
+@pytest.mark.slow
 def test_simulated_friction_lies_in_its_zonotope(study):
     five = study.five
     whole = felt_friction(five.G, [five.FRICTION] * five.RODS)
@@ -104,6 +107,7 @@ def test_simulated_friction_lies_in_its_zonotope(study):
     assert sizes.max() > whole.smallest[0]
 
 
+@pytest.mark.slow
 def test_cancellation_shrinks_the_zonotope_to_what_is_left_of_each_level(study):
     five = study.five
     left = felt_friction(five.G, [(1 - five.SHARE) * five.FRICTION] * five.RODS)
