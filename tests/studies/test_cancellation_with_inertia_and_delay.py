@@ -1,30 +1,9 @@
 """Cancelled inertia: what it gives out, and limits that simulations confirm from both sides."""
 
-import importlib.util
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from teleopdesign.passivity import cancelled_inertia, sampled_passivity
-
-STUDIES = Path(__file__).parents[2] / "studies"
-
-
-@pytest.fixture(scope="module")
-def study():
-    sys.path.insert(0, str(STUDIES))  # studies share modules of their own
-    try:
-        name = "cancellation_with_inertia_and_delay"
-        spec = importlib.util.spec_from_file_location(name, STUDIES / f"{name}.py")
-        module = importlib.util.module_from_spec(spec)
-        sys.modules[name] = module  # its dataclass looks itself up
-        spec.loader.exec_module(module)
-    finally:
-        sys.path.remove(str(STUDIES))
-    yield module
-    del sys.modules[name]
 
 
 @pytest.fixture(scope="module")

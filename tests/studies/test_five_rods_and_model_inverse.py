@@ -1,30 +1,9 @@
 """Five rods: isotropy of the inverse, simulation against response, friction within its zonotope."""
 
-import importlib.util
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from teleopdesign.diagrams import felt_friction
-
-STUDIES = Path(__file__).parents[2] / "studies"
-
-
-@pytest.fixture(scope="module")
-def study():
-    sys.path.insert(0, str(STUDIES))  # studies share modules of their own
-    try:
-        name = "five_rods_and_model_inverse"
-        spec = importlib.util.spec_from_file_location(name, STUDIES / f"{name}.py")
-        module = importlib.util.module_from_spec(spec)
-        sys.modules[name] = module  # its dataclass looks itself up
-        spec.loader.exec_module(module)
-    finally:
-        sys.path.remove(str(STUDIES))
-    yield module
-    del sys.modules[name]
 
 
 def test_a_rod_moves_by_what_the_hand_moves_its_point_along_it(study):
