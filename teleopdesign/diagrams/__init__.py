@@ -1,6 +1,7 @@
 """Which blocks, wired by signal names."""
 
 from .arms import Arm, by_jacobian, joint, teleoperator_of_arms
+from .felt_friction import FeltFriction, felt_friction
 from .haptic_interface import four_cases, haptic_interface
 from .parallel_rods import parallel_rods
 from .parts import (
@@ -33,6 +34,7 @@ __all__ = [
     "Block",
     "Control",
     "Diagram",
+    "FeltFriction",
     "Junction",
     "Kinematics",
     "Linked",
@@ -40,6 +42,7 @@ __all__ = [
     "Part",
     "Reading",
     "by_jacobian",
+    "felt_friction",
     "four_cases",
     "haptic_interface",
     "joint",

@@ -22,6 +22,7 @@ from .counterexample import (
 )
 from .delayed_compensation import delayed_small_motion, given_out_late, inertia_given_out
 from .delayed_coupling import delayed_spring
+from .delayed_inertia import cancelled_inertia, damping_given_out, largest_passive_inertia
 from .friction_compensation import (
     bounded_compensation,
     dahl_compensation,
@@ -86,9 +87,11 @@ __all__ = [
     "any_environment",
     "available_storage",
     "bounded_compensation",
+    "cancelled_inertia",
     "confirmed_motion",
     "dahl_compensation",
     "damping_excess",
+    "damping_given_out",
     "delayed_small_motion",
     "delayed_spring",
     "free_motion",
@@ -99,6 +102,7 @@ __all__ = [
     "impedance",
     "inertia_given_out",
     "kyp",
+    "largest_passive_inertia",
     "largest_passive_level",
     "largest_ratio",
     "lugre_passivity",

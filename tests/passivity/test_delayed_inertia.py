@@ -1,0 +1,94 @@
+"""Cancelling inertia late: what it gives out, and how much the damping pays for."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from teleopdesign.errors import ModelError
+from teleopdesign.passivity import (
+    cancelled_inertia,
+    damping_given_out,
+    inertia_given_out,
+    largest_passive_inertia,
+)
+
+DEVICE = {"inertia": 0.15, "damping": 1.0}
+times = st.floats(1e-4, 1e-1)
+orders = st.sampled_from([1, 2])
+
+
+@settings(deadline=None)
+@given(frequency=st.floats(0.1, 1e3), delay=times)
+def test_without_low_pass_it_is_the_energy_of_p48(frequency, delay):
+    amplitude, inertia = 2e-3, 0.1
+    w = 2 * np.pi * frequency
+    g = damping_given_out(np.array([frequency]), delay=delay)[0]
+    expected = inertia_given_out(
+        inertia=inertia, amplitude=amplitude, frequency=frequency, delay=delay
+    )
+    # rounding of a phase of up to 600 rad
+    scale = inertia * np.pi * amplitude**2 * w**2
+    assert inertia * np.pi * amplitude**2 * w * g == pytest.approx(expected, abs=1e-12 * scale)
+
+
+@settings(max_examples=50, deadline=None)
+@given(delay=times, time_constant=times, order=orders)
+def test_damping_pays_for_no_less_than_the_bound_of_any_delay(delay, time_constant, order):
+    given_ = {"delay": delay, "time_constant": time_constant, "order": order}
+    limit = largest_passive_inertia(damping=1.0, **given_)
+    assert limit >= order * time_constant * (1 - 1e-9)
+    upper = 20 / (2 * np.pi * time_constant)
+    frequency = np.linspace(0, upper, 20001)
+    g = damping_given_out(frequency, **given_)
+    assert limit * g.max() <= 1 + 1e-9
+
+
+@settings(max_examples=30, deadline=None)
+@given(delay=times, time_constant=times, order=orders)
+def test_a_proof_within_the_bound_and_a_wave_beyond_the_limit(delay, time_constant, order):
+    given_ = {"delay": delay, "time_constant": time_constant, "order": order}
+    within = order * time_constant
+    proved = cancelled_inertia(**DEVICE, cancelled=0.999 * within, **given_)
+    assert proved.status == "proved"
+    proved.certificates[0].check()
+    beyond = 1.01 * largest_passive_inertia(damping=DEVICE["damping"], **given_)
+    refuted = cancelled_inertia(**DEVICE, cancelled=beyond, **given_)
+    assert refuted.status == "refuted"
+    assert refuted.record.energy > 0
+
+
+def test_a_delay_with_a_low_pass_of_order_two_allows_a_little_more():
+    """Where the acceleration is largest it comes late: only numbers say how much is gained."""
+    late = {"delay": 0.005, "time_constant": 0.005}
+    limit = largest_passive_inertia(damping=1.0, **late)
+    assert limit > 1.1 * 2 * 0.005
+    claim = cancelled_inertia(**DEVICE, cancelled=0.99 * limit, **late)
+    assert (claim.status, claim.holds) == ("evidence", True)
+
+
+def test_any_delay_without_low_pass_is_refuted_whatever_the_damping():
+    claim = cancelled_inertia(inertia=0.15, damping=100, cancelled=0.01, delay=1e-4)
+    assert claim.status == "refuted"
+    assert claim.record.replay() > 0
+    assert largest_passive_inertia(damping=100, delay=1e-4) == 0
+
+
+@pytest.mark.parametrize(("cancelled", "status"), [(0.15, "proved"), (0.151, "refuted")])
+def test_without_delay_all_of_the_inertia_may_go_and_no_more(cancelled, status):
+    assert cancelled_inertia(**DEVICE, cancelled=cancelled, delay=0).status == status
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_the_bound_is_exact_without_delay(order):
+    low = {"time_constant": 0.01, "order": order, "delay": 0}
+    limit = order * 0.01
+    assert cancelled_inertia(**DEVICE, cancelled=limit, **low).status == "proved"
+    assert cancelled_inertia(**DEVICE, cancelled=1.001 * limit, **low).status == "refuted"
+
+
+def test_wrong_input_is_named():
+    with pytest.raises(ModelError, match="negative"):
+        cancelled_inertia(**DEVICE, cancelled=-0.1, delay=0)
+    with pytest.raises(ModelError, match="1 or 2, found 3"):
+        cancelled_inertia(**DEVICE, cancelled=0.1, delay=0, time_constant=0.01, order=3)
