@@ -1,4 +1,4 @@
-"""Fill the printed parts of the README from real runs.
+"""Fill the printed parts of the README and of docs/recordings.md from real runs.
 
 python docs/make_readme.py [--source FOLDER]
 
@@ -15,13 +15,21 @@ import sys
 import tempfile
 import time
 import warnings
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import matplotlib.pyplot as plt
+
 import teleopdesign as td
+from teleopdesign.diagnose.unexplained import where_it_fails
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.recordings import RECORDINGS
 
-README = Path(__file__).resolve().parents[1] / "README.md"
+DOCS = Path(__file__).resolve().parent
+README, PAGE = DOCS.parent / "README.md", DOCS / "recordings.md"
+PICTURES = DOCS / "_static" / "recordings"
+#: sentences of what the last model leaves that the page shows
+SENTENCES = 4
 PACKAGE = Path(td.__file__).parent
 
 
@@ -40,9 +48,8 @@ def effects() -> str:
     return "\n".join(["| role | effects |", "| --- | --- |", *rows])
 
 
-def recordings(source: str | None) -> str:
-    lines = ["| recording | ladder: check error (%) | floor (%) | verdict | time (s) |"]
-    lines.append("| --- | --- | --- | --- | --- |")
+def diagnosed(source: str | None) -> Iterator[tuple[str, td.Diagnosis | None, float, str]]:
+    """Name, diagnosis (None where there was no answer), seconds, and why there was none."""
     with tempfile.TemporaryDirectory() as folder:
         for name in RECORDINGS:
             place = Path(folder) if source else None
@@ -52,11 +59,42 @@ def recordings(source: str | None) -> str:
             try:
                 found = td.find_missing(experiment)
             except Exception as error:  # the others are still worth having; the row says it
-                lines.append(f"| `{name}` | | | no answer: {type(error).__name__} | |")
+                yield name, None, 0.0, type(error).__name__
                 continue
             print(found, flush=True)
-            lines.append(f"| `{name}` | {_ladder(found)} | {time.perf_counter() - start:.0f} |")
+            yield name, found, time.perf_counter() - start, ""
+
+
+def recordings(runs: Sequence[tuple[str, td.Diagnosis | None, float, str]]) -> str:
+    lines = ["| recording | ladder: check error (%) | floor (%) | verdict | time (s) |"]
+    lines.append("| --- | --- | --- | --- | --- |")
+    for name, found, seconds, why in runs:
+        row = f"{_ladder(found)} | {seconds:.0f}" if found else f"| | no answer: {why} |"
+        lines.append(f"| `{name}` | {row} |")
     return "\n".join(lines)
+
+
+def page(runs: Sequence[tuple[str, td.Diagnosis | None, float, str]]) -> str:
+    """A section for each recording: what the diagnosis says, its figure, what is left."""
+    PICTURES.mkdir(exist_ok=True)
+    parts = []
+    for name, found, _, why in runs:
+        parts.append(f"### {name}\n")
+        if found is None:
+            parts.append(f"No answer: {why}.\n")
+            continue
+        picture = PICTURES / f"{name}.png"
+        with plt.rc_context({"savefig.dpi": 100}):
+            found.plot().savefig(picture)
+        left = where_it_fails(found.after, found.prepared)[:SENTENCES]
+        said = (
+            "\n".join(f"- {one.sentence}" for one in left) or "- nothing that depends on anything"
+        )
+        text = str(found).replace(str(found.experiment.folder), name)
+        parts.append(f"```text\n{text}\n```\n")
+        parts.append(f"![Forces, residuals and ladder of {name}](_static/recordings/{name}.png)\n")
+        parts.append(f"What the last model leaves:\n\n{said}\n")
+    return "\n".join(parts)
 
 
 def _ladder(found: td.Diagnosis) -> str:
@@ -82,14 +120,16 @@ def main() -> None:
     parser.add_argument("--source", help="folder of copies of the public recordings")
     source = parser.parse_args().source
     warnings.simplefilter("ignore")
-    text = README.read_text(encoding="utf-8")
-    for what, printed in (
-        ("demo", demo),
-        ("effects", effects),
-        ("recordings", lambda: recordings(source)),
-    ):
-        text = fill(text, what, printed())
-        README.write_text(text, encoding="utf-8")
+    runs = list(diagnosed(source))
+    printed = {
+        README: {"demo": demo(), "effects": effects(), "recordings": recordings(runs)},
+        PAGE: {"what is found": page(runs)},
+    }
+    for path, blocks in printed.items():
+        text = path.read_text(encoding="utf-8")
+        for what, block in blocks.items():
+            text = fill(text, what, block)
+        path.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
