@@ -29,6 +29,8 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_typehints_format = "short"
 autodoc_preserve_defaults = True
+# imported for type checkers only; unknown, it would leave all names of that class unresolved
+autodoc_type_aliases = {"xarray.Dataset": "xarray.Dataset"}
 python_use_unqualified_type_names = True
 maximum_signature_line_length = 80
 

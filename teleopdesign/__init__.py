@@ -17,17 +17,17 @@ The folders, each importing only from those before it:
     effects       what physics does: one effect = one file
     blocks        bodies, hand: equations only
     controllers   chosen, not found: one control law = one file
-    diagrams      which blocks, wired by signal names
+    diagrams      which blocks, wired by signal names; read from and written to files
     model         bodies with their effects at places; frozen
-    realise       any block into each form: transfer function, iosystem, kernel, residual
+    realise       any block into each form: residual, transfer function, equations, kernel, iosystem
     derive        transfer functions and impedances from the wiring, symbolic
-    frequency     responses over frequency
+    frequency     Bode plots, describing functions, impedance over amplitude and frequency
     passivity     claims: proved with a certificate, refuted by a motion, or evidence
-    simulate      time
-    measurement   experiment, record, motion
-    diagnose      residual, noise floor, candidates, ladder, answer
-    identify      level and stiffness by the papers' own experiments
-    design        from an identified model to controllers, predictions and claims
+    simulate      motions and responses in time, sampled or continuous
+    measurement   experiment, record, motion; whether a recording is sound
+    diagnose      residual, noise floor, ladder, answer; what is left, what to measure next
+    identify      Coulomb level and largest stiffness by the papers' own experiments
+    design        from a diagnosed model to controllers, predictions and claims
     papers        statements of the two papers, each with its proof or check
     plot          draws result objects, computes nothing
     report        the diagnosis as one page that needs nothing else

@@ -275,11 +275,13 @@ def constants(*modules: str) -> str:
 def api(module: str) -> str:
     """autodoc of the names in a module's `__all__`, from where they are defined."""
     full = "teleopdesign" if module == "." else f"teleopdesign.{module}"
-    found = import_module(full)
+    root, found = import_module("teleopdesign"), import_module(full)
     lines = []
     for name in sorted(found.__all__, key=str.lower):
         thing = getattr(found, name)
-        if inspect.isclass(thing):
+        if module != "." and name in root.__all__ and getattr(root, name) is thing:
+            lines += [f"``{full}.{name}``", f"   the same as :py:obj:`teleopdesign.{name}`", ""]
+        elif inspect.isclass(thing):
             lines += [f".. autoclass:: {full}::{name}", "   :members:", ""]
         elif callable(thing):
             lines += [f".. autofunction:: {full}::{name}", ""]
