@@ -13,7 +13,6 @@ import re
 import subprocess
 import sys
 import tempfile
-import time
 import warnings
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -48,37 +47,36 @@ def effects() -> str:
     return "\n".join(["| role | effects |", "| --- | --- |", *rows])
 
 
-def diagnosed(source: str | None) -> Iterator[tuple[str, td.Diagnosis | None, float, str]]:
-    """Name, diagnosis (None where there was no answer), seconds, and why there was none."""
+def diagnosed(source: str | None) -> Iterator[tuple[str, td.Diagnosis | None, str]]:
+    """Name, diagnosis (None where there was no answer), and why there was none."""
     with tempfile.TemporaryDirectory() as folder:
         for name in RECORDINGS:
             place = Path(folder) if source else None
             given = {"source": source} if source else {}
             experiment = td.load_experiment(td.fetch(name, place, **given))
-            start = time.perf_counter()
             try:
                 found = td.find_missing(experiment)
             except Exception as error:  # the others are still worth having; the row says it
-                yield name, None, 0.0, type(error).__name__
+                yield name, None, type(error).__name__
                 continue
             print(found, flush=True)
-            yield name, found, time.perf_counter() - start, ""
+            yield name, found, ""
 
 
-def recordings(runs: Sequence[tuple[str, td.Diagnosis | None, float, str]]) -> str:
-    lines = ["| recording | ladder: check error (%) | floor (%) | verdict | time (s) |"]
-    lines.append("| --- | --- | --- | --- | --- |")
-    for name, found, seconds, why in runs:
-        row = f"{_ladder(found)} | {seconds:.0f}" if found else f"| | no answer: {why} |"
+def recordings(runs: Sequence[tuple[str, td.Diagnosis | None, str]]) -> str:
+    lines = ["| recording | ladder: check error (%) | floor (%) | verdict |"]
+    lines.append("| --- | --- | --- | --- |")
+    for name, found, why in runs:
+        row = _ladder(found) if found else f"| | no answer: {why}"
         lines.append(f"| `{name}` | {row} |")
     return "\n".join(lines)
 
 
-def page(runs: Sequence[tuple[str, td.Diagnosis | None, float, str]]) -> str:
+def page(runs: Sequence[tuple[str, td.Diagnosis | None, str]]) -> str:
     """A section for each recording: what the diagnosis says, its figure, what is left."""
     PICTURES.mkdir(exist_ok=True)
     parts = []
-    for name, found, _, why in runs:
+    for name, found, why in runs:
         parts.append(f"### {name}\n")
         if found is None:
             parts.append(f"No answer: {why}.\n")

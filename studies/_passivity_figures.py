@@ -32,5 +32,5 @@ def write_study(
     data = run(quick=arguments.quick)
     print(data.attrs["finding"])
     target = arguments.output / Path(path).stem
-    save_figure(plot(data), target, suffixes=(".pdf", ".svg", ".png"))
+    save_figure(plot(data), target)
     data.to_netcdf(target.with_suffix(".nc"))

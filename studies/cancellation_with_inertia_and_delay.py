@@ -264,7 +264,7 @@ def main() -> None:
     result = run(quick=arguments.quick)
     print(result)
     path = arguments.output / NAME
-    save_figure(result.plot(), path, suffixes=(".pdf", ".svg", ".png"))
+    save_figure(result.plot(), path)
     result.to_netcdf(path.with_suffix(".nc"))
     result.to_json(path.with_suffix(".json"))
 

@@ -123,7 +123,7 @@ def main() -> None:
     print(result)
     path = arguments.output / NAME
     figure = plot_normalised_force(result.curves, level=result.level)
-    save_figure(figure, path, suffixes=(".pdf", ".svg", ".png"))
+    save_figure(figure, path)
     result.curves.to_netcdf(path.with_suffix(".nc"))
     numbers = {"level_N": result.level, "crossing_m_per_s": result.crossing}
     path.with_suffix(".json").write_text(json.dumps(numbers, indent=2) + "\n", encoding="utf-8")

@@ -141,10 +141,8 @@ def _write(designs: dict[str, Design], options: argparse.Namespace) -> None:
         return
     options.output.mkdir(parents=True, exist_ok=True)
     for place, made in designs.items():
-        files = save_figure(
-            made.plot(), options.output / f"{place}_design", suffixes=(".pdf", ".svg", ".png")
-        )
+        files = save_figure(made.plot(), options.output / f"{place}_design")
         made.to_json(options.output / f"{place}_design.json")
-        controllers = options.output / f"{place}_controllers.toml"
-        controllers.write_text(made.to_toml(), encoding="utf-8")
-        print(f"written: {', '.join(map(str, files))}, {controllers}")
+        diagram = options.output / f"{place}_interface.toml"
+        diagram.write_text(made.to_toml(), encoding="utf-8")
+        print(f"written: {', '.join(map(str, files))}, {diagram}")

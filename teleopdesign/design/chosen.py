@@ -36,16 +36,3 @@ class Chosen:
     def __repr__(self) -> str:
         names = ", ".join(stage.law.name for stage in self.controller.stages)
         return "\n".join([names, *(f"  {r}" for r in self.reasons)])
-
-
-def toml_of(block: str, chosen: Chosen) -> str:
-    """The controller as TOML: a table a law, in the order from input to output."""
-    units = {r.parameter: r.unit for r in chosen.reasons}
-    lines = []
-    for stage in chosen.controller.stages:
-        lines += [f"[[{block}]]", f'law = "{stage.law.name}"']
-        for name, value in stage.values.items():
-            unit = units[f"{stage.law.name}.{name}"]
-            lines.append(f'{name} = {{ value = {value:.12g}, unit = "{unit}" }}')
-        lines.append("")
-    return "\n".join(lines)

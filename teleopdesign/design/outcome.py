@@ -9,11 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..blocks import Body
+from ..diagrams import ANY, Attached, Block, Diagram, Moving, haptic_interface
+from ..diagrams.toml_writing import diagram_text
+from ..errors import ModelError
 from ..frequency import FrequencyResponse
 from ..passivity import Claim
 from ..simulate import Sampling
 from .assumptions import Assumptions
-from .chosen import Chosen, toml_of
+from .chosen import Chosen
 from .force_feedback import Loop
 from .friction_range import FrictionRange
 from .prediction import Prediction
@@ -72,13 +75,30 @@ class Design:
 
         return plot_design(self)
 
+    @property
+    def diagram(self) -> Diagram:
+        """The device with the proposed controllers, in free space."""
+        return haptic_interface(
+            self.body,
+            cancellation=self.cancellation.controller if self.cancellation else None,
+            force_feedback=self.force_feedback.controller,
+        )
+
     def to_toml(self) -> str:
-        """The proposed controllers as TOML, a table a law."""
-        parts = [f"# {self.experiment}, {self.place}\n"]
-        if self.cancellation is not None:
-            parts.append(toml_of("cancellation", self.cancellation))
-        parts.append(toml_of("force_feedback", self.force_feedback))
-        return "\n".join(parts)
+        """The diagram as a file that `read_diagram` reads, with the reasons for each number.
+
+        A device with effects that no catalogue has is known by its name only there.
+        """
+        chosen = [c for c in (self.cancellation, self.force_feedback) if c is not None]
+        comments = [
+            f"{self.experiment}, {self.place}",
+            *(str(r) for c in chosen for r in c.reasons),
+        ]
+        try:
+            content = diagram_text(self.diagram)
+        except ModelError:
+            content = diagram_text(replace(self.diagram, blocks=_nameless(self.diagram)))
+        return "\n".join([*(f"# {line}" for line in comments), "", content])
 
     def as_dict(self) -> dict[str, Any]:
         """The design as plain data; SI units."""
@@ -95,3 +115,10 @@ class Design:
         from .sentences import design_text
 
         return design_text(self)
+
+
+def _nameless(diagram: Diagram) -> tuple[Block, ...]:
+    """The blocks with bodies known by their name only."""
+    return tuple(
+        replace(b, body=ANY) if isinstance(b, Moving | Attached) else b for b in diagram.blocks
+    )

@@ -45,7 +45,7 @@ def design_data(design: Design) -> dict[str, Any]:
         },
         "passivity": {case: [_claim(c) for c in claims] for case, claims in design.claims.items()},
         "notes": list(design.notes),
-        "controllers_toml": design.to_toml(),
+        "diagram_toml": design.to_toml(),
     }
     found = _finite(content)
     assert isinstance(found, dict)

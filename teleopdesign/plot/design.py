@@ -51,7 +51,7 @@ def save_figure(
     figure: matplotlib.figure.Figure,
     path: str | Path,
     *,
-    suffixes: tuple[str, ...] = (".pdf", ".png"),
+    suffixes: tuple[str, ...] = (".pdf", ".svg", ".png"),
 ) -> list[Path]:
     """Write the figure in house style, once for each suffix; returns the files."""
     import matplotlib.pyplot as plt

@@ -36,12 +36,11 @@ def test_an_answer_leads_to_a_design_and_its_files(answer, tmp_path, capsys):
     assert "MBC: proved: Coulomb friction" in capsys.readouterr().out
     assert {p.name for p in out.iterdir()} == {
         f"device_{n}" for n in
-        ("design.json", "design.pdf", "design.svg", "design.png", "controllers.toml")
+        ("design.json", "design.pdf", "design.svg", "design.png", "interface.toml")
     }  # fmt: skip
-    table = tomllib.loads((out / "device_controllers.toml").read_text())
+    table = tomllib.loads((out / "device_interface.toml").read_text())
     made = designs(tmp_path / "d.json")["device"]
-    laws = [entry["law"] for entry in table["cancellation"]]
-    assert laws == made["cancellation"]["laws"]
+    assert [table["blocks"]["C"]["law"]] == made["cancellation"]["laws"]
 
 
 @pytest.mark.slow

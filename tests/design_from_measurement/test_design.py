@@ -9,12 +9,11 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.blocks import Body, Value
-from teleopdesign.controllers import CONTROLLERS, Controller, Stage
 from teleopdesign.design import Assumptions, design, read_answer
 from teleopdesign.design.propose import cancellations
 from teleopdesign.design.quasi_static import quasi_static_error
 from teleopdesign.design.stated_motion import StatedMotion
-from teleopdesign.diagrams import haptic_interface, world_haptics_2005
+from teleopdesign.diagrams import haptic_interface, read_diagram, world_haptics_2005
 from teleopdesign.errors import ExperimentError, ModelError
 
 
@@ -101,7 +100,7 @@ def test_friction_that_may_be_none_is_not_cancelled(unsure):
     cases = unsure.prediction.cases
     assert cases["MBC"].simulated == cases["none"].simulated
     assert any("No cancellation is proposed" in n for n in unsure.notes)
-    assert "cancellation" not in tomllib.loads(unsure.to_toml())
+    assert "C" not in tomllib.loads(unsure.to_toml())["blocks"]
 
 
 def test_an_actuator_that_gives_more_is_commanded_less(rod, designed):
@@ -119,17 +118,11 @@ def test_an_actuator_that_gives_more_is_commanded_less(rod, designed):
     assert dahl["dahl.stiffness"] == pytest.approx(own["dahl.stiffness"] / 1.25, rel=0.01)
 
 
-def test_the_controllers_read_back_from_their_toml(designed):
-    table = tomllib.loads(designed.to_toml())
-    for block, chosen in (
-        ("cancellation", designed.cancellation),
-        ("force_feedback", designed.force_feedback),
-    ):
-        stages = []
-        for entry in table[block]:
-            law = CONTROLLERS[entry.pop("law")]
-            stages.append(Stage(law, {n: v["value"] for n, v in entry.items()}))
-        assert Controller(tuple(stages)).names() == chosen.controller.names()
+def test_what_is_proposed_is_a_diagram_file(designed, tmp_path):
+    path = tmp_path / "interface.toml"
+    path.write_text(designed.to_toml(), encoding="utf-8")
+    assert read_diagram(path) == designed.diagram
+    assert "# " + str(designed.cancellation.reasons[0]) in path.read_text(encoding="utf-8")
 
 
 def test_the_json_is_strict_and_holds_what_was_proposed(designed, tmp_path):
@@ -142,7 +135,7 @@ def test_the_json_is_strict_and_holds_what_was_proposed(designed, tmp_path):
     laws = [stage.law.name for stage in designed.cancellation.controller.stages]
     assert content["cancellation"]["laws"] == laws
     assert content["passivity"]["MBC"][0]["status"] == "proved"
-    assert content["controllers_toml"] == designed.to_toml()
+    assert content["diagram_toml"] == designed.to_toml()
 
 
 def test_the_figure_has_units_on_every_axis(designed):
