@@ -42,9 +42,10 @@ def run(options: argparse.Namespace) -> int:
         if path is not None:
             check_output(path, endings)
     from ..derive import all_transfers
+    from ..realise.tips import linear_tips
 
     diagram = diagram_of(options.diagram, options.effect)
-    found = all_transfers(diagram)
+    found = all_transfers(linear_tips(diagram))  # with the wiring that is simulated
     print(found.latex() if options.latex else _page(found, options.speed))
     if options.json is not None:
         text = json.dumps(found.as_data(speed=options.speed), indent=1)
