@@ -74,7 +74,7 @@ def test_the_impedances_of_a_teleoperator_are_those_of_its_symbolic_two_port():
             assert abs(difference(2.0 + 7.0j)) < 1e-9
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(
     stiffness=st.integers(1, 2000),
     damping=st.integers(0, 20),
@@ -101,7 +101,8 @@ def test_a_coupling_that_leads_gives_out_energy_which_a_wave_shows():
         (body(0.15, friction=0.5), CANCELLATION, "proved"),
         (giving(), dahl(0.4, 1.5e4), "proved"),  # 1.5^2/0.4 <= 2^2/0.5
         (giving(), dahl(0.2, 1.5e4), "refuted"),
-        (body(0.15, friction=0.5), dahl(0.6, 1e4), "refuted"),
+        # 4 s: the stronger law is searched to the end
+        pytest.param(body(0.15, friction=0.5), dahl(0.6, 1e4), "refuted", marks=pytest.mark.slow),
     ],
 )
 def test_friction_with_its_cancellation_is_settled_as_for_a_diagnosed_device(device, law, status):
@@ -135,6 +136,7 @@ def test_a_law_without_theorem_is_left_to_the_search():
     assert claims["port (R_V, L), search by simulation"].status == "refuted"
 
 
+@pytest.mark.slow  # 3 s: it is searched
 def test_force_feedback_is_no_sum_of_parts():
     feedback = scheduled_force_feedback(gain=3.0, scheduling_velocity=0.1, bandwidth=20.0)
     diagram = haptic_interface(
