@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import ModelError, did_you_mean
-from ._options import check_output
+from ._options import add_effect_files, check_output
 
 if TYPE_CHECKING:
     from ..derive import Transfers
@@ -32,6 +33,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="V",
         help="m/s or rad/s at which smoothed friction and schedules are frozen (default 0)",
     )
+    add_effect_files(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -40,9 +42,10 @@ def run(options: argparse.Namespace) -> int:
         if path is not None:
             check_output(path, endings)
     from ..derive import all_transfers
+    from ..realise.tips import linear_tips
 
-    diagram = _diagram(options.diagram)
-    found = all_transfers(diagram)
+    diagram = diagram_of(options.diagram, options.effect)
+    found = all_transfers(linear_tips(diagram))  # with the wiring that is simulated
     print(found.latex() if options.latex else _page(found, options.speed))
     if options.json is not None:
         text = json.dumps(found.as_data(speed=options.speed), indent=1)
@@ -52,14 +55,20 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _diagram(name: str) -> Diagram:
+def diagram_of(name: str, effects: Sequence[Path] = ()) -> Diagram:
+    """The shipped diagram of that name, or the one in that file.
+
+    effects: the user's own effect files
+    raises ModelError, ExperimentError: neither, or a file that cannot be read
+    """
     from ..diagrams import SHIPPED, read_diagram, shipped
+    from ..effects import catalogue
 
     if name in SHIPPED:
         return shipped(name)
     path = Path(name)
     if path.suffix == ".toml" or path.exists():
-        return read_diagram(path)
+        return read_diagram(path, effects=catalogue(effects))
     raise ModelError(
         f'found "{name}", expected a file NAME.toml or one of {", ".join(SHIPPED)}'
         f"{did_you_mean(name, SHIPPED)}"

@@ -8,10 +8,12 @@ import math
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError
 from ._answer import body_of_answer
+from ._claims import WIDTH, claim_lines, plain
+from ._diagram_passivity import BESIDE_A_DIAGRAM, is_diagram, settle_diagram
 from ._options import add_effect_files, check_output, say
 
 if TYPE_CHECKING:
@@ -20,9 +22,6 @@ if TYPE_CHECKING:
     from ..passivity.identified import IdentifiedDevice
     from ..simulate import Sampling
 
-#: columns of the terminal
-WIDTH = 100
-
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
@@ -30,7 +29,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         "source",
         nargs="?",
         type=Path,
-        help="folder with experiment.toml, which is diagnosed, or a diagnosis's answer (.json)",
+        help="folder with experiment.toml, which is diagnosed, a diagnosis's answer (.json), or a "
+        "diagram: a file NAME.toml or a shipped one",
     )
     parser.add_argument("--body", help="which body of the answer: device, master or slave")
     law = parser.add_mutually_exclusive_group()
@@ -61,6 +61,12 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="virtual wall, N/m and N s/m; needs --period",
     )
     parser.add_argument(
+        "--stroke", type=float, default=0.01, metavar="M", help="of a search in a diagram, m or rad"
+    )
+    parser.add_argument(
+        "--speed", type=float, default=0.1, metavar="V", help="largest in it, m/s or rad/s"
+    )
+    parser.add_argument(
         "--json", type=Path, metavar="F", help="write claims, certificates and motions"
     )
     parser.add_argument(
@@ -74,6 +80,8 @@ def run(options: argparse.Namespace) -> int:
     if options.check is not None:
         return _check(options.check)
     _sound(options)
+    if is_diagram(options.source):
+        return settle_diagram(options, _computer(options))
     from ..passivity.device_claims import margins
     from ..passivity.identified import identified
 
@@ -92,9 +100,19 @@ def run(options: argparse.Namespace) -> int:
 
 def _sound(options: argparse.Namespace) -> None:
     if options.source is None:
-        raise ExperimentError("passivity: expected a folder, an answer (.json), or --check F")
+        raise ExperimentError(
+            "passivity: expected a folder, an answer (.json), a diagram (.toml), or --check F"
+        )
     if options.json is not None:
         check_output(options.json, (".json",))
+    for name in ("stroke", "speed"):
+        value = getattr(options, name)
+        if not (math.isfinite(value) and value > 0):
+            raise ExperimentError(f"--{name}: found {value:g}, expected more than 0")
+    if is_diagram(options.source) and (
+        given := [n for n in BESIDE_A_DIAGRAM if _given(options, n)]
+    ):
+        raise ExperimentError(f"--{given[0]}: found beside a diagram, which brings its own blocks")
     for name in ("dahl", "smoothed_coulomb"):
         values = getattr(options, name)
         if values is not None and not all(math.isfinite(x) and x > 0 for x in values):
@@ -115,13 +133,15 @@ def _sound(options: argparse.Namespace) -> None:
         raise ExperimentError("--wall, --delay, --encoder-step: they need --period")
 
 
+def _given(options: argparse.Namespace, name: str) -> bool:
+    return getattr(options, name.replace("-", "_")) is not None
+
+
 def _body(options: argparse.Namespace) -> Body:
     """The diagnosed body: read from an answer, or from a diagnosis that is made now."""
     source: Path = options.source
     if source.suffix == ".json":
         return body_of_answer(source, options.body)
-    if source.suffix == ".toml" and source.name != "experiment.toml":
-        raise ExperimentError(f"{source}: expected a folder with experiment.toml, or an answer")
     from ..diagnose import find_missing
     from ..effects import catalogue
     from ..measurement import load_experiment
@@ -195,19 +215,7 @@ def _text(device: IdentifiedDevice, settled: Sequence[Settled], found: Sequence[
         lines.append(f"not spoken of by the claims: {', '.join(device.set_aside)}")
     if device.unknown:
         lines.append(f"no standard error, taken as exact: {', '.join(device.unknown)}")
-    for one in settled:
-        lines += ["", f"{one.claim.status:<9} {one.topic}"]
-        lines += _folded(one.claim.statement) + _folded(str(one.claim.verdict))
-        if one.motion is not None:
-            lines += _folded(f"replayed in simulation: gives out {one.replayed:.6g} J")
-    return "\n".join([*lines, "", *map(str, found)])
-
-
-def _folded(text: str) -> list[str]:
-    space = " " * 10
-    return textwrap.wrap(
-        text, WIDTH, initial_indent=space, subsequent_indent=space, break_on_hyphens=False
-    )
+    return "\n".join([*lines, *claim_lines(settled), "", *map(str, found)])
 
 
 def _z_width(device: IdentifiedDevice, period: float, delay: float) -> str:
@@ -225,21 +233,6 @@ def _z_width(device: IdentifiedDevice, period: float, delay: float) -> str:
         f"Z-width at {period:g} s: stiffest passive wall {k:.4g} with damping {b:.4g} (SI), "
         f"{found.width(1.0):.1f} dB above the free device at 1 Hz ({checked})"
     )
-
-
-def plain(settled: Settled) -> dict[str, Any]:
-    """A settled claim as plain data, with its certificates and the motions that refute it."""
-    claim = settled.claim
-    return {
-        "topic": settled.topic,
-        "statement": claim.statement,
-        "status": claim.status,
-        "holds": claim.holds,
-        "verdict": str(claim.verdict),
-        "certificates": [dict(c.content) for c in claim.certificates],
-        "motion": claim.record.as_dict() if claim.status == "refuted" else None,
-        "replayed": None if settled.motion is None else settled.motion.as_dict(),
-    }
 
 
 def _check(path: Path) -> int:

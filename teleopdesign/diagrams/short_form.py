@@ -64,8 +64,8 @@ def kind_of(diagram: Diagram) -> str | None:
     }
     analog = tuple(b.name for b in diagram.controls if b.analog)
     for kind, form in KINDS.items():
-        known = {b.name for b in diagram.bodies} <= set(form.bodies)
-        known = known and {b.name for b in diagram.controls} <= set(form.controls)
+        controls = {b.name for b in diagram.controls}
+        known = controls <= set(form.controls) and set(contents) - controls <= set(form.bodies)
         if known and form.wired(contents, analog) == diagram:
             return kind
     return None

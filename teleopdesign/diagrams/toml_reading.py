@@ -1,7 +1,8 @@
 """A diagram from a TOML file: blocks with their values, wired by the names of their signals.
 
 SI throughout; a body's value may carry a unit, { value = 150, unit = "g" }. A block without laws
-or inertia is known by its name only. Everything unknown is refused, in one line.
+or inertia is known by its name only. Weights and kinematics may be expressions of positions, as
+text. Everything unknown is refused, in one line.
 """
 
 from __future__ import annotations
@@ -11,15 +12,28 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..blocks import Body, Value
+from ..blocks import Body, Value, with_block_effects
 from ..blocks.body import INERTIA
 from ..controllers import CONTROLLERS, Controller, Stage
 from ..effects import EFFECTS, Effect, Parameter, find_effect
 from ..errors import ExperimentError, ModelError, did_you_mean, quoted
 from ..measurement.toml_table import Table, described, read_toml
 from ..quantity import AXES, QUANTITIES, to_si
-from .parts import ANY, AnyBlock, Attached, Block, Control, Junction, Moving
+from .expressions import read_expression
+from .parts import (
+    ANY,
+    AnyBlock,
+    Attached,
+    Block,
+    Control,
+    Junction,
+    Kinematics,
+    Linked,
+    Moving,
+    Weight,
+)
 from .short_form import KINDS, Content
+from .toml_matrices import MATRICES, read_matrices
 from .wiring import Diagram
 
 BODY = ("axis", "inertia", "effects")
@@ -28,6 +42,7 @@ LAW = ("law", "parameters", "series")
 WIRING = {
     "moving": ("motion", "command", "loads", "driver"),
     "attached": ("motion", "force", "sign"),
+    "linked": ("motions", "forces", "sign"),
     "control": ("input", "output", "motion", "analog"),
 }
 
@@ -35,11 +50,12 @@ WIRING = {
 def read_diagram(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS) -> Diagram:
     """The diagram that a file describes; the format is on the page "Diagrams" of the documentation.
 
-    effects: the effects by name, for those who add their own (`effects.catalogue`)
+    effects: the effects by name, for those who add their own (`effects.catalogue`); those of
+        blocks, such as "environment", are known too
     raises ExperimentError: what cannot be read or has no meaning: file, key, found, expected
     """
     path = Path(path)
-    root = read_toml(path, path.name)
+    root, effects = read_toml(path, path.name), with_block_effects(effects)
     head = root.table("diagram")
     try:
         if "kind" in head.content:
@@ -73,10 +89,11 @@ def _short(root: Table, head: Table, effects: Mapping[str, Effect]) -> Diagram:
 
 def _free(root: Table, head: Table, effects: Mapping[str, Effect]) -> Diagram:
     """Blocks, junctions and what comes from outside, all written out."""
-    root.allow(("diagram", "outside", "blocks", "junctions", "texts"))
+    root.allow(("diagram", "outside", "blocks", "kinematics", "junctions", "pose", "texts"))
     head.allow(("name", "measured", "kind"))
     outside, tables = root.table("outside"), root.table("blocks")
     junctions, texts = root.table("junctions"), root.table("texts")
+    kinematics, pose = root.table("kinematics"), root.table("pose")
     return Diagram(
         _string(head, "name"),
         tuple(_block(name, tables.table(name), effects) for name in tables.content),
@@ -84,35 +101,64 @@ def _free(root: Table, head: Table, effects: Mapping[str, Effect]) -> Diagram:
         {name: _one_of(outside, name, QUANTITIES) for name in outside.content},
         tuple(_strings(head, "measured")),
         {name: _string(texts, name) for name in texts.content},
+        tuple(_kinematics(kinematics, name) for name in kinematics.content),
+        {name: pose.number(name) for name in pose.content},
     )
 
 
 def _block(name: str, table: Table, effects: Mapping[str, Effect]) -> Block:
     kind = _one_of(table, "kind", WIRING)
-    content = LAW if kind == "control" else BODY
+    content = {"control": LAW, "linked": MATRICES}.get(kind, BODY)
     table.allow(("kind", *WIRING[kind], *content))
     if kind == "control":
         taken, made, along = (_string(table, key) for key in ("input", "output", "motion"))
         return Control(name, _controller(table), taken, made, along, table.flag("analog", False))
+    if kind == "linked":
+        motions, forces = (tuple(_strings(table, key)) for key in ("motions", "forces"))
+        return Linked(name, read_matrices(table, len(motions)), motions, forces, _sign(table))
     motion, body = _string(table, "motion"), _body(table, effects)
     if kind == "attached":
-        sign = -1 if "sign" not in table.content else _weight(table, "sign")
-        if sign not in (1, -1):
-            raise ExperimentError(f"{table.where('sign')}: found {sign:g}, expected 1 or -1")
-        return Attached(name, body, motion, _string(table, "force"), int(sign))
-    command, driver = _string(table, "command"), _string(table, "driver")
-    return Moving(name, body, motion, command, _terms(table, "loads"), driver)
+        return Attached(name, body, motion, _string(table, "force"), _sign(table))
+    command, driver, loads = (
+        _string(table, "command"),
+        _string(table, "driver"),
+        table.table("loads"),
+    )
+    terms: dict[str, Any] = {signal: _number(loads, signal) for signal in loads.content}
+    return Moving(name, body, motion, command, terms, driver)
 
 
-def _terms(table: Table, key: str) -> dict[str, Any]:
-    """Signal -> sign or weight."""
+def _sign(table: Table) -> int:
+    sign = -1 if "sign" not in table.content else _number(table, "sign")
+    if sign not in (1, -1):
+        raise ExperimentError(f"{table.where('sign')}: found {sign:g}, expected 1 or -1")
+    return int(sign)
+
+
+def _terms(table: Table, key: str) -> dict[str, Weight]:
+    """Signal -> sign, weight, or an expression of positions."""
     terms = table.table(key)
-    return {signal: _weight(terms, signal) for signal in terms.content}
+    return {
+        signal: read_expression(text, where=terms.where(signal))
+        if isinstance(text, str)
+        else _number(terms, signal)
+        for signal, text in terms.content.items()
+    }
 
 
-def _weight(table: Table, key: str) -> float:
+def _number(table: Table, key: str) -> float:
     number = table.number(key)
     return int(number) if isinstance(table.content[key], int) else number
+
+
+def _kinematics(table: Table, name: str) -> Kinematics:
+    """An expression, or { expression = "...", axis = "revolute" }."""
+    if isinstance(table.content[name], str):
+        return Kinematics(name, read_expression(table.content[name], where=table.where(name)))
+    entry = table.table(name)
+    entry.allow(("expression", "axis"))
+    where = read_expression(entry.text("expression"), where=entry.where("expression"))
+    return Kinematics(name, where, _one_of(entry, "axis", AXES))
 
 
 def _body(table: Table, effects: Mapping[str, Effect]) -> Body | AnyBlock:

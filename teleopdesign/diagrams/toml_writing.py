@@ -9,37 +9,41 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from ..blocks import Body, Value
-from ..controllers import Controller
-from ..effects import EFFECTS
+import sympy as sp
+
+from ..blocks import Body, Value, with_block_effects
+from ..controllers import CONTROLLERS, Controller
+from ..effects import EFFECTS, Effect
 from ..errors import ModelError
-from .parts import AnyBlock, Attached, Block, Control, Linked, Moving
+from .expressions import expression_text
+from .parts import AnyBlock, Attached, Block, Control, Junction, Kinematics, Linked, Moving
 from .short_form import kind_of
+from .toml_matrices import MATRICES
 from .wiring import Diagram
 
 
-def write_diagram(diagram: Diagram, path: str | Path) -> None:
+def write_diagram(
+    diagram: Diagram, path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS
+) -> None:
     """Write a diagram, in SI; with its blocks only where the wiring is one of the package's own.
 
-    raises ModelError: an effect of a body is another than the catalogue's of that name
+    effects: those that a reader of the file will know, as in `read_diagram`
+    raises ModelError: an effect of a body is another than the one known by that name, a law is none
+        of the package's, an expression holds other functions than a file may
     """
-    Path(path).write_text(diagram_text(diagram), encoding="utf-8", newline="\n")
+    text = diagram_text(diagram, effects=effects)
+    Path(path).write_text(text, encoding="utf-8", newline="\n")
 
 
-def diagram_text(diagram: Diagram) -> str:
+def diagram_text(diagram: Diagram, *, effects: Mapping[str, Effect] = EFFECTS) -> str:
     """The content of the file."""
-    joined = [b.name for b in diagram.blocks if isinstance(b, Linked)]
-    joined += [k.name for k in diagram.kinematics]
-    joined += [j.name for j in diagram.junctions if j.arms]
-    if joined:
-        raise ModelError(f"{diagram.name}: {joined[0]} has no form in a file")
-    kind = kind_of(diagram)
+    kind, known = kind_of(diagram), with_block_effects(effects)
     lines = ["[diagram]"]
     if kind is not None:
         lines += [f"kind = {_text(kind)}"]
     else:
         lines += [f"name = {_text(diagram.name)}"]
-        lines += [f"measured = [{', '.join(map(_text, diagram.measured))}]"]
+        lines += [f"measured = {_list(diagram.measured)}"]
         lines += _table("outside", diagram.outside)
     for block in diagram.blocks:
         lines += ["", f"[blocks.{_key(block.name)}]"]
@@ -48,11 +52,30 @@ def diagram_text(diagram: Diagram) -> str:
             lines += ["analog = true"] if block.analog else []
             lines += _laws(block)
         elif not isinstance(block, Linked):
-            lines += _body(block.name, block.body)
+            lines += _body(block.name, block.body, known)
     if kind is None:
-        lines += _table("junctions", {j.output: j.terms for j in diagram.junctions})
+        lines += _table("kinematics", {k.output: _where(k) for k in diagram.kinematics})
+        lines += _table("junctions", {j.output: _terms(j) for j in diagram.junctions})
+        lines += _table("pose", diagram.pose)
         lines += _table("texts", diagram.texts)
     return "\n".join(lines) + "\n"
+
+
+def _terms(junction: Junction) -> dict[str, Any]:
+    """Weights as numbers, or as texts of expressions."""
+    return {
+        signal: expression_text(weight, name=f"{junction.name}: {signal}")
+        if isinstance(weight, sp.Expr)
+        else weight
+        for signal, weight in junction.terms.items()
+    }
+
+
+def _where(kinematics: Kinematics) -> Any:
+    text = expression_text(sp.sympify(kinematics.expression), name=kinematics.name)
+    if kinematics.axis == "prismatic":
+        return text
+    return {"expression": text, "axis": kinematics.axis}
 
 
 def _table(name: str, content: Mapping[str, Any]) -> list[str]:
@@ -68,6 +91,11 @@ def _wiring(block: Block) -> list[str]:
     elif isinstance(block, Attached):
         keys = {"kind": "attached", "motion": block.motion, "force": block.force}
         keys |= {"sign": block.sign}
+    elif isinstance(block, Linked):
+        keys = {"kind": "linked", "motions": block.motions, "forces": block.forces}
+        keys |= {"sign": block.sign}
+        matrices = {name: getattr(block.body, name) for name in MATRICES}
+        keys |= {name: rows for name, rows in matrices.items() if any(map(any, rows))}
     else:
         assert isinstance(block, Control)
         keys = {"kind": "control", "input": block.input, "output": block.output}
@@ -75,12 +103,12 @@ def _wiring(block: Block) -> list[str]:
     return [f"{k} = {_value(v)}" for k, v in keys.items()]
 
 
-def _body(name: str, body: Body | AnyBlock) -> list[str]:
+def _body(name: str, body: Body | AnyBlock, known: Mapping[str, Effect]) -> list[str]:
     if isinstance(body, AnyBlock):
         return []
     for effect in body.effects:
-        if EFFECTS.get(effect.name) is not effect:
-            raise ModelError(f'{name}: effect "{effect.name}" is not the one of the catalogue')
+        if known.get(effect.name) is not effect:
+            raise ModelError(f'{name}: effect "{effect.name}" is not the one known by that name')
     lines = [f"axis = {_text(body.axis)}", f"inertia = {_value(body.parameters['inertia'])}"]
     for effect in body.effects:
         lines += [f"[blocks.{_key(name)}.effects.{_key(effect.name)}]"]
@@ -94,6 +122,11 @@ def _laws(block: Control) -> Iterator[str]:
         return
     stages = block.controller.stages
     for stage in stages:
+        if CONTROLLERS.get(stage.law.name) is not stage.law:
+            raise ModelError(
+                f'{block.name}: law "{stage.law.name}" is none of the package, such as one from '
+                "python-control: it has no form in a file"
+            )
         if len(stages) > 1:
             yield f"[[blocks.{_key(block.name)}.series]]"
         yield f"law = {_text(stage.law.name)}"
@@ -107,7 +140,13 @@ def _value(value: object) -> str:
         return _inline((_key(k), _value(v)) for k, v in value.items())
     if isinstance(value, Value):
         return _number_with_marks(value)
+    if isinstance(value, tuple):
+        return _list(value)
     return repr(value) if isinstance(value, int) else repr(float(value))  # type: ignore[arg-type]
+
+
+def _list(values: Iterable[object]) -> str:
+    return f"[{', '.join(map(_value, values))}]"
 
 
 def _number_with_marks(value: Value) -> str:

@@ -164,9 +164,16 @@ class Diagram:
             replace(j, terms={s: g for s, g in j.terms.items() if s not in gone})
             for j in self.junctions
         )
+        kept = (
+            replace(b, loads={s: g for s, g in b.loads.items() if s not in gone})
+            if isinstance(b, Moving)
+            else b
+            for b in self.blocks
+            if b.name not in names
+        )
         return replace(
             self,
-            blocks=tuple(b for b in self.blocks if b.name not in names),
+            blocks=tuple(kept),
             junctions=junctions,
             measured=tuple(s for s in self.measured if s not in gone),
         )

@@ -11,6 +11,7 @@ from ..derive import block_symbol, transfer
 from ..diagrams import Diagram
 from ..errors import ModelError
 from ..realise.lti import as_transfer_function, linear_blocks
+from ..realise.tips import linear_tips
 
 if TYPE_CHECKING:
     import control
@@ -28,6 +29,7 @@ def loop_gain(
     if part is None:
         diagram.block(controller)
         raise ModelError(f"{diagram.name}: {controller} is a body, expected a controller")
+    diagram = linear_tips(diagram)
     linear = linear_blocks(diagram, speed=speed)
     opened = diagram.opened(controller)
     path = sp.sympify(transfer(opened, part.input, (part.output,))[part.output])

@@ -18,6 +18,7 @@ from ..derive.printing import block_symbol
 from ..diagrams import Diagram, Moving
 from ..errors import ModelError
 from ..realise.lti import S, linear_blocks
+from .parted import linear_parted
 
 if TYPE_CHECKING:
     import control
@@ -60,12 +61,16 @@ def matrix_response(
 ) -> MatrixResponse:
     """Response of each output to each input, all others zero.
 
-    frequency: (n,), Hz;  given: motions that are prescribed, in place of the forces that drive them
+    frequency: (n,), Hz;  given: motions that are prescribed, in place of the forces that drive
+    them; the tip's of a body with a compliant transmission
     speed: at which smoothed friction and schedules are frozen, m/s or rad/s
     raises ModelError: a signal is not there, an input is not free, a loop has no solution
     """
     import xarray
 
+    diagram, led = linear_parted(diagram, tuple(given))
+    inputs, outputs = ([led.get(n, n) for n in names] for names in (inputs, outputs))
+    given = list(led.values())
     drivers = {b.motion: b.driver for b in diagram.blocks if isinstance(b, Moving)}
     free = [s for s in diagram.outside if s not in {drivers.get(m) for m in given}]
     free += given

@@ -19,6 +19,7 @@ from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
 from .grid import Amplitude, Grid
 from .impedance_map import ImpedanceMap
+from .parted import simulated_parted
 from .sinusoid import GIVE, Sinusoid, settled_harmonics
 
 
@@ -39,7 +40,8 @@ def measured_impedance(
         profile, such as `falling(0.01)`);  frequency: Hz
     drive: signal that is the sinusoid; default the motion itself, prescribed; "L_D": the reference
         of a position loop, which the motion then follows as well as the loop can
-    motion, force: signals whose first harmonics are divided
+    motion, force: signals whose first harmonics are divided; a motion that is prescribed is that of
+        the tip where the body has a compliant transmission or backlash
     computer: how controllers are sampled, or "continuous"
     give: share of the amplitude by which ideal Coulomb friction gives before it slides; sqrt(give)
         sets the error (1e-5: 0.2 degrees of its phase), 1/sqrt(give) the time
@@ -47,19 +49,23 @@ def measured_impedance(
         a loop that is unstable
     """
     cases = {diagrams.name: diagrams} if isinstance(diagrams, Diagram) else dict(diagrams)
-    grid, source = Grid.of(amplitude, frequency), drive or motion
+    grid = Grid.of(amplitude, frequency)
     shape = (len(cases), *(len(getattr(grid, name)) for name in grid.dims))
     z = np.empty(shape, dtype=complex)
     distortion, unsettled, moved = np.empty(shape), np.empty(shape), np.empty(shape)
-    for i, diagram in enumerate(cases.values()):
+    for i, whole in enumerate(cases.values()):
+        diagram, led = simulated_parted(whole, motion)
+        # one that a loop tracks is the one that sensors see
+        read = motion if drive else led
+        source = drive or read
         for at, size, f in grid.points:
             sinusoid = Sinusoid(source, size, f, computer=computer, give=give)
-            one = settled_harmonics(diagram, sinusoid, signals=(force, motion))
+            one = settled_harmonics(diagram, sinusoid, signals=(force, read))
             here = (i, *at)
-            z[here] = one[force].phasor / one[motion].phasor
+            z[here] = one[force].phasor / one[read].phasor
             distortion[here] = one[force].distortion
             unsettled[here] = max(h.unsettled for h in one.values())
-            moved[here] = abs(one[motion].phasor)
+            moved[here] = abs(one[read].phasor)
     axis = axis_of(next(iter(cases.values())))
     length = unit_of("position", axis)
     values = {
@@ -69,7 +75,7 @@ def measured_impedance(
         "motion_amplitude": (moved, length),
     }
     data = grid.labelled(values, cases=list(cases), length=length)
-    data.attrs |= {"drive": source, "motion": motion, "force": force, "give": give}
+    data.attrs |= {"drive": drive or motion, "motion": motion, "force": force, "give": give}
     return ImpedanceMap(data)
 
 

@@ -14,6 +14,8 @@ from ..derive import block_symbol, transfer
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
 from ..realise.lti import LinearBlocks, S, as_transfer_function, linear_blocks
+from ..realise.tips import linear_tips
+from .parted import linear_parted
 
 if TYPE_CHECKING:
     import control
@@ -103,7 +105,7 @@ def bode(
     """Frequency response from one signal to another, for one diagram or several cases.
 
     given: motions that are prescribed; output "E", input and given "L" is the apparent mechanism
-        impedance Zhat_M
+        impedance Zhat_M. Of a body with a compliant transmission it is the tip's that is given
     frequency: Hz, default 0.1 to 1000;  speed: where smoothed friction and schedules are frozen
     """
     cases = {diagrams.name: diagrams} if isinstance(diagrams, Diagram) else dict(diagrams)
@@ -114,7 +116,9 @@ def bode(
         call = sp.lambdify(S, expression, "numpy")
         rows.append(np.broadcast_to(np.asarray(call(2j * np.pi * f), dtype=complex), f.shape))
         left_out[name] = linear.left_out
-    data = labelled(np.array(rows), list(cases), f, unit=ratio_unit(diagram, output, input))
+    data = labelled(
+        np.array(rows), list(cases), f, unit=ratio_unit(linear_tips(diagram), output, input)
+    )
     data.attrs |= {"output": output, "input": input, "speed": abs(speed)}
     return FrequencyResponse(data, output, input, left_out)
 
@@ -167,8 +171,11 @@ def _scalar(
     diagram: Diagram, output: str, source: str, given: str | tuple[str, ...], speed: float
 ) -> tuple[sp.Expr, LinearBlocks]:
     """Symbolic transfer function with each block's linear form in place; one degree of freedom."""
+    motions = given if isinstance(given, tuple) else (given,) if given else ()
+    diagram, led = linear_parted(diagram, motions)
+    output, source = led.get(output, output), led.get(source, source)
     linear = linear_blocks(diagram, speed=speed)
-    form = transfer(diagram, output, (source,), given=given)[source]
+    form = transfer(diagram, output, (source,), given=tuple(led.values()))[source]
     values = {block_symbol(n): e for n, e in linear.blocks.items()}
     values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
     return sp.sympify(form).subs(values), linear

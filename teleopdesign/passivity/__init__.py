@@ -23,6 +23,7 @@ from .counterexample import (
 from .delayed_compensation import delayed_small_motion, given_out_late, inertia_given_out
 from .delayed_coupling import delayed_spring
 from .delayed_inertia import cancelled_inertia, damping_given_out, largest_passive_inertia
+from .diagram_claims import DiagramClaims, Search, diagram_claims
 from .friction_compensation import (
     bounded_compensation,
     dahl_compensation,
@@ -43,6 +44,7 @@ from .observer import (
     observe_simulation,
     passivity_controlled,
 )
+from .ports import Port, ports
 from .positive_real import Excess, damping_excess, mobility_excess, positive_real
 from .quantised_spring import quantised_spring, stiffest_spring
 from .rate_independent import Coulomb, Cycle, Dahl, DahlBehindSpring, Spring, symmetric_cycle
@@ -65,6 +67,7 @@ __all__ = [
     "Cycle",
     "Dahl",
     "DahlBehindSpring",
+    "DiagramClaims",
     "Evidence",
     "Excess",
     "FrequencyMargins",
@@ -72,10 +75,12 @@ __all__ = [
     "Impedance",
     "Kyp",
     "PassivityControlled",
+    "Port",
     "PortEnergy",
     "Proof",
     "Refutation",
     "Region",
+    "Search",
     "SecondOpinion",
     "SimulatedMotion",
     "Spring",
@@ -94,6 +99,7 @@ __all__ = [
     "damping_given_out",
     "delayed_small_motion",
     "delayed_spring",
+    "diagram_claims",
     "free_motion",
     "free_motion_margin",
     "given_out",
@@ -114,6 +120,7 @@ __all__ = [
     "over_frequency",
     "passive",
     "passivity_controlled",
+    "ports",
     "positive_real",
     "quantised_spring",
     "read_certificate",

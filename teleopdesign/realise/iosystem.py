@@ -52,11 +52,15 @@ def to_iosystem(
         )
     values = diagram.values
     numbers = {s: values[n] for s, n in parts.parameters.items()}
-    systems = [_mechanics(parts, numbers)]
+    every: tuple[Junction | Kinematics, ...] = (*diagram.kinematics, *diagram.junctions)
+    static = [p for p in every if p.output in parts.computer.signals]
+    # python-control has no system without inputs: what never changes is an output of the mechanics
+    idle = {signal(p.output): float(summed(p, signal)) for p in static if not p.inputs}
+    numbers |= idle
+    systems = [_mechanics(parts, numbers, idle)]
     for part in diagram.controls:
         systems.append(_controller(diagram, part, numbers))
-    static: tuple[Junction | Kinematics, ...] = (*diagram.kinematics, *diagram.junctions)
-    systems += [_static(p) for p in static if p.output in parts.computer.signals]
+    systems += [_static(p) for p in static if p.inputs]
     driven = {f"{m}{end}" for m in parts.prescribed for end in ("", "_velocity", "_acceleration")}
     outside = [s for s in diagram.outside if s not in parts.signals]
     taken = {s for system in systems for s in system.input_labels}
@@ -69,12 +73,15 @@ def to_iosystem(
     )
 
 
-def _mechanics(parts: Equations, numbers: dict[sp.Symbol, float]) -> Any:
+def _mechanics(
+    parts: Equations, numbers: dict[sp.Symbol, float], idle: Mapping[sp.Symbol, float]
+) -> Any:
     moved = [s for m in parts.motions for s in (signal(m), velocity(m))]
-    given = [*parts.inputs, *parts.commands.values()]
+    given = [s for s in (*parts.inputs, *parts.commands.values()) if s not in idle]
     states = sorted(parts.rates, key=str)
     # a signal that the system takes and gives under one name would be wired to itself
     outputs = {str(s): s for s in moved} | {n: e for n, e in parts.signals.items()}
+    outputs |= {str(s): s for s in idle}
     rates = [parts.rates[s] for s in states]
     return _nlsys(MECHANICS, states, given, rates, outputs, numbers, parts.joined)
 

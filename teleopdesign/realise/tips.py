@@ -40,6 +40,26 @@ def led(diagram: Diagram, motion: str) -> str:
     return motion
 
 
+def linear_tips(diagram: Diagram) -> Diagram:
+    """The diagram with bodies apart whose structure has a linear form; absent ones left out.
+
+    A structure without one (backlash) stays where it is: linear forms leave it out, by name.
+    """
+    for part in diagram.blocks:
+        if not isinstance(part, Moving) or not isinstance(part.body, Body):
+            continue
+        structure = next((e for e in part.body.effects if e.role == "structure"), None)
+        if structure is None or not structure.linear:
+            continue
+        values = {n: part.body.parameters[f"{structure.name}.{n}"].value for n in structure.absent}
+        if values == dict(structure.absent):
+            body = part.body.without_effect(structure.name)
+            diagram = diagram.with_block(part.name, body)
+        else:
+            diagram = _parted(diagram, part, part.body, structure)
+    return diagram
+
+
 def with_tips(diagram: Diagram, *, prescribed: Iterable[str] = ()) -> Diagram:
     """The diagram with every body that has a structure as two bodies.
 

@@ -7,7 +7,7 @@ from design.devices import CANCELLATION, FEEDBACK, body
 from effects.along import KNOWN
 
 from teleopdesign.blocks import Body, Value
-from teleopdesign.diagrams import four_cases, haptic_interface
+from teleopdesign.diagrams import Diagram, Junction, Moving, four_cases, haptic_interface
 from teleopdesign.effects import CONTACT_ROLES, EFFECTS
 from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, transfer_function
@@ -217,3 +217,29 @@ def test_the_apparent_impedance_of_a_mass_is_m_omega_squared():
     response = bode(haptic_interface(body(0.15)), output="E", input="L", given="L", frequency=f)
     np.testing.assert_allclose(response.data["magnitude"].values[0], 0.15 * (2 * np.pi * f) ** 2)
     np.testing.assert_allclose(response.data["phase"].values[0], 180.0)
+
+
+def test_an_empty_sum_makes_no_python_control_system_without_inputs():
+    """m x'' + b x' = f with an empty sum for its command."""
+    body_ = Body("prismatic", {"inertia": Value(0.15)})
+    body_ = body_.with_effect(EFFECTS["viscous"], {"damping": 2.0})
+    diagram = Diagram(
+        "no command",
+        (Moving("M", body_, "x", "u", {"f": 1}, "f"),),
+        (Junction("u", {"w": 2}), Junction("w", {})),
+        {"f": "force"},
+        measured=("x",),
+    )
+    system = to_iosystem(diagram)
+    assert all(one.ninputs for one in system.syslist)
+    assert system.input_labels == ["f"]
+    assert {"x", "u", "w"} <= set(system.output_labels)
+    t = np.linspace(0.0, 0.2, 101)
+    found = control.input_output_response(
+        system, t, np.ones((1, t.size)), solve_ivp_kwargs={"rtol": 1e-10, "atol": 1e-13}
+    )
+    tau = 0.15 / 2.0
+    exact = (t - tau * (1 - np.exp(-t / tau))) / 2.0
+    x = found.outputs[system.output_labels.index("x")]
+    np.testing.assert_allclose(x, exact, atol=1e-9)  # the solver's tolerance on 65 mm
+    assert not found.outputs[system.output_labels.index("u")].any()

@@ -8,7 +8,9 @@ from design.devices import body
 from teleopdesign.blocks import spring_damper
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.errors import ModelError
-from teleopdesign.frequency import transfer_function
+from teleopdesign.frequency import bode, measured_impedance, transfer_function
+from teleopdesign.frequency.matrix_response import matrix_response
+from teleopdesign.passivity import hand_port
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.tips import with_tips
 from teleopdesign.simulate import simulate, sine
@@ -154,3 +156,64 @@ def test_through_a_gap_two_bodies_exchange_momentum_and_keep_energy():
     energy = m * here**2 + TIP * there**2 + stiffness * deep**2
     np.testing.assert_allclose(energy, m * speed**2, rtol=2e-3)
     assert there.max() == pytest.approx(4 / 3 * speed, rel=1e-3)  # 0.2 kg on 0.1 kg
+
+
+def impedance_at_the_tip(f):
+    """R_V over L_tip: tip on a spring and damper that the actuator's side holds."""
+    s = 2j * np.pi * f
+    link, here = K + C * s, (M - TIP) * s**2 + B * s
+    return TIP * s**2 + link * here / (link + here)
+
+
+def test_all_linear_forms_see_the_hand_at_the_tip():
+    f = np.array([0.5, 13.0, 40.0])
+    diagram = haptic_interface(body(M, **COMPLIANT))
+    expected = impedance_at_the_tip(f)
+    zhat = {"output": "E", "input": "L", "given": "L"}
+    np.testing.assert_allclose(bode(diagram, frequency=f, **zhat).values(), expected, rtol=1e-9)
+    system, left_out = transfer_function(diagram, **zhat)
+    np.testing.assert_allclose(system(2j * np.pi * f), expected, rtol=1e-9)
+    found = matrix_response(diagram, ("E", "L"), ("L",), f, given=("L",))
+    np.testing.assert_allclose(found.data.values[:, 0, 0], expected, rtol=1e-9)
+    np.testing.assert_allclose(found.data.values[:, 1, 0], 1.0)
+    velocity, _ = hand_port(diagram)
+    s = 2j * np.pi * f
+    np.testing.assert_allclose(velocity(s) * s, expected, rtol=1e-9)
+    assert left_out == found.left_out == ()
+
+
+def test_simulated_and_symbolic_impedance_of_a_compliant_device_agree():
+    """Around its resonance (13 Hz at the tip held, 34 Hz free), within 0.1 %."""
+    f = [2.0, 13.0, 30.0]
+    diagram = haptic_interface(body(M, **COMPLIANT))
+    found = measured_impedance(diagram, amplitude=1e-3, frequency=f, computer="continuous")
+    z = found.data["impedance"].values.reshape(-1)
+    np.testing.assert_allclose(z, impedance_at_the_tip(np.array(f)), rtol=1e-3)
+
+
+def test_the_response_of_a_held_compliant_device_is_that_of_two_masses():
+    f = np.array([0.5, 7.0, 40.0])
+    diagram = haptic_interface(body(M, **COMPLIANT), hand=HAND)
+    for row, name in enumerate(("L", "L_tip")):
+        found = bode(diagram, output=name, input="R_D", frequency=f)
+        exact = two_masses()(2j * np.pi * f)[row, 0]
+        np.testing.assert_allclose(found.values(), exact, rtol=1e-9)
+        assert found.data["magnitude"].units == "m/N"
+
+
+def test_backlash_has_no_linear_form_and_is_named():
+    values = {"tip_inertia": TIP, "stiffness": 2e4, "damping": 0.0, "gap": 1e-3}
+    lost = body(M, viscous__damping=B, **{f"backlash__{n}": v for n, v in values.items()})
+    zhat = {"output": "E", "input": "L", "given": "L"}
+    system, left_out = transfer_function(haptic_interface(lost), **zhat)
+    assert left_out == ("Z_M.backlash",)
+    s = 20j
+    assert complex(system(s)) == pytest.approx(M * s**2 + B * s, rel=1e-9)
+
+
+def test_a_transmission_that_is_absent_is_the_rigid_body():
+    absent = body(M, **COMPLIANT | {"transmission_compliance__tip_inertia": 0.0})
+    system, left_out = transfer_function(haptic_interface(absent), output="E", input="L", given="L")
+    assert left_out == ()
+    s = 20j
+    assert complex(system(s)) == pytest.approx(M * s**2 + B * s, rel=1e-9)

@@ -6,7 +6,15 @@ from design.devices import CANCELLATION, FEEDBACK, LOOP, body
 
 from teleopdesign.controllers import CONTROLLERS, controller, scheduled_force_feedback
 from teleopdesign.derive import block_symbol, proved_equal, transfer
-from teleopdesign.diagrams import ANY, Control, Diagram, Junction, Moving, haptic_interface
+from teleopdesign.diagrams import (
+    ANY,
+    Attached,
+    Control,
+    Diagram,
+    Junction,
+    Moving,
+    haptic_interface,
+)
 from teleopdesign.diagrams.world_haptics_2005 import READINGS
 from teleopdesign.errors import ModelError
 from teleopdesign.simulate import simulate
@@ -144,3 +152,14 @@ def test_a_reading_is_one_of_those_that_fit_and_says_why(name):
     reading = READINGS[name]
     assert reading.value in reading.readings
     assert 0 < reading.confidence <= 1 and reading.why
+
+
+def test_a_block_taken_out_leaves_no_load_on_a_body_behind():
+    held = Diagram(
+        "held",
+        (Moving("M", ANY, "x", "u", {"f": 1, "f_z": 1}, "f"), Attached("Z", ANY, "x", "f_z")),
+        (Junction("u", {}),),
+        {"f": "force"},
+        measured=("x",),
+    )
+    assert held.without("Z").block("M").loads == {"f": 1}

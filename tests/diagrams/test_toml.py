@@ -1,19 +1,32 @@
 """Diagrams as TOML: what is written is read as the same, and a mistake is told in one line."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
+import sympy as sp
 from diagrams.random_diagrams import diagrams
+from diagrams.several_axes import two_armed_teleoperator, two_rods
 from hypothesis import given, settings
 
+from teleopdesign.blocks import CONTACT
+from teleopdesign.cli import main
+from teleopdesign.controllers import from_control
 from teleopdesign.diagrams import (
     ANY,
     SHIPPED,
+    Diagram,
+    Junction,
+    Moving,
     haptic_interface,
+    position_symbol,
     read_diagram,
     shipped,
     write_diagram,
 )
+from teleopdesign.diagrams.expressions import read_expression
 from teleopdesign.diagrams.toml_writing import diagram_text
-from teleopdesign.effects import EFFECTS
+from teleopdesign.effects import EFFECTS, catalogue
 from teleopdesign.errors import ExperimentError, ModelError
 
 FREE = """\
@@ -47,6 +60,44 @@ output = "u"
 motion = "x"
 law = "smoothed_coulomb"
 parameters = { level = 0.5, smoothing_velocity = 0.01 }
+"""
+JOINED = """\
+[diagram]
+name = "a crank that two hands hold"
+measured = ["q"]
+
+[outside]
+f = "force"
+
+[blocks.M]
+kind = "moving"
+motion = "q"
+command = "u"
+loads = { t = 1 }
+driver = "f"
+axis = "revolute"
+inertia = 0.02
+[blocks.M.effects.environment]
+stiffness = 500
+damping = 1
+contact_position = 0.3
+
+[blocks.Z]
+kind = "linked"
+motions = ["x", "y"]
+forces = ["f_x", "f_y"]
+stiffness = [[300, -40], [-40, 200]]
+
+[kinematics]
+x = "0.1*cos(q)"
+y = { expression = "0.1*sin(q)", axis = "prismatic" }
+
+[junctions]
+u = {}
+t = { f = 1, f_x = "-0.1*sin(q)", f_y = "0.1*cos(q)" }
+
+[pose]
+q = 0.4
 """
 SHORT = """\
 [diagram]
@@ -83,8 +134,9 @@ def reading(tmp_path):
     return read
 
 
-@settings(max_examples=100, deadline=None)
-@given(diagram=diagrams())
+# 40 wirings in about 3 s: every part and most forms of weights occur
+@settings(max_examples=40, deadline=None)
+@given(diagram=diagrams(geometry=True))
 def test_what_is_written_is_read_as_the_same_diagram(tmp_path_factory, diagram):
     file = tmp_path_factory.getbasetemp() / "random.toml"
     write_diagram(diagram, file)
@@ -141,6 +193,31 @@ def test_the_short_form_is_wired_as_the_package_does(reading):
         (FREE, '["x"]', '["y"]', "loop.toml: one body on a spring: measured: nothing makes sign"),
         (FREE, 'force = "f_k"', 'force = "f_k"\nsign = 2', "blocks.Z.sign: found 2, expected 1 or"),
         (FREE, "[outside]", "[outsid]", 'unknown key "outsid", expected'),
+        (JOINED, "0.1*cos(q)", "0.1*cosh(q)", 'kinematics.x: found function "cosh", expected sin'),
+        (JOINED, "0.1*cos(q)", "0.1*cos(r)", 'nothing makes signal "r"'),
+        (JOINED, "0.1*cos(q)", "0.1*cos(q", 'x: found "0.1*cos(q", expected an expression'),
+        (JOINED, "0.1*cos(q)", "cos(q)/0", "loop.toml: kinematics.x: has no finite real value"),
+        (JOINED, "0.1*cos(q)", "cos(q)*1e999", "kinematics.x: has no finite real value"),
+        (JOINED, "0.1*cos(q)", "asin(2)", "loop.toml: kinematics.x: has no finite real value"),
+        (JOINED, "0.1*cos(q)", "cos(q, 1)", "kinematics.x: cos: found 2 arguments, expected 1"),
+        (JOINED, "0.1*sin(q)", "q.real", 'y.expression: found "q.real", expected numbers, positi'),
+        (JOINED, "-0.1*sin(q)", "q[0]", 'junctions.t.f_x: found "q[0]", expected numbers'),
+        (JOINED, '"-0.1*sin(q)"', "true", "junctions.t.f_x: found true, expected a number"),
+        (JOINED, "f = 1, f_x", 'f = "True", f_x', 'junctions.t.f: found "True", expected a number'),
+        (JOINED, "{ t = 1 }", '{ t = "q" }', 'blocks.M.loads.t: found "q", expected a number'),
+        (JOINED, '"prismatic"', '"linear"', 'kinematics.y.axis: found "linear"'),
+        (JOINED, "[[300, -40], ", "[[300], ", "blocks.Z.stiffness: found 2 rows of 1 and 2, expec"),
+        (
+            JOINED,
+            "[[300, -40], ",
+            "[[300, nan], ",
+            "blocks.Z.stiffness: found nan, expected 2 rows",
+        ),
+        (JOINED, '["f_x", "f_y"]', '["f_x"]', "Z: 2 rows, found 2 motions and 1 forces"),
+        (JOINED, '["x", "y"]', "[]", "blocks.Z.motions: found none, expected one or more"),
+        (JOINED, "stiffness = [[", "stifness = [[", 'did you mean "stiffness"'),
+        (JOINED, "q = 0.4", "q = inf", "loop.toml: pose.q: found inf"),
+        (JOINED, "effects.environment", "effects.environmen", 'did you mean "environment"?'),
         (SHORT, '"haptic interface"', '"haptic"', 'diagram.kind: found "haptic", expected haptic'),
         (SHORT, "blocks.Z_H", "blocks.Z_h", 'unknown key "Z_h", expected Z_M, Z_H, C, H, K'),
         (SHORT, "bandwidth = 20", "gain = 20", 'blocks.H.series[2].parameters: unknown key "gain"'),
@@ -155,6 +232,75 @@ def test_a_mistake_is_told_in_one_line(reading, text, old, new, words):
     with pytest.raises(ExperimentError) as caught:
         reading(text.replace(old, new, 1))
     assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_geometry_and_what_joins_several_motions_are_read(reading):
+    q = position_symbol("q")
+    diagram = reading(JOINED)
+    assert diagram.position("x") == 0.1 * sp.cos(q)
+    assert diagram.here(diagram.junctions[1].terms["f_x"]) == pytest.approx(-0.1 * np.sin(0.4))
+    assert diagram.block("Z").body.stiffness == ((300.0, -40.0), (-40.0, 200.0))
+    assert diagram.block("M").body.effect("environment") is CONTACT
+    assert reading(diagram_text(diagram)) == diagram
+
+
+@pytest.mark.parametrize("text", ["9**9**9**9", "(9**64)**64", "x" * 10_001, "(" * 5000 + "x"])
+def test_an_expression_that_would_take_for_ever_is_refused_at_once(text):
+    with pytest.raises(ExperimentError) as caught:
+        read_expression(text, where="here")
+    assert len(str(caught.value)) < 120
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["__import__('os')", "(lambda: 1)()", "[q for q in 'a']", "q if q else 1", "q < 1", "1j"],
+)
+def test_an_expression_is_never_run_as_code(text):
+    with pytest.raises(ExperimentError, match="here: found"):
+        read_expression(text, where="here")
+
+
+def test_parallel_rods_and_arms_are_read_as_they_were_written(reading):
+    for diagram in (two_rods(), two_armed_teleoperator()):
+        assert reading(diagram_text(diagram)) == diagram
+
+
+def test_what_has_no_form_in_a_file_is_told_in_one_line(tmp_path):
+    control = pytest.importorskip("control")
+    diagram = shipped("world-haptics-2005")
+    filtered = diagram.with_block("C", from_control(control.tf([1.0], [0.1, 1.0])))
+    with pytest.raises(ModelError, match='C: law "state_space" is none of the package'):
+        write_diagram(filtered, tmp_path / "odd.toml")
+    q = position_symbol("q")
+    stepped = Junction("x", {"q": sp.Heaviside(q)})
+    body = Moving("M", ANY, "q", "u", {}, "u")
+    wiring = Diagram("odd", (body,), (stepped,), {"u": "force"}, measured=())
+    with pytest.raises(ModelError, match='junction x: q: found function "Heaviside".* no form in'):
+        write_diagram(wiring, tmp_path / "odd.toml")
+    named = replace(body, motion="pi")
+    turned = Junction("x", {"u": position_symbol("pi")})
+    with pytest.raises(ModelError, match='junction x: u: "pi" has no form in a file'):
+        write_diagram(replace(wiring, blocks=(named,), junctions=(turned,)), tmp_path / "odd.toml")
+    assert not (tmp_path / "odd.toml").exists()
+
+
+def test_a_users_own_effect_takes_part_in_a_file(tmp_path, capsys):
+    own = tmp_path / "magnet.py"
+    own.write_text(
+        '"""A magnet."""\n'
+        "from teleopdesign.effects import Effect, Parameter\n"
+        'EFFECT = Effect(role="force", law=lambda now, p: p.pull * now.position, linear=True,\n'
+        '    parameters={"pull": Parameter("stiffness", "its pull")}, absent={"pull": 0.0})\n'
+    )
+    file = tmp_path / "loop.toml"
+    file.write_text(FREE.replace("effects.coulomb]\nlevel", "effects.magnet]\npull"))
+    known = catalogue([own])
+    diagram = read_diagram(file, effects=known)
+    write_diagram(diagram, tmp_path / "copy.toml", effects=known)
+    assert read_diagram(tmp_path / "copy.toml", effects=known) == diagram
+    assert main(["derive", str(file), "--effect", str(own)]) == 0
+    assert main(["derive", str(file)]) == 2
+    assert 'no effect "magnet"' in capsys.readouterr().err
 
 
 def test_a_missing_file_and_an_unknown_name_are_told(tmp_path):

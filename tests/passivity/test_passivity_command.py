@@ -101,7 +101,7 @@ def test_a_tampered_certificate_is_refused(answer, tmp_path, capsys):
         (["x.json", "--dahl", "0", "1"], "expected two numbers > 0"),
         (["x.json", "--period", "0"], "more than 0 s"),
         (["x.json", "--period", "1e-3", "--delay", "1.5e-3"], "1.5 periods"),
-        (["diagram.toml"], "expected a folder with experiment.toml"),
+        (["diagram.toml"], "diagram.toml: cannot be read"),
     ],
 )
 def test_bad_input_is_one_line_and_status_2(arguments, said, capsys):

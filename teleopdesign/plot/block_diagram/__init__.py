@@ -29,7 +29,9 @@ def draw_diagram(diagram: Diagram) -> Drawing:
 
     Blocks are boxes with their name and the laws in them, junctions circles with a sign at
     every term. Z_M^-1 stands for a body that forces move, -Z_H for one that resists the motion it
-    follows. Of control laws that also see a velocity, only the wired input is drawn.
+    follows; a matrix of impedances is a box for each of its rows. Weights that depend on positions
+    are a box with their formula, on the wires of what they weigh. Of control laws that also see a
+    velocity, only the wired input is drawn.
     """
     parts = network(diagram)
     if not parts.nodes:
@@ -58,7 +60,7 @@ def _best_sides(parts: Network, ways: list[Path]) -> dict[int, int]:
     able = [
         i
         for i, p in enumerate(ways)
-        if i and any(parts.nodes[n].kind in ("box", "sum") for n in p.nodes)
+        if i and any(parts.nodes[n].kind in ("box", "bar", "sum") for n in p.nodes)
     ]
     best: dict[int, int] = {}
     least = _cost(parts, ways, best)

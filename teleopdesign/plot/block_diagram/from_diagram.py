@@ -1,50 +1,49 @@
 """From a diagram to the nodes and nets that are drawn.
 
 A body that forces move is a sum of its forces and a box with its inverse impedance. A junction of
-one signal, taken as it is, is no node: its net carries both names.
+one signal, taken as it is, is no node: its net carries both names. A matrix is a box for each row;
+what a box takes beyond three signals is gathered by bars before it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+
+import sympy as sp
 
 from ...blocks import Body
 from ...controllers import Controller
 from ...derive import has_actuation
-from ...diagrams import Attached, Block, Control, Diagram, Linked, Moving
-from ...errors import ModelError
+from ...diagrams import Attached, Block, Control, Diagram, Junction, Kinematics, Linked, Moving
+from ...diagrams.parts import Weight
+from .formulas import formula
 from .network import MINUS, Net, Network, Node, joined
 from .shapes import Run, symbol
 
-MOST_AT_A_SUM = 3  # inputs of a circle: from behind, from above, from below
+MOST_INPUTS = 3  # of a circle, a box, a bar: from behind, from above, from below
 
 
 def network(diagram: Diagram) -> Network:
-    """The nodes and nets of a diagram.
-
-    raises ModelError: a part that has no drawing yet
-    """
-    joined_parts = [b.name for b in diagram.blocks if isinstance(b, Linked)]
-    joined_parts += [k.name for k in diagram.kinematics]
-    joined_parts += [j.name for j in diagram.junctions if j.arms]
-    if joined_parts:
-        raise ModelError(f"{diagram.name}: {joined_parts[0]} has no drawing")
+    """The nodes and nets of a diagram."""
     making = _Making(diagram, _same_signals(diagram))
     making.sources()
     for block in diagram.blocks:
-        making.box(block)
+        if isinstance(block, Linked):
+            making.rows(block)
+        else:
+            making.box(block)
     for block in diagram.blocks:
         if isinstance(block, Moving):
             making.forces(block)
-        else:
-            assert isinstance(block, Attached | Control)
+        elif not isinstance(block, Linked):
             taken = block.motion if isinstance(block, Attached) else block.input
             making.join(making.net(taken), _box(block))
+    for kinematics in diagram.kinematics:
+        making.kinematics(kinematics)
     for junction in diagram.junctions:
         if junction.output not in making.same:
-            making.wire(junction.name, junction.output)
-            making.sum(junction.name, making.nets(junction.terms))
+            making.junction(junction)
     making.ends()
     return making.made
 
@@ -84,10 +83,63 @@ class _Making:
             self.made.nodes[name] = Node(name, "source", title, driver=signal in drivers)
             self.wire(name, signal)
 
-    def box(self, block: Block) -> None:
+    def box(self, block: Moving | Attached | Control) -> None:
         name, moving = _box(block), isinstance(block, Moving)
         self.made.nodes[name] = Node(name, "box", _title(block), _notes(block), moving=moving)
         self.wire(name, block.outputs[0])
+
+    def rows(self, block: Linked) -> None:
+        """A box for each row of a matrix, on the motions that it sees."""
+        title = (Run(MINUS, 0, False),) if block.sign < 0 else ()
+        for i, force in enumerate(block.forces):
+            row, seen = f"row {i + 1}", [j for k, j in block.entries if k == i]
+            name = f"{_box(block)} {row}"
+            self.made.nodes[name] = Node(
+                name, "box", (*title, *symbol(block.name)), (row, *_kinds(block, i))
+            )
+            self.wire(name, force)
+            self.gathered(name, [self.net(s) for s in _once(block.motions[j] for j in seen)])
+
+    def kinematics(self, part: Kinematics) -> None:
+        name = f"block {part.name}"
+        said = formula(sp.sympify(part.expression), short="kinematics")
+        self.made.nodes[name] = Node(name, "box", symbol(part.output), said)
+        self.wire(name, part.output)
+        self.gathered(name, [self.net(s) for s in part.inputs])
+
+    def junction(self, part: Junction) -> None:
+        """A circle; weights that depend on positions are one box before it or in its place."""
+        fixed = {s: float(w) for s, w in part.terms.items() if not _depends(w)}
+        terms = self.nets(fixed)
+        if len(fixed) < len(part.terms):
+            box = self.lever_arms(part, signal="" if fixed else part.output)
+            if not fixed:
+                return
+            terms = [(box, 1.0), *terms]
+        self.wire(part.name, part.output)
+        self.sum(part.name, terms)
+
+    def lever_arms(self, part: Junction, signal: str) -> str:
+        """Name of a box for the terms whose weights depend on positions; it makes `signal`."""
+        levered = {s: w for s, w in part.terms.items() if _depends(w)}
+        name = f"block lever arms of {part.output}"
+        whole = sp.Add(*(w * sp.Symbol(s, real=True) for s, w in levered.items()))
+        said = formula(sp.expand_mul(whole), short=f"lever arms of {', '.join(part.arms)}")
+        self.made.nodes[name] = Node(name, "box", symbol(part.output), said)
+        self.wire(name, signal)
+        self.gathered(name, [self.net(s) for s in levered])
+        return name
+
+    def gathered(self, node: str, nets: list[str]) -> None:
+        """Lead nets to a box, through bars where there are more of them than sides."""
+        if len(nets) > MOST_INPUTS:
+            bar = f"bar before {node}"
+            self.made.nodes[bar] = Node(bar, "bar")
+            self.wire(bar)
+            self.gathered(bar, nets[: -(MOST_INPUTS - 1)])
+            nets = [bar, *nets[-(MOST_INPUTS - 1) :]]
+        for net in nets:
+            self.join(net, node)
 
     def forces(self, block: Moving) -> None:
         """What acts on a body: its command, by way of its actuation, and its loads."""
@@ -111,7 +163,7 @@ class _Making:
     def sum(self, name: str, terms: list[tuple[str, float]]) -> None:
         """A circle, or several in series where there are more terms than sides."""
         self.made.nodes[name] = Node(name, "sum")
-        if len(terms) > MOST_AT_A_SUM:
+        if len(terms) > MOST_INPUTS:
             part = f"part of {name}"
             self.wire(part)
             self.sum(part, terms[:-2])
@@ -135,7 +187,7 @@ def _same_signals(diagram: Diagram) -> dict[str, str]:
     passed = {
         j.output: next(iter(j.terms))
         for j in diagram.junctions
-        if len(j.terms) == 1 and next(iter(j.terms.values())) == 1
+        if len(j.terms) == 1 and not j.arms and next(iter(j.terms.values())) == 1
     }
     found = {}
     for output in passed:
@@ -150,6 +202,21 @@ def _same_signals(diagram: Diagram) -> dict[str, str]:
 
 def _box(block: Block) -> str:
     return f"block {block.name}"
+
+
+def _depends(weight: Weight) -> bool:
+    """Whether a weight depends on positions."""
+    return bool(sp.sympify(weight).free_symbols)
+
+
+def _once(names: Iterable[str]) -> list[str]:
+    return list(dict.fromkeys(names))
+
+
+def _kinds(block: Linked, row: int) -> tuple[str, ...]:
+    """Matrices that have something in that row, from 0."""
+    start = f"_{row + 1}_"
+    return tuple(_once(n.partition("_")[0] for n in block.body.parameters if start in n))
 
 
 def _title(block: Block) -> tuple[Run, ...]:

@@ -8,18 +8,20 @@ from typing import Literal
 from .shapes import Run, symbol, width
 
 RADIUS = 7.0
+BAR = (4.0, 24.0)  # width and height of a bar
 MINUS = "\u2212"
 
 
 @dataclass(frozen=True)
 class Node:
-    """A box, a circle, a name where a signal comes from outside, or the end of an arrow.
+    """A box, a circle, a bar that gathers signals, a name where a signal comes from outside, or the
+    end of an arrow.
 
     moving: a body whose motion the diagram ends with;  driver: last choice of where to begin
     """
 
     name: str
-    kind: Literal["box", "sum", "source", "sink"]
+    kind: Literal["box", "sum", "bar", "source", "sink"]
     title: tuple[Run, ...] = ()
     notes: tuple[str, ...] = ()
     moving: bool = False
@@ -30,6 +32,8 @@ class Node:
         """Width and height, points."""
         if self.kind == "sum":
             return 2 * RADIUS, 2 * RADIUS
+        if self.kind == "bar":
+            return BAR
         if self.kind == "sink":
             return 0.0, 0.0
         if self.kind == "source":
@@ -59,6 +63,10 @@ class Network:
     def following(self, node: str) -> list[str]:
         """Nodes that the output of a node goes to."""
         return [t for net in self.nets.values() if net.source == node for t, _ in net.targets]
+
+    def taken(self, node: str) -> int:
+        """Number of wires that a node takes."""
+        return sum(t == node for net in self.nets.values() for t, _ in net.targets)
 
     def net_of(self, node: str) -> Net | None:
         """The net that a node makes."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from .network import Network
 
+LONGEST = 12  # nodes of a path: longer ones would make a drawing of one row
 MOST_STEPS = 4000  # of a search for a longest path; more would not be seen in the drawing
 
 
@@ -86,7 +87,7 @@ def _longest(
         best = [first]
     while choices and steps < MOST_STEPS:
         steps += 1
-        node = next(choices[-1], None)
+        node = next(choices[-1], None) if len(way) < LONGEST else None
         if node is None:
             choices.pop()
             way.pop()

@@ -22,7 +22,7 @@ SMALLER = 0.72  # size of an index against that of its letter
 
 @dataclass(frozen=True)
 class Box:
-    """A block, by its middle."""
+    """A block, by its middle; without a name a bar that gathers signals."""
 
     x: float
     y: float

@@ -161,6 +161,8 @@ def _node(node: Node, at: Point) -> list[Shape]:
     if node.kind == "sink":
         return []
     wide, high = node.size
+    if node.kind == "bar":
+        return [Box(x, y, wide, high, "")]
     lines = len(node.notes)
     top = y - 4.25 * lines
     shapes: list[Shape] = [

@@ -1,0 +1,46 @@
+"""Settled claims on the terminal and as plain data."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ..passivity.device_claims import Settled
+
+#: columns of the terminal
+WIDTH = 100
+
+
+def claim_lines(settled: Sequence[Settled]) -> list[str]:
+    """Status and topic of each claim, with its statement and how it is known."""
+    lines = []
+    for one in settled:
+        lines += ["", f"{one.claim.status:<9} {one.topic}"]
+        lines += _folded(one.claim.statement) + _folded(str(one.claim.verdict))
+        if one.motion is not None:
+            lines += _folded(f"replayed in simulation: gives out {one.replayed:.6g} J")
+    return lines
+
+
+def _folded(text: str) -> list[str]:
+    space = " " * 10
+    return textwrap.wrap(
+        text, WIDTH, initial_indent=space, subsequent_indent=space, break_on_hyphens=False
+    )
+
+
+def plain(settled: Settled) -> dict[str, Any]:
+    """A settled claim as plain data, with its certificates and the motions that refute it."""
+    claim = settled.claim
+    return {
+        "topic": settled.topic,
+        "statement": claim.statement,
+        "status": claim.status,
+        "holds": claim.holds,
+        "verdict": str(claim.verdict),
+        "certificates": [dict(c.content) for c in claim.certificates],
+        "motion": claim.record.as_dict() if claim.status == "refuted" else None,
+        "replayed": None if settled.motion is None else settled.motion.as_dict(),
+    }

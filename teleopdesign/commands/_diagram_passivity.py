@@ -1,0 +1,56 @@
+"""Passivity at the ports of a diagram, from its file or by its shipped name."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ._claims import claim_lines, plain
+from .derive import diagram_of
+
+if TYPE_CHECKING:
+    from ..passivity.diagram_claims import DiagramClaims
+    from ..simulate import Sampling
+
+#: options that describe a compensator or choose a body of a diagnosis
+BESIDE_A_DIAGRAM = ("body", "dahl", "smoothed-coulomb", "wall")
+
+
+def is_diagram(source: Path) -> bool:
+    """Whether a diagram is meant: a TOML file that is no experiment, or a shipped name."""
+    from ..diagrams import SHIPPED
+
+    if source.suffix == ".toml":
+        return source.name != "experiment.toml"
+    return str(source) in SHIPPED and not source.exists()
+
+
+def settle_diagram(options: argparse.Namespace, computer: Sampling | None) -> int:
+    """Print the claims about a diagram's ports; write what was asked for."""
+    import numpy as np
+
+    from ..passivity.diagram_claims import Search, diagram_claims
+
+    search = Search(options.stroke, options.speed, computer=computer or "continuous")
+    diagram = diagram_of(str(options.source), options.effect)
+    found = diagram_claims(diagram, rng=np.random.default_rng(1), search=search)
+    print(_text(found))
+    if options.json is not None:
+        content = {
+            "diagram": repr(found.diagram),
+            "ports": [str(port) for port in found.ports],
+            "nonlinear": list(found.nonlinear),
+            "claims": [plain(s) for s in found.settled],
+        }
+        options.json.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+def _text(found: DiagramClaims) -> str:
+    lines = [f"{found.diagram.name}: ports (force, motion) {', '.join(map(str, found.ports))}"]
+    lines.append(f"not linear: {', '.join(found.nonlinear) or 'nothing'}")
+    if found.diagram.controls:
+        lines.append("what is proved holds for controllers in continuous time")
+    return "\n".join([*lines, *claim_lines(found.settled)])

@@ -1,0 +1,49 @@
+"""A matrix impedance from a table of a TOML file."""
+
+from __future__ import annotations
+
+import math
+
+from ..blocks import MatrixImpedance, matrix_impedance
+from ..errors import ExperimentError
+from ..measurement.toml_table import Table, described
+
+#: keys of the matrices, each a list of rows (SI)
+MATRICES = ("mass", "damping", "stiffness")
+
+
+def read_matrices(table: Table, size: int) -> MatrixImpedance:
+    """The impedance between `size` motions; a matrix that is not there is zero.
+
+    raises ExperimentError: a matrix of another size, or something in it that is no finite number
+    """
+    if not size:
+        raise ExperimentError(f"{table.where('motions')}: found none, expected one or more")
+    given = {key: _matrix(table, key, size) for key in MATRICES if key in table.content}
+    return matrix_impedance(**{"mass": [[0.0] * size] * size, **given})
+
+
+def _matrix(table: Table, key: str, size: int) -> list[list[float]]:
+    rows = table.content[key]
+    if isinstance(rows, list) and all(isinstance(row, list) for row in rows):
+        if any(len(line) != size for line in (rows, *rows)):
+            found = f"{len(rows)} rows of {' and '.join(sorted({str(len(r)) for r in rows}))}"
+        elif all(_is_finite(x) for row in rows for x in row):
+            return [[float(x) for x in row] for row in rows]
+        else:
+            found = next(described(x) for row in rows for x in row if not _is_finite(x))
+    else:
+        found = described(rows)
+    raise ExperimentError(
+        f"{table.where(key)}: found {found}, expected {size} rows of {size} finite numbers, one "
+        "for each motion"
+    )
+
+
+def _is_finite(value: object) -> bool:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number beyond all floats
+        return False

@@ -1,0 +1,31 @@
+"""Responses of a device with a compliant structure: its two sides apart, as they are simulated.
+
+A hand leads the tip, so that of a motion which is given the tip's is meant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..blocks import Body
+from ..diagrams import Diagram
+from ..realise.simulated import without_absent
+from ..realise.tips import led, linear_tips, with_tips
+
+
+def linear_parted(diagram: Diagram, given: tuple[str, ...]) -> tuple[Diagram, Mapping[str, str]]:
+    """The diagram with linear structures apart, and each given motion -> the one that is led.
+
+    Backlash has no linear form: there the body stays whole, and its left-out effects name it.
+    """
+    apart = linear_tips(diagram)
+    there = {name: led(diagram, name) for name in given}
+    return apart, {name: tip if tip in apart.signals else name for name, tip in there.items()}
+
+
+def simulated_parted(diagram: Diagram, motion: str) -> tuple[Diagram, str]:
+    """The diagram with every structure apart, and the motion that a hand leads."""
+    for part in diagram.bodies:
+        if isinstance(part.body, Body) and any(e.role == "structure" for e in part.body.effects):
+            diagram = diagram.with_block(part.name, without_absent(part.body))
+    return with_tips(diagram), led(diagram, motion)

@@ -1,0 +1,192 @@
+"""Claims about every port of a diagram.
+
+They are exact where it is linear, by theorem where only friction and its cancellation are not, and
+else rest on a search for motions that give out energy.
+
+Controllers act in continuous time in what is proved; the search takes them as `computer` says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..diagrams import Diagram
+from ..errors import ModelError
+from .claim import Claim, Proof, Refutation, Unknown
+from .counterexample import Computer, SimulatedMotion, search_counterexample
+from .device_claims import Settled, device_claims, replay_cycle
+from .friction_pairs import FrictionPair, friction_pairs, pair_claims
+from .ports import (
+    Port,
+    impedance_matrix,
+    judged,
+    nonlinear_parts,
+    ports,
+    spanned,
+    without_friction,
+    without_holding,
+)
+from .positive_real import positive_real
+from .rate_independent import Cycle
+from .two_port import two_port
+from .two_port_claims import absolutely_stable, passive
+
+#: topics that settle all ports at once
+WHOLE = ("all ports, any motion", "the port, any motion", "both ports, any motion")
+
+
+@dataclass(frozen=True)
+class Search:
+    """How motions are sought; SI.
+
+    stroke, speed: largest, m or rad;  tries: how many motions;  computer: see `simulate`
+    """
+
+    stroke: float = 0.01
+    speed: float = 0.1
+    tries: int = 15
+    computer: Computer = "continuous"
+
+
+@dataclass(frozen=True)
+class DiagramClaims:
+    """Ports of a diagram, what in it is not linear, and the claims as they are settled."""
+
+    diagram: Diagram
+    ports: tuple[Port, ...]
+    nonlinear: tuple[str, ...]
+    settled: tuple[Settled, ...]
+
+
+def diagram_claims(
+    diagram: Diagram, *, rng: np.random.Generator, search: Search | None = None
+) -> DiagramClaims:
+    """Settle what can be said about the ports of a diagram, all other outside signals zero.
+
+    Hand and environment (`Z_H`, `Z_E`) hold a port and are no part of what is judged; in the
+    search, which is made where nothing settles all ports, those at other ports stay.
+    raises ModelError: a block without values, or no port
+    """
+    search = search or Search()
+    whole = judged(diagram)
+    alone = without_holding(whole)
+    found, bent = ports(alone), nonlinear_parts(alone)
+    settled: list[Settled] = []
+    sampled = search.computer != "continuous" and any(not c.analog for c in alone.controls)
+    if not bent:
+        settled += linear_claims(alone, found)
+    else:
+        pairs = friction_pairs(alone)
+        for pair in pairs:
+            own = f"friction of {pair.body.name}"
+            settled += [replace(s, topic=own) for s in device_claims(pair.device)]
+            settled += [_replayed(_topic(pair), claim) for claim in pair_claims(pair)]
+        if (composed := _composed(alone, found, pairs)) is not None:
+            settled.append(composed)
+    if sampled or not any(s.topic in WHOLE and s.claim.status != "unknown" for s in settled):
+        settled += [_searched(whole, port, rng, search) for port in found]
+    return DiagramClaims(diagram, found, bent, tuple(settled))
+
+
+def linear_claims(diagram: Diagram, found: Sequence[Port]) -> list[Settled]:
+    """Passivity of a linear diagram at its ports, and absolute stability where there are two."""
+    if len(found) > 2:
+        statement = f"{diagram.name}: its {len(found)} ports are passive together"
+        why = "the exact tests are for one port or two"
+        return [Settled(WHOLE[0], Claim(statement, Unknown(why)))]
+    try:
+        z = impedance_matrix(diagram, found)
+        if len(found) == 1:
+            return [Settled(WHOLE[1], positive_real(z[0, 0]))]
+    except ModelError as problem:
+        claim = Claim(f"{diagram.name}: its ports are passive", Unknown(str(problem)))
+        return [Settled(WHOLE[0], claim)]
+    system = two_port(z.tolist())
+    return [
+        Settled(WHOLE[2], passive(system)),
+        Settled("both ports, whatever passive holds them", absolutely_stable(system)),
+    ]
+
+
+def _topic(pair: FrictionPair) -> str:
+    assert pair.cancellation is not None
+    return f"friction of {pair.body.name} with {pair.cancellation.name}"
+
+
+def _replayed(topic: str, claim: Claim) -> Settled:
+    record = claim.record if claim.status == "refuted" else None
+    motion = replay_cycle(record) if isinstance(record, Cycle) else None
+    if motion is None:
+        return Settled(topic, claim)
+    return Settled(topic, claim, motion.energy, motion)
+
+
+def _composed(
+    diagram: Diagram, found: Sequence[Port], pairs: Sequence[FrictionPair]
+) -> Settled | None:
+    """The sum of parts on the same motions: linear rest, and friction with what cancels it.
+
+    Friction acts on a motion that the ports determine, beside their forces, so that energies add.
+    None where parts of another kind are there, or not each of them is proved.
+    """
+    rest, proofs = diagram, []
+    for pair in pairs:
+        claims = pair_claims(pair)
+        if pair.device.set_aside or not pair.is_constant:
+            return None
+        if not spanned(pair.body.motion, found):
+            return None
+        if pair.cancellation is None and pair.device.presliding is not None:
+            return None  # no theorem about friction alone is called here
+        if claims and not any(isinstance(c.verdict, Proof) for c in claims):
+            return None
+        proofs += [c for c in claims if isinstance(c.verdict, Proof)][:1]
+        gone = [pair.cancellation.name] if pair.cancellation else []
+        rest = without_friction(rest, pair.body.motion, *gone)
+    if not pairs or nonlinear_parts(rest):
+        return None
+    if not all(rest.is_position(c.input) for c in rest.controls):
+        return None  # what a controller makes of a force is no sum of parts
+    linear = linear_claims(rest, found)[0].claim
+    if not isinstance(linear.verdict, Proof):
+        return None
+    parts = [linear, *proofs]
+    names = ", ".join(map(str, found))
+    statement = f"{diagram.name}: no motion of {names} takes energy out"
+    method = (
+        "the energies of its parts, which add: its linear rest, and friction that takes at least "
+        "what its cancellation gives"
+    )
+    certificates = tuple(c for claim in parts for c in claim.certificates)
+    return Settled(WHOLE[0], Claim(statement, Proof(method, certificates)))
+
+
+def _searched(whole: Diagram, port: Port, rng: np.random.Generator, search: Search) -> Settled:
+    topic = f"port {port}, search by simulation"
+    statement = f"{whole.name}: the port {port} gives out no energy"
+    if port.motion is None:
+        why = "its motion is no single body's, so that a simulation cannot prescribe it"
+        return Settled(topic, Claim(statement, Unknown(why)))
+    free = without_holding(whole, port.motion.removesuffix("_tip"))
+    lengths = [x for pair in friction_pairs(free) for x in pair.lengths]
+    shortest = min([search.stroke / 1000, *lengths])
+    try:
+        claim = search_counterexample(
+            free,
+            stroke=search.stroke,
+            speed=search.speed,
+            rng=rng,
+            port=(port.motion, port.force),
+            computer=search.computer,
+            give=shortest / 100,
+            tries=search.tries,
+        )
+    except ModelError as problem:  # what this simulation does not take
+        return Settled(topic, Claim(statement, Unknown(str(problem))))
+    record = claim.verdict.record if isinstance(claim.verdict, Refutation) else None
+    if not isinstance(record, SimulatedMotion):
+        return Settled(topic, claim)
+    return Settled(topic, claim, record.replay(), record)

@@ -1,0 +1,181 @@
+"""Ports of a diagram: where forces from outside act on its bodies, and the impedance there.
+
+The velocity at a port is the one that its force does work on: that of the body it acts on, or a sum
+of several bodies' where it acts on several through fixed lever arms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import sympy as sp
+
+from ..blocks import Body
+from ..controllers import Controller
+from ..derive import block_symbol, transfer
+from ..diagrams import Diagram, Moving
+from ..errors import ModelError
+from ..realise.lti import S, linear_blocks
+from ..realise.simulated import without_absent
+from ..realise.tips import with_tips
+from .impedance import exact
+
+#: blocks that hold a port, by the names that the package gives them: not part of what is judged
+HOLDING = ("Z_H", "Z_E")
+
+
+@dataclass(frozen=True)
+class Port:
+    """A force from outside and the motion it acts along: sum of weight * motion of a body.
+
+    A weight is an expression where it is a lever arm that changes with position.
+    """
+
+    force: str
+    weights: Mapping[str, float | sp.Expr]
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether no weight changes with position."""
+        return not any(isinstance(w, sp.Expr) for w in self.weights.values())
+
+    @property
+    def motion(self) -> str | None:
+        """The body's motion, where it is one that can be prescribed."""
+        (first, weight), *others = self.weights.items()
+        return first if not others and weight == 1 else None
+
+    def __str__(self) -> str:
+        parts = [m if w == 1 else f"{_said(w)} {m}" for m, w in self.weights.items()]
+        return f"({self.force}, {' + '.join(parts).replace('+ -', '- ')})"
+
+
+def _said(weight: float | sp.Expr) -> str:
+    return f"({weight})" if isinstance(weight, sp.Expr) else f"{weight:.4g}"
+
+
+def judged(diagram: Diagram) -> Diagram:
+    """The diagram with effects left out that are absent at their values.
+
+    raises ModelError: a block is known by its name only
+    """
+    for part in diagram.bodies:
+        if isinstance(part.body, Body):
+            diagram = diagram.with_block(part.name, without_absent(part.body))
+    linear_blocks(diagram)
+    return diagram
+
+
+def ports(diagram: Diagram) -> tuple[Port, ...]:
+    """Ports at the bodies' driving forces, in the order of the bodies.
+
+    raises ModelError: no force from outside drives a body
+    """
+    diagram = with_tips(diagram)
+    moving = [b for b in diagram.blocks if isinstance(b, Moving)]
+    found = []
+    for force in dict.fromkeys(b.driver for b in moving if b.driver in diagram.outside):
+        loads = {b.motion: _weight(diagram, force, b.loads) for b in moving}
+        if weights := {m: w for m, w in loads.items() if w}:
+            found.append(Port(force, weights))
+    if not found:
+        raise ModelError(f"{diagram.name}: no force from outside drives a body: it has no port")
+    return tuple(found)
+
+
+def _weight(diagram: Diagram, force: str, terms: Mapping[str, object]) -> float | sp.Expr:
+    """How much of an outside force is in a sum, through junctions alone."""
+    made = {j.output: j.terms for j in diagram.junctions}
+
+    def share(terms: Mapping[str, object], seen: tuple[str, ...]) -> sp.Expr:
+        total = sp.S(0)
+        for signal, weight in terms.items():
+            if signal == force:
+                total += sp.sympify(weight)
+            elif signal in made and signal not in seen:
+                total += sp.sympify(weight) * share(made[signal], (*seen, signal))
+        return sp.sympify(total)
+
+    found = share(terms, ())
+    return found if found.free_symbols else float(found)
+
+
+def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
+    """Names of what keeps the diagram from being linear."""
+    diagram, speed = with_tips(diagram), sp.Symbol("speed", positive=True)
+    found = list(linear_blocks(diagram).left_out)
+    for part in diagram.controls:
+        assert isinstance(part.controller, Controller)
+        form = part.controller.linear_form(part.name, S, speed)
+        if form is not None and form.has(speed):
+            found.append(part.name)
+    found += [k.name for k in diagram.kinematics]
+    return (*found, *(j.name for j in diagram.junctions if j.arms))
+
+
+def impedance_matrix(diagram: Diagram, at: Sequence[Port]) -> sp.Matrix:
+    """Forces over velocities at ports, in exact numbers; all other outside signals are zero.
+
+    raises ModelError: the wiring does not determine it, or a port that gives way to any force
+    """
+    diagram = with_tips(diagram)
+    linear = linear_blocks(diagram)
+    values = {block_symbol(n): e for n, e in linear.blocks.items()}
+    values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
+    forces = tuple(p.force for p in at)
+    motions = {m: transfer(diagram, m, forces) for p in at for m in p.weights}
+    mobility = sp.Matrix(
+        [
+            [
+                sp.Add(*(exact(w) * S * motions[m][f] for m, w in port.weights.items()))
+                for f in forces
+            ]
+            for port in at
+        ]
+    ).subs(values)
+    mobility = mobility.xreplace({x: exact(x) for x in mobility.atoms(sp.Float)})
+    mobility = mobility.applyfunc(lambda e: sp.cancel(sp.together(e)))
+    if sp.cancel(mobility.det()) == 0:
+        raise ModelError(f"{diagram.name}: its ports do not move apart: they have no impedance")
+    return mobility.inv().applyfunc(lambda e: sp.cancel(sp.together(e)))
+
+
+def without_holding(diagram: Diagram, motion: str = "") -> Diagram:
+    """The diagram without hands and environments, or without those that hold that motion.
+
+    One on several axes holds them all.
+    """
+    names = [
+        b.name
+        for b in diagram.blocks
+        if b.name in HOLDING and (not motion or getattr(b, "motion", motion) == motion)
+    ]
+    return diagram.without(*names)
+
+
+def spanned(motion: str, found: Sequence[Port]) -> bool:
+    """Whether ports that stand still hold that motion of a body too, at fixed lever arms."""
+    if not all(port.is_fixed for port in found):
+        return False
+    known = sorted({motion, *(m for port in found for m in port.weights)})
+    weights = np.array([[port.weights.get(m, 0.0) for m in known] for port in found])
+    own = np.array([float(m == motion) for m in known])
+    rank = np.linalg.matrix_rank
+    return bool(rank(np.vstack([weights, own])) == rank(weights))
+
+
+def without_friction(diagram: Diagram, motion: str, *controllers: str) -> Diagram:
+    """The diagram without these controllers, and the body of that motion without its friction."""
+    diagram = diagram.without(*controllers)
+    for part in diagram.blocks:
+        if isinstance(part, Moving) and part.motion == motion and isinstance(part.body, Body):
+            body = part.body
+            for effect in reversed(body.effects):
+                if effect.role.startswith("friction"):
+                    body = body.without_effect(effect.name)
+            moved = replace(part, body=body)
+            blocks = tuple(moved if b is part else b for b in diagram.blocks)
+            return replace(diagram, blocks=blocks)
+    raise ModelError(f'{diagram.name}: no body moves by "{motion}"')
