@@ -17,6 +17,7 @@ from ..passivity import Claim
 from ..simulate import Sampling
 from .assumptions import Assumptions
 from .chosen import Chosen
+from .felt_impedance import FeltImpedance
 from .force_feedback import Loop
 from .friction_range import FrictionRange
 from .prediction import Prediction
@@ -36,6 +37,7 @@ class Design:
     cancellation: C, None where none is sure to be passive;  other: the law that was second,
         leaving the hybrid a force error of other_left
     force_feedback: H, with its loop at rest;  prediction: force errors of the four cases
+    impedance: Zhat_M that a hand feels, simulated and by describing functions
     residual: friction left in slow steady motion, at the middle of the travel
     transparency: T of the four cases, by linear theory, with the load in the place of the hand
     claims: on passivity, each with how it is known;  notes: what needs care, in sentences
@@ -53,6 +55,7 @@ class Design:
     force_feedback: Chosen
     loop: Loop
     prediction: Prediction
+    impedance: FeltImpedance
     residual: ResidualFriction
     transparency: FrequencyResponse
     claims: Mapping[str, tuple[Claim, ...]]

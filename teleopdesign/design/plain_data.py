@@ -10,6 +10,7 @@ from typing import Any
 from ..passivity import Claim
 from ..quantity import unit_of
 from .chosen import Chosen
+from .felt_impedance import FeltImpedance
 from .force_feedback import Loop
 from .outcome import Design
 
@@ -39,6 +40,7 @@ def design_data(design: Design) -> dict[str, Any]:
         "prediction": {case: asdict(p) for case, p in design.prediction.cases.items()},
         "taken_rigid_in_simulation": design.prediction.rigid,
         "left_out_of_linear": design.prediction.left_out,
+        "felt_impedance": _impedance(design.impedance),
         "residual_friction": {
             "speed": residual.speeds.tolist(),
             **{case: row.tolist() for case, row in residual.rows.items()},
@@ -49,6 +51,24 @@ def design_data(design: Design) -> dict[str, Any]:
     }
     found = _finite(content)
     assert isinstance(found, dict)
+    return found
+
+
+def _impedance(felt: FeltImpedance) -> dict[str, Any]:
+    """Size (dB) and phase (deg) by case over frequency (Hz), by how they are known."""
+    found: dict[str, Any] = {"missing": list(felt.missing)}
+    for how, one in (("simulated", felt.simulated), ("predicted", felt.predicted)):
+        if one is None:
+            continue
+        found["frequency"] = one.data["frequency"].values.tolist()
+        found["amplitude"] = one.data["amplitude"].values.tolist()
+        found[how] = {
+            str(case): {
+                "decibel": one.decibel.sel(case=case).values.tolist(),
+                "phase": one.phase.sel(case=case).values.tolist(),
+            }
+            for case in one.data["case"].values
+        }
     return found
 
 

@@ -14,6 +14,7 @@ from .assumptions import Assumptions
 from .cancellation import acting_gain, cancelled_level, dahl_cancellation, smoothed_cancellation
 from .chosen import Chosen
 from .energy import energy_claim
+from .felt_impedance import felt_impedance
 from .force_feedback import Loop, force_feedback, identified_delay, whole_inertia
 from .friction_range import FrictionRange, friction_range
 from .from_answer import Diagnosed
@@ -88,6 +89,7 @@ def design(
         force_feedback=best.force_feedback,
         loop=best.loop,
         prediction=best.prediction,
+        impedance=felt_impedance(best.prediction.hybrid, motion, sampling_of(given, reach)),
         residual=residual_friction(
             body,
             cancellation=best.cancellation.controller if best.cancellation else None,

@@ -20,6 +20,7 @@ def design_text(design: Design) -> str:
         _assumptions(design),
         _proposals(design),
         _predictions(design),
+        _impedance(design),
         _residuals(design),
         _passivity(design),
     ]
@@ -115,6 +116,13 @@ def _predictions(design: Design) -> list[str]:
             f"{c.at_peak_speed:>16.3g}"
         )
     return lines
+
+
+def _impedance(design: Design) -> list[str]:
+    """Zhat_M of the four cases over frequency, at the stated motion's peak speed."""
+    unit = unit_of("stiffness", design.body.axis)
+    head = f"felt impedance at that peak speed, dB re 1 {unit} and deg: simulated (describing "
+    return [f"{head}functions)", *design.impedance.lines()]
 
 
 def _residuals(design: Design) -> list[str]:

@@ -228,3 +228,15 @@ def test_friction_that_no_record_has_shown_backward_is_said(designed, rod):
     one_way = replace(designed, reach=replace(designed.reach, both_ways=False))
     assert not any("one way only" in n for n in designed.notes)
     assert any("one way only" in n for n in notes_on(one_way, rod))
+
+
+def test_the_impedance_that_a_hand_feels_is_predicted_and_lowered(designed):
+    felt = designed.impedance
+    assert felt.missing == ()
+    simulated, predicted = felt.simulated.decibel, felt.predicted.decibel
+    # describing functions take controllers for continuous: 1 dB at ten times the frequency
+    assert float(abs(simulated - predicted).max()) < 1.5
+    assert float(abs(simulated.sel(case="none") - predicted.sel(case="none")).max()) < 0.2
+    slowest = simulated.isel(frequency=0)
+    assert float(slowest.sel(case="hybrid")) < float(slowest.sel(case="FF")) - 3
+    assert float(slowest.sel(case="FF")) < float(slowest.sel(case="none")) - 3

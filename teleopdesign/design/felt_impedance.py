@@ -1,0 +1,81 @@
+"""The impedance that a hand feels of the designed device, predicted and simulated.
+
+Along sinusoids of the stated motion's peak speed, from its frequency up: first harmonic of the
+force error over the motion, Zhat_M, by describing functions and by a simulation of all identified
+effects with encoder, sampling and delay.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..diagrams import Diagram, four_cases
+from ..errors import ModelError
+from ..frequency import ImpedanceMap, measured_impedance, quasi_linear_impedance
+from ..simulate import Sampling
+from .stated_motion import StatedMotion
+
+#: multiples of the stated frequency, and the part of the sample rate that none exceeds
+MULTIPLES, MOST = (1.0, 2.0, 5.0, 10.0), 0.05
+
+
+@dataclass(frozen=True)
+class FeltImpedance:
+    """Zhat_M of the four cases; None, with the reason, where there is none.
+
+    simulated: measured in simulation;  predicted: by describing functions, controllers continuous
+    """
+
+    simulated: ImpedanceMap | None
+    predicted: ImpedanceMap | None
+    missing: tuple[str, ...]
+
+    def lines(self) -> list[str]:
+        """A table: case by frequency, size and phase, predicted in brackets."""
+        found = self.simulated or self.predicted
+        if found is None:
+            return [f"  none: {why}" for why in self.missing]
+        frequency = found.data["frequency"].values
+        head = "".join(f"{f:>22.3g}" for f in frequency)
+        rows = [f"  {'at Hz':<8}{head}"]
+        for case in map(str, found.data["case"].values):
+            cells = (self._cell(case, i) for i in range(len(frequency)))
+            rows.append(f"  {case:<8}" + "".join(f"{cell:>22}" for cell in cells))
+        return rows + [f"  without {why}" for why in self.missing]
+
+    def _cell(self, case: str, i: int) -> str:
+        texts = [
+            f"{float(m.decibel.sel(case=case)[i]):.1f}/{float(m.phase.sel(case=case)[i]):.0f}"
+            for m in (self.simulated, self.predicted)
+            if m is not None
+        ]
+        return texts[0] if len(texts) == 1 else f"{texts[0]} ({texts[1]})"
+
+
+def felt_impedance(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> FeltImpedance:
+    """Zhat_M of the device without and with compensation at the stated peak speed.
+
+    hybrid: a device with C and H, either may be absent, without a hand
+    """
+    cases = four_cases(hybrid)
+    frequency = motion.frequency * np.array(MULTIPLES)
+    frequency = frequency[frequency <= max(MOST / sampling.period, motion.frequency)]
+    missing: list[str] = []
+
+    def amplitude(f: np.ndarray) -> np.ndarray:
+        return np.asarray(motion.amplitude * motion.frequency / f)
+
+    simulated = predicted = None
+    try:
+        simulated = measured_impedance(
+            cases, amplitude=amplitude, frequency=frequency, computer=sampling
+        )
+    except ModelError as error:
+        missing.append(f"simulation: {error}")
+    try:
+        predicted = quasi_linear_impedance(cases, amplitude=amplitude, frequency=frequency)
+    except ModelError as error:
+        missing.append(f"describing functions: {error}")
+    return FeltImpedance(simulated, predicted, tuple(missing))
