@@ -182,7 +182,11 @@ def _velocity_claims(system):
 
 
 def _steady_excess(system):
-    """Strokes at the speed at which most is given out, if any is; far beyond every length."""
+    """Strokes at the speed at which most is given out, if any is.
+
+    They are eight times as long as what is lost at a reversal asks for: bristles that load anew,
+    which this record leaves out, and a force that is late.
+    """
     smoothing = system.second if system.law == "smoothed_coulomb" else 0.0
     scale = system.length / system.time
     best = None
