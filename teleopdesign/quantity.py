@@ -42,6 +42,7 @@ QUANTITIES: Mapping[str, tuple[_Kind, _Kind]] = {
         _Kind("an angular acceleration", ("rad/s^2", "deg/s^2")),
     ),
     "force": (_Kind("a force", ("N", "mN")), _Kind("a torque", ("N*m", "mNm"))),
+    "energy": (_Kind("an energy", ("J", "mJ")), _Kind("an energy", ("J", "mJ"))),
     "inertia": (_Kind("a mass", ("kg", "g")), _Kind("a moment of inertia", ("kg*m^2", "g*cm^2"))),
     "damping": (
         _Kind("a damping", ("N*s/m", "N*s/mm")),
@@ -80,6 +81,7 @@ _PREFIXED = {
     "g": _Unit(1e-3, (1, 0, 0, 0)),
     "s": _Unit(1.0, (0, 0, 1, 0)),
     "N": _Unit(1.0, (1, 1, -2, 0)),
+    "J": _Unit(1.0, (1, 2, -2, 0)),
     "Nm": _Unit(1.0, (1, 2, -2, 0)),
     "Nms": _Unit(1.0, (1, 2, -1, 0)),
     "Hz": _Unit(1.0, (0, 0, -1, 0)),

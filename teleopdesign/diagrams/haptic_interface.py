@@ -1,8 +1,9 @@
 """The haptic interface: a device held by a hand, force feedback, cancellation, position loop.
 
-    R_A = R_D + H (R_D - R_M) + C L         Z_M L = R_A - R_M
+    R_A = R_D + H (R_D - R_M) + C L + P     Z_M L = R_A - R_M
     R_H = -Z_H L                            R_M = -(R_H + R_V)
     R_D = K (L_D - L)                       where there is a position loop
+    P = -alpha(R_M, L) dL/dt                where the port is watched (passivity controller)
 
 Bernstein, Lawrence, Pao, World Haptics 2005, figures 1, 3 and 4. Only R_H = -Z_H L fits both the
 sum R_M = -(R_H + R_V) and the total impedance Z_H + Z_M.
@@ -27,6 +28,7 @@ TEXTS = {
     "E": "force error R_D - R_M",
     "R_FF": "force that the force feedback H adds",
     "R_MBC": "force that the motion-based cancellation C adds",
+    "R_P": "force that the passivity controller P adds",
     "L": "motion of the device",
     "L_D": "reference of the motion",
     "L_E": "position error L_D - L",
@@ -40,13 +42,15 @@ def haptic_interface(
     cancellation: Controller | AnyBlock | None = None,
     force_feedback: Controller | AnyBlock | None = None,
     position_loop: Controller | AnyBlock | None = None,
+    passivity: Controller | AnyBlock | None = None,
     analog: Collection[str] = (),
 ) -> Diagram:
     """Wire a haptic interface; a block that is not given is not there.
 
     device, hand: Z_M and Z_H, impedances relative to position;  cancellation: C, from the motion
     to a force;  force_feedback: H, from the force error R_D - R_M to a force;
-    position_loop: K, from the position error to R_D
+    position_loop: K, from the position error to R_D;  passivity: P, from R_M to a force, such as
+    `passivity_controller`
     analog: controllers among "C", "H", "K" that no computer samples
     ANY stands for a block of which nothing but its place is known.
     """
@@ -66,6 +70,9 @@ def haptic_interface(
     if cancellation is not None:
         blocks.append(Control("C", cancellation, "L", "R_MBC", "L", "C" in analog))
         command["R_MBC"] = 1
+    if passivity is not None:
+        blocks.append(Control("P", passivity, "R_M", "R_P", "L"))
+        command["R_P"] = 1
     if position_loop is None:
         outside["R_D"] = "force"
     else:

@@ -6,11 +6,13 @@ b travel^2/T. No theorem of others is used.
 
 from __future__ import annotations
 
+import numpy as np
 import sympy as sp
 
+from ..passivity import passivity_controlled
 from ._laws import dahl_rate
 from ._proof import Equal, Limit, NotNegative, Proof, Step, proof
-from ._statement import DERIVED, Paper, shows
+from ._statement import DERIVED, Figure, Numbers, Paper, near, shows
 
 COLGATE = Paper(
     "Colgate 1997",
@@ -171,11 +173,43 @@ def encoder_steps() -> Proof:
     )
 
 
+def controlled_port() -> Numbers:
+    """The observer and controller of the package over forces that give out energy: 4000 samples.
+
+    A force of 1.2 N along the motion against 1 N of friction, to and fro at uneven speed.
+    """
+    rng, period, friction, helps = np.random.default_rng(52), 1e-3, 1.0, 1.2
+    speed = rng.uniform(0.01, 0.2, 4000) * np.sign(np.sin(np.arange(4000) / 50 + 0.1))
+    way = np.sign(speed)
+    port = passivity_controlled(speed, (friction - helps) * way, period=period)
+    turned = period * float(np.abs(speed).sum()) * (helps - friction)
+    bounded = passivity_controlled(speed, (friction - helps) * way, period=period, largest=0.5)
+    taken = friction * np.abs(speed)
+    figures = [
+        Figure("least energy over that turned over", port.energy.min() / turned, low=-1e-12),
+        near("and in the end, the deficit is made up", port.energy[-1] / turned, 0.0, 1e-12),
+        Figure("damping that it adds at most", float(port.damping.max()), low=0.1, unit="N s/m"),
+        Figure("with a damper of 0.5 N s/m it is not", bounded.energy[-1] / turned, high=-0.1),
+    ]
+    for counted in (0.8, 1.1):
+        budget = (counted - helps) * way
+        held = passivity_controlled(speed, budget, period=period)
+        # what the device really takes, and the force that is left of the help
+        help_left = counted * way - held.force
+        true = period * float((taken - help_left * speed).sum()) / turned
+        what = f"energy that {counted:g} N counted leaves in the port, true friction 1 N"
+        figures.append(
+            Figure(what, true, low=0) if counted < friction else Figure(what, true, high=0)
+        )
+    return Numbers(tuple(figures))
+
+
 @shows(
     52,
     paper=HANNAFORD,
     place="passivity observer and controller",
     formula="E[n] = E[n-1] + T sum f_i v_i; where E < 0 add a damper alpha = -E/(T v^2)",
+    numbers=controlled_port,
 )
 def observer() -> Proof:
     """A damper for one sample that restores an energy deficit exactly; friction may be counted

@@ -6,6 +6,7 @@ import numpy as np
 import sympy as sp
 
 from ..simulate import Loop, Simulation, loop_of
+from ._closed_paths import closed_paths
 from ._laws import coulomb
 from ._proof import Equal, Grows, Limit, NotNegative, Proof, Step, proof
 from ._statement import MAHVASH, Numbers, Paper, claim, near, shows
@@ -30,6 +31,7 @@ x_m, x_s = sp.symbols("x_m x_s", real=True)
     "pi r^2 (p_21 - p_12) a turn; tau = J^T P e needs e' = J q'",
     printed="F_m = -F_s = P (X_m - X_s) repels as a force ON the master: there it is -P (X_m - "
     "X_s)",
+    numbers=closed_paths,
 )
 def coupling_stiffness() -> Proof:
     """When a multi-axis coupling is an ideal spring, and which coordinates of orientation may be

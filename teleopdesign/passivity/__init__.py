@@ -55,6 +55,7 @@ from .second_opinion import SecondOpinion, second_opinion
 from .stroke_motion import Strokes
 from .two_port import FrequencyMargins, TwoPort, over_frequency, teleoperator, two_port
 from .two_port_claims import absolutely_stable, passive
+from .velocity_compensation import SteadyStrokes, velocity_compensation
 from .z_width import WALL_DAMPING, WALL_STIFFNESS, ZWidth, z_width
 
 __all__ = [
@@ -84,6 +85,7 @@ __all__ = [
     "SecondOpinion",
     "SimulatedMotion",
     "Spring",
+    "SteadyStrokes",
     "Strokes",
     "TwoPort",
     "Unknown",
@@ -137,6 +139,7 @@ __all__ = [
     "symmetric_cycle",
     "teleoperator",
     "two_port",
+    "velocity_compensation",
     "write_record",
     "z_width",
 ]

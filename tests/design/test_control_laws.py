@@ -25,6 +25,7 @@ TYPICAL = {
     "inertia": 0.1,
     "damping": 2.0,
     "stiffness": 200.0,
+    "energy": 1e-2,
     "velocity": 0.02,
     "frequency": 15.0,
     "dimensionless": 3.0,

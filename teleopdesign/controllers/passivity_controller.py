@@ -1,0 +1,79 @@
+"""Passivity controller: a damper that acts once more energy has come out of a port than went in.
+
+    E' = -F v,   output = -alpha v
+    E >= 0:  alpha = 0;      E < 0:  alpha v^2 = -r E, alpha at most the largest damping
+
+Input is the measured force of the device ON what holds it, R_M of the haptic interface, whose
+velocity is the motion that the damper acts along: so force and velocity of one port are known to a
+law of one input. E holds what the device itself takes, friction that nobody has modelled included,
+and is kept at most at `budget`: what was put in long ago is no licence. Within E >= 0 it does
+nothing at all.
+
+Sampled, energy is counted by trapezia and that of the coming sample predicted with force and
+velocity of the last; r far above the sampling rate makes a deficit up within one sample, as
+Hannaford and Ryu do. The device's inertia has to be put in first: what it gives back is not excess.
+"""
+
+from sympy import Max, Min, S, exp
+
+from ..effects import Parameter
+from ._controller import ControlLaw, State
+
+_STANDSTILL = 1e-30  # (m/s)^2: alpha stays finite there, and acts on no velocity
+
+
+def _recovered(now, p):
+    """Share of what is lacking that is made up within a sample, per second of it."""
+    if now.period == 0:
+        return p.recovery_rate
+    return (1 - exp(-p.recovery_rate * now.period)) / now.period
+
+
+def damping(now, p, power):
+    """alpha of an energy `now.energy` to which the port adds that power, W."""
+    ahead = now.energy + now.period * power
+    needed = Max(-ahead, 0) * _recovered(now, p) / Max(now.velocity**2, _STANDSTILL)
+    return Min(needed, p.largest_damping)
+
+
+def kept(now, p, power):
+    """Rate of an energy that comes to its budget no faster than a deficit is made up, W."""
+    return Min(power, _recovered(now, p) * (p.budget - now.energy))
+
+
+def law(now, p):
+    return -damping(now, p, -now.input * now.velocity) * now.velocity
+
+
+def energy(now, p):
+    return kept(now, p, -now.input * now.velocity)
+
+
+def energy_after(now, p):
+    power = -(now.input + now.last) / 2 * now.travel_rate
+    return now.energy + now.period * kept(now, p, power)
+
+
+def last(now, p):
+    return now.input
+
+
+def nothing(now, p):
+    return S.Zero  # in continuous time there is no last sample
+
+
+PARAMETERS = {
+    "budget": Parameter("energy", "most energy that is kept for later"),
+    "recovery_rate": Parameter("frequency", "r: rate at which a deficit is made up, 1/s"),
+    "largest_damping": Parameter("damping", "largest alpha"),
+}
+CONTROLLER = ControlLaw(
+    law=law,
+    takes="force",
+    states={
+        "energy": State("energy", energy, energy_after),
+        "last": State("force", nothing, last),
+    },
+    parameters=PARAMETERS,
+    source="Hannaford, Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1 (P52)",
+)
