@@ -318,8 +318,9 @@ def test_the_study_runs_quickly_and_writes_tables_rows_and_figures(tmp_path):
     assert {p.name for p in tmp_path.iterdir()} == {
         "hidden_effects.md", "hidden_effects_more.md", "hidden_effects.csv", "hidden_effects.nc",
         "hidden_effects_parameters.csv", "hidden_effects_confusion.pdf",
-        "hidden_effects_confusion.png", "hidden_effects_calibration.pdf",
-        "hidden_effects_calibration.png",
+        "hidden_effects_confusion.png", "hidden_effects_confusion.svg",
+        "hidden_effects_calibration.pdf", "hidden_effects_calibration.png",
+        "hidden_effects_calibration.svg",
     }  # fmt: skip
     rows = (tmp_path / "hidden_effects.csv").read_text()
     assert rows.count("\n") == 3 and "no answer" not in rows

@@ -2,18 +2,19 @@
 
 Along sinusoids of the stated motion's peak speed, from its frequency up: first harmonic of the
 force error over the motion, Zhat_M, by describing functions and by a simulation of all identified
-effects with encoder, sampling and delay.
+effects with sampling and delay.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..diagrams import Diagram, four_cases
 from ..errors import ModelError
 from ..frequency import ImpedanceMap, measured_impedance, quasi_linear_impedance
+from ..realise.tips import led
 from ..simulate import Sampling
 from .stated_motion import StatedMotion
 
@@ -60,17 +61,23 @@ def felt_impedance(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) ->
     hybrid: a device with C and H, either may be absent, without a hand
     """
     cases = four_cases(hybrid)
-    frequency = motion.frequency * np.array(MULTIPLES)
-    frequency = frequency[frequency <= max(MOST / sampling.period, motion.frequency)]
+    wanted = motion.frequency * np.array(MULTIPLES)
+    wanted = wanted[wanted <= max(MOST / sampling.period, motion.frequency)]
+    # whole samples a cycle, and readings without steps: every cycle is like the one before
+    frequency = 1 / (sampling.period * np.round(1 / (sampling.period * wanted)))
+    smooth = replace(sampling, encoder_step=0.0)
     missing: list[str] = []
 
     def amplitude(f: np.ndarray) -> np.ndarray:
         return np.asarray(motion.amplitude * motion.frequency / f)
 
     simulated = predicted = None
+    if led(hybrid, "L") != "L":
+        # friction that gives by 1e-5 of the motion, behind a spring: millions of steps
+        return FeltImpedance(None, None, ("through a transmission it takes too many steps",))
     try:
         simulated = measured_impedance(
-            cases, amplitude=amplitude, frequency=frequency, computer=sampling
+            cases, amplitude=amplitude, frequency=frequency, computer=smooth
         )
     except ModelError as error:
         missing.append(f"simulation: {error}")
