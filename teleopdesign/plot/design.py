@@ -57,7 +57,9 @@ def save_figure(
     import matplotlib.pyplot as plt
 
     files = [Path(path).with_suffix(suffix) for suffix in suffixes]
-    with plt.style.context(STYLE):  # fonts and resolution are taken when it is drawn
+    # fonts and resolution are taken when it is drawn; what has no layout of its own keeps none
+    own = {"figure.constrained_layout.use": figure.get_layout_engine() is not None}
+    with plt.style.context([STYLE, own]):
         for file in files:
             figure.savefig(file)
     return files
