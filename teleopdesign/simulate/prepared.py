@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from ..realise.kernel import Program, Timing
 
 Input = float | np.ndarray | Callable[[np.ndarray], np.ndarray]
+#: most numbers that one simulation may hold, 2 GB
+MOST_NUMBERS = 250_000_000
 _MOST_REFINED = 200  # inner steps a default one may become
 
 
@@ -123,6 +125,13 @@ class Prepared:
         """Rows of the program's columns and the measure of how well bristles are resolved."""
         from ..realise.kernel import execute
 
+        layout = self.program.layout
+        numbers = timing.steps * (2 * len(layout.inputs) + len(layout.columns) * every_step)
+        if numbers > MOST_NUMBERS:
+            raise ModelError(
+                f"simulate: {timing.steps:.2g} steps of {timing.step:.2g} s need "
+                f"{8e-9 * numbers:.2g} GB: use a longer step, a shorter time or more give"
+            )
         return execute(
             self.program,
             self.diagram.values,

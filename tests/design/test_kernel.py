@@ -269,3 +269,8 @@ def test_a_saturated_actuator_acts_behind_the_command():
         )
         np.testing.assert_allclose(found["L_acceleration"].values[1:], 0.5, rtol=1e-12)
         np.testing.assert_allclose(found["R_A"].values, 2.0)
+
+
+def test_a_simulation_that_would_fill_the_memory_is_refused():
+    with pytest.raises(ModelError, match=r"1e\+09 steps of 0.0001 s need .* GB: use a longer"):
+        simulate(haptic_interface(body(0.1)), duration=1e5, inputs={"R_D": 0.0}, jit=False)
