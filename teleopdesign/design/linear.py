@@ -11,13 +11,14 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
+import sympy as sp
 
 from ..blocks import Body, Value
 from ..controllers import Controller
 from ..diagrams import Diagram, four_cases
 from ..effects import EFFECTS
 from ..frequency import FrequencyResponse, bode
-from ..passivity import given_out_late
+from ..frequency.closed_forms import dahl
 from .quasi_static import force_needed
 from .stated_motion import StatedMotion
 
@@ -103,11 +104,5 @@ def _equal_friction(body: Body, motion: StatedMotion) -> tuple[float, float]:
 
 def _equal_dahl(level: float, stiffness: float, motion: StatedMotion) -> tuple[float, float]:
     """Damping and stiffness of the first harmonic of Dahl friction, N s/m and N/m (P18)."""
-    amplitude = motion.amplitude
-    cycle = math.pi * amplitude**2
-    loss = given_out_late(level=level, stiffness=stiffness, amplitude=amplitude, phase=0.0)
-    # late by a quarter of a period the spring's part does the work
-    spring = given_out_late(
-        level=level, stiffness=stiffness, amplitude=amplitude, phase=math.pi / 2
-    )
-    return loss / (cycle * motion.omega), -spring / cycle
+    first = complex(sp.N(dahl(level, stiffness, motion.amplitude)))
+    return first.imag / motion.omega, first.real

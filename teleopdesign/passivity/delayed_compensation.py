@@ -1,9 +1,9 @@
 """A compensator that acts late: what it gives out, and when small motion stays passive.
 
-Along x = A sin(w t) a Dahl compensator that sees the position tau late gives out
+Along x = A sin(w t) a Dahl compensator of describing function N that sees the position tau late
+gives out
 
-    W = pi A (b_1 cos(w tau) - a_1 sin(w tau))
-    a_1 = 2 f I_1(u)/cosh u,    b_1 = 4 f (1 - tanh(u)/u)/pi,    u = A sigma/f
+    W = pi A^2 Im(N e^(-j w tau))
 
 per cycle: for w tau < pi less than without delay. A delayed cancellation of inertia gives out
 energy for any delay with w tau < pi.
@@ -18,13 +18,13 @@ import numpy as np
 import sympy as sp
 
 from ..errors import ModelError
+from ..frequency.closed_forms import dahl
 from ..realise.lti import S
 from .certificate import Certificate, storage_certificate
 from .claim import Claim, Proof, Refutation, Unknown
 from .dahl_certificates import Values, sigma_D
 from .growing_wave import GrowingWave, halvings, wave_of
 from .impedance import decimal, exact
-from .rate_independent import dahl_loss
 
 #: just above 0.2172336, minus the least value of sin(y)/y (at tan y = y, y = 4.4934)
 SINC_LEAST = sp.Rational(21724, 100000)
@@ -35,13 +35,9 @@ def given_out_late(*, level: float, stiffness: float, amplitude: float, phase: f
 
     N, N/m, m;  phase: w tau, rad
     """
-    from scipy.special import ive
-
-    u = amplitude * stiffness / level
-    # I_1(u)/cosh(u) = 2 e^-u I_1(u)/(1 + e^-2u), without overflow
-    spring = 4 * level * ive(1, u) / (1 + np.exp(-2 * u))
-    loss = dahl_loss(level, stiffness, amplitude)
-    return float(loss * np.cos(phase) - np.pi * amplitude * spring * np.sin(phase))
+    # in numbers of any size: I_1(u)/cosh(u) overflows in those of the machine
+    first = complex(sp.N(dahl(level, stiffness, amplitude)))
+    return float(np.pi * amplitude**2 * (first * np.exp(-1j * phase)).imag)
 
 
 def inertia_given_out(*, inertia: float, amplitude: float, frequency: float, delay: float) -> float:
