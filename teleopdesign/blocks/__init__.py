@@ -1,7 +1,7 @@
 """Blocks of a diagram: equations only."""
 
 from .arm import ARM
-from .body import Body, BodyEquation, Value
+from .body import NINETY_FIVE, Body, BodyEquation, Value
 from .contact_hysteresis import CONTACT_HYSTERESIS
 from .environment import CONTACT
 from .environments import free_space, hunt_crossley, soft_rubber, spring_damper
@@ -16,6 +16,7 @@ __all__ = [
     "CONTACT",
     "CONTACT_HYSTERESIS",
     "IMPACT_DAMPING",
+    "NINETY_FIVE",
     "Body",
     "BodyEquation",
     "MatrixImpedance",

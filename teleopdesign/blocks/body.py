@@ -29,6 +29,10 @@ ONE_ONLY = {
 INERTIA = Parameter("inertia", "inertia of the body", lower=0.0)
 
 
+#: standard errors to either side of a value that hold it 95 times in 100 (normal)
+NINETY_FIVE = 1.96
+
+
 @dataclass(frozen=True)
 class Value:
     """A parameter's value (SI); fixed: known, not to be re-estimated; stderr: NaN where unknown."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..blocks import NINETY_FIVE
 from ..errors import ModelError
 
 
@@ -30,7 +31,7 @@ class Assumptions:
     delay: float | None = None
     bandwidth: float = 20.0
     velocity_bandwidth: float | None = None
-    errors: float = 1.96
+    errors: float = NINETY_FIVE
     fraction: float = 0.9
     delay_factor: float = 3.0
     count_force: float = 0.25

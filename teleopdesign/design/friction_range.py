@@ -1,16 +1,13 @@
 """The levels that identified friction can take, over its shape and its standard errors.
 
 The level is that of the body's own effects (Stribeck, direction, position, load, drift, a user's
-own), evaluated over speeds, directions, positions, loads and times. A standard error of the level
-is bounded by the sum of abs(dlevel/dp) times the error of each parameter p: whatever their
-correlation, it is not larger.
+own), evaluated over speeds, directions, positions, loads and times that the records reach.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -18,6 +15,7 @@ import sympy as sp
 from ..blocks import Body
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
+from ..realise.law_along import law_along
 from ..realise.simulated import without_absent
 from .reach import Reach
 
@@ -68,7 +66,7 @@ def friction_range(body: Body, reach: Reach, *, errors: float) -> FrictionRange 
     if not any(e.role == "friction_level" for e in body.effects):
         return None
     grid, axes = _grid(body, reach)
-    level, error = level_along(body, grid)
+    level, error = law_along(body, body.level(), grid)
     low = np.unravel_index(int(np.argmin(level - errors * error)), level.shape)
     where = [f"{n} {float(a.ravel()[low[i]]):.3g}" for i, (n, a) in enumerate(axes.items())]
     stiffness = body.parameters.get("presliding.stiffness")
@@ -88,28 +86,6 @@ def friction_range(body: Body, reach: Reach, *, errors: float) -> FrictionRange 
         ),
         unknown=_without_error(body),
     )
-
-
-def level_along(body: Body, signals: dict[sp.Symbol, Any]) -> tuple[Array, Array]:
-    """The level and a bound of its standard error where the signals have these values.
-
-    signals: symbol of `effects.SIGNALS` or of a hidden state -> array; shapes broadcast
-    """
-    law, numbers = body.level(), body.numbers()
-    names = list(signals)
-    values = [np.asarray(v, dtype=float) for v in signals.values()]
-    shape = np.broadcast_shapes(*(v.shape for v in values))
-
-    def at(expression: sp.Expr) -> Array:
-        call = sp.lambdify(names, expression.subs(numbers), "numpy")
-        return np.broadcast_to(np.asarray(call(*values), dtype=float), shape)
-
-    error = np.zeros(shape)
-    symbols = body.symbols()
-    for name, value in body.parameters.items():
-        if not value.fixed and math.isfinite(value.stderr) and law.has(symbols[name]):
-            error = error + np.abs(at(sp.diff(law, symbols[name]))) * value.stderr
-    return at(law), error
 
 
 def _lower(value: float, error: float, errors: float) -> float:

@@ -13,7 +13,7 @@ from ..controllers import Controller
 from ..diagrams import four_cases, haptic_interface
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
-from .friction_range import level_along
+from ..realise.law_along import law_along
 from .quasi_static import left_over, slow_body
 
 #: speeds over the recorded peak speed
@@ -48,7 +48,7 @@ def residual_friction(
         SIGNALS["time"]: np.zeros_like(speeds),
         SIGNALS["acting_force"]: np.zeros_like(speeds),
     }
-    level, _ = level_along(body, signals)
+    level, _ = law_along(body, body.level(), signals)
     made = haptic_interface(body, cancellation=cancellation, force_feedback=force_feedback)
     rows = {case: left_over(d, np.array(level), speeds) for case, d in four_cases(made).items()}
     return ResidualFriction(speeds, rows)

@@ -8,13 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from ..blocks import Body, Value
+from ..blocks import NINETY_FIVE, Body, Value
 from ..effects import SIGNALS
 from ..errors import ModelError
 from ..quantity import unit_of
+from ..realise.law_along import law_along
 
-#: standard errors either side of an estimate in a 95 % interval
-WITHIN = 1.96
 _DRAWS = 4000  # of speed, position, time ..., over which the level is looked at
 
 
@@ -73,8 +72,8 @@ def identified(body: Body) -> IdentifiedDevice:
     """Read levels, presliding and damping off a body, with the errors of its parameters.
 
     The level is the body's own law over 4000 draws of the speed, position, time and other signals
-    it depends on, up to 10 SI units (time: a day); its error at each is that of the parameters,
-    taken as independent. Damping is the `viscous` effect's.
+    it depends on, up to 10 SI units (time: a day); its error at each is bounded whatever the
+    correlation of the parameters. Damping is the `viscous` effect's.
     raises ModelError: a body without friction, or one whose interval reaches down to no friction
     """
     level = body.level()
@@ -110,7 +109,7 @@ def _stderr(value: Value) -> float:
 
 
 def _interval(value: Value) -> Interval:
-    half = WITHIN * _stderr(value)
+    half = NINETY_FIVE * _stderr(value)
     return Interval(value.value, max(value.value - half, 0.0), value.value + half)
 
 
@@ -123,9 +122,7 @@ def _resistance(body: Body, level: sp.Expr) -> sp.Expr:
 
 def _range(body: Body, level: sp.Expr) -> tuple[Interval, Interval]:
     """Lowest and highest level over what it depends on."""
-    numbers, names = body.numbers(), {s: n for n, s in body.symbols().items()}
-    parameters = [s for s in numbers if s in level.free_symbols]
-    signals = sorted(level.free_symbols - set(parameters), key=str)
+    signals = sorted(level.free_symbols - set(body.numbers()), key=str)
     rng = np.random.default_rng(0)
     # every size up to 10 SI units, and zero: laws of speed and position settle or repeat beyond
     sizes = 10 ** rng.uniform(-6, 1, (_DRAWS, max(len(signals), 1)))
@@ -137,17 +134,9 @@ def _range(body: Body, level: sp.Expr) -> tuple[Interval, Interval]:
         elif s.name == "time" or s.name.startswith("friction_memory"):
             draws[:, k] = np.abs(draws[:, k]) * (1e4 if s.name == "time" else 1.0)
 
-    def at(values: dict[sp.Symbol, float]) -> np.ndarray:
-        expression = level.subs(values)
-        found = sp.lambdify(signals, expression, "numpy")(*draws.T[: len(signals)])
-        return np.broadcast_to(np.asarray(found, dtype=float), (_DRAWS,))
-
-    estimate, variance = at(numbers), np.zeros(_DRAWS)
-    for s in parameters:
-        error = _stderr(body.parameters[names[s]])
-        if error:
-            variance = variance + (at({**numbers, s: numbers[s] + error}) - estimate) ** 2
-    half = WITHIN * np.sqrt(variance)
+    given = {s: draws[:, k] for k, s in enumerate(signals)}
+    estimate, error = law_along(body, level, given)
+    half = NINETY_FIVE * error
     every = estimate, estimate - half, estimate + half
     return (
         Interval(*(float(x.min()) for x in every)),

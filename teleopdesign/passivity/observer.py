@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..blocks import NINETY_FIVE
 from ..errors import ExperimentError, ModelError
 from ..measurement import Experiment, Record
 from ..simulate import Simulation
@@ -54,7 +55,7 @@ class PortEnergy:
     def certain(self) -> bool:
         """Whether the least energy is below zero by more than 1.96 standard errors."""
         k = int(self.data["energy"].values.argmin())
-        return self.lowest < -1.96 * float(self.data["stderr"][k])
+        return self.lowest < -NINETY_FIVE * float(self.data["stderr"][k])
 
     def given_out(self) -> list[tuple[float, float, float]]:
         """Begin and end (s) of each time in which the energy fell, and by how much (J), > 0.
@@ -65,7 +66,7 @@ class PortEnergy:
         t, e = self.data["time"].values, self.data["energy"].values
         change = np.diff(e)
         doubt = max(
-            1.96 * float(self.data["stderr"].values[-1]), 1e-6 * float(np.abs(change).sum())
+            NINETY_FIVE * float(self.data["stderr"].values[-1]), 1e-6 * float(np.abs(change).sum())
         )
         edges = np.flatnonzero(np.diff(np.concatenate([[0], (change < 0).astype(int), [0]])))
         pairs = edges.reshape(-1, 2)

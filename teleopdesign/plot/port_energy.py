@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ..blocks import NINETY_FIVE
 from .design import ONE_COLUMN, STYLE
 from .passivity import GREY, THEORY
 
@@ -27,7 +28,12 @@ def plot_port_energy(observed: PortEnergy) -> matplotlib.figure.Figure:
             axis.axvspan(begin, end, color="#F6D5C0", linewidth=0, label=label)
         if error.max() > 0:
             axis.fill_between(
-                t, e - 1.96 * error, e + 1.96 * error, color=THEORY, alpha=0.25, linewidth=0
+                t,
+                e - NINETY_FIVE * error,
+                e + NINETY_FIVE * error,
+                color=THEORY,
+                alpha=0.25,
+                linewidth=0,
             )
         axis.plot(t, e, color=THEORY, label="energy into the port")
         axis.set_xlim(float(t[0]), float(t[-1]))

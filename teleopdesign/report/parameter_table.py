@@ -5,13 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..blocks import CONTACT, Value
+from ..blocks import CONTACT, NINETY_FIVE, Value
 from ..diagnose import Diagnosis
 from ..errors import ExperimentError
 from ..model import Model
-
-#: standard errors to either side of a value that hold it 95 times in 100 (normal)
-NINETY_FIVE = 1.96
 
 
 @dataclass(frozen=True)
