@@ -19,16 +19,13 @@ functions (lines) give the same within 0.5 dB and 2 degrees.
 
 from __future__ import annotations
 
-import argparse
-from pathlib import Path
-
 import numpy as np
+from _study import write_study
 
 from teleopdesign.diagrams import four_cases, reading, world_haptics_2005
 from teleopdesign.frequency import ImpedanceMap, measured_impedance, quasi_linear_impedance
-from teleopdesign.plot import plot_spread, save_figure
+from teleopdesign.plot import plot_spread
 
-NAME = "amplitude_dependence"
 FORCE = 10.0  # N; what the actuator gives
 
 
@@ -52,22 +49,24 @@ def run(*, quick: bool = False) -> tuple[ImpedanceMap, ImpedanceMap]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--quick", action="store_true", help="a coarse grid")
-    parser.add_argument("--output", type=Path, default=Path(__file__).parent / "output")
-    arguments = parser.parse_args()
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    measured, model = run(quick=arguments.quick)
-    print(measured)
-    spread = measured.spread()["size"].to_pandas()
-    print("Spread over amplitude (dB), by frequency (Hz)", spread.T.round(1), sep="\n")
-    path = arguments.output / NAME
-    save_figure(plot_spread(measured, model=model), path)
-    save_figure(
-        plot_spread(measured, model=model, columns=2), path.with_name(f"{NAME}_two_columns")
+    write_study(
+        __file__,
+        __doc__,
+        run,
+        quick="a coarse grid",
+        said=said,
+        figures=lambda found: {
+            "": plot_spread(found[0], model=found[1]),
+            "_two_columns": plot_spread(found[0], model=found[1], columns=2),
+        },
+        numbers=lambda found: found[0],
     )
-    measured.to_netcdf(path.with_suffix(".nc"))
-    measured.to_json(path.with_suffix(".json"))
+
+
+def said(found: tuple[ImpedanceMap, ImpedanceMap]) -> str:
+    """What was measured, and its spread."""
+    spread = found[0].spread()["size"].to_pandas().T.round(1)
+    return f"{found[0]!r}\nSpread over amplitude (dB), by frequency (Hz)\n{spread}"
 
 
 if __name__ == "__main__":

@@ -20,7 +20,6 @@ simulated.
 
 from __future__ import annotations
 
-import argparse
 import json
 from dataclasses import dataclass
 from itertools import product
@@ -31,6 +30,7 @@ import matplotlib.figure
 import numpy as np
 import xarray
 from _late_inertia_figure import draw
+from _study import write_study
 
 from teleopdesign.frequency import bode
 from teleopdesign.passivity import (
@@ -39,9 +39,7 @@ from teleopdesign.passivity import (
     largest_passive_inertia,
     required_damping,
 )
-from teleopdesign.plot import save_figure
 
-NAME = "cancellation_with_inertia_and_delay"
 DELAY, LONG = 1e-3, 10e-3  # s
 PERIOD = 1e-3  # s, of the sampled law
 FREQUENCIES = np.geomspace(1.0, 1000.0, 301)  # Hz
@@ -256,17 +254,7 @@ def run(*, quick: bool = False) -> LateInertia:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--quick", action="store_true", help="fewer bandwidths and delays")
-    parser.add_argument("--output", type=Path, default=Path(__file__).parent / "output")
-    arguments = parser.parse_args()
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    result = run(quick=arguments.quick)
-    print(result)
-    path = arguments.output / NAME
-    save_figure(result.plot(), path)
-    result.to_netcdf(path.with_suffix(".nc"))
-    result.to_json(path.with_suffix(".json"))
+    write_study(__file__, __doc__, run, quick="fewer bandwidths and delays")
 
 
 if __name__ == "__main__":

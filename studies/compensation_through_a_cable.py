@@ -30,7 +30,7 @@ from collections.abc import Callable
 
 import numpy as np
 import xarray
-from _passivity_figures import write_study
+from _study import write_study
 
 from teleopdesign.passivity import (
     Coulomb,
@@ -163,4 +163,4 @@ def run(*, quick: bool = False) -> xarray.Dataset:
 
 
 if __name__ == "__main__":
-    write_study(__file__, __doc__, run, plot_cable_limits)
+    write_study(__file__, __doc__, run, plot=plot_cable_limits)

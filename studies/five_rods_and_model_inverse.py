@@ -18,7 +18,6 @@ what it leaves is the lag of w.
 
 from __future__ import annotations
 
-import argparse
 import json
 from dataclasses import dataclass
 from functools import lru_cache, partial
@@ -30,12 +29,11 @@ import matplotlib.figure
 import numpy as np
 import xarray
 from _five_rods_figure import draw
+from _study import write_study
 
 from teleopdesign.diagrams import felt_friction
-from teleopdesign.plot import save_figure
 from teleopdesign.simulate import Simulation, simulate
 
-NAME = "five_rods_and_model_inverse"
 WANTED = 2.0  # N, amplitude of the wanted force
 BANDWIDTH = 200.0  # Hz, of both poles of w
 FREQUENCIES = np.geomspace(0.1, 300.0, 141)  # Hz, of the responses
@@ -267,17 +265,7 @@ def run(*, quick: bool = False) -> Isotropy:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--quick", action="store_true", help="three driven frequencies")
-    parser.add_argument("--output", type=Path, default=Path(__file__).parent / "output")
-    arguments = parser.parse_args()
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    result = run(quick=arguments.quick)
-    print(result)
-    path = arguments.output / NAME
-    save_figure(result.plot(), path)
-    result.to_netcdf(path.with_suffix(".nc"))
-    result.to_json(path.with_suffix(".json"))
+    write_study(__file__, __doc__, run, quick="three driven frequencies")
 
 
 if __name__ == "__main__":

@@ -14,14 +14,11 @@ ideal the Coulomb friction is: 0.054 N if the contact gives by 0.1 micrometres, 
 
 from __future__ import annotations
 
-import argparse
-from pathlib import Path
+from _study import write_study
 
 from teleopdesign.diagrams import four_cases, reading, world_haptics_2005
-from teleopdesign.plot import save_figure
 from teleopdesign.simulate import ForceVelocity, Sampling, force_velocity, simulate, sine
 
-NAME = "force_error_versus_velocity"
 IDEAL = 1e-8  # m; the contact gives by this before it slides: 0.5 % of a reversal's sample
 
 
@@ -45,17 +42,7 @@ def run(*, quick: bool = False) -> ForceVelocity:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--quick", action="store_true", help="fewer cycles, a coarser contact")
-    parser.add_argument("--output", type=Path, default=Path(__file__).parent / "output")
-    arguments = parser.parse_args()
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    result = run(quick=arguments.quick)
-    print(result)
-    path = arguments.output / NAME
-    save_figure(result.plot(), path)
-    result.to_netcdf(path.with_suffix(".nc"))
-    result.to_json(path.with_suffix(".json"))
+    write_study(__file__, __doc__, run, quick="fewer cycles, a coarser contact")
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 import xarray
-from _passivity_figures import write_study
+from _study import write_study
 
 from teleopdesign.papers import dahl_euler
 from teleopdesign.passivity import Dahl
@@ -82,4 +82,4 @@ def run(*, quick: bool = False) -> xarray.Dataset:
 
 
 if __name__ == "__main__":
-    write_study(__file__, __doc__, run, plot_forward_euler)
+    write_study(__file__, __doc__, run, plot=plot_forward_euler)

@@ -17,10 +17,8 @@ first-order filter lets its gain go only at 200 Hz, later than the paper's "abov
 
 from __future__ import annotations
 
-import argparse
-from pathlib import Path
-
 import numpy as np
+from _study import write_study
 
 from teleopdesign.diagrams import four_cases, reading, world_haptics_2005
 from teleopdesign.frequency import (
@@ -29,9 +27,7 @@ from teleopdesign.frequency import (
     measured_impedance,
     quasi_linear_impedance,
 )
-from teleopdesign.plot import save_figure
 
-NAME = "impedance_against_frequency"
 CORNER = 20.0  # Hz
 EXPONENT = 0.8
 
@@ -58,18 +54,18 @@ def run(*, quick: bool = False) -> tuple[ImpedanceMap, ImpedanceMap]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--quick", action="store_true", help="fewer frequencies")
-    parser.add_argument("--output", type=Path, default=Path(__file__).parent / "output")
-    arguments = parser.parse_args()
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    measured, model = run(quick=arguments.quick)
-    print(measured)
-    path = arguments.output / NAME
-    save_figure(measured.plot(model=model), path)
-    save_figure(measured.plot(model=model, columns=2), path.with_name(f"{NAME}_two_columns"))
-    measured.to_netcdf(path.with_suffix(".nc"))
-    measured.to_json(path.with_suffix(".json"))
+    write_study(
+        __file__,
+        __doc__,
+        run,
+        quick="fewer frequencies",
+        said=lambda found: repr(found[0]),
+        figures=lambda found: {
+            "": found[0].plot(model=found[1]),
+            "_two_columns": found[0].plot(model=found[1], columns=2),
+        },
+        numbers=lambda found: found[0],
+    )
 
 
 if __name__ == "__main__":

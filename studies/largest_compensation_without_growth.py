@@ -22,7 +22,7 @@ import math
 
 import numpy as np
 import xarray
-from _passivity_figures import write_study
+from _study import write_study
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
@@ -102,4 +102,4 @@ def run(*, quick: bool = False) -> xarray.Dataset:
 
 
 if __name__ == "__main__":
-    write_study(__file__, __doc__, run, plot_largest_compensation)
+    write_study(__file__, __doc__, run, plot=plot_largest_compensation)

@@ -21,7 +21,6 @@ bandwidth, as far as friction at low frequency is all that matters.
 
 from __future__ import annotations
 
-import argparse
 import json
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,10 +28,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray
+from _study import write_study
 
 from teleopdesign.diagrams import Diagram, four_cases, reading, world_haptics_2005
 from teleopdesign.frequency import delay_margin, loop_gain, measured_impedance
-from teleopdesign.plot import save_figure
 from teleopdesign.plot.design import STYLE, TWO_COLUMNS
 from teleopdesign.plot.frequency_axes import logarithmic
 from teleopdesign.simulate import Motion, simulate
@@ -40,7 +39,6 @@ from teleopdesign.simulate import Motion, simulate
 if TYPE_CHECKING:
     import matplotlib.figure
 
-NAME = "nonlinear_force_feedback_gain"
 SPEEDS = (1e-4, 0.01, 0.1)  # m/s; the first is rest, for it is far below every a and b
 CASES = ("FF", "hybrid")
 COLOURS = ("#56B4E9", "#0072B2", "#000000", "#D55E00", "#E69F00")
@@ -217,17 +215,7 @@ def labelled(
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--quick", action="store_true", help="a coarse grid")
-    parser.add_argument("--output", type=Path, default=Path(__file__).parent / "output")
-    arguments = parser.parse_args()
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    result = run(quick=arguments.quick)
-    print(result)
-    path = arguments.output / NAME
-    save_figure(result.plot(), path)
-    result.to_netcdf(path.with_suffix(".nc"))
-    result.to_json(path.with_suffix(".json"))
+    write_study(__file__, __doc__, run, quick="a coarse grid")
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ import math
 
 import numpy as np
 import xarray
-from _passivity_figures import write_study
+from _study import write_study
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
@@ -198,4 +198,4 @@ def run(*, quick: bool = False) -> xarray.Dataset:
 
 
 if __name__ == "__main__":
-    write_study(__file__, __doc__, run, plot_delay_and_stiffness)
+    write_study(__file__, __doc__, run, plot=plot_delay_and_stiffness)

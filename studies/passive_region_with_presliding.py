@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import numpy as np
 import xarray
-from _passivity_figures import write_study
+from _study import write_study
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
@@ -99,4 +99,4 @@ def run(*, quick: bool = False) -> xarray.Dataset:
 
 
 if __name__ == "__main__":
-    write_study(__file__, __doc__, run, plot_passive_region)
+    write_study(__file__, __doc__, run, plot=plot_passive_region)

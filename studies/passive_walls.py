@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import numpy as np
 import xarray
-from _passivity_figures import write_study
+from _study import write_study
 
 from teleopdesign.passivity import Claim, quantised_spring, region, stiffest_spring
 from teleopdesign.plot.passivity import plot_passive_walls
@@ -88,4 +88,4 @@ def run(*, quick: bool = False) -> xarray.Dataset:
 
 
 if __name__ == "__main__":
-    write_study(__file__, __doc__, run, plot_passive_walls)
+    write_study(__file__, __doc__, run, plot=plot_passive_walls)

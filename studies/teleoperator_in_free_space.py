@@ -15,15 +15,11 @@ slave after each reversal and let it jump: a cancellation by motion cannot act b
 
 from __future__ import annotations
 
-import argparse
-from pathlib import Path
-
 from _slave_with_friction import two_sides
+from _study import write_study
 
-from teleopdesign.plot import save_figure
 from teleopdesign.simulate import ForceDisplacement, force_displacement, simulate, sine
 
-NAME = "teleoperator_in_free_space"
 #: part of the slave's friction that is cancelled, by case
 CASES = {"no compensation": 0.0, "50 % cancelled": 0.5, "90 % cancelled": 0.9}
 AMPLITUDE, FREQUENCY = 0.01, 0.2  # m, Hz: slow, so that friction is most of what is felt
@@ -44,17 +40,7 @@ def run(*, quick: bool = False) -> ForceDisplacement:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--quick", action="store_true", help="a faster motion")
-    parser.add_argument("--output", type=Path, default=Path(__file__).parent / "output")
-    arguments = parser.parse_args()
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    result = run(quick=arguments.quick)
-    print(result)
-    path = arguments.output / NAME
-    save_figure(result.plot(), path)
-    result.to_netcdf(path.with_suffix(".nc"))
-    result.to_json(path.with_suffix(".json"))
+    write_study(__file__, __doc__, run, quick="a faster motion")
 
 
 if __name__ == "__main__":

@@ -14,16 +14,12 @@ P k_e/(P + k_e), 470 N/m for the rubber's 630 N/m, whatever is cancelled.
 
 from __future__ import annotations
 
-import argparse
-from pathlib import Path
-
 from _slave_with_friction import two_sides
+from _study import write_study
 
 from teleopdesign.blocks import Body, Value, soft_rubber
-from teleopdesign.plot import save_figure
 from teleopdesign.simulate import ForceDisplacement, Motion, force_displacement, simulate, sine
 
-NAME = "teleoperator_in_soft_contact"
 STIFFNESS = 600.0  # of the rubber, N/m
 RUBBER = {"stiffness": STIFFNESS, "damping": 1.0, "level": 0.1, "give": 1e-3, "position": 0.0}
 #: part of the slave's friction that is cancelled, by case
@@ -54,17 +50,7 @@ def run(*, quick: bool = False) -> ForceDisplacement:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--quick", action="store_true", help="a faster motion")
-    parser.add_argument("--output", type=Path, default=Path(__file__).parent / "output")
-    arguments = parser.parse_args()
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    result = run(quick=arguments.quick)
-    print(result)
-    path = arguments.output / NAME
-    save_figure(result.plot(), path)
-    result.to_netcdf(path.with_suffix(".nc"))
-    result.to_json(path.with_suffix(".json"))
+    write_study(__file__, __doc__, run, quick="a faster motion")
 
 
 if __name__ == "__main__":

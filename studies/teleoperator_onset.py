@@ -25,7 +25,7 @@ import math
 
 import numpy as np
 import xarray
-from _passivity_figures import write_study
+from _study import write_study
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
@@ -150,4 +150,4 @@ def _onset(shares: np.ndarray, grown: np.ndarray) -> float:
 
 
 if __name__ == "__main__":
-    write_study(__file__, __doc__, run, plot_teleoperator_onset)
+    write_study(__file__, __doc__, run, plot=plot_teleoperator_onset)
