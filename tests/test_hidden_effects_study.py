@@ -10,14 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from shared_data import shared_folder
-
-STUDIES = Path(__file__).resolve().parents[1] / "studies"
-sys.path.insert(0, str(STUDIES))
-
-from _campaign import plan, run_campaign, write_plan  # noqa: E402
-from _recovery_tables import Campaign, collect, main_table, row_of  # noqa: E402
-from _scoring import (  # noqa: E402
+from _campaign import plan, run_campaign, write_plan
+from _recovery_tables import Campaign, collect, main_table, row_of
+from _scoring import (
     Answer,
     Share,
     Truth,
@@ -27,9 +22,11 @@ from _scoring import (  # noqa: E402
     load_truth,
     quantile_text,
 )
+from shared_data import shared_folder
 
-from teleopdesign import EFFECTS  # noqa: E402
+from teleopdesign import EFFECTS
 
+STUDIES = Path(__file__).resolve().parents[1] / "studies"
 STRIBECK, BIAS = ("stribeck", "device"), ("bias", "device")
 ASYMMETRY = ("coulomb_asymmetry", "device")
 

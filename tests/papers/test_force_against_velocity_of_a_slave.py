@@ -1,25 +1,12 @@
 """Figure 2 of Mahvash, Okamura, ICRA 2006: force over the Coulomb level against velocity."""
 
-import importlib.util
-import sys
-from pathlib import Path
-
+import force_against_velocity_of_a_slave as study
 import numpy as np
 import pytest
 
 
 @pytest.fixture(scope="module")
-def study():
-    path = Path(__file__).parents[2] / "studies" / "force_against_velocity_of_a_slave.py"
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[path.stem] = module  # its dataclass looks its module up
-    spec.loader.exec_module(module)
-    return module
-
-
-@pytest.fixture(scope="module")
-def result(study):
+def result():
     return study.run(quick=True)
 
 
@@ -30,7 +17,7 @@ def normalised(result, case):
     return one["force"].values / result.level[case], velocity / np.abs(velocity).max()
 
 
-def test_the_level_read_off_is_the_one_that_was_planted(study, result):
+def test_the_level_read_off_is_the_one_that_was_planted(result):
     for level in result.level.values():
         # a bristle of 0.8 mm has not quite slid when the branch begins
         assert level == pytest.approx(study.LEVEL, rel=1e-3)
@@ -56,7 +43,7 @@ def test_near_rest_presliding_makes_a_loop(result):
 
 
 @pytest.mark.parametrize("length", [2e-4, 8e-4])
-def test_the_force_turns_after_the_travel_that_dahl_says(study, result, length):
+def test_the_force_turns_after_the_travel_that_dahl_says(result, length):
     """f = 2 e^(-y) - 1 of the level after y bristle lengths; it is what inertia needs there."""
     acceleration = study.AMPLITUDE * (2 * np.pi * study.FREQUENCY) ** 2
     travel = length * np.log(2 / (1 + study.INERTIA * acceleration / study.LEVEL))

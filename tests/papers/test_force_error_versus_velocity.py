@@ -1,8 +1,6 @@
 """Figure 5 of Bernstein, Lawrence, Pao, World Haptics 2005: force error against velocity."""
 
-import importlib.util
-from pathlib import Path
-
+import force_error_versus_velocity
 import numpy as np
 import pytest
 
@@ -14,11 +12,7 @@ AT_PEAK_SPEED = {"none": 0.50, "MBC": 0.07, "FF": 0.15, "hybrid": 0.02}
 
 @pytest.fixture(scope="module")
 def result():
-    path = Path(__file__).parents[2] / "studies" / "force_error_versus_velocity.py"
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    study = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(study)
-    return study.run()
+    return force_error_versus_velocity.run()
 
 
 @pytest.mark.parametrize("case", RMS)

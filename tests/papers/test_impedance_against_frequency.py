@@ -1,24 +1,15 @@
 """Apparent impedance against frequency: figure 7 of Bernstein, Lawrence, Pao 2005."""
 
-import importlib.util
-from pathlib import Path
-
+import amplitude_dependence
+import impedance_against_frequency
+import nonlinear_force_feedback_gain
 import numpy as np
 import pytest
-
-STUDIES = Path(__file__).parents[2] / "studies"
-
-
-def study(name):
-    spec = importlib.util.spec_from_file_location(name, STUDIES / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
 def sweep():
-    return study("impedance_against_frequency").run(quick=True)[0]
+    return impedance_against_frequency.run(quick=True)[0]
 
 
 def slope(sweep, case, low, high):
@@ -68,7 +59,7 @@ def test_the_profile_puts_the_corner_at_20_hz(sweep):
 
 @pytest.fixture(scope="module")
 def grid():
-    return study("amplitude_dependence").run(quick=True)[0]
+    return amplitude_dependence.run(quick=True)[0]
 
 
 @pytest.mark.slow
@@ -87,7 +78,7 @@ def test_cancellation_makes_slow_motion_less_linear(grid):
 
 @pytest.fixture(scope="module")
 def trade_off():
-    return study("nonlinear_force_feedback_gain").run(quick=True).data
+    return nonlinear_force_feedback_gain.run(quick=True).data
 
 
 def test_gain_alone_sets_the_friction_at_rest(trade_off):

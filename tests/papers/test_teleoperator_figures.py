@@ -4,35 +4,20 @@ Shapes and laws, not digits: the machine is an example, the widths are those of 
 forces (P62, P63).
 """
 
-import importlib.util
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
-
-STUDIES = Path(__file__).parents[2] / "studies"
-
-
-def study(name):
-    sys.path.insert(0, str(STUDIES))  # studies share modules of their own
-    try:
-        spec = importlib.util.spec_from_file_location(name, STUDIES / f"{name}.py")
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-    finally:
-        sys.path.remove(str(STUDIES))
-    return module
+import teleoperator_in_free_space
+import teleoperator_in_soft_contact
 
 
 @pytest.fixture(scope="module")
 def free_space():
-    return study("teleoperator_in_free_space").run()
+    return teleoperator_in_free_space.run()
 
 
 @pytest.fixture(scope="module")
 def contact():
-    return study("teleoperator_in_soft_contact").run()
+    return teleoperator_in_soft_contact.run()
 
 
 @pytest.mark.parametrize(("case", "share"), [("no compensation", 0.0), ("90 % cancelled", 0.9)])

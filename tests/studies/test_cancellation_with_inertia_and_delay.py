@@ -1,5 +1,6 @@
 """Cancelled inertia: what it gives out, and limits that simulations confirm from both sides."""
 
+import cancellation_with_inertia_and_delay as study
 import numpy as np
 import pytest
 
@@ -7,11 +8,11 @@ from teleopdesign.passivity import cancelled_inertia, sampled_passivity
 
 
 @pytest.fixture(scope="module")
-def trials(study):
+def trials():
     return study.trials()
 
 
-def test_simulated_motion_gives_out_what_the_formula_says(study):
+def test_simulated_motion_gives_out_what_the_formula_says():
     found = study.given_out()["given_out_simulated"]
     half = study.late.INERTIA / 2
     for name, bandwidth in (("fast", study.FAST), ("slow", study.SLOW)):
@@ -33,7 +34,7 @@ def test_motion_decays_within_the_limit_and_grows_beyond_it(trials, hand):
     assert ((chosen["rate"] > 0) == (chosen["over_limit"] > 1)).all()
 
 
-def test_growth_against_the_worst_hand_is_the_damping_that_lacks(study, trials):
+def test_growth_against_the_worst_hand_is_the_damping_that_lacks(trials):
     """Near the limit the envelope grows at (share/limit - 1) b over twice the moving mass."""
     chosen = trials.isel(trial=(trials["hand"] == "any").values)
     expected = (chosen["over_limit"] - 1) * study.late.DAMPING / (2 * study.late.INERTIA)
@@ -41,14 +42,14 @@ def test_growth_against_the_worst_hand_is_the_damping_that_lacks(study, trials):
     assert chosen["rate"].values == pytest.approx(expected.values, rel=0.15)
 
 
-def test_sampled_differences_alone_allow_eight_ninths_of_b_t(study):
+def test_sampled_differences_alone_allow_eight_ninths_of_b_t():
     late = study.late
     expected = 8 * late.DAMPING * study.PERIOD / (9 * late.INERTIA)
     # the exact test bounds the damping within 1e-12
     assert study.sampled_share(np.inf) == pytest.approx(expected, rel=1e-9)
 
 
-def test_the_sampled_limit_is_where_the_exact_test_turns(study):
+def test_the_sampled_limit_is_where_the_exact_test_turns():
     late, bandwidth = study.late, 30.0
     limit = study.sampled_share(bandwidth)
     found = []
@@ -60,7 +61,7 @@ def test_the_sampled_limit_is_where_the_exact_test_turns(study):
 
 
 @pytest.mark.parametrize("bandwidth", [3.0, 30.0])
-def test_a_slow_sampled_law_costs_what_the_continuous_one_does(study, bandwidth):
+def test_a_slow_sampled_law_costs_what_the_continuous_one_does(bandwidth):
     # within the lag of the samples against the low-pass: T w_c / 2
     apart = study.PERIOD * study.late.pole(bandwidth)
     assert study.sampled_share(bandwidth) == pytest.approx(
@@ -69,25 +70,25 @@ def test_a_slow_sampled_law_costs_what_the_continuous_one_does(study, bandwidth)
 
 
 @pytest.mark.parametrize("delay", [1e-4, 1e-3, 1e-2])
-def test_a_low_pass_of_order_one_makes_the_limit_independent_of_delay(study, delay):
+def test_a_low_pass_of_order_one_makes_the_limit_independent_of_delay(delay):
     expected = study.late.DAMPING / (study.late.pole(30.0) * study.late.INERTIA)
     assert study.passive_share(30.0, delay=delay, order=1) == pytest.approx(expected)
 
 
-def test_delay_alone_is_refuted_and_no_delay_is_proved(study):
+def test_delay_alone_is_refuted_and_no_delay_is_proved():
     device = {"inertia": study.late.INERTIA, "damping": study.late.DAMPING}
     whole = cancelled_inertia(**device, cancelled=study.late.INERTIA, delay=0)
     a_percent = cancelled_inertia(**device, cancelled=study.late.INERTIA / 100, delay=1e-3)
     assert (whole.status, a_percent.status) == ("proved", "refuted")
 
 
-def test_with_a_known_hand_delay_costs_share(study):
+def test_with_a_known_hand_delay_costs_share():
     for hand in study.late.HANDS.values():
         shares = [study.late.stable_share(hand, bandwidth=30.0, delay=t) for t in (1e-3, 1e-2)]
         assert shares[0] > shares[1] > study.passive_share(30.0)
 
 
-def test_inertia_that_may_be_cancelled_for_any_hand_changes_little(study):
+def test_inertia_that_may_be_cancelled_for_any_hand_changes_little():
     """At 10 Hz less than a fifth of the impedance goes; what is not passive takes most of it."""
     felt = study.felt()
     least = felt["felt"].min("felt_frequency")

@@ -1,12 +1,13 @@
 """Five rods: isotropy of the inverse, simulation against response, friction within its zonotope."""
 
+import five_rods_and_model_inverse as study
 import numpy as np
 import pytest
 
 from teleopdesign.diagrams import felt_friction
 
 
-def test_a_rod_moves_by_what_the_hand_moves_its_point_along_it(study):
+def test_a_rod_moves_by_what_the_hand_moves_its_point_along_it():
     five = study.five
     step = 1e-6
     moved = np.array([2.0, -1.0, 0.5, 3.0, -2.0]) * step
@@ -17,7 +18,7 @@ def test_a_rod_moves_by_what_the_hand_moves_its_point_along_it(study):
     assert five.G @ moved == pytest.approx(along, rel=1e-9)
 
 
-def test_the_inverse_answers_alike_in_every_direction_at_every_frequency(study):
+def test_the_inverse_answers_alike_in_every_direction_at_every_frequency():
     values = study.singular_values(study.FREQUENCIES)
     found = values.sel(response="inverse").values
     w = abs(study.low_pass(study.FREQUENCIES))
@@ -26,13 +27,13 @@ def test_the_inverse_answers_alike_in_every_direction_at_every_frequency(study):
     assert (values.sel(response="no compensation", order=1) > 1.5).any()
 
 
-def test_force_feedback_narrows_the_band_up_to_its_bandwidth(study):
+def test_force_feedback_narrows_the_band_up_to_its_bandwidth():
     values = study.singular_values(np.geomspace(0.1, 20.0, 41))
     band = values.isel(order=0) / values.isel(order=-1)
     assert (band.sel(response="force feedback") <= band.sel(response="no compensation")).all()
 
 
-def test_the_inverse_depends_on_the_hand_it_was_made_for(study):
+def test_the_inverse_depends_on_the_hand_it_was_made_for():
     values = study.singular_values(np.array([0.1, 10.0]))
     for firmness in study.OTHER_HANDS:
         slow, medium = values.sel(response=f"inverse, hand x {firmness:g}").values
@@ -42,7 +43,7 @@ def test_the_inverse_depends_on_the_hand_it_was_made_for(study):
 
 @pytest.mark.slow  # five coupled rods compile in some ten seconds
 @pytest.mark.parametrize("inverted", [False, True])
-def test_without_friction_the_simulation_is_the_response(study, inverted):
+def test_without_friction_the_simulation_is_the_response(inverted):
     wanted, frequency = np.array([1.0, -0.5, 0.3, 0.8, -0.2]), 5.0
     made = study.driven(
         wanted, frequency, gain=study.five.GAIN, share=0.0, inverted=inverted, friction=False
@@ -60,7 +61,7 @@ def test_without_friction_the_simulation_is_the_response(study, inverted):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("frequency", [2.0, 4.0])
-def test_the_inverse_needs_friction_compensation_first(study, frequency):
+def test_the_inverse_needs_friction_compensation_first(frequency):
     wanted = study.WANTED * np.eye(5)[3]  # rotation about x: resonates first
 
     def error(compensation, inverted):
@@ -75,7 +76,7 @@ def test_the_inverse_needs_friction_compensation_first(study, frequency):
 
 
 @pytest.mark.slow
-def test_simulated_friction_lies_in_its_zonotope(study):
+def test_simulated_friction_lies_in_its_zonotope():
     five = study.five
     whole = felt_friction(five.G, [five.FRICTION] * five.RODS)
     forces = study.friction_at_hand(0.0)
@@ -87,7 +88,7 @@ def test_simulated_friction_lies_in_its_zonotope(study):
 
 
 @pytest.mark.slow
-def test_cancellation_shrinks_the_zonotope_to_what_is_left_of_each_level(study):
+def test_cancellation_shrinks_the_zonotope_to_what_is_left_of_each_level():
     five = study.five
     left = felt_friction(five.G, [(1 - five.SHARE) * five.FRICTION] * five.RODS)
     forces = study.friction_at_hand(five.SHARE)

@@ -1,35 +1,21 @@
 """The studies of passivity, run quickly, against the features that their figures must show."""
 
-import importlib.util
-from pathlib import Path
+from runpy import run_module
 
+import compensation_through_a_cable as cable
+import forward_euler_against_exact
+import largest_compensation_without_growth
 import numpy as np
+import passive_region_with_presliding
+import passive_walls
 import pytest
 
 from teleopdesign.passivity import largest_ratio
 
-STUDIES = Path(__file__).parents[2] / "studies"
 
-
-@pytest.fixture(scope="module")
-def study(request):
-    """Name of a study -> its module, imported as the script it is."""
-    patch = pytest.MonkeyPatch()
-    patch.syspath_prepend(str(STUDIES))
-
-    def load(name):
-        spec = importlib.util.spec_from_file_location(name, STUDIES / f"{name}.py")
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-        return module
-
-    yield load
-    patch.undo()
-
-
-def test_simulated_oscillations_stop_growing_on_the_curve(study):
+def test_simulated_oscillations_stop_growing_on_the_curve():
     """Largest f_D/f_C = 1/(1 - tanh(u)/u), as the compiled kernel finds it by bisection."""
-    found = study("largest_compensation_without_growth").run(quick=True)
+    found = largest_compensation_without_growth.run(quick=True)
     for u, ratio in zip(found["u"].values, found["simulated"].values, strict=True):
         # 0.1 %: the bisection's last interval is 0.05 %, the contact gives by 0.01 % of the stroke
         assert ratio == pytest.approx(largest_ratio(float(u)), rel=1e-3)
@@ -37,8 +23,8 @@ def test_simulated_oscillations_stop_growing_on_the_curve(study):
 
 
 @pytest.mark.slow
-def test_the_passive_region_is_the_wedge_for_proof_and_for_search(study):
-    found = study("passive_region_with_presliding").run(quick=True)
+def test_the_passive_region_is_the_wedge_for_proof_and_for_search():
+    found = passive_region_with_presliding.run(quick=True)
     x, y = np.meshgrid(found["softness"].values, found["share"].values)
     wedge = (x**2 <= y) & (y <= 1)
     assert np.array_equal(found["status"].values == "proved", wedge)
@@ -48,16 +34,15 @@ def test_the_passive_region_is_the_wedge_for_proof_and_for_search(study):
     assert found.attrs["missed"] <= 4
 
 
-def test_a_motion_is_found_outside_the_wedge_and_none_inside(study):
-    module = study("passive_region_with_presliding")
-    tried = module.motions(4)
-    assert not module.gives_out(0.8, 0.7, tried)  # 0.64 <= 0.7
-    assert module.gives_out(0.8, 0.4, tried)
-    assert module.gives_out(0.5, 1.1, tried)
+def test_a_motion_is_found_outside_the_wedge_and_none_inside():
+    tried = passive_region_with_presliding.motions(4)
+    assert not passive_region_with_presliding.gives_out(0.8, 0.7, tried)  # 0.64 <= 0.7
+    assert passive_region_with_presliding.gives_out(0.8, 0.4, tried)
+    assert passive_region_with_presliding.gives_out(0.5, 1.1, tried)
 
 
-def test_forward_euler_loses_the_bound_at_one_and_diverges_at_two(study):
-    found = study("forward_euler_against_exact").run(quick=True)
+def test_forward_euler_loses_the_bound_at_one_and_diverges_at_two():
+    found = forward_euler_against_exact.run(quick=True)
     largest = found["largest_euler"]
     step = float(found["q_sweep"][1] - found["q_sweep"][0])
     # the first q of the sweep beyond the limit
@@ -72,17 +57,19 @@ def test_forward_euler_loses_the_bound_at_one_and_diverges_at_two(study):
     assert last[1] / last[0] == pytest.approx(-1.1)
 
 
-def test_cycles_through_a_cable_give_out_energy_where_the_plain_limit_says(study):
+def test_cycles_through_a_cable_give_out_energy_where_the_plain_limit_says():
     """Just above P55 a cycle is found; at the floor f_1 none is, and the storage is finite."""
-    module = study("compensation_through_a_cable")
-    friction = [module.Coulomb(module.MOTOR), module.Spring(module.LINK, module.CABLE)]
+    friction = [
+        cable.Coulomb(cable.MOTOR),
+        cable.Spring(cable.LINK, cable.CABLE),
+    ]
     for softness in (0.5, 3.0, 20.0):
-        stiffness = softness * module.CABLE
-        limit = module.plain_limit(stiffness)
-        assert module.gives_out(module.Dahl(1.01 * limit, stiffness), friction)
-        floor = module.Dahl(module.MOTOR, stiffness)
-        assert not module.gives_out(floor, friction)
-        assert module.available_storage(floor, friction, points=31).settled
+        stiffness = softness * cable.CABLE
+        limit = cable.plain_limit(stiffness)
+        assert cable.gives_out(cable.Dahl(1.01 * limit, stiffness), friction)
+        floor = cable.Dahl(cable.MOTOR, stiffness)
+        assert not cable.gives_out(floor, friction)
+        assert cable.available_storage(floor, friction, points=31).settled
 
 
 @pytest.mark.slow
@@ -96,17 +83,15 @@ def test_cycles_through_a_cable_give_out_energy_where_the_plain_limit_says(study
         "passive_walls",
     ],
 )
-def test_a_study_writes_its_figure_and_its_numbers(study, name, tmp_path, monkeypatch):
+def test_a_study_writes_its_figure_and_its_numbers(name, tmp_path, monkeypatch):
     monkeypatch.setattr("sys.argv", [name, "--quick", "--output", str(tmp_path)])
-    module = study(name)
-    plot = {n: f for n, f in vars(module).items() if n.startswith("plot_")}
-    module.write_study(module.__file__, module.__doc__, module.run, *plot.values())
+    run_module(name, run_name="__main__")
     assert {p.suffix for p in tmp_path.iterdir()} == {".pdf", ".svg", ".png", ".nc"}
 
 
 @pytest.mark.slow
-def test_walls_are_proved_up_to_the_limit_and_refuted_beyond(study):
-    found = study("passive_walls").run(quick=True)
+def test_walls_are_proved_up_to_the_limit_and_refuted_beyond():
+    found = passive_walls.run(quick=True)
     k = found["stiffness"].values
     for name in ("period", "damping"):
         status, limit = found[f"over_{name}"].values, found[f"limit_over_{name}"].values
