@@ -32,7 +32,7 @@ EFFECT = Effect(
     states=TIP,
     led=lambda p: p.tip_inertia,
     parameters={
-        "tip_inertia": Parameter("inertia", "m_t: inertia of the tip side", starts=(0.3,)),
+        "tip_inertia": Parameter("inertia", "m_t: inertia of the tip side", starts=(0.1, 0.3)),
         "stiffness": Parameter(
             "stiffness",
             "K: contact stiffness",

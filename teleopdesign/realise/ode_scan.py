@@ -6,6 +6,9 @@ the fastest mode well within the method's stability. Generated from the effect's
 A state that declares a correction is led back by the force r that is left unexplained, as by an
 observer: dz/dt = rate + correction(r), r = rest - law - friction, 0 where friction can take it up.
 Without it two bodies that part and meet fall out of step with the machine after a few meetings.
+Where a course of meetings depends on its past more and more, so do its tangents, until they say
+nothing of any change that could be made: they begin anew wherever a small difference has grown by
+`GROWTH` since it was smallest.
 """
 
 from __future__ import annotations
@@ -26,6 +29,8 @@ if TYPE_CHECKING:
 
 #: part of a radian of the fastest mode that one sub-step may cover, and the most sub-steps
 MODE_STEP, MOST_STEPS = 1.0, 16
+#: growth of a small difference between two courses over which tangents are followed
+GROWTH = 30.0
 
 
 def _drivers(effect: Effect) -> list[str]:
@@ -93,18 +98,26 @@ def rate(z, d, u, v, p, columns, f, g):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def scan(h, steps, p, columns, drive, ddrive, z, out, dout):
+def scan(h, steps, p, columns, drive, ddrive, size, growth, z, out, dout):
     m, n = drive.shape
     s, q, t = len(z), dout.shape[1], len(ddrive)
-    d = np.zeros((s, q))
+    # the last column is a difference that nothing drives: how much it grows
+    d = np.zeros((s, q + 1))
+    d[:, q] = size
     f = np.zeros((4, s))
-    g = np.zeros((4, s, q))
+    g = np.zeros((4, s, q + 1))
     u = np.zeros(m)
-    v = np.zeros((t, q))
+    v = np.zeros((t, q + 1))
     w = h / steps
     zs = np.zeros(s)
-    ds = np.zeros((s, q))
+    ds = np.zeros((s, q + 1))
     for k in range(n):
+        grown = np.abs(d[:, q] / size).max()
+        if grown > growth:
+            d[:] = 0.0
+            d[:, q] = size
+        elif 0.0 < grown < 1.0:  # what was forgotten since does not count
+            d[:, q] /= grown
         for i in range(s):
             out[i, k] = z[i]
             for c in range(q):
@@ -123,12 +136,12 @@ def scan(h, steps, p, columns, drive, ddrive, z, out, dout):
                 before = max(stage - 1, 0)
                 for i in range(s):
                     zs[i] = z[i] + part * w * f[before, i]
-                    for c in range(q):
+                    for c in range(q + 1):
                         ds[i, c] = d[i, c] + part * w * g[before, i, c]
                 rate(zs, ds, u, v, p, columns, f[stage], g[stage])
             for i in range(s):
                 z[i] += w / 6 * (f[0, i] + 2 * f[1, i] + 2 * f[2, i] + f[3, i])
-                for c in range(q):
+                for c in range(q + 1):
                     d[i, c] += w / 6 * (
                         g[0, i, c] + 2 * g[1, i, c] + 2 * g[2, i, c] + g[3, i, c]
                     )
@@ -185,8 +198,12 @@ def ode_scan(
         [given[SIGNALS[s.start]].value[0] if s.start else 0.0 for s in effect.states.values()]
     )
     out, tangent = np.empty((count, n)), np.empty((count, len(columns), n))
+    # a difference of one in position goes with one of the fastest mode's rate in velocity
+    rate = max(float(np.abs(modes).max()), 1e-300)
+    size = np.array([rate if s.quantity == "velocity" else 1.0 for s in effect.states.values()])
+    growth = GROWTH if effect.corrections() else np.inf
     scan = compiled(_source(effect), "scan")
-    scan(step, steps, parameters, places, drive, moving, start, out, tangent)
+    scan(step, steps, parameters, places, drive, moving, size, growth, start, out, tangent)
     if needed > 2.0 * MOST_STEPS or not np.isfinite(out).all():
         # too fast for the record's rate: no number at all rather than a wrong one
         out[:], tangent[:] = np.nan, np.nan

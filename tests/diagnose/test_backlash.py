@@ -13,6 +13,7 @@ from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.rank import is_told
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
+from teleopdesign.realise import ode_scan
 
 BACKLASH = EFFECTS["backlash"]
 OWN = tuple(f"device.backlash.{n}" for n in BACKLASH.parameters)
@@ -51,7 +52,8 @@ def test_a_true_model_leaves_what_its_sensors_leave(case):
     assert left < 0.5 * force_error(free_running(true), prepared.of("check"))
 
 
-def test_tangents_of_the_led_tip_are_the_slopes_of_the_residual(case):
+def test_tangents_of_the_led_tip_are_the_slopes_of_the_residual(case, monkeypatch):
+    monkeypatch.setattr(ode_scan, "GROWTH", np.inf)  # whatever they grow to
     _, prepared, _, true = case
     stretches = prepared.of("check")[:1]
     names = ("device.inertia", "device.coulomb.level", *OWN)
@@ -67,6 +69,26 @@ def test_tangents_of_the_led_tip_are_the_slopes_of_the_residual(case):
         slope = (ends[0] - ends[1]) / (2 * step)
         # rounding of the difference: 1e-16 of the force over 1e-8
         assert np.linalg.norm(tangent - slope) < 1e-3 * np.linalg.norm(slope)
+
+
+def test_tangents_say_what_a_change_that_could_be_made_does(case, monkeypatch):
+    """Meetings depend on those before them more and more; tangents forget what is beyond reach."""
+    _, prepared, _, true = case
+    rattling = true.with_values(
+        {"device.backlash.damping": 0.1 * true.parameters["device.backlash.damping"].value}
+    )
+    (stretch,) = prepared.of("fit")[:1]
+    acting = np.abs(stretch.motion.command).max()
+
+    def largest():
+        """Force by a change of each parameter by its own size, over the actuator's force."""
+        ((_, tangents),) = residuals(rattling, [stretch], OWN)
+        sizes = [abs(rattling.parameters[n].value) for n in OWN]
+        return max(s * np.abs(t).max() for s, t in zip(sizes, tangents, strict=True)) / acting
+
+    assert largest() < 2
+    monkeypatch.setattr(ode_scan, "GROWTH", np.inf)
+    assert largest() > 10
 
 
 def test_a_tip_without_inertia_follows_nothing():
