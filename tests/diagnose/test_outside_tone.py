@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.diagnose.fit import weighted
+from teleopdesign.diagnose.fit import estimate, weighted
 from teleopdesign.diagnose.force_error import prepare
-from teleopdesign.diagnose.outside_tone import tone_left
+from teleopdesign.diagnose.outside_tone import _taken, tone_left
 from teleopdesign.diagnose.rank import check_squares
 from teleopdesign.diagnose.search import estimate_from_starts
 
@@ -63,3 +63,28 @@ def test_what_repeats_with_the_motion_is_no_tone_from_outside(rod):
 def test_the_effect_that_is_missing_leaves_less_than_a_tone(rod):
     prepared, found = rod
     assert tone_left(found, prepared) > 0.9 * check_squares(found)
+
+
+def test_a_tone_on_a_body_that_often_sticks_is_taken_as_the_force_it_is(rod):
+    """Off the residual alone it leaves what friction balances while the body sticks."""
+    prepared, found = rod
+    level = found.model.parameters["device.coulomb.level"].value
+
+    def driven(stretch):
+        motion = stretch.motion
+        wave = 0.8 * level * np.sin(2 * np.pi * 23.0 * motion.time)
+        return replace(stretch, motion=replace(motion, interaction=motion.interaction + wave))
+
+    stretches = tuple(driven(s) for s in prepared.stretches)
+    hummed = replace(prepared, stretches=stretches)
+    before = estimate(found.model, hummed)
+    off = _off_the_residual(before, hummed)
+    assert tone_left(before, hummed) == pytest.approx(check_squares(found), rel=0.05)
+    assert off > 1.5 * check_squares(found)
+
+
+def _off_the_residual(found, prepared):
+    stretches = prepared.of("check")
+    parts = np.split(found.check_residual, np.cumsum([len(s.keep) for s in stretches])[:-1])
+    taken = sum(_taken(s, r, 23.0) for s, r in zip(stretches, parts, strict=True))
+    return check_squares(found) - taken
