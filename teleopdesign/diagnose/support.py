@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .candidates import Candidate
+from .diagnosis import ADEQUATE
 from .evidence import chance
 from .fit import Fit
 from .noise_floor import NoiseFloor
@@ -23,23 +24,32 @@ def is_supported(base: Fit, ranked: Ranked, floor: NoiseFloor) -> bool:
     """Whether a candidate can be told, lowers the check error enough, and leaves the rest in place.
 
     One that drives a parameter of the model to its bound takes the place of an effect that is
-    there: it describes the records, but is no missing physics beside the model's own.
+    there: it describes the records, but is no missing physics beside the model's own. One that
+    needs a parameter of its own at its bound is itself another effect, unless it leaves noise only.
     """
-    displaced = set(ranked.fit.at_bound) - set(base.at_bound)
+    driven = set(ranked.fit.at_bound) - set(base.at_bound)
+    displaced = [n for n in driven if n in base.model.parameters]
+    own = [n for n in driven if n not in base.model.parameters]
     return (
         ranked.told
         and not any(_is_there(base, name) for name in displaced)
+        and (
+            all(ranked.fit.model.declared(n).optional for n in own) or _settles(base, ranked, floor)
+        )
         and is_better(base, ranked.fit, floor)
     )
+
+
+def _settles(base: Fit, ranked: Ranked, floor: NoiseFloor) -> bool:
+    """Whether a candidate makes an adequate model of one that was not."""
+    return ranked.fit.check_error <= ADEQUATE * floor.value < base.check_error
 
 
 def _is_there(base: Fit, name: str) -> bool:
     """Whether the records tell the effect that a parameter belongs to from its absence."""
     effect = name.rpartition(".")[0]
     values = {n: v for n, v in base.model.parameters.items() if n.rpartition(".")[0] == effect}
-    return name not in base.model.parameters or all(
-        v.fixed or not v.stderr >= base.model.from_absence(n) for n, v in values.items()
-    )
+    return all(v.fixed or not v.stderr >= base.model.from_absence(n) for n, v in values.items())
 
 
 def is_better(base: Fit, other: Fit, floor: NoiseFloor) -> bool:

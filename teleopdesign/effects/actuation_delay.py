@@ -18,7 +18,9 @@ EFFECT = Effect(
     law=law,
     linear=True,
     parameters={
-        "delay": Parameter("time", "tau: time from command to force", upper=0.2, starts=(0.5, 2.0))
+        "delay": Parameter(
+            "time", "tau: time from command to force", upper=0.2, starts=(0.05, 0.5, 2.0)
+        )
     },
     absent={"delay": 0.0},
     source="dead time in the sense of any control text",

@@ -22,7 +22,7 @@ EFFECT = Effect(
     law=law,
     states={"output": State("force", output)},
     linear=True,
-    parameters={"time_constant": Parameter("time", "tau: lag", upper=0.2, starts=(0.5, 2.0))},
+    parameters={"time_constant": Parameter("time", "tau: lag", upper=0.2, starts=(0.05, 0.5, 2.0))},
     absent={"time_constant": 0.0},
     source="first-order lag in the sense of any control text",
 )
