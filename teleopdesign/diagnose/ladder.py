@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from functools import partial
 
@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import ModelError
 from ..measurement.experiment import Experiment
 from ..model import Model
+from .candidates import Candidate
 from .diagnosis import ADEQUATE, MOSTLY, Diagnosis, Rung, explained, verdict
 from .excerpt import excerpt
 from .exchange import best_exchange, rivals_of
@@ -64,7 +65,7 @@ def find_missing(
     stated = model or Model.from_experiment(experiment)
     rungs = [Rung(None, estimate_from_starts(stated, prepared))]
     first: NoiseFloor | None = None
-    exchanges = EXCHANGES
+    exchanges, paired = EXCHANGES, False
     while True:
         here = rungs[-1].fit
         floor = noise_floor(here.model, prepared, np.random.default_rng(seed))
@@ -87,11 +88,14 @@ def find_missing(
             rungs += pair
             if pair:
                 continue
-            exchanged = _exchanged(rungs, prepared, floor, stated, saying) if exchanges else []
-            if not exchanged:
+            changed = _exchanged(rungs, prepared, floor, stated, saying) if exchanges else []
+            if changed:
+                exchanges -= 1
+            elif not paired:
+                paired, changed = True, _settling_pair(rungs, prepared, floor, stated, saying)
+            if not changed:
                 break
-            exchanges -= 1
-            rungs = exchanged
+            rungs = changed
             continue
         best = min(alike(supported), key=simplicity)
         rungs.append(Rung(best.candidate, best.fit, ranking, equals_of(best, ranking, here, floor)))
@@ -122,12 +126,13 @@ def _pair(
     floor: NoiseFloor,
     stated: Model,
     say: Callable[[str], None],
+    among: Collection[Candidate] | None = None,
 ) -> list[Rung]:
     """Two effects that are supported together though neither is alone; none where there are none.
 
-    Each of two effects can mask the other. The best few are added on trial, and everything is
-    ranked anew beside each; a pair counts where it explains most of what is missing and neither of
-    the two can be left out.
+    Each of two effects can mask the other. The best few are added on trial, and everything (or
+    those in `among`) is ranked anew beside each; a pair counts where it explains most of what is
+    missing and neither of the two can be left out.
     """
     here = base.fit
     if here.check_error <= ADEQUATE * floor.value:
@@ -135,7 +140,7 @@ def _pair(
     found: list[list[Rung]] = []
     trials = [r for r in ranking.ranked if r.told and fit_squares(r.fit) < fit_squares(here)]
     for first in trials[:TRIED]:
-        again = rank_candidates(first.fit, prepared, stated=stated, progress=say)
+        again = rank_candidates(first.fit, prepared, among=among, stated=stated, progress=say)
         second = next((r for r in again.ranked if is_supported(first.fit, r, floor)), None)
         if second is None:
             continue
@@ -146,6 +151,26 @@ def _pair(
         if _stands(here, rungs, prepared, floor):
             found.append(rungs)
     return min(found, key=lambda rungs: check_squares(rungs[-1].fit), default=[])
+
+
+def _settling_pair(
+    rungs: list[Rung],
+    prepared: Prepared,
+    floor: NoiseFloor,
+    stated: Model,
+    say: Callable[[str], None],
+) -> list[Rung]:
+    """Two effects that leave only noise in place of rungs that leave more; none where none do.
+
+    Where two are missing, a third can explain more than either does alone, and stand in their way.
+    They are sought among those that explained something of their own.
+    """
+    first = rungs[1].ranking if len(rungs) > 1 else None
+    if first is None or rungs[-1].fit.check_error <= ADEQUATE * floor.value:
+        return []
+    told = [r.candidate for r in first.ranked if r.told]
+    pair = _pair(rungs[0], first, prepared, floor, stated, say, told)
+    return [rungs[0], *pair] if pair and pair[-1].fit.check_error <= ADEQUATE * floor.value else []
 
 
 def _stands(base: Fit, rungs: list[Rung], prepared: Prepared, floor: NoiseFloor) -> bool:

@@ -94,6 +94,8 @@ def _columns(model: Model, probes: list[Probe], prepared: Prepared) -> Array:
 def _start(model: Model, effect: Effect, at: str, left: Array, columns: Array) -> LinearStart:
     """The strength, and phase, that takes most away from what is left."""
     assert effect.strength is not None
+    if not np.isfinite(columns).all():  # no finite motion with these values
+        return LinearStart(model, math.inf)
     size = _size(columns)
     by = -np.linalg.lstsq(columns / size, left, rcond=1e-10)[0] / size
     values = {effect.strength: float(by[0])}

@@ -7,6 +7,7 @@ made of what ranks first.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
@@ -150,7 +151,8 @@ def _promise(model: Model, prepared: Prepared, base: Fit, unit: dict[str, float]
     residual = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
     columns = np.concatenate([w * d.T for w, (_, d) in zip(roots, parts, strict=True)])
     columns = columns * np.array([unit[model.declared(n).quantity] for n in wanted])
-    return _left(np.hstack([base.jacobian, columns]) if same else columns, residual)
+    whole = np.hstack([base.jacobian, columns]) if same else columns
+    return _left(whole, residual) if np.isfinite(whole).all() else math.inf
 
 
 def _left(columns: Array, residual: Array) -> float:
