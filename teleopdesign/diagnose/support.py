@@ -9,8 +9,9 @@ from .fit import Fit
 from .noise_floor import NoiseFloor
 from .rank import Ranked, Ranking, check_score, check_squares, whole_score
 
-#: a gain counts from this many standard deviations of its chance part ...
-SURE = 4.0
+#: a gain counts from this many standard deviations of its chance part, or, where it makes an
+#: adequate model of one that is not, from what one catalogue in a hundred reaches by chance ...
+SURE, BY_CHANCE = 4.0, 0.01
 #: ... and from this part of the noise floor's square: while a body is stuck or turns, its friction
 #: is known no better than that, and less may be the method's own
 OF_FLOOR = 0.5
@@ -34,15 +35,16 @@ def is_supported(base: Fit, ranked: Ranked, floor: NoiseFloor) -> bool:
         ranked.told
         and not any(_is_there(base, name) for name in displaced)
         and (
-            all(ranked.fit.model.declared(n).optional for n in own) or _settles(base, ranked, floor)
+            all(ranked.fit.model.declared(n).optional for n in own)
+            or _settles(base, ranked.fit, floor)
         )
         and is_better(base, ranked.fit, floor)
     )
 
 
-def _settles(base: Fit, ranked: Ranked, floor: NoiseFloor) -> bool:
-    """Whether a candidate makes an adequate model of one that was not."""
-    return ranked.fit.check_error <= ADEQUATE * floor.value < base.check_error
+def _settles(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
+    """Whether `other` is an adequate model where the base was not."""
+    return other.check_error <= ADEQUATE * floor.value < base.check_error
 
 
 def _is_there(base: Fit, name: str) -> bool:
@@ -58,10 +60,10 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
     gain = (before - check_squares(other)) / before
     score = check_score(base, other)
     return (
-        score > SURE
+        (score > SURE or _settles(base, other, floor))
         and gain > RELEVANT
         and gain > OF_FLOOR * (floor.value / base.check_error) ** 2
-        and chance(score) * len(base.model.known) < 0.01
+        and chance(score) * len(base.model.known) < BY_CHANCE
     )
 
 
