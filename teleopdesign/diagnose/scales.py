@@ -29,6 +29,7 @@ def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
         "damping": force / velocity,
         "stiffness": force / position,
         "resonance_stiffness": force / acceleration * (2 * np.pi * bandwidth) ** 2,
+        "resonance_position": acceleration / (2 * np.pi * bandwidth) ** 2,
         "resonance_damping": force / acceleration * 2 * np.pi * bandwidth,
         "drag": force / velocity**2,
         "cubic_stiffness": force / position**3,

@@ -43,7 +43,11 @@ EFFECT = Effect(
             "damping", "C: contact damping", starts=(0.03,), scale="resonance_damping"
         ),
         "gap": Parameter(
-            "position", "g: width of the gap", starts=(0.01, 0.03, 0.1, 0.3), essential=True
+            "position",
+            "g: width of the gap",
+            starts=(0.7, 2.5, 10.0, 35.0, 120.0),
+            scale="resonance_position",
+            essential=True,
         ),
     },
     absent={"tip_inertia": 0.0},
