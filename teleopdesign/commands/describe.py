@@ -74,7 +74,6 @@ def run(options: argparse.Namespace) -> int:
 def _fitted(experiment: Experiment, model: Model, *, as_is: bool) -> tuple[Fit, Prepared, str]:
     """The fit that is described, with a line that says which model it is."""
     from ..diagnose import find_missing
-    from ..diagnose.diagnosis import ADEQUATE
     from ..diagnose.force_error import prepare
     from ..diagnose.search import estimate_from_starts
 
@@ -88,7 +87,7 @@ def _fitted(experiment: Experiment, model: Model, *, as_is: bool) -> tuple[Fit, 
     held = diagnosis.floor.held
     if not added:
         return before, prepared, "Your model, re-estimated:"
-    if diagnosis.left <= ADEQUATE or (diagnosis.missing and not held):
+    if not diagnosis.more_is_missing or (diagnosis.missing and not held):
         return diagnosis.after, prepared, f"Your model with {added}:"
     why = "raise the noise of the sensors" if held else "explain less than half of what it leaves"
     return before, prepared, f"Your model, re-estimated ({added} would {why}):"

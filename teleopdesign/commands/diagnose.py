@@ -86,11 +86,10 @@ def _write_report(diagnosis: Diagnosis, path: Path) -> None:
 
 def _next_commands(diagnosis: Diagnosis, folder: Path) -> list[str]:
     """What helps on from here: nothing where all is explained."""
-    from ..diagnose.diagnosis import ADEQUATE
 
     lines = []
     if diagnosis.groups:
         lines.append(f"what to measure to tell them: teleopdesign next {folder}")
-    if diagnosis.verdict != "model_adequate" and diagnosis.left > ADEQUATE:
+    if diagnosis.verdict != "model_adequate" and diagnosis.more_is_missing:
         lines.append(f"where it fails: teleopdesign describe {folder}")
     return ["", *lines] if lines else []

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..model import Model
 from ..realise.along_motion import residual_along
-from .diagnosis import ADEQUATE, Diagnosis
+from .diagnosis import Diagnosis
 from .fit import Fit
 from .probability import CandidateEvidence, evidence_of
 
@@ -204,7 +204,8 @@ def ladder_text(diagnosis: Diagnosis) -> str:
 def sentence(diagnosis: Diagnosis) -> str:
     """The verdict in words."""
     left = diagnosis.left
-    rest = "" if left <= ADEQUATE else f" What is left is {left:.1f} noise floors: more is missing."
+    more = f" What is left is {left:.1f} noise floors: more is missing."
+    rest = more if diagnosis.more_is_missing else ""
     if diagnosis.verdict == "model_adequate":
         return f"verdict: model_adequate. What is left is noise ({left:.2f} noise floors)."
     if diagnosis.verdict == "effects_missing":

@@ -12,7 +12,7 @@ from ..errors import ModelError
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .candidates import Candidate
-from .diagnosis import ADEQUATE, MOSTLY, Diagnosis, Rung, explained, verdict
+from .diagnosis import MOSTLY, Diagnosis, Rung, explained, is_adequate, verdict
 from .excerpt import excerpt
 from .exchange import best_exchange, rivals_of
 from .fit import Fit, estimate, fit_squares
@@ -135,7 +135,7 @@ def _pair(
     missing and neither of the two can be left out.
     """
     here = base.fit
-    if here.check_error <= ADEQUATE * floor.value:
+    if is_adequate(here, floor):
         return []
     found: list[list[Rung]] = []
     trials = [r for r in ranking.ranked if r.told and fit_squares(r.fit) < fit_squares(here)]
@@ -166,11 +166,11 @@ def _settling_pair(
     They are sought among those that explained something of their own.
     """
     first = rungs[1].ranking if len(rungs) > 1 else None
-    if first is None or rungs[-1].fit.check_error <= ADEQUATE * floor.value:
+    if first is None or is_adequate(rungs[-1].fit, floor):
         return []
     told = [r.candidate for r in first.ranked if r.told]
     pair = _pair(rungs[0], first, prepared, floor, stated, say, told)
-    return [rungs[0], *pair] if pair and pair[-1].fit.check_error <= ADEQUATE * floor.value else []
+    return [rungs[0], *pair] if pair and is_adequate(pair[-1].fit, floor) else []
 
 
 def _stands(base: Fit, rungs: list[Rung], prepared: Prepared, floor: NoiseFloor) -> bool:
@@ -197,7 +197,7 @@ def _exchanged(
 ) -> list[Rung]:
     """The rungs with one effect exchanged for a better; none where there is none, or only noise."""
     last = rungs[-1].fit
-    if last.check_error <= ADEQUATE * floor.value:
+    if is_adequate(last, floor):
         return []
     there = [r.added for r in rungs if r.added is not None]
     # the last was ranked beside all the others already

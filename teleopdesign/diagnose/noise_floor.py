@@ -2,6 +2,8 @@
 
 The readings are made anew: the smoothed motion is read off by an encoder of the stated step with a
 random zero, and the stated noise is drawn. By how much that changes the residual is the floor.
+Where the drawn readings tell that the body turns a sample earlier or later, its friction turns with
+it: that counts in a floor of its own, above which a right model hardly ever lies.
 Where no resolution is stated, steps and noise of all channels are estimated from the readings, from
 their content near the Nyquist frequency, and the answer says so.
 """
@@ -26,16 +28,20 @@ DRAWS = 3
 class NoiseFloor:
     """The floor as a relative force error, and where its numbers come from.
 
+    turning: the floor with the turns of the motion told anew as well
     held: kept below what this model makes of sensor errors, or what it leaves would hide in them
     """
 
     value: float
     source: str
+    turning: float = 0.0
     held: bool = False
 
     def at_most(self, value: float) -> NoiseFloor:
         """The floor, held at that value where it is above."""
-        return self if self.value <= value else replace(self, value=value, held=True)
+        if self.value <= value:
+            return self
+        return replace(self, value=value, turning=min(self.turning, value), held=True)
 
 
 def noise_floor(
@@ -45,16 +51,20 @@ def noise_floor(
     stretches = prepared.of(use) or prepared.of("fit")
     channels = prepared.experiment.channels
     stated = all(channels[f"{s.motion.body}.position"].resolution is not None for s in stretches)
-    errors, before = [], residuals(model, stretches)
-    for _ in range(DRAWS):
-        # when the drawn readings tell the direction a sample earlier or later is no sensor noise
-        drawn = [
-            replace(s, motion=_keeping(s, read_again(s, prepared, generator))) for s in stretches
-        ]
+    kept, turned, before = [], [], residuals(model, stretches)
+
+    def changed(drawn: list[Stretch]) -> float:
         pairs = zip(residuals(model, drawn), before, strict=True)
-        errors.append(error_of(drawn, [r - r0 for (r, _), (r0, _) in pairs]))
+        return error_of(drawn, [r - r0 for (r, _), (r0, _) in pairs])
+
+    for _ in range(DRAWS):
+        drawn = [replace(s, motion=read_again(s, prepared, generator)) for s in stretches]
+        turned.append(changed(drawn))
+        pairs = zip(drawn, stretches, strict=True)
+        kept.append(changed([replace(d, motion=_keeping(s, d.motion)) for d, s in pairs]))
     source = "stated resolution and noise" if stated else "step and noise seen in the readings"
-    return NoiseFloor(float(np.sqrt(np.mean(np.square(errors)))), source)
+    value, turning = (float(np.sqrt(np.mean(np.square(e)))) for e in (kept, turned))
+    return NoiseFloor(value, source, turning)
 
 
 def _keeping(stretch: Stretch, motion: Motion) -> Motion:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .candidates import Candidate
-from .diagnosis import ADEQUATE
+from .diagnosis import is_adequate
 from .evidence import chance
 from .fit import Fit
 from .noise_floor import NoiseFloor
@@ -44,7 +44,7 @@ def is_supported(base: Fit, ranked: Ranked, floor: NoiseFloor) -> bool:
 
 def _settles(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
     """Whether `other` is an adequate model where the base was not."""
-    return other.check_error <= ADEQUATE * floor.value < base.check_error
+    return is_adequate(other, floor) and not is_adequate(base, floor)
 
 
 def _is_there(base: Fit, name: str) -> bool:

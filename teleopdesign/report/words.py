@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..diagnose.diagnosis import ADEQUATE, Diagnosis, Rung
+from ..diagnose.diagnosis import Diagnosis, Rung
 
 _SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 MINUS = "\u2212"
@@ -86,7 +86,7 @@ def verdict(diagnosis: Diagnosis) -> str:
     fell = f"the force error on {judged_on(diagnosis)} falls from {percent(before)}"
     fell += f" to {percent(after)}"
     added = [step_name(r) for r in diagnosis.rungs if r.added is not None]
-    more = diagnosis.left > ADEQUATE
+    more = diagnosis.more_is_missing
     rest = (
         f"What is left is {left} times what sensor noise alone would leave: more is missing."
         if more

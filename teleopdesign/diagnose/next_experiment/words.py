@@ -10,7 +10,6 @@ import numpy as np
 
 from ...finding import Finding, Graph, Series
 from ...quantity import si_factor
-from ..diagnosis import ADEQUATE
 
 if TYPE_CHECKING:
     from .prediction import Separation
@@ -42,7 +41,7 @@ def _sentences(proposal: Proposal) -> list[str]:
     else:
         said += [_what_it_shows(proposal, p) for p in decided]
     said += [_what_stays_open(proposal, p) for p in left_open]
-    if proposal.diagnosis.left > ADEQUATE:
+    if proposal.diagnosis.more_is_missing:
         said.append(
             f"None of these models explains the present records: {proposal.diagnosis.left:.1f} "
             "noise floors are left, and the true effect may be none of them."
