@@ -50,6 +50,7 @@ from .quantised_spring import quantised_spring, stiffest_spring
 from .rate_independent import Coulomb, Cycle, Dahl, DahlBehindSpring, Spring, symmetric_cycle
 from .record import read_record, write_record
 from .regions import Region, region
+from .sampled_compensation import Trembling, sampled_compensation
 from .sampled_data import required_damping, sampled_coupling, sampled_passivity
 from .second_opinion import SecondOpinion, second_opinion
 from .stroke_motion import Strokes
@@ -87,6 +88,7 @@ __all__ = [
     "Spring",
     "SteadyStrokes",
     "Strokes",
+    "Trembling",
     "TwoPort",
     "Unknown",
     "ZWidth",
@@ -130,6 +132,7 @@ __all__ = [
     "region",
     "required_damping",
     "sampled_coupling",
+    "sampled_compensation",
     "sampled_passivity",
     "search_counterexample",
     "second_opinion",

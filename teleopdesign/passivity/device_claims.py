@@ -22,6 +22,7 @@ from .identified import IdentifiedDevice
 from .lugre import lugre_passivity
 from .quantised_spring import quantised_spring
 from .rate_independent import Coulomb, Cycle, Dahl
+from .sampled_compensation import sampled_compensation
 from .sampled_data import Z, sampled_passivity
 from .stroke_motion import Strokes
 
@@ -97,6 +98,7 @@ def compensation_claims(
                 stiffness=device.presliding.low,
             )
             found.append(Settled("small motion, sampled", claim))
+            found.append(Settled("any motion, sampled", _sampled(device, compensator, computer)))
     found = [_replayed(settled) for settled in found]
     return [*found, _searched(device, compensator, computer, rng, tries)]
 
@@ -157,6 +159,19 @@ def _dahl(device: IdentifiedDevice, compensator: Compensator, *, certain: bool) 
         compensator_stiffness=compensator.second,
         presliding_stiffness=stiffness,
         highest_level=None if own is None else high,
+    )
+
+
+def _sampled(device: IdentifiedDevice, compensator: Compensator, computer: Sampling) -> Claim:
+    """The pair at the estimates in a computer, whatever the motion."""
+    return sampled_compensation(
+        coulomb_level=device.highest.estimate,
+        compensator_level=compensator.level,
+        compensator_stiffness=compensator.second,
+        sample_time=computer.period,
+        presliding_stiffness=device.presliding and device.presliding.estimate,
+        viscous_damping=device.damping.estimate,
+        late=round(computer.delay / computer.period),
     )
 
 

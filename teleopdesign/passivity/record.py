@@ -17,7 +17,9 @@ from .growing_wave import GrowingWave
 from .lugre import Jumps
 from .quantised_spring import Flip
 from .rate_independent import Coulomb, Cycle, Dahl, Spring
+from .sampled_compensation import Trembling
 from .sampled_data import Z, sampled_wave
+from .velocity_compensation import SteadyStrokes
 
 _ELEMENTS = {"coulomb": Coulomb, "dahl": Dahl, "spring": Spring}
 
@@ -58,6 +60,12 @@ def _made(c: dict[str, Any]) -> Record:
     if kind == "cycle":
         helps, *against = (_ELEMENTS[n](*v) for n, *v in [c["compensator"], *c["friction"]])
         return Cycle(helps, tuple(against), tuple(c["turning_points"]), int(c["rounds"]))
+    if kind in ("steady strokes", "trembling"):
+        moved = {k: v for k, v in c.items() if k not in ("kind", "energy")}
+        for name in {"friction", "compensator"} & set(moved):
+            element, *values = moved[name]
+            moved[name] = _ELEMENTS[element](*values)
+        return (Trembling if kind == "trembling" else SteadyStrokes)(**moved)
     fields = {k: _tuples(v) for k, v in c.items() if k not in ("kind", "energy")}
     if kind == "jumps":
         return Jumps(**fields)

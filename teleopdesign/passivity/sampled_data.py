@@ -153,7 +153,8 @@ class SampledWave:
 
     def replay(self) -> float:
         """Energy given out, J, simulated from rest by the controller's own difference equation."""
-        return _given_out(self.travel, self.law, self.damping, self.sample_time, self.stiffness)
+        system = self.law, self.damping, self.sample_time, self.stiffness
+        return float(_given_out(self.travel, *system))
 
     def as_dict(self) -> dict[str, object]:
         """Plain data, to be written as JSON."""
@@ -183,7 +184,7 @@ def sampled_wave(
     number = int(min(np.ceil(16 / np.log(abs(z))), _SAMPLES))
     phases = np.exp(1j * np.linspace(0, np.pi, 181))  # to a degree
     waves = (phases[:, None] * z ** np.arange(-number, 1)).real
-    best = waves[int(np.argmax([_given_out(w, *system) for w in waves]))]
+    best = waves[int(np.argmax(_given_out(waves, *system)))]
     return SampledWave(*system, rate, frequency, best)
 
 
@@ -194,13 +195,16 @@ def _factor(rate: Fraction, frequency: Fraction) -> complex:
 
 def _given_out(
     travel: np.ndarray, law: sp.Expr, damping: sp.Expr, sample_time: sp.Expr, stiffness: sp.Expr
-) -> float:
+) -> np.ndarray:
+    """Energy given out, J, by each of the motions (..., n)."""
     from scipy.signal import lfilter
 
-    position = np.concatenate([[0.0], np.cumsum(travel)])
+    position = np.cumsum(travel, axis=-1)
+    before = np.concatenate([np.zeros_like(position[..., :1]), position[..., :-1]], axis=-1)
     above, below = (sp.Poly(part, Z) for part in sp.fraction(sp.cancel(law)))
     a = [float(c) for c in below.all_coeffs()]
     b = [0.0] * (below.degree() - above.degree()) + [float(c) for c in above.all_coeffs()]
-    held = lfilter(b, a, position[:-1])
-    lost = float(damping) / float(sample_time) * (travel @ travel)
-    return float(-(held @ travel + lost + float(stiffness) * position[-1] ** 2 / 2))
+    held = lfilter(b, a, before)
+    lost = float(damping) / float(sample_time) * (travel**2).sum(axis=-1)
+    stored = float(stiffness) * position[..., -1] ** 2 / 2
+    return np.asarray(-((held * travel).sum(axis=-1) + lost + stored))

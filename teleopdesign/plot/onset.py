@@ -130,11 +130,46 @@ def plot_delay_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
     return figure
 
 
+def plot_period_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
+    """Settled late compensators over sample period and stiffness, and where a swing grows."""
+    import matplotlib.pyplot as plt
+
+    x, stiffness = data["period"].values, data["stiffness"].values
+    with plt.style.context(STYLE):
+        figure, axes = plt.subplots(1, 2, sharey=True, figsize=(TWO_COLUMNS, 3.5))
+        for axis, letter, late in zip(axes, "ab", data["late"].values, strict=True):
+            here = data.sel(late=late)
+            limit = here["limit"].values
+            hatched(axis, x, 0.8 * stiffness[0], limit, "both conditions hold")
+            axis.plot(x, limit, color=THEORY, label="limit of the two conditions")
+            _settled(axis, x, stiffness, here["status"].values)
+            for ends, marker in zip(data["ends"].values, "^o", strict=True):
+                axis.plot(
+                    data["period_simulated"].values,
+                    here["onset"].sel(ends=ends).values,
+                    marker,
+                    color="black",
+                    markersize=4,
+                    markerfacecolor="white",
+                    zorder=3,
+                    label=f"onset of growth, simulated, {ends}",
+                )
+            axis.set(xscale="log", yscale="log", xlim=(0.9 * x[0], 1.1 * x[-1]))
+            axis.set_ylim(0.8 * stiffness[0], 1.25 * stiffness[-1])
+            axis.set_xlabel("sample period, $T$ (s)")
+            samples = f"{late} sample{'s' if late > 1 else ''} late"
+            axis.set_title(f"({letter}) {samples}", loc="left", pad=3)
+        axes[0].set_ylabel(r"stiffness of the compensator, $\sigma_D$ (N/m)")
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return figure
+
+
 def _settled(axis: Axes, x: np.ndarray, y: np.ndarray, status: np.ndarray) -> None:
     """A dot at each point that a claim settled."""
     import numpy as np
 
     across, up = np.meshgrid(x, y)
+    size = 6 if len(x) < 30 else 1.5
     for said, colour, marker, label in (
         ("proved", PROVED, "o", "claim proved"),
         ("refuted", REFUTED, "x", "claim refuted by a wave"),
@@ -145,7 +180,7 @@ def _settled(axis: Axes, x: np.ndarray, y: np.ndarray, status: np.ndarray) -> No
             axis.scatter(
                 across[shown],
                 up[shown],
-                s=6,
+                s=size,
                 color=colour,
                 marker=marker,
                 linewidths=0.6,

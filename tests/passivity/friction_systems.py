@@ -18,10 +18,12 @@ from teleopdesign.passivity import (
     Coulomb,
     SteadyStrokes,
     Strokes,
+    Trembling,
     bounded_compensation,
     confirmed_motion,
     dahl_compensation,
     given_out,
+    sampled_compensation,
     sampled_passivity,
     velocity_compensation,
 )
@@ -162,7 +164,14 @@ def _dahl_claims(system):
         sample_time=system.period,
         stiffness=system.stiffness,
     )
-    return [*found, ("small", small)]
+    trembling = sampled_compensation(
+        coulomb_level=static,
+        sample_time=system.period,
+        viscous_damping=system.damping,
+        late=system.late,
+        **pair,
+    )
+    return [*found, ("small", small), ("trembling", trembling)]
 
 
 def _velocity_claims(system):
@@ -220,6 +229,8 @@ def theory_motion(system, record):
     if isinstance(record, SteadyStrokes):
         half = record.travel / 2
         return Strokes((half, -half), record.speed * 1.2)
+    if isinstance(record, Trembling):
+        return record.strokes() if record.samples < 1000 else None
     if hasattr(record, "turning_points"):
         a = max(record.turning_points)
         slow = a / system.time

@@ -55,7 +55,7 @@ def test_the_family_has_every_part_alone_and_together():
         (one(own_level=0.5), "refuted"),
         (one(own_level=1.1), "refuted"),
         (one(stiffness=None, own_level=1.0, period=1e-3, late=2), "proved"),
-        (one(period=1e-3), "unknown"),
+        (one(period=1e-3), "refuted"),
         (one(period=1e-3, late=1), "refuted"),
         (one(law="coulomb", own_level=0.1), "refuted"),
         (one(law="smoothed_coulomb", own_level=0.1, second=0.01, damping=10.0), "proved"),

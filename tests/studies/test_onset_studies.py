@@ -5,6 +5,7 @@ from runpy import run_module
 import numpy as np
 import passive_delay_and_stiffness as coupling
 import pytest
+import stiffest_late_compensator as stiffest
 import teleoperator_onset as swing_up
 
 
@@ -61,8 +62,34 @@ def test_proved_region_and_simulated_onset_of_late_couplings_agree():
         assert np.all(over >= 1) and np.all(over[1] < 1.03) and np.all(over[0] < 1.2)
 
 
+@pytest.mark.parametrize("late", stiffest.LATE)
+def test_a_late_compensator_swings_up_beyond_its_bound_and_not_below(late):
+    period = 1.7e-3  # where the damping bounds it
+    bound = stiffest.damping_limit(late, period)
+    assert bound == pytest.approx(stiffest.DAMPING / (stiffest.SHARES[late] * period))
+    assert bound < stiffest.PRESLIDING
+    assert stiffest.claim(late, period, 0.999 * bound).status == "proved"
+    assert stiffest.claim(late, period, 1.001 * bound).status == "refuted"
+    assert not stiffest.grows(late, period, bound)
+    assert stiffest.grows(late, period, 1.4 * bound)
+    # held by its own contact alone it swings where a late negative spring damps
+    assert not stiffest.grows(late, period, 0.99 * stiffest.PRESLIDING, free=True)
+    assert stiffest.grows(late, period, 1.01 * stiffest.PRESLIDING, free=True)
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["teleoperator_onset", "passive_delay_and_stiffness"])
+def test_sinusoids_at_half_the_sample_rate_grow_from_pi_squared_over_eight_on():
+    found = stiffest.run(quick=True)
+    assert found.attrs["contradictions"] == 0
+    over = found["over"].sel(late=1, ends="worst hand").values
+    # the last interval of seven bisections is 1.1 %
+    assert over == pytest.approx(np.full(3, np.pi**2 / 8), rel=0.012)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name", ["teleoperator_onset", "passive_delay_and_stiffness", "stiffest_late_compensator"]
+)
 def test_a_study_of_onset_writes_its_figure_and_its_numbers(name, tmp_path, monkeypatch):
     monkeypatch.setattr("sys.argv", [name, "--quick", "--output", str(tmp_path)])
     run_module(name, run_name="__main__")
