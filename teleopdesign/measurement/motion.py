@@ -16,6 +16,9 @@ SMOOTHING = 1.5
 DWELL = 0.25
 #: steps of the reading that a motion must cover to be told from the give of a contact that holds
 TRAVEL = 3
+#: velocities within so many of the errors that readings leave are not told from rest: at slow
+#: motion the steps of an encoder are no white noise, and leave more than that
+SLOW = 4.0
 #: s, shortest stretch that leaves something after the ends are trimmed
 SHORTEST = 0.6
 
@@ -112,6 +115,14 @@ def told_direction(position: Array, change: float, step: float, patience: int) -
     return np.cumsum(edges[:-1]).astype(np.int8)
 
 
+def beside(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The marked samples and those next to one."""
+    wide = marked.copy()
+    wide[1:] |= marked[:-1]
+    wide[:-1] |= marked[1:]
+    return wide
+
+
 def play(position: Array, width: float) -> Array:
     """Position behind a play of total `width`: it follows only what exceeds it (hysteresis)."""
     half = 0.5 * width
@@ -152,16 +163,21 @@ def motion_of(
         reading = play(position, step)
     patience = max(2, round(DWELL / bandwidth / sample_time))
     change = step if reading is position else 1e-9 * step
+    differentiated = smoothing * s.derivative(1)
+    velocity = s.back(transformed * s.derivative(1))
+    noise_left = step / np.sqrt(12.0) * float(np.sqrt(np.mean(np.abs(differentiated) ** 2)))
+    direction = told_direction(reading, change, step, patience)
+    direction[beside(np.abs(velocity) < SLOW * noise_left)] = 0
     return Motion(
         body=body,
         file=file,
         time=time,
         position=s.back(transformed),
-        velocity=s.back(transformed * s.derivative(1)),
+        velocity=velocity,
         acceleration=s.back(transformed * s.derivative(2)),
         command=command,
         interaction=np.zeros(n) if interaction is None else s.multiply(interaction, smoothing),
-        direction=told_direction(reading, change, step, patience),
+        direction=direction,
         step=step,
         rows=rows,
         spectrum=s,
