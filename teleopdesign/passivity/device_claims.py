@@ -87,8 +87,10 @@ def compensation_claims(
         found.append(Settled("any law within the level", bounded))
         found.append(Settled("the same, damping counted", _at_every_speed(device, compensator)))
     if compensator.law == "dahl":
-        found.append(Settled("estimate", _dahl(device, compensator, certain=False)))
-        found.append(Settled("95 % interval", _dahl(device, compensator, certain=True)))
+        sampled = computer is not None and device.presliding is not None
+        when = ", continuous time" if sampled else ""
+        found.append(Settled(f"estimate{when}", _dahl(device, compensator, certain=False)))
+        found.append(Settled(f"95 % interval{when}", _dahl(device, compensator, certain=True)))
         if computer is not None and device.presliding is not None:
             whole = round(computer.delay / computer.period)
             claim = sampled_passivity(

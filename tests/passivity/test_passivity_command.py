@@ -162,3 +162,13 @@ def test_damping_covers_what_the_lowest_level_does_not():
     counted = by_topic["the same, damping counted"]
     assert (counted.status, counted.holds) == ("evidence", True)
     assert by_topic["search by simulation"].holds
+
+
+def test_in_a_computer_the_pair_is_held_against_what_readings_do_not_show(answer, tmp_path):
+    out = tmp_path / "claims.json"
+    law = ["--dahl", "0.4", "1.5e4", "--period", "0.001"]
+    assert main(["passivity", str(answer), *law, "--json", str(out)]) == 0
+    claims = claims_of(out)
+    assert claims["estimate, continuous time"]["status"] == "proved"
+    assert claims["small motion, sampled"]["status"] == "proved"
+    assert claims["any motion, sampled"]["status"] == "refuted"
