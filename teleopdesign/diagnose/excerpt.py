@@ -29,17 +29,24 @@ def excerpt(experiment: Experiment, *, most: int = MOST) -> Experiment:
 
 
 def _windows(record: Record, part: float) -> tuple[slice, ...]:
-    """Windows that make up about `part` of every segment, one at least."""
+    """Windows that make up about `part` of a record, spread over its segments, one at least.
+
+    Each segment gives what its length and that of those before it owe: of many short ones every
+    n-th is taken.
+    """
     size = max(64, round(WINDOW / record.sample_time))
-    found = []
+    found, owed = [], 0.0
     for segment in record.segments:
         length = segment.stop - segment.start
-        count = max(1, round(part * length / size))
+        owed += part * length / size
+        count = round(owed)
         if count * size >= length:
             found.append(segment)
-            continue
-        room = length - size
-        places = np.linspace(0.0, 1.0, count) if count > 1 else np.array([0.5])
-        starts = [segment.start + int(room * p) for p in places]
-        found += [slice(a, a + size) for a in starts]
-    return tuple(found)
+            owed -= length / size
+        elif count:
+            places = np.linspace(0.0, 1.0, count) if count > 1 else np.array([0.5])
+            starts = [segment.start + int((length - size) * p) for p in places]
+            found += [slice(a, a + size) for a in starts]
+            owed -= count
+    longest = max(record.segments, key=lambda s: s.stop - s.start)
+    return tuple(found) or (slice(longest.start, min(longest.start + size, longest.stop)),)

@@ -271,6 +271,23 @@ def test_a_long_record_is_judged_on_windows_of_itself(rod):
     assert excerpt(rod) is rod
 
 
+@pytest.mark.parametrize("length", [1000, 4500])
+def test_of_many_short_segments_every_nth_is_taken(rod, length):
+    (record, *_) = rod.records
+    rows = len(record.time) // length * length
+    repeated = {n: np.tile(v[:rows], 60) for n, v in record.signals.items()}
+    time = np.arange(60 * rows) * record.sample_time
+    pieces = tuple(slice(a, a + length) for a in range(0, 60 * rows, length))
+    long = replace(record, time=time, signals=repeated, segments=pieces)
+    short = excerpt(replace(rod, records=(long,)), most=60_000)
+    (found,) = short.records
+    # a window of 4 s more or less
+    assert sum(s.stop - s.start for s in found.segments) == pytest.approx(60_000, abs=4000)
+    starts = np.array([s.start for s in found.segments])
+    assert starts[0] < 0.1 * len(time) and starts[-1] > 0.9 * len(time)
+    assert np.diff(starts).max() < 3 * np.diff(starts).min() + 2 * length
+
+
 def test_the_command_prints_findings_and_writes_them(tmp_path, capsys):
     path = tmp_path / "findings.json"
     assert main(["check", str(example("rod")), "--json", str(path)]) == 0
