@@ -13,9 +13,11 @@ from typing import Any
 import numpy as np
 
 from ..model import Model
+from ..quantity import unit_of
 from ..realise.along_motion import residual_along
 from .diagnosis import Diagnosis
 from .fit import Fit
+from .force_error import own_groups
 from .probability import CandidateEvidence, evidence_of
 
 
@@ -39,11 +41,29 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "bandwidth": {"value": diagnosis.prepared.bandwidth, "unit": "Hz"},
         "candidates": _candidates(diagnosis),
         "indistinguishable": [[_place(c.key) for c in g] for g in diagnosis.groups],
+        "own": _own(diagnosis),
         "model_parameters": _parameters(diagnosis.after, _added(diagnosis)),
         "left_over_noise_floors": _finite(diagnosis.left),
         "at_bound": list(diagnosis.after.at_bound),
         "evidence": [_evidence(one) for one in evidence_of(diagnosis) if one.share > 0],
     }
+
+
+def _own(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """What records have of their own by the model that the diagnosis ends with."""
+    stretches, rows = diagnosis.prepared.stretches, []
+    for group, own in own_groups(diagnosis.model, stretches):
+        motion = stretches[group[0]].motion
+        units = {
+            "position_zero": unit_of("position", own.body.axis),
+            "bias": unit_of("force", own.body.axis),
+            "friction_level": "of the model's",
+        }
+        rows += [
+            {"record": motion.file, "at": motion.body, "of": n, "value": v, "unit": units[n]}
+            for n, v in own.values.items()
+        ]
+    return rows
 
 
 def _place(key: tuple[str, str]) -> dict[str, str]:
@@ -149,18 +169,29 @@ def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
 def _predicted(diagnosis: Diagnosis, file: str) -> list[np.ndarray]:
     record = next(r for r in diagnosis.experiment.records if r.file == file)
     columns: list[np.ndarray] = []
+    stretches = diagnosis.prepared.stretches
+    models = (diagnosis.before.model, diagnosis.model)
+    owned = [
+        {
+            i: (own.body, motion)
+            for group, own in own_groups(model, stretches)
+            for i, motion in zip(group, own.motions, strict=True)
+        }
+        for model in models
+    ]
     for body in diagnosis.experiment.bodies:
         interaction = record.signals.get(f"{body}.interaction_force")
         measured = record.signals[f"{body}.actuator_force"] + (
             0.0 if interaction is None else interaction
         )
         before, after = np.zeros_like(measured), np.zeros_like(measured)
-        for stretch in diagnosis.prepared.stretches:
+        for i, stretch in enumerate(stretches):
             motion = stretch.motion
             if motion.file != file or motion.body != body:
                 continue
-            for model, out in ((diagnosis.before.model, before), (diagnosis.model, after)):
-                out[motion.rows] = residual_along(model.body(body), motion).residual.value
+            for model, own, out in zip(models, owned, (before, after), strict=True):
+                along = residual_along(*own.get(i, (model.body(body), motion)))
+                out[motion.rows] = along.residual.value
         columns += [measured, measured - before, measured - after, before, after]
     return columns
 
@@ -192,6 +223,10 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         if rung.equals:
             others = ", ".join(map(str, rung.equals))
             lines.append(f"      no different on these records: {others}")
+    lines += [
+        f"own of {o['record']}: {o['of'].replace('_', ' ')} {o['value']:.4g} {o['unit']}"
+        for o in _own(diagnosis)
+    ]
     lines.append(
         f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
         f"  ({diagnosis.floor.source})"

@@ -10,17 +10,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..effects import SIGNALS
+from ..blocks import Body
 from ..errors import ExperimentError
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motions
 from ..model import Model
 from ..realise.along_motion import Probe, residual_along
+from .own import Own, own_of
 
 #: seconds at each end of a stretch where the low-pass has not settled
 TRIM = 0.25
@@ -37,7 +39,7 @@ class Stretch:
     keep: the rows that count, thinned to what the low-pass leaves
     weight: rows that each of them stands for
     measured: sum of squares of the low-passed measured force over the rows that count
-    own_zero: the record's encoder zero is its own, to be found on it
+    own: what the record has of its own, to be found on it
     """
 
     motion: Motion
@@ -45,7 +47,12 @@ class Stretch:
     keep: NDArray[np.intp]
     weight: float
     measured: float
-    own_zero: bool = False
+    own: frozenset[str] = frozenset()
+
+    @property
+    def own_zero(self) -> bool:
+        """Whether its position cannot be compared with that of other records."""
+        return "position_zero" in self.own
 
 
 @dataclass(frozen=True)
@@ -103,22 +110,18 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
         for body in experiment.bodies:
             channel = experiment.channels[f"{body}.position"]
             for motion in motions(record, body, bandwidth=chosen, resolution=channel.resolution):
-                stretches.append(
-                    _stretch(motion, record.use, chosen, own_zero=record.position_zero == "own")
-                )
+                stretches.append(_stretch(motion, record.use, chosen, record.own))
     if not any(s.use == "fit" for s in stretches):
         raise ExperimentError(f"{experiment.folder.name}: fit records: no stretch of 0.6 s or more")
     return Prepared(experiment, chosen, tuple(stretches))
 
 
-def _stretch(motion: Motion, use: str, bandwidth: float, *, own_zero: bool) -> Stretch:
+def _stretch(motion: Motion, use: str, bandwidth: float, own: frozenset[str]) -> Stretch:
     n, rate = len(motion.time), 1.0 / motion.sample_time
     trim = min(int(TRIM * rate), n // 3)
     stride = max(1, int(rate / (OVERSAMPLING * bandwidth)))
     keep = np.arange(trim, n - trim, stride)
-    return Stretch(
-        motion, use, keep, float(stride), _squares(motion, keep, float(stride)), own_zero
-    )
+    return Stretch(motion, use, keep, float(stride), _squares(motion, keep, float(stride)), own)
 
 
 def residuals(
@@ -164,12 +167,15 @@ def _with_acting(
 ) -> list[tuple[Array, Array, Array, Array]]:
     """Residual and acting plus interaction force, low-passed, on the rows that count; tangents."""
     found = []
-    for stretch in stretches:
+    owned = own_groups(model, stretches)
+    along_own = {i: (o.body, m) for g, o in owned for i, m in zip(g, o.motions, strict=True)}
+    for number, stretch in enumerate(stretches):
         motion, rows = stretch.motion, stretch.keep
         located = [_located(model, name) for name in wrt]
         mine = [i for i, (place, _) in enumerate(located) if place == motion.body]
         own = [located[i][1] for i in mine]
-        along = residual_along(model.body(motion.body), motion, own)
+        body, there = along_own.get(number, (model.body(motion.body), motion))
+        along = residual_along(body, there, own)
         signals = []
         for traced, offset in ((along.residual, 0.0), (along.acting, motion.interaction)):
             value = motion.lowpassed(traced.value + offset)[rows]
@@ -178,36 +184,36 @@ def _with_acting(
             if moving.any():
                 tangent[np.array(mine)[moving]] = motion.lowpassed(traced.tangent[moving])[:, rows]
             signals += [value, tangent]
-        if stretch.own_zero:
-            signals[0], signals[1] = _without_zero(model, stretch, signals[0], signals[1])
         found.append((signals[0], signals[1], signals[2], signals[3]))
+    for group, own_values in owned:
+        cleared = own_values.cleared([found[i][:2] for i in group])
+        for i, (residual, tangent) in zip(group, cleared, strict=True):
+            found[i] = (residual, tangent, *found[i][2:])
+    return found
+
+
+def own_groups(model: Model, stretches: Sequence[Stretch]) -> list[tuple[list[int], Own]]:
+    """(places of the stretches, what they have of their own) for each record that has any."""
+    groups: dict[tuple[str, str], list[int]] = {}
+    for i, stretch in enumerate(stretches):
+        if stretch.own:
+            groups.setdefault((stretch.motion.file, stretch.motion.body), []).append(i)
+    found = []
+    for (_, place), group in groups.items():
+        rows = [stretches[i].keep for i in group]
+
+        def residual(body: Body, motion: Motion, k: int, rows: Any = rows) -> Array:
+            left = motion.lowpassed(residual_along(body, motion).residual.value)
+            return np.asarray(left[rows[k]])
+
+        motions = [stretches[i].motion for i in group]
+        names = stretches[group[0]].own
+        found.append((group, own_of(model.body(place), motions, names, residual)))
     return found
 
 
 def _located(model: Model, name: str | Probe) -> tuple[str, str | Probe]:
     return (model.holder(name.at), name) if isinstance(name, Probe) else model.locate(name)
-
-
-def _without_zero(
-    model: Model, stretch: Stretch, residual: Array, tangent: Array
-) -> tuple[Array, Array]:
-    """Residual and tangents of a record with an own encoder zero, at the zero that fits it best.
-
-    A step to the least-squares zero, exact where force is linear in position, as for a spring.
-    """
-    body, motion = model.body(stretch.motion.body), stretch.motion
-    if not any(e.expression().has(SIGNALS["position"]) for e in body.effects):
-        return residual, tangent
-    shift = 1e-3 * float(np.std(motion.position))
-    moved = residual_along(body, replace(motion, position=motion.position + shift)).residual.value
-    slope = (motion.lowpassed(moved)[stretch.keep] - residual) / shift
-    size = float(slope @ slope)
-    if size == 0.0:
-        return residual, tangent
-    return (
-        residual - slope * float(slope @ residual) / size,
-        tangent - np.outer(tangent @ slope / size, slope),
-    )
 
 
 def error_of(stretches: Sequence[Stretch], values: Sequence[Array]) -> float:

@@ -9,7 +9,7 @@ from ..errors import ExperimentError, did_you_mean, quoted
 from ..quantity import unit_of
 from .channel import BODY_QUANTITIES, Channel, channels_from, frequency_from, sample_rate_from
 from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from
-from .record import Record, read_record
+from .record import OWN, Record, read_record
 from .toml_table import Table, read_toml
 
 _FILE = "experiment.toml"
@@ -89,12 +89,12 @@ def load_experiment(folder: str | Path) -> Experiment:
             folder,
             file,
             use=use,
-            position_zero=zero,
+            own=own,
             channels=channels,
             bodies=bodies,
             sample_rate=sample_rate,
         )
-        for file, use, zero in _record_entries(experiment, folder)
+        for file, use, own in _record_entries(experiment, folder)
     )
     _check_bandwidth(bandwidth, records, comparison)
     return Experiment(folder, title, bodies, environment, channels, bandwidth, records)
@@ -123,18 +123,18 @@ def _found_folder(path: Path) -> Path:
     return path
 
 
-def _record_entries(experiment: Table, folder: Path) -> list[tuple[str, str, str]]:
-    """(file, use, position_zero) of each [[records]], checked before any file is read."""
-    entries: list[tuple[str, str, str]] = []
+def _record_entries(experiment: Table, folder: Path) -> list[tuple[str, str, frozenset[str]]]:
+    """(file, use, what is its own) of each [[records]], checked before any file is read."""
+    entries: list[tuple[str, str, frozenset[str]]] = []
     for table in experiment.tables("records"):
-        table.allow(("file", "use", "position_zero"))
+        table.allow(("file", "use", *OWN))
         file = table.text("file")
         _check_path(table, folder, file)
         if any(file == other for other, _, _ in entries):
             raise ExperimentError(f"{table.where('file')}: {quoted(file)} is listed twice")
         use = _choice(table, "use", ("fit", "check"))
-        zero = _choice(table, "position_zero", ("common", "own"), "common")
-        entries.append((file, use, zero))
+        own = {name for name in OWN if _choice(table, name, ("common", "own"), "common") == "own"}
+        entries.append((file, use, frozenset(own)))
     if not any(use == "fit" for _, use, _ in entries):
         raise ExperimentError(
             f'{experiment.where("records")}: found {len(entries)} records, none with use = "fit", '

@@ -14,13 +14,17 @@ from .description import BodyDescription
 from .tables import read_columns
 from .time_grid import counted_time, segments_of, uniform_time
 
+#: what a record may have of its own: "own" at these keys of [[records]]
+OWN = ("position_zero", "bias", "friction_level")
+
 
 @final
 @dataclass(frozen=True, eq=False)
 class Record:
     """n samples; "fit": parameters are estimated on them, "check": never fitted.
 
-    position_zero: "own" if this record's encoder zero may differ from the others', else "common"
+    own: of "position_zero", "bias" and "friction_level", those in which this record may differ from
+        the others
     time: s, shape (n,), uniform within each segment with step `sample_time` (s)
     segments: stretches without interruption; hidden states start anew at each
     signals: "device.position", "master.actuator_force" ... -> shape (n,), SI, signs of the format
@@ -28,7 +32,7 @@ class Record:
 
     file: str
     use: str
-    position_zero: str
+    own: frozenset[str]
     time: NDArray[np.float64]
     sample_time: float
     segments: tuple[slice, ...]
@@ -52,7 +56,7 @@ def read_record(
     file: str,
     *,
     use: str,
-    position_zero: str,
+    own: frozenset[str],
     channels: Mapping[str, Channel],
     bodies: Mapping[str, BodyDescription],
     sample_rate: float | None,
@@ -84,7 +88,7 @@ def read_record(
         time, sample_time = uniform_time(
             stamps, segments, f"{name}: channels.time", labelled="segment" in channels
         )
-    return Record(file, use, position_zero, time, sample_time, segments, signals)
+    return Record(file, use, own, time, sample_time, segments, signals)
 
 
 def _short(key: str) -> str:

@@ -19,7 +19,7 @@ class RecordRow:
     duration: float
     rate: float
     segments: int
-    own_zero: bool
+    own: tuple[str, ...]
     digest: str
 
 
@@ -45,7 +45,7 @@ def record_rows(experiment: Experiment) -> tuple[RecordRow, ...]:
             duration=r.duration,
             rate=1.0 / r.sample_time,
             segments=len(r.segments),
-            own_zero=r.position_zero == "own",
+            own=tuple(sorted(n.replace("_", " ") for n in r.own)),
             digest=_digest(experiment, r.file),
         )
         for r in experiment.records

@@ -191,4 +191,4 @@ def record_under(
             signals[name] = bench.sensors[name].read(signal, generator)
     time = next(iter(plan.exact.values())).time
     whole = (slice(0, len(time)),)
-    return Record(file, use, "common", time, bench.sample_time, whole, signals)
+    return Record(file, use, frozenset(), time, bench.sample_time, whole, signals)

@@ -1,0 +1,113 @@
+"""What a record has of its own: an encoder zero, a bias, a level of friction.
+
+Where an experiment says that a record does not share one of these with the others, it is found
+anew on that record for every model, by least squares: two steps by the slopes of the residual,
+exact where force is linear in it. The slopes are then taken out of the residual and of its
+tangents, so that nothing else in a model is used for what is the record's own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..blocks import Body
+from ..effects import SIGNALS
+from ..measurement.filtering import Array
+from ..measurement.motion import Motion
+
+#: steps of finding them, and part of their scale over which a slope is taken
+TURNS, SLOPE = 2, 1e-3
+#: least friction level of a record, over the model's
+LEAST = 0.05
+_LEVEL = "coulomb.level"
+
+#: (body, motion, its place among the motions) -> low-passed residual on the rows that count
+Residual = Callable[[Body, Motion, int], Array]
+
+
+@dataclass(frozen=True)
+class Own:
+    """A body along the motions of one record, with what it has there of its own.
+
+    values: "position_zero" (shift of the position, m or rad), "bias" (force that acts, N or N m),
+        "friction_level" (over the model's)
+    body, motions: with these;  slopes: by each of them, (k, rows) for each motion
+    """
+
+    values: dict[str, float]
+    body: Body
+    motions: tuple[Motion, ...]
+    slopes: tuple[Array, ...]
+
+    def cleared(self, parts: Sequence[tuple[Array, Array]]) -> list[tuple[Array, Array]]:
+        """Residuals (rows) and tangents (p, rows) without what the slopes can make of them."""
+        slopes = np.concatenate(self.slopes, axis=1)
+        rows = np.vstack(
+            [
+                np.concatenate([r for r, _ in parts])[None],
+                np.concatenate([d for _, d in parts], axis=1),
+            ]
+        )
+        if len(slopes):
+            rows = rows - np.linalg.lstsq(slopes.T, rows.T, rcond=1e-10)[0].T @ slopes
+        ends = np.cumsum([len(r) for r, _ in parts])[:-1]
+        return [(part[0], part[1:]) for part in np.split(rows, ends, axis=1)]
+
+
+def own_of(
+    body: Body, motions: Sequence[Motion], names: Collection[str], residual: Residual
+) -> Own:
+    """Find what a record has of its own.
+
+    motions: the body's, all of one record;  names: of "position_zero", "bias", "friction_level"
+    """
+    steps = _steps(body, motions, names)
+    values = dict.fromkeys(steps, 0.0)
+    slopes: list[Array] = []
+    for turn in range(TURNS + 1):
+        own_body, own_motions = _with(body, motions, values)
+        here = [residual(own_body, m, k) for k, m in enumerate(own_motions)]
+        slopes = [np.zeros((len(steps), len(r))) for r in here]
+        for i, (name, step) in enumerate(steps.items()):
+            moved_body, moved = _with(body, motions, {**values, name: values[name] + step})
+            for k, motion in enumerate(moved):
+                slopes[k][i] = (residual(moved_body, motion, k) - here[k]) / step
+        if turn == TURNS or not steps:
+            break
+        whole = np.concatenate(slopes, axis=1)
+        change = np.linalg.lstsq(whole.T, np.concatenate(here), rcond=1e-10)[0]
+        values = {n: v - float(c) for (n, v), c in zip(values.items(), change, strict=True)}
+        if "friction_level" in values:
+            values["friction_level"] = max(values["friction_level"], LEAST - 1.0)
+    said = {n: 1.0 + v if n == "friction_level" else v for n, v in values.items()}
+    return Own(said, own_body, own_motions, tuple(slopes))
+
+
+def _steps(body: Body, motions: Sequence[Motion], names: Collection[str]) -> dict[str, float]:
+    """What can be found, and the step of each over which its slope is taken."""
+    found = {}
+    if "position_zero" in names and any(
+        e.expression().has(SIGNALS["position"]) for e in body.effects
+    ):
+        found["position_zero"] = SLOPE * max(float(np.std(m.position)) for m in motions)
+    if "bias" in names:
+        found["bias"] = SLOPE * max(float(np.std(m.command + m.interaction)) for m in motions)
+    if "friction_level" in names and _LEVEL in body.parameters:
+        found["friction_level"] = SLOPE
+    return {name: step for name, step in found.items() if step > 0}
+
+
+def _with(
+    body: Body, motions: Sequence[Motion], values: dict[str, float]
+) -> tuple[Body, tuple[Motion, ...]]:
+    level = values.get("friction_level", 0.0)
+    if level:
+        body = body.with_values({_LEVEL: (1 + level) * body.parameters[_LEVEL].value})
+    zero, bias = values.get("position_zero", 0.0), values.get("bias", 0.0)
+    changed = (
+        replace(m, position=m.position + zero, interaction=m.interaction + bias) for m in motions
+    )
+    return body, tuple(changed)
