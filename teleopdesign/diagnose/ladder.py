@@ -18,7 +18,7 @@ from .exchange import best_exchange, rivals_of
 from .fit import Fit, estimate, fit_squares
 from .force_error import Prepared, force_error, prepare
 from .noise_floor import NoiseFloor, noise_floor
-from .outside_tone import tone_left
+from .outside_tone import acts_by_the_clock, tone_left
 from .rank import (
     Ranking,
     check_squares,
@@ -78,7 +78,8 @@ def find_missing(
         supported = [
             r
             for r in ranking.ranked
-            if is_supported(here, r, floor) and check_squares(r.fit) < tone
+            if is_supported(here, r, floor)
+            and (check_squares(r.fit) < tone or acts_by_the_clock(r.candidate.effect))
         ]
         if len(rungs) > MOST:
             break

@@ -18,6 +18,7 @@ import numpy as np
 from scipy import fft
 from scipy.optimize import minimize_scalar
 
+from ..effects import SIGNALS, Effect
 from ..measurement.filtering import Array
 from ..model import Model
 from .fit import Fit, estimate
@@ -32,6 +33,11 @@ MOVED = 0.01
 HEARD = 0.03
 #: turns of finding the force, and of estimating the model beside it
 TURNS, ESTIMATES = 4, 2
+
+
+def acts_by_the_clock(effect: Effect) -> bool:
+    """Whether an effect depends on time itself, so that a tone may be what it says there is."""
+    return bool(effect.expression().has(SIGNALS["time"]))
 
 
 def tone_left(found: Fit, prepared: Prepared) -> float:

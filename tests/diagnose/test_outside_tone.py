@@ -8,9 +8,10 @@ import pytest
 import teleopdesign as td
 from teleopdesign.diagnose.fit import estimate, weighted
 from teleopdesign.diagnose.force_error import prepare
-from teleopdesign.diagnose.outside_tone import _taken, tone_left
+from teleopdesign.diagnose.outside_tone import _taken, acts_by_the_clock, tone_left
 from teleopdesign.diagnose.rank import check_squares
 from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.effects import EFFECTS
 
 
 @pytest.fixture(scope="module")
@@ -88,3 +89,9 @@ def _off_the_residual(found, prepared):
     parts = np.split(found.check_residual, np.cumsum([len(s.keep) for s in stretches])[:-1])
     taken = sum(_taken(s, r, 23.0) for s, r in zip(stretches, parts, strict=True))
     return check_squares(found) - taken
+
+
+def test_an_effect_that_acts_by_the_clock_may_be_the_tone_itself():
+    assert acts_by_the_clock(EFFECTS["friction_drift"])
+    assert not acts_by_the_clock(EFFECTS["transmission_compliance"])
+    assert not acts_by_the_clock(EFFECTS["torque_ripple"])
