@@ -66,10 +66,14 @@ class Spectrum:
         """(j omega)^order."""
         return np.asarray((2j * np.pi * self.frequency) ** order, dtype=np.complex128)
 
-    def hold(self) -> NDArray[np.complex128]:
-        """Zero-order hold: from row values to the staircase, seen at the rows' times."""
-        x = np.pi * self.frequency * self.sample_time
-        return np.asarray(np.sinc(x / np.pi) * np.exp(-1j * x), dtype=np.complex128)
+    def hold(self, parts: int = 1, which: int = 0) -> NDArray[np.complex128]:
+        """Zero-order hold: from row values to the staircase, seen at the rows' times.
+
+        parts, which: the values are held only over that one of so many equal parts of a row
+        """
+        x = np.pi * self.frequency * self.sample_time / parts
+        held = np.sinc(x / np.pi) * np.exp(-1j * (1 + 2 * which) * x) / parts
+        return np.asarray(held, dtype=np.complex128)
 
 
 @lru_cache(maxsize=64)

@@ -55,8 +55,18 @@ class Motion:
         return self.spectrum.sample_time
 
     def at_rows(self, staircase: Array) -> Array:
-        """A held signal (..., n), value of each row until the next, as a smooth one at the rows."""
-        return self.spectrum.multiply(staircase, self.spectrum.hold() * self.smoothing)
+        """A held signal, value of each row until the next, as a smooth one at the rows (..., n).
+
+        staircase: (..., n), or (..., k n) with k values in turn for equal parts of each row
+        """
+        parts = staircase.shape[-1] // len(self.time)
+        held = (
+            self.spectrum.multiply(
+                staircase[..., k::parts], self.spectrum.hold(parts, k) * self.smoothing
+            )
+            for k in range(parts)
+        )
+        return np.asarray(sum(held))
 
     def lowpassed(self, y: Array) -> Array:
         """Signals (..., n) through the comparison's zero-phase low-pass."""

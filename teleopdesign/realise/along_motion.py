@@ -52,7 +52,7 @@ def through(filtered: Callable[[Array], Array], signal: Traced) -> Traced:
     """A signal and its tangents through a linear filter; tangents that are zero stay so."""
     moving = signal.tangent.any(axis=1)
     both = filtered(np.vstack([signal.value[None], signal.tangent[moving]]))
-    tangent = np.zeros_like(signal.tangent)
+    tangent = np.zeros((len(signal.tangent), both.shape[-1]))
     tangent[moving] = both[1:]
     return Traced(both[0], tangent)
 
@@ -133,6 +133,8 @@ def law_of(
 
 
 _MOTION = ("time", "position", "velocity", "acceleration")
+#: parts of a row over which a command that acts late is averaged
+PARTS = 4
 
 
 @dataclass(frozen=True)
@@ -227,33 +229,41 @@ def _present(body: Body, role: Role, values: Mapping[Any, float]) -> list[Effect
 def _acting(
     body: Body, motion: Motion, command: Traced, values: Mapping[Any, float], columns: list[Any]
 ) -> Traced:
-    """Acting force at the rows: each stage on averages over the hold of a row."""
-    stage = command
-    for effect in _present(body, "actuation", values):
-        stage = _stage(effect, motion, stage, values, columns)
+    """Acting force at the rows: each stage on averages over the hold of a row, or over parts of it.
+
+    What is late turns edges of the staircase into something between the rows.
+    """
+    stages = _present(body, "actuation", values)
+    parts = PARTS if any(e.states or e.expression().has(delayed) for e in stages) else 1
+    stage = Traced(np.repeat(command.value, parts), np.repeat(command.tangent, parts, axis=1))
+    along = {name: np.repeat(getattr(motion, name), parts) for name in _MOTION}
+    for effect in stages:
+        stage = _stage(effect, along, motion.sample_time / parts, stage, values, columns)
     return through(motion.at_rows, stage)
 
 
 def _stage(
     effect: Effect,
-    motion: Motion,
+    along: Mapping[str, Array],
+    step: float,
     command: Traced,
     values: Mapping[Any, float],
     columns: list[Any],
 ) -> Traced:
+    """A stage of the actuation, as averages over each step (s) of its command."""
     law = effect.expression()
     zero = np.zeros_like(command.tangent)
-    given = {SIGNALS[name]: Traced(getattr(motion, name), zero) for name in _MOTION} | {
+    given = {SIGNALS[name]: Traced(signal, zero) for name, signal in along.items()} | {
         SIGNALS["command"]: command
     }
     extra: list[sp.Symbol] = []
     for i, call in enumerate(sorted(law.atoms(delayed), key=str)):
         symbol = sp.Symbol(f"delayed_{i}", real=True)
         law = law.subs(call, symbol)
-        given[symbol] = _shifted(command, call.args[1], values, columns, motion.sample_time)
+        given[symbol] = _shifted(command, call.args[1], values, columns, step)
         extra.append(symbol)
     if effect.states:
-        outputs = stage_scan(effect, given, values, columns, motion.sample_time)
+        outputs = stage_scan(effect, given, values, columns, step)
         given |= outputs
         extra += outputs
     signals = (*SIGNALS.values(), *extra)
