@@ -30,7 +30,7 @@ WORTH = 0.01
 PREDICTED, STEPPED = 2, 1
 CURVED_PREDICTED, CURVED_STEPPED = 4, 2
 #: where hidden states are corrected they may still fall out of step, and squares are rugged
-CORRECTED_PREDICTED, CORRECTED_STEPPED = 8, 4
+CORRECTED_PREDICTED, CORRECTED_STEPPED = 6, 3
 #: part by which a user's value may be wrong: what moved further may have been led astray
 MOVED = 0.25
 #: factors on each parameter of such an effect from which a better place is sought, how often at
