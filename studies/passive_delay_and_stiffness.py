@@ -25,6 +25,7 @@ import math
 
 import numpy as np
 import xarray
+from _onset import least_that_grows
 from _study import write_study
 
 import teleopdesign as td
@@ -134,13 +135,9 @@ def onset(
     steps: int,
 ) -> float:
     """Least stiffness (N/m) at which a swing grows, by bisection; NaN where none within."""
-    low, high = within
-    if not grows(kind, late, high, masses) or grows(kind, late, low, masses):
-        return float("nan")
-    for _ in range(steps):
-        middle = math.sqrt(low * high)
-        low, high = (low, middle) if grows(kind, late, middle, masses) else (middle, high)
-    return high
+    return least_that_grows(
+        lambda stiffness: grows(kind, late, stiffness, masses), within=within, steps=steps
+    )
 
 
 def limit(kind: str, late: float) -> float:

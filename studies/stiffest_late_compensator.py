@@ -28,6 +28,7 @@ from functools import partial
 
 import numpy as np
 import xarray
+from _onset import least_that_grows
 from _study import write_study
 
 import teleopdesign as td
@@ -118,13 +119,9 @@ def onset(late: int, period: float, *, free: bool, steps: int) -> float:
     """Least stiffness at which a small swing grows, N/m, by bisection; NaN where none is found."""
     low = 0.9 * (limit(late, period) if free else damping_limit(late, period))
     high = max(4 * PRESLIDING, 2 * low) if free else 4 * low
-    if grows(late, period, low, free=free) or not grows(late, period, high, free=free):
-        return float("nan")
-    for _ in range(steps):
-        middle = math.sqrt(low * high)
-        grown = grows(late, period, middle, free=free)
-        low, high = (low, middle) if grown else (middle, high)
-    return high
+    return least_that_grows(
+        lambda stiffness: grows(late, period, stiffness, free=free), within=(low, high), steps=steps
+    )
 
 
 def run(*, quick: bool = False) -> xarray.Dataset:
