@@ -86,7 +86,6 @@ def _write_report(diagnosis: Diagnosis, path: Path) -> None:
 
 def _next_commands(diagnosis: Diagnosis, folder: Path) -> list[str]:
     """What helps on from here: nothing where all is explained."""
-
     lines = []
     if diagnosis.groups:
         lines.append(f"what to measure to tell them: teleopdesign next {folder}")

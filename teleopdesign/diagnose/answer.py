@@ -169,7 +169,7 @@ def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
 def _predicted(diagnosis: Diagnosis, file: str) -> list[np.ndarray]:
     record = next(r for r in diagnosis.experiment.records if r.file == file)
     columns: list[np.ndarray] = []
-    stretches = diagnosis.prepared.stretches
+    stretches = [s for s in diagnosis.prepared.stretches if s.motion.file == file]
     models = (diagnosis.before.model, diagnosis.model)
     owned = [
         {
@@ -187,7 +187,7 @@ def _predicted(diagnosis: Diagnosis, file: str) -> list[np.ndarray]:
         before, after = np.zeros_like(measured), np.zeros_like(measured)
         for i, stretch in enumerate(stretches):
             motion = stretch.motion
-            if motion.file != file or motion.body != body:
+            if motion.body != body:
                 continue
             for model, own, out in zip(models, owned, (before, after), strict=True):
                 along = residual_along(*own.get(i, (model.body(body), motion)))

@@ -127,12 +127,14 @@ def sampled_compensation(
 ) -> Claim:
     """Is friction passive beside a Dahl compensator in a computer?
 
-    coulomb_level: f_C, N, the lowest that can occur;  compensator_level, compensator_stiffness:
-        f_D, N, and sigma_D, N/m;  sample_time: T, s;  viscous_damping: B, N s/m
+    coulomb_level: f_C, N: of ideal friction the lowest that can occur, of Dahl friction the highest
+    compensator_level, compensator_stiffness: f_D, N, and sigma_D, N/m
+    sample_time: T, s;  viscous_damping: B, N s/m
     presliding_stiffness: N/m, of Dahl friction; None: ideal Coulomb friction
     late: whole samples by which the compensator's force is late
     returns: for ideal friction proved iff f_D <= f_C; beside Dahl friction refuted by a motion
-        that trembles once a sample, whatever the numbers
+        that trembles once a sample, whatever the numbers; unknown where that motion would take more
+        than `LONGEST` samples to give out what its start takes
     """
     if presliding_stiffness is None:
         return bounded_compensation(coulomb_level=coulomb_level, bound=compensator_level)
