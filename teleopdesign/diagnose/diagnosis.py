@@ -46,7 +46,8 @@ class Diagnosis:
     verdict: "effects_missing", "model_adequate" or "undecided"
     rungs: the user's model re-estimated, then one rung an effect
     last: ranking after the last rung, none of which was accepted
-    left: error of the last rung over the noise floor
+    estimated: the last rung's fit before what its readings do was taken off: to be held against
+        other fits
     """
 
     experiment: Experiment
@@ -54,6 +55,7 @@ class Diagnosis:
     verdict: str
     rungs: tuple[Rung, ...]
     last: Ranking
+    estimated: Fit
     floor: NoiseFloor
 
     @property

@@ -162,25 +162,25 @@ def solve(
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     declared = [model.declared(n) for n in free]
     scale = np.array([unit[d.scale or d.quantity] for d in declared])
-    over_decades = np.array([_over_decades(model, n) for n in free], dtype=bool)
+    decades = np.array([over_decades(model, n) for n in free], dtype=bool)
     lower = np.array([d.lower for d in declared]) / scale
     upper = np.array([min(d.upper / s, d.within) for d, s in zip(declared, scale, strict=True)])
     start = np.array([model.parameters[n].value for n in free]) / scale
-    lower[over_decades] = -DECADES * np.log(10)
-    upper[over_decades] = np.log(np.minimum(upper[over_decades], 10.0**DECADES))
-    start[over_decades] = np.log(np.maximum(start[over_decades], 1e-300))
+    lower[decades] = -DECADES * np.log(10)
+    upper[decades] = np.log(np.minimum(upper[decades], 10.0**DECADES))
+    start[decades] = np.log(np.maximum(start[decades], 1e-300))
     # a law may divide by a parameter whose bound is zero: stay a trifle inside
     lower, upper = lower + 0.1 * AT_BOUND, upper - 0.1 * AT_BOUND
     roots = [np.sqrt(s.weight) for s in stretches]
 
     def values(x: Array) -> Array:
-        return scale * np.where(over_decades, np.exp(np.where(over_decades, x, 0.0)), x)
+        return scale * np.where(decades, np.exp(np.where(decades, x, 0.0)), x)
 
     def both(x: Array) -> tuple[Array, Array]:
         parts = referred(_at(model, free, values(x)), stretches, free)
         r = np.concatenate([w * v for w, (v, _) in zip(roots, parts, strict=True)])
         j = np.concatenate([w * t.T for w, (_, t) in zip(roots, parts, strict=True)])
-        return r, j * np.where(over_decades, values(x), scale)
+        return r, j * np.where(decades, values(x), scale)
 
     best = start
     if free:
@@ -194,11 +194,11 @@ def solve(
         )
     residual, jacobian = both(best)
     at_bound = (best - lower < AT_BOUND) | (upper - best < AT_BOUND)
-    slope = np.where(over_decades, values(best), scale)
+    slope = np.where(decades, values(best), scale)
     return Solution(values(best), slope, at_bound, residual, jacobian)
 
 
-def _over_decades(model: Model, name: str) -> bool:
+def over_decades(model: Model, name: str) -> bool:
     """Whether a parameter is searched on a logarithmic scale: positive, and zero means nothing.
 
     A strength that may vanish is searched on a linear one, so that it can reach zero.

@@ -110,13 +110,17 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
         for body in experiment.bodies:
             channel = experiment.channels[f"{body}.position"]
             for motion in motions(record, body, bandwidth=chosen, resolution=channel.resolution):
-                stretches.append(_stretch(motion, record.use, chosen, record.own))
+                stretches.append(stretch_of(motion, record.use, chosen, record.own))
     if not any(s.use == "fit" for s in stretches):
         raise ExperimentError(f"{experiment.folder.name}: fit records: no stretch of 0.6 s or more")
     return Prepared(experiment, chosen, tuple(stretches))
 
 
-def _stretch(motion: Motion, use: str, bandwidth: float, own: frozenset[str]) -> Stretch:
+def stretch_of(motion: Motion, use: str, bandwidth: float, own: frozenset[str]) -> Stretch:
+    """A motion with the rows of it that count at this bandwidth (Hz).
+
+    own: what its record has of its own
+    """
     n, rate = len(motion.time), 1.0 / motion.sample_time
     trim = min(int(TRIM * rate), n // 3)
     stride = max(1, int(rate / (OVERSAMPLING * bandwidth)))

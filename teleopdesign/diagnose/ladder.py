@@ -24,7 +24,7 @@ from .rank import (
     check_squares,
     rank_candidates,
 )
-from .reading_error import widened
+from .reading_error import with_reading_error
 from .search import estimate_from_starts
 from .support import alike, equals_of, is_better, is_supported, simplicity
 
@@ -101,12 +101,15 @@ def find_missing(
         best = min(alike(supported), key=simplicity)
         rungs.append(Rung(best.candidate, best.fit, ranking, equals_of(best, ranking, here, floor)))
         rungs = _pruned(rungs, prepared, floor)
-    generator = np.random.default_rng(seed)
-    rungs = [replace(r, fit=widened(r.fit, prepared, generator)) for r in rungs]
+    say("reading the model's own motion")
+    here, noise = rungs[-1].fit, is_adequate(rungs[-1].fit, floor)
+    read = with_reading_error(here, prepared, np.random.default_rng(seed), corrected=noise)
+    rungs[-1] = replace(rungs[-1], fit=read)
     if long:
         say("errors on the whole records")
         rungs = [replace(r, fit=_on_all(r.fit, whole)) for r in rungs]
-    return Diagnosis(experiment, whole, verdict(rungs, floor), tuple(rungs), ranking, floor)
+    said = verdict(rungs, floor)
+    return Diagnosis(experiment, whole, said, tuple(rungs), ranking, here, floor)
 
 
 def _on_all(found: Fit, whole: Prepared) -> Fit:

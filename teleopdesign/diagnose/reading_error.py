@@ -1,62 +1,164 @@
 """What reading a motion by sensors does to estimates: their spread, and their shift.
 
-Where a body sticks, friction balances, and where readings cannot tell a direction it may be
-anything up to its level. That freedom shifts estimates in one way (levels up, dampings down) by
-little, but by more than residuals tell: at the optimum they are as small as they can be. So the
-motion is read off once more by its own sensors, and the shift that this second reading brings is
-taken for the shift of the first.
+Where readings cannot tell a direction, friction may be anything up to its level, and what noise
+asks for is followed on one side only; noise in an acceleration makes an inertia look smaller. Such
+shifts are small, but larger than what residuals tell: at the optimum those are as small as they can
+be. So the model that was found is simulated where the records were made. Its parameters are known;
+its motion is read by the stated sensors and estimated from again, and by how much that misses is
+how much the first estimate did (a parametric bootstrap: Efron, Tibshirani, An Introduction to the
+Bootstrap, 1993, chapters 6 and 10).
 """
 
 from __future__ import annotations
 
+import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..blocks import Value
+from ..errors import ModelError
 from ..measurement.filtering import Array
-from .fit import Fit, weighted
-from .force_error import Prepared, referred
+from ..model import Model
+from .fit import Effort, Fit, estimate, over_decades, solve
+from .force_error import Prepared, Stretch, own_groups, stretch_of
 from .noise_floor import read_again
+from .simulated_course import as_led, dead_times, grid, simulated_course
 
-#: readings drawn anew
-DRAWS = 8
-#: part of the shift that a second reading shows: the smoothed motion that it starts from has lost
-#: what the first reading hid. Set so that intervals cover on simulated records: docs/theory.md
-SHOWN = 0.4
+#: readings of the simulated motion that are estimated from
+DRAWS = 6
+#: how far each of these is driven, and an estimate that stays where it is
+AGAIN, STAY = Effort(1e-5, 12), Effort(1.0, 1)
 
 
 @dataclass(frozen=True)
 class ReadingError:
-    """Shift and spread of the free parameters, in their standard errors."""
+    """Shift and spread (p,) of the free parameters, in `coordinates`."""
 
     shift: Array
     spread: Array
 
 
-def reading_error(found: Fit, prepared: Prepared, generator: np.random.Generator) -> ReadingError:
-    """By how much readings drawn anew move the estimates of a fit, to first order."""
-    stretches = prepared.of("fit")
-    size = np.linalg.norm(found.jacobian, axis=0)
-    size = np.where(size > 0, size, 1.0)
-    inverse = np.linalg.pinv(found.jacobian / size, rcond=1e-6)
-    moved = []
-    for _ in range(DRAWS):
-        drawn = [replace(s, motion=read_again(s, prepared, generator)) for s in stretches]
-        after = weighted(drawn, [r for r, _ in referred(found.model, drawn)])
-        moved.append(-(inverse @ (after - found.fit_residual)) / size)
-    steps = np.array(moved)
-    return ReadingError(steps.mean(axis=0), steps.std(axis=0, ddof=1))
+def _decades(model: Model, names: tuple[str, ...]) -> Array:
+    return np.array([over_decades(model, n) for n in names], dtype=bool)
 
 
-def widened(found: Fit, prepared: Prepared, generator: np.random.Generator) -> Fit:
-    """The fit with standard errors that hold the shift and spread of its readings too."""
-    if not found.free:
-        return found
-    error = reading_error(found, prepared, generator)
-    values: dict[str, Value | float] = {}
+def coordinates(model: Model, names: tuple[str, ...]) -> Array:
+    """Values (p,) of parameters, logarithms of those that are estimated over decades."""
+    values = np.array([model.parameters[n].value for n in names], dtype=float)
+    decades = _decades(model, names)
+    values[decades] = np.log(np.maximum(values[decades], 1e-300))
+    return values
+
+
+def reading_error(
+    found: Fit, prepared: Prepared, generator: np.random.Generator
+) -> ReadingError | None:
+    """By how much estimates from simulated readings miss what was simulated.
+
+    None: the model's motion cannot be simulated
+    """
+    made = _simulated(found.model, prepared)
+    if made is None:
+        return None
+    truth, stretches = made
+    true = coordinates(truth, found.free)
+
+    def missed(own: np.random.Generator) -> Array:
+        drawn = [as_read(s, prepared, own) for s in stretches]
+        again = replace(prepared, stretches=tuple(drawn))
+        solution = solve(truth, found.free, again, drawn, AGAIN)
+        by = coordinates(_with(truth, found.free, solution.values), found.free) - true
+        for i, name in enumerate(found.free):
+            if truth.declared(name).quantity == "angle":
+                by[i] = (by[i] + np.pi) % (2.0 * np.pi) - np.pi
+        return by
+
+    # kernels release the interpreter's lock, so threads share the cores
+    with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
+        steps = np.array(list(pool.map(missed, generator.spawn(DRAWS))))
+    if not np.isfinite(steps).all():
+        return None
+    return ReadingError(np.median(steps, axis=0), steps.std(axis=0, ddof=1))
+
+
+def _simulated(model: Model, prepared: Prepared) -> tuple[Model, list[Stretch]] | None:
+    """The model that was simulated, and the fit records with its exact courses in place of theirs.
+
+    Its dead times are rounded to the grid of the simulation. None: it cannot be simulated.
+    """
+    stretches = list(prepared.of("fit"))
+    for stretch in stretches:
+        place, step = stretch.motion.body, grid(stretch.motion)
+        late = {f"{place}.{n}" for n in dead_times(model.body(place))}
+        times = {n: step * round(model.parameters[n].value / step) for n in late}
+        model = model.with_values(times)
+    own = {
+        i: (o.body, m)
+        for group, o in own_groups(model, stretches)
+        for i, m in zip(group, o.motions, strict=True)
+    }
+    made = []
+    for i, stretch in enumerate(stretches):
+        body, motion = own.get(i, (model.body(stretch.motion.body), stretch.motion))
+        try:
+            course = simulated_course(body, motion)
+        except ModelError:
+            return None
+        if not np.isfinite(course.position).all():
+            return None
+        made.append(replace(stretch, motion=as_led(motion, course)))
+    return model, made
+
+
+def as_read(stretch: Stretch, prepared: Prepared, generator: np.random.Generator) -> Stretch:
+    """A stretch of exact signals as the sensors read it."""
+    motion = read_again(stretch, prepared, generator)
+    return stretch_of(motion, stretch.use, prepared.bandwidth, stretch.own)
+
+
+def _with(model: Model, names: tuple[str, ...], values: Array) -> Model:
+    new = {
+        n: replace(model.parameters[n], value=float(v)) for n, v in zip(names, values, strict=True)
+    }
+    return model.with_values(new)
+
+
+def _less(found: Fit, shift: Array) -> Model:
+    """The model of a fit with the shift taken off its estimates; what is at a bound stays there."""
+    model = found.model
+    there = coordinates(model, found.free) - shift
+    decades = _decades(model, found.free)
+    there[decades] = np.exp(there[decades])
     for i, name in enumerate(found.free):
-        value = found.model.parameters[name]
-        more = found.scale[i] * np.hypot(error.spread[i], error.shift[i] / SHOWN)
-        values[name] = replace(value, stderr=float(np.hypot(value.stderr, more)))
-    return replace(found, model=found.model.with_values(values))
+        declared = model.declared(name)
+        kept = name in found.at_bound or not declared.lower <= there[i] <= declared.upper
+        there[i] = model.parameters[name].value if kept else there[i]
+    return _with(model, found.free, there)
+
+
+def with_reading_error(
+    found: Fit, prepared: Prepared, generator: np.random.Generator, *, corrected: bool
+) -> Fit:
+    """The fit with standard errors that hold what its readings do.
+
+    corrected: the shift is taken off the estimates, else it widens their errors: a model that
+    leaves more than noise is not the one whose readings would be simulated
+    """
+    error = reading_error(found, prepared, generator) if found.free else None
+    if error is None:
+        return found
+    more = error.spread if corrected else np.hypot(error.spread, error.shift)
+    values = np.array([found.model.parameters[n].value for n in found.free])
+    more = more * np.where(_decades(found.model, found.free), values, 1.0)
+    errors = {
+        n: float(np.hypot(found.model.parameters[n].stderr, e))
+        for n, e in zip(found.free, more, strict=True)
+    }
+    if corrected:
+        found = estimate(_less(found, error.shift), prepared, effort=STAY)
+    own = found.model.parameters
+    return replace(
+        found,
+        model=found.model.with_values({n: replace(own[n], stderr=e) for n, e in errors.items()}),
+    )

@@ -1,8 +1,10 @@
 """Friction that balances where the position tells no motion.
 
-Between its bounds friction takes the value that leaves least within the bandwidth: projected steps
-on the low-passed difference to what is needed. Clipping what is needed itself would turn its noise
-above the bandwidth into a bias below it. Values and tangents go through together.
+Between its bounds friction takes the value that leaves least within the bandwidth: accelerated
+projected steps (Beck, Teboulle, SIAM J. Imaging Sciences 2, 2009) on the low-passed difference to
+what is needed. Clipping what is needed itself would turn its noise above the bandwidth into a bias
+below it, and few plain steps stop short of what the edge of the band asks for: next to a turn a
+right model then leaves two to four times its noise. Values and tangents go through together.
 """
 
 from __future__ import annotations
@@ -13,8 +15,9 @@ from numba import njit
 from ..measurement.filtering import Array
 from ..measurement.zero_phase import both_ways, margin, sections
 
-#: projected steps; the error moves by under 5 % after these
-STEPS = 4
+#: projected steps: on 109 simulated records of right models the 95th percentile of what they leave,
+#: over what the drawn sensor errors do, is 1.12 after these, 1.11 after twice as many
+STEPS = 8
 
 
 @njit(cache=True, nogil=True)  # type: ignore[untyped-decorator,unused-ignore]
@@ -36,18 +39,27 @@ def _balance(
 ) -> Array:
     n, r = needed.shape
     friction = needed.copy()
+    _clip(friction, low, high)
+    ahead, before = friction.copy(), np.empty((n, r))
     left = np.empty((n, r))
     extended = np.empty((n + 2 * m, r))
-    _clip(friction, low, high)
+    momentum = 1.0
     for _ in range(steps):
         for k in range(n):
             for j in range(r):
-                left[k, j] = needed[k, j] - friction[k, j]
+                left[k, j] = needed[k, j] - ahead[k, j]
         both_ways(left, extended, sos, settled)
         for k in range(n):
             for j in range(r):
-                friction[k, j] += left[k, j]
+                before[k, j] = friction[k, j]
+                friction[k, j] = ahead[k, j] + left[k, j]
         _clip(friction, low, high)
+        later = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * momentum**2))
+        carried = (momentum - 1.0) / later
+        momentum = later
+        for k in range(n):
+            for j in range(r):
+                ahead[k, j] = friction[k, j] + carried * (friction[k, j] - before[k, j])
     return friction
 
 

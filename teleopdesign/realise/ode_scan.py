@@ -46,11 +46,26 @@ def _parameters(effect: Effect) -> list[sp.Symbol]:
     return [*own, INERTIA] if any(c.has(INERTIA) for c in effect.corrections().values()) else own
 
 
-def _slope(law: sp.Expr, states: Sequence[sp.Symbol], parameters: Sequence[sp.Symbol]) -> str:
-    """Code of the law's tangent in column c, from those of the states, d[j, c]."""
-    by = [(sp.diff(law, s), f"d[{j}, c]") for j, s in enumerate(states)]
-    by += [(sp.diff(law, s), f"(columns[{j}] == c)") for j, s in enumerate(parameters)]
-    return " + ".join(f"({code_of(slope)}) * {by_what}" for slope, by_what in by if slope != 0)
+def _slopes(
+    name: str, law: sp.Expr, states: Sequence[sp.Symbol], parameters: Sequence[sp.Symbol]
+) -> tuple[list[str], str, dict[int, str]]:
+    """Code of a law's tangents: slopes once for all columns, then what each column makes of them.
+
+    name: of the law in the code
+    returns: lines that compute slopes; the sum over states in column c, from theirs, d[j, c]; place
+        of a parameter -> its slope
+    """
+    lines, terms, own = [], [], {}
+    for j, symbol in enumerate((*states, *parameters)):
+        slope = sp.diff(law, symbol)
+        if slope == 0:
+            continue
+        lines.append(f"{name}_{j} = {code_of(slope)}")
+        if j < len(states):
+            terms.append(f"{name}_{j} * d[{j}, c]")
+        else:
+            own[j - len(states)] = f"{name}_{j}"
+    return lines, " + ".join(terms) or "0.0", own
 
 
 def _rate_lines(effect: Effect) -> list[str]:
@@ -59,6 +74,8 @@ def _rate_lines(effect: Effect) -> list[str]:
     parameters = _parameters(effect)
     corrections = effect.corrections()
     left, lines = UNEXPLAINED.name, []
+    each: list[str] = []
+    ends: list[str] = []
     if corrections:
         law = effect.expression()
         lines += [
@@ -66,17 +83,27 @@ def _rate_lines(effect: Effect) -> list[str]:
             f"bound = -2 if {left} < u[-2] else -1 if {left} > u[-1] else 0",
             f"{left} = {left} - u[bound] if bound else 0.0",
         ]
-    rates = [rate + corrections.get(name, sp.S(0)) for name, rate in effect.rates().items()]
-    lines += [f"f[{i}] = {code_of(rate)}" for i, rate in enumerate(rates)]
+        before, moved, law_own = _slopes("by_law", law, states, parameters)
+        lines += before
+        each.append(f"d{left} = v[-3, c] - v[bound, c] - ({moved}) if bound else 0.0")
+    for i, (name, rate) in enumerate(effect.rates().items()):
+        whole = rate + corrections.get(name, sp.S(0))
+        lines.append(f"f[{i}] = {code_of(whole)}")
+        before, moved, own = _slopes(f"by_{i}", whole, states, parameters)
+        lines += before
+        by_left = sp.diff(whole, UNEXPLAINED)
+        ends += [f"if columns[{j}] >= 0:\n    g[{i}, columns[{j}]] += {k}" for j, k in own.items()]
+        if by_left != 0:
+            lines.append(f"by_{i}_left = {code_of(by_left)}")
+            moved += f" + by_{i}_left * d{left}"
+            ends += [
+                f"if bound and columns[{j}] >= 0:\n    g[{i}, columns[{j}]] -= by_{i}_left * {k}"
+                for j, k in law_own.items()
+            ]
+        each.append(f"g[{i}, c] = {moved}")
     lines.append("for c in range(d.shape[1]):")
-    if corrections:
-        moved = _slope(law, states, parameters)
-        lines.append(f"    d{left} = v[-3, c] - v[bound, c] - ({moved}) if bound else 0.0")
-    for i, rate in enumerate(rates):
-        lines.append(f"    g[{i}, c] = {_slope(rate, states, parameters) or 0.0}")
-        if rate.has(UNEXPLAINED):
-            lines.append(f"    g[{i}, c] += ({code_of(sp.diff(rate, UNEXPLAINED))}) * d{left}")
-    return lines
+    lines += [f"    {line}" for line in each]
+    return [*lines, *(line for end in ends for line in end.split("\n"))]
 
 
 @lru_cache(maxsize=32)

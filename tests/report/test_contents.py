@@ -125,7 +125,7 @@ def test_estimates_that_move_together_are_named_as_a_pair(diagnosis):
 
 def test_look_alikes_come_with_the_reason(diagnosis):
     rung = diagnosis.rungs[1]
-    same = replace(rung.ranking.ranked[1], fit=rung.fit)
+    same = replace(rung.ranking.ranked[1], fit=rung.ranking.ranked[0].fit)
     ranking = replace(rung.ranking, ranked=(rung.ranking.ranked[0], same))
     alike = replace(rung, ranking=ranking, equals=(same.candidate,))
     found = cannot_tell(replace(diagnosis, rungs=(diagnosis.rungs[0], alike)))[0]

@@ -67,7 +67,7 @@ def _of_rung(diagnosis: Diagnosis, rung: Rung, question: int) -> list[Rival]:
         (r for r in ranked if r.candidate.key in equals or _is_open(r, rung, diagnosis)),
         key=lambda r: (r.candidate.key not in equals, r.fit.check_error),
     )
-    found = [Rival(rung.added, diagnosis.after, question)]
+    found = [Rival(rung.added, diagnosis.estimated, question)]
     for other in close[: MOST - 1]:
         fit = _instead(diagnosis, rung.added, other)
         if fit is not None:
@@ -89,7 +89,7 @@ def _instead(diagnosis: Diagnosis, added: Candidate, other: Ranked) -> Fit | Non
     effect, at = other.candidate.effect, other.candidate.at
     names = effect.parameters
     values = {n: other.fit.model.parameters[f"{at}.{effect.name}.{n}"].value for n in names}
-    model = diagnosis.model
+    model = diagnosis.estimated.model
     if model.body(at).has(effect.name):
         return None  # a later rung has added it beside
     try:

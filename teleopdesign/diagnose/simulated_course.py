@@ -1,0 +1,113 @@
+"""The motion that a model makes where a record was made: a record whose truth is known.
+
+The recorded command and interaction force act on the body, and a weak spring and damper lead it
+along the recorded motion, as a controller would: their force is part of the command that is kept.
+So the body sticks, breaks away and turns as the model has it, about where the device did.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..blocks import Body
+from ..controllers import controller
+from ..diagrams import Control, Diagram, Junction, Moving
+from ..effects import delayed
+from ..measurement.filtering import Array
+from ..measurement.motion import Motion
+from ..realise.kernel import FASTEST, fastest_rate
+from ..realise.simulated import without_absent
+from ..simulate import Sampling, prepare
+
+#: give of an ideal friction, in encoder steps: too small to be read
+GIVE = 0.3
+#: natural frequency of the leading spring over the comparison's bandwidth
+LEADS = 0.04
+#: inner steps a sample at least and, where something oscillates fast, at most
+STEPS, MOST_STEPS = 20, 400
+
+
+@dataclass(frozen=True)
+class Course:
+    """Position and command (n,) of a body as they truly were."""
+
+    position: Array
+    command: Array
+
+
+def grid(motion: Motion) -> float:
+    """Longest step (s) in which a body is simulated along a record: dead times are multiples."""
+    return motion.sample_time / STEPS
+
+
+def simulated_course(body: Body, motion: Motion) -> Course:
+    """The course that this body takes under a record's forces, led along its motion.
+
+    raises ModelError: the body cannot be simulated, a dead time is no multiple of `grid`
+    """
+    step, body = grid(motion), without_absent(body)
+    frequency = 2.0 * np.pi * LEADS * motion.bandwidth
+    inertia = body.parameters["inertia"].value
+    stiffness, damping = inertia * frequency**2, 2.0 * inertia * frequency
+    time = motion.time - motion.time[0]
+    led = motion.command + stiffness * motion.position + damping * motion.velocity
+    start = {"X": float(motion.position[0]), "X_velocity": float(motion.velocity[0])}
+    if any(e.role == "structure" for e in body.effects):
+        start |= {"X_tip": start["X"], "X_tip_velocity": start["X_velocity"]}
+    prepared = prepare(
+        _wired(body, stiffness, damping),
+        duration=float(time[-1]),
+        inputs={
+            "F_led": lambda t: np.interp(t, time, led),
+            "F": lambda t: np.interp(t, time, motion.interaction),
+        },
+        initial=start,
+        computer=Sampling(period=motion.sample_time),
+        step=step,
+        give=GIVE * motion.step,
+    )
+    rate, _ = fastest_rate(prepared.program, prepared.diagram.values)
+    finer = int(np.ceil(rate * step / FASTEST))
+    # what a bristle's reload asks for is far below what sensors see
+    rows, _ = prepared.run(prepared.timing(STEPS * min(max(finer, 1), MOST_STEPS // STEPS)))
+    columns = list(prepared.program.layout.columns)
+    n = len(time)
+    return Course(rows[:n, columns.index("X")], rows[:n, columns.index("U")])
+
+
+def _wired(body: Body, stiffness: float, damping: float) -> Diagram:
+    """The body on X with its command U = F_led - (stiffness + damping s) X."""
+    leads = controller("spring_damper", {"stiffness": stiffness, "damping": damping})
+    return Diagram(
+        "led body",
+        (
+            Moving("Z", body, "X", "U", {"F": 1}, "F"),
+            Control("led", leads, "X", "F_X", "X"),
+        ),
+        (Junction("U", {"F_led": 1, "F_X": -1}),),
+        {"F_led": "force", "F": "force"},
+        ("X",),
+    )
+
+
+def dead_times(body: Body) -> tuple[str, ...]:
+    """Names of the body's parameters that are dead times, such as "actuation_delay.delay"."""
+    symbols, found = body.symbols(), []
+    for effect in body.effects:
+        late = {call.args[1] for call in effect.expression().atoms(delayed)}
+        found += [
+            n for n in (f"{effect.name}.{p}" for p in effect.parameters) if symbols[n] in late
+        ]
+    return tuple(found)
+
+
+def as_led(motion: Motion, course: Course) -> Motion:
+    """The motion with the position and command of a course, from time 0; rates left as they are."""
+    return replace(
+        motion,
+        time=motion.time - motion.time[0],
+        position=course.position,
+        command=course.command,
+    )
