@@ -142,6 +142,10 @@ class _Builder:
         self.friction: dict[str, sp.Expr] = {}
         self.acting: dict[sp.Symbol, sp.Expr] = {}
 
+    def _sensors(self) -> set[str]:
+        """Signals that the computer has from a sensor; those from outside it knows anyway."""
+        return set(self.diagram.measured) - set(self.diagram.outside)
+
     def _electronic(self) -> set[str]:
         """Outputs of analog controllers and of the junctions before and behind them."""
         made = {j.output: j for j in self.diagram.junctions}
@@ -156,7 +160,7 @@ class _Builder:
     def _computers_signals(self) -> tuple[set[str], tuple[str, ...]]:
         """Signals between sensors and commands, and the outside signals among them."""
         made = {s: p for p in self.diagram.parts for s in p.outputs}
-        sensors, electronic = set(self.diagram.measured), self._electronic()
+        sensors, electronic = self._sensors(), self._electronic()
         todo = [b.command for b in self.moving]
         found: set[str] = set()
         seen: set[str] = set()
@@ -352,7 +356,7 @@ class _Builder:
         return (rows, rates, steps, before), names
 
     def _computer(self) -> Computer:
-        sensors = set(self.diagram.measured)
+        sensors = self._sensors()
 
         def of(name: str) -> sp.Symbol:
             return measured(name) if name in sensors else signal(name)

@@ -245,6 +245,17 @@ def test_feedback_needs_its_measured_signal(hybrid):
         simulate(blind, duration=0.01)
 
 
+def test_an_outside_signal_may_be_named_among_those_measured(hybrid):
+    from dataclasses import replace
+
+    def run(diagram):
+        desired = 0.01 * np.sin(np.arange(51) / 5.0)
+        return simulate(diagram, duration=0.05, inputs={"L_D": desired})["L"].values
+
+    named = replace(hybrid, measured=(*hybrid.measured, "L_D"))
+    assert np.array_equal(run(named), run(hybrid)) and np.ptp(run(named)) > 0
+
+
 def test_dahl_cancellation_is_sampled_exactly_in_a_closed_loop():
     """The sampled bristle stays within its level also when positions jump by encoder steps."""
     dahl = controller("dahl", {"level": 0.4, "stiffness": 2e4})
