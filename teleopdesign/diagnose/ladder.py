@@ -84,6 +84,8 @@ def find_missing(
         if len(rungs) > MOST:
             break
         if not supported:
+            if _is_a_tone(here, tone, floor):
+                break
             # beside effects that are accepted already a pair costs more time than it is worth
             pair = _pair(rungs[0], ranking, prepared, floor, stated, saying) if step == 1 else []
             rungs += pair
@@ -110,6 +112,13 @@ def find_missing(
         rungs = [replace(r, fit=_on_all(r.fit, whole)) for r in rungs]
     said = verdict(rungs, floor)
     return Diagnosis(experiment, whole, said, tuple(rungs), ranking, here, floor)
+
+
+def _is_a_tone(found: Fit, tone: float, floor: NoiseFloor) -> bool:
+    """Whether a plain tone, which leaves so many check squares, explains all but noise."""
+    squares = check_squares(found)
+    left = found.check_error * float(np.sqrt(tone / squares)) if squares > 0.0 else 0.0
+    return is_adequate(replace(found, check_error=left), floor)
 
 
 def _on_all(found: Fit, whole: Prepared) -> Fit:

@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
+from teleopdesign.diagnose import ladder
 from teleopdesign.diagnose.fit import estimate, weighted
 from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.diagnose.ladder import _is_a_tone
+from teleopdesign.diagnose.noise_floor import NoiseFloor
 from teleopdesign.diagnose.outside_tone import _taken, acts_by_the_clock, tone_left
-from teleopdesign.diagnose.rank import check_squares
+from teleopdesign.diagnose.rank import Ranking, check_squares
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
 
@@ -95,3 +98,23 @@ def test_an_effect_that_acts_by_the_clock_may_be_the_tone_itself():
     assert acts_by_the_clock(EFFECTS["friction_drift"])
     assert not acts_by_the_clock(EFFECTS["transmission_compliance"])
     assert not acts_by_the_clock(EFFECTS["torque_ripple"])
+
+
+def test_no_pair_is_sought_where_a_tone_leaves_only_noise(rod, monkeypatch):
+    prepared, found = rod
+    floor = NoiseFloor(0.01, "stated")
+    squares = check_squares(found) * (floor.value / found.check_error) ** 2
+    assert _is_a_tone(found, 1.5**2 * squares, floor)
+    assert not _is_a_tone(found, 2.5**2 * squares, floor)
+    assert not _is_a_tone(found, float("inf"), floor)
+
+    def searched(*_, **__):
+        raise AssertionError("a pair was sought")
+
+    monkeypatch.setattr(ladder, "rank_candidates", lambda base, *_, **__: Ranking(base, ()))
+    monkeypatch.setattr(ladder, "_pair", searched)
+    with pytest.raises(AssertionError, match="sought"):
+        ladder.find_missing(prepared.experiment)
+    monkeypatch.setattr(ladder, "tone_left", lambda *_: squares)
+    diagnosis = ladder.find_missing(prepared.experiment)
+    assert diagnosis.verdict == "undecided" and diagnosis.missing == ()
