@@ -186,11 +186,15 @@ class Body:
         return {s: self.parameters[n].value for n, s in self.symbols().items()}
 
     def level(self) -> sp.Expr:
-        """Friction level: laws added, factors multiplied, at the speed that the level follows."""
-        added = (e.expression() for e in ordered(self.effects, "friction_level"))
-        level = sum(added, sp.S(0))
-        for effect in ordered(self.effects, "friction_factor"):
-            level *= effect.expression()
+        """Friction level: laws added, each times its factors, at the speed that the level follows.
+
+        A factor scales the levels that it needs ("coulomb"), all of them where it needs none.
+        """
+        factors = ordered(self.effects, "friction_factor")
+        level = sp.S(0)
+        for effect in ordered(self.effects, "friction_level"):
+            own = [f.expression() for f in factors if not f.needs or effect.name in f.needs]
+            level += effect.expression() * sp.Mul(*own)
         for effect in ordered(self.effects, "friction_speed"):
             level = level.subs(SIGNALS["velocity"], effect.expression())
         return level

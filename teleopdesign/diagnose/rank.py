@@ -128,7 +128,13 @@ def _refined(
     if not present or fit_squares(rough) > leading:
         return tried
     if stated is not None:
-        again = estimate(at_stated(rough.model, stated), prepared, effort=ROUGH)
+        model = at_stated(rough.model, stated)
+        # an effect stated without values was led astray by what is missing: it starts anew as well
+        again = (
+            estimate_from_starts(model, prepared)
+            if model.absent
+            else estimate(model, prepared, effort=ROUGH)
+        )
         if fit_squares(again) < fit_squares(rough):
             rough = again
     return candidate, estimate(rough.model, prepared)

@@ -21,8 +21,6 @@ from ..realise.kernel import FASTEST, fastest_rate
 from ..realise.simulated import without_absent
 from ..simulate import Sampling, prepare
 
-#: give of an ideal friction, in encoder steps: too small to be read
-GIVE = 0.3
 #: natural frequency of the leading spring over the comparison's bandwidth
 LEADS = 0.04
 #: inner steps a sample at least and, where something oscillates fast, at most
@@ -42,9 +40,10 @@ def grid(motion: Motion) -> float:
     return motion.sample_time / STEPS
 
 
-def simulated_course(body: Body, motion: Motion) -> Course:
+def simulated_course(body: Body, motion: Motion, *, give: float) -> Course:
     """The course that this body takes under a record's forces, led along its motion.
 
+    give: of an ideal friction, in steps of the position's reading
     raises ModelError: the body cannot be simulated, a dead time is no multiple of `grid`
     """
     step, body = grid(motion), without_absent(body)
@@ -66,7 +65,7 @@ def simulated_course(body: Body, motion: Motion) -> Course:
         initial=start,
         computer=Sampling(period=motion.sample_time),
         step=step,
-        give=GIVE * motion.step,
+        give=give * motion.step,
     )
     rate, _ = fastest_rate(prepared.program, prepared.diagram.values)
     finer = int(np.ceil(rate * step / FASTEST))

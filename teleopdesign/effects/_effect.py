@@ -5,8 +5,9 @@ A body is a chain of roles:
     command -> actuation -> acting force
     inertia * a = acting force + interaction force - force - friction
     friction    = friction_shape (sgn v unless one is given) of the friction level
-    level       = sum of the friction_level laws, times all friction_factor laws;
-                  where a friction_speed law is there, at that speed instead of the body's own
+    level       = sum of the friction_level laws, each times the friction_factor laws that need
+                  it (a factor that needs no effect scales all); where a friction_speed law is
+                  there, at that speed instead of the body's own
     contact     = sum of the contact laws where the environment is touched, and no pull: among the
                   forces; a contact_shape law takes the place of the penetration in them
 
@@ -128,10 +129,10 @@ class Effect:
 
     law(now, p) returns the force it adds (role force; role structure: the same, the interaction
     force with it, for that acts on a tip of its own), its share of the friction level
-    (friction_level), a factor of that level (friction_factor), the speed that the level follows
-    (friction_speed), the friction force (friction_shape), the stage's output (actuation), a share
-    of the force that a modelled environment takes (contact), or the penetration that its spring
-    feels (contact_shape).
+    (friction_level), a factor of the levels it needs (friction_factor), the speed that the level
+    follows (friction_speed), the friction force (friction_shape), the stage's output (actuation), a
+    share of the force that a modelled environment takes (contact), or the penetration that its
+    spring feels (contact_shape).
     linear: declares that the law is linear in the motion (or in the command), so that the LTI form
     is that law at (position, velocity, acceleration) = (1, s, s^2); False: the LTI form leaves the
     effect out, and says so. It is never found by differentiating sgn.

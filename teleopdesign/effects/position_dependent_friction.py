@@ -3,7 +3,8 @@
     level = F_C (1 + e sin(2 pi x / p + phi))
 
 Bent rails, eccentric gears, uneven preload; with a period beyond the travel, a slope. It turns
-round with the direction, which tells it from `cogging` and `spring`.
+round with the direction, which tells it from `cogging` and `spring`. What other effects add to the
+level stays as it is.
 """
 
 from sympy import pi, sin

@@ -30,7 +30,7 @@ def rod():
 def test_the_simulated_body_goes_about_where_the_device_did(rod):
     found, prepared = rod
     motion = prepared.of("fit")[0].motion
-    course = simulated_course(found.model.body("device"), motion)
+    course = simulated_course(found.model.body("device"), motion, give=0.1)
     assert np.std(course.position - motion.position) < 0.02 * np.std(motion.position)
     # what leads it is a small part of the command
     led = motion.lowpassed(motion.at_rows(course.command - motion.command))
@@ -47,7 +47,7 @@ def test_bodies_with_hidden_states_start_with_the_record(rod, effect):
         "actuator_lag": {"time_constant": 0.004},
     }[effect]
     model = found.model.with_effect(effect, values=values)
-    course = simulated_course(model.body("device"), motion)
+    course = simulated_course(model.body("device"), motion, give=0.1)
     # a tip that began elsewhere would fling the body off
     assert np.max(np.abs(course.position - motion.position)) < 0.2 * np.ptp(motion.position)
 
@@ -60,7 +60,7 @@ def test_a_dead_time_must_lie_on_the_grid(rod):
     )
     assert dead_times(body) == ("actuation_delay.delay",)
     with pytest.raises(ModelError, match="no whole number of steps"):
-        simulated_course(body, motion)
+        simulated_course(body, motion, give=0.1)
     late = found.model.with_effect("actuation_delay", values={"delay": 1.4 * grid(motion)})
     assert reading_error(estimate(late, prepared), prepared, np.random.default_rng(1)) is not None
 
@@ -87,7 +87,10 @@ def test_a_second_simulation_predicts_by_how_much_estimates_miss(rod):
     found, prepared = rod
     fit = prepared.of("fit")[0]
     exact = replace(
-        fit, motion=as_led(fit.motion, simulated_course(found.model.body("device"), fit.motion))
+        fit,
+        motion=as_led(
+            fit.motion, simulated_course(found.model.body("device"), fit.motion, give=0.1)
+        ),
     )
     names = ["device.inertia", "device.stribeck.extra_static_level"]
     misses, left = [], []
@@ -129,7 +132,7 @@ def test_a_correction_is_the_same_each_time_and_costs_next_to_no_fit(rod):
 def test_what_cannot_be_simulated_is_left_as_it_is(rod, monkeypatch):
     found, prepared = rod
 
-    def refused(*_):
+    def refused(*_, **__):
         raise ModelError("no equations")
 
     monkeypatch.setattr("teleopdesign.diagnose.reading_error.simulated_course", refused)
@@ -142,7 +145,7 @@ def test_a_right_model_leaves_only_its_sensors_errors_at_turns(rod):
     found, prepared = rod
     fit = prepared.of("fit")[0]
     body = found.model.body("device")
-    course = simulated_course(body, fit.motion)
+    course = simulated_course(body, fit.motion, give=0.1)
     read = as_read(
         replace(fit, motion=as_led(fit.motion, course)), prepared, np.random.default_rng(3)
     )

@@ -206,6 +206,24 @@ def test_the_work_done_against_it_never_falls_below_zero(name, data, seed):
         assert np.all(force * motion.velocity >= 0.0), "opposes the motion at every sample"
 
 
+# composition
+
+
+@pytest.mark.parametrize("factor", ["friction_drift", "position_dependent_friction"])
+def test_a_factor_scales_the_coulomb_level_and_not_what_others_add(factor):
+    plain, whole = body_of("coulomb", "stribeck"), body_of("coulomb", "stribeck", factor)
+    own = EFFECTS[factor].expression()
+    coulomb = EFFECTS["coulomb"].expression()
+    assert sp.simplify(whole.level() - plain.level() - coulomb * (own - 1)) == 0
+
+
+def test_a_users_factor_that_needs_no_effect_scales_the_whole_level():
+    scaled = replace(EFFECTS["friction_drift"], needs=frozenset())
+    whole = body_of("coulomb", "stribeck").with_effect(scaled)
+    plain = body_of("coulomb", "stribeck").level()
+    assert sp.simplify(whole.level() - plain * scaled.expression()) == 0
+
+
 # absence
 
 

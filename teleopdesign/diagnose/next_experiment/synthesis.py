@@ -22,10 +22,11 @@ from ...model import Model
 from ...realise.along_motion import residual_along
 from ...realise.simulated import with_give, without_absent
 from ..sensors import Sensor
-from ..simulated_course import GIVE
 from .following import Servo, followed, ramped
 from .limits import Course
 
+#: give of an ideal friction, in encoder steps: too small to be read
+GIVE = 0.3
 #: speed over the largest below which a body counts as at rest: far below one step a sample
 AT_REST = 1e-5
 #: corrections of the command, and the part of the force that may be left by the last
