@@ -104,8 +104,10 @@ def find_missing(
         rungs.append(Rung(best.candidate, best.fit, ranking, equals_of(best, ranking, here, floor)))
         rungs = _pruned(rungs, prepared, floor)
     say("reading the model's own motion")
-    here, noise = rungs[-1].fit, is_adequate(rungs[-1].fit, floor)
-    read = with_reading_error(here, prepared, np.random.default_rng(seed), corrected=noise)
+    here, generator = rungs[-1].fit, np.random.default_rng(seed)
+    read = with_reading_error(
+        here, prepared, generator, adequate=lambda fit: is_adequate(fit, floor)
+    )
     rungs[-1] = replace(rungs[-1], fit=read)
     if long:
         say("errors on the whole records")

@@ -12,6 +12,7 @@ Bootstrap, 1993, chapters 6 and 10).
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
@@ -31,6 +32,9 @@ from .simulated_course import as_led, dead_times, grid, simulated_course
 GIVES = (0.3, 0.1, 0.03)
 #: readings of each simulated motion that are estimated from
 DRAWS = 2
+#: shift, over the estimate (in decades' logarithms and angles: as it is), from which nothing is
+#: corrected: what reading moves so far is not known well enough
+LARGEST = 0.5
 #: how far each of these is driven, and an estimate that stays where it is
 AGAIN, STAY = Effort(1e-5, 12), Effort(1.0, 1)
 
@@ -131,41 +135,55 @@ def _with(model: Model, names: tuple[str, ...], values: Array) -> Model:
     return model.with_values(new)
 
 
-def _less(found: Fit, shift: Array) -> Model:
-    """The model of a fit with the shift taken off its estimates; what is at a bound stays there."""
-    model = found.model
+def _taken_off(found: Fit, shift: Array) -> tuple[Model, Array]:
+    """The model of a fit with the shift taken off its estimates, and which of them moved.
+
+    What is at a bound stays there, and what the shift would lead to another magnitude.
+    """
+    model, moved = found.model, np.zeros(len(found.free), dtype=bool)
     there = coordinates(model, found.free) - shift
     decades = _decades(model, found.free)
-    there[decades] = np.exp(there[decades])
+    there[decades] = np.exp(np.minimum(there[decades], 700.0))
     for i, name in enumerate(found.free):
         declared = model.declared(name)
-        kept = name in found.at_bound or not declared.lower <= there[i] <= declared.upper
-        there[i] = model.parameters[name].value if kept else there[i]
-    return _with(model, found.free, there)
+        small = abs(shift[i]) < (LARGEST if decades[i] else LARGEST * model.from_absence(name))
+        if declared.quantity == "angle":
+            small = abs(shift[i]) < LARGEST
+        inside = declared.lower <= there[i] <= declared.upper
+        moved[i] = small and inside and name not in found.at_bound
+        if not moved[i]:
+            there[i] = model.parameters[name].value
+    return _with(model, found.free, there), moved
 
 
 def with_reading_error(
-    found: Fit, prepared: Prepared, generator: np.random.Generator, *, corrected: bool
+    found: Fit,
+    prepared: Prepared,
+    generator: np.random.Generator,
+    *,
+    adequate: Callable[[Fit], bool],
 ) -> Fit:
-    """The fit with standard errors that hold what its readings do.
+    """The fit with standard errors that hold what its readings do, and the shift taken off it.
 
-    corrected: the shift is taken off the estimates, else it widens their errors: a model that
-    leaves more than noise is not the one whose readings would be simulated
+    adequate: whether a fit leaves only noise. One that leaves more is not the model whose readings
+        would be simulated: there, as where a corrected fit would leave more, and for estimates that
+        would move to another magnitude, the shift widens the errors instead
     """
     error = reading_error(found, prepared, generator) if found.free else None
     if error is None:
         return found
-    more = error.spread if corrected else np.hypot(error.spread, error.shift)
+    better, moved = found, np.zeros(len(found.free), dtype=bool)
+    if adequate(found):
+        model, taken = _taken_off(found, error.shift)
+        tried = estimate(model, prepared, effort=STAY)
+        if adequate(tried):
+            better, moved = tried, taken
+    more = np.hypot(error.spread, np.where(moved, 0.0, error.shift))
     values = np.array([found.model.parameters[n].value for n in found.free])
     more = more * np.where(_decades(found.model, found.free), values, 1.0)
-    errors = {
-        n: float(np.hypot(found.model.parameters[n].stderr, e))
+    own, errors = better.model.parameters, found.model.parameters
+    wide = {
+        n: replace(own[n], stderr=float(np.hypot(errors[n].stderr, e)))
         for n, e in zip(found.free, more, strict=True)
     }
-    if corrected:
-        found = estimate(_less(found, error.shift), prepared, effort=STAY)
-    own = found.model.parameters
-    return replace(
-        found,
-        model=found.model.with_values({n: replace(own[n], stderr=e) for n, e in errors.items()}),
-    )
+    return replace(better, model=better.model.with_values(wide))

@@ -28,7 +28,7 @@ EFFECT = Effect(
         "stiffness": Parameter(
             "stiffness",
             "sigma: bristle stiffness before sliding",
-            starts=(3.0, 10.0, 30.0, 100.0, 300.0),
+            starts=(3.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4),
         ),
         "bristle_damping": Parameter(
             "damping", "sigma_1: damping of the bristle", starts=(0.1,), optional=True

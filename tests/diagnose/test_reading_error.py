@@ -9,11 +9,24 @@ import teleopdesign as td
 from teleopdesign.blocks import Body
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.force_error import prepare
-from teleopdesign.diagnose.reading_error import as_read, reading_error, with_reading_error
+from teleopdesign.diagnose.reading_error import (
+    ReadingError,
+    as_read,
+    reading_error,
+    with_reading_error,
+)
 from teleopdesign.diagnose.simulated_course import as_led, dead_times, grid, simulated_course
 from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ModelError
 from teleopdesign.realise.along_motion import residual_along
+
+
+def always(_):
+    return True
+
+
+def never(_):
+    return False
 
 
 @pytest.fixture(scope="module")
@@ -98,7 +111,7 @@ def test_a_second_simulation_predicts_by_how_much_estimates_miss(rod):
         read = as_read(exact, prepared, np.random.default_rng(seed))
         known = replace(prepared, stretches=(read,))
         again = estimate(found.model, known)
-        better = with_reading_error(again, known, np.random.default_rng(50), corrected=True)
+        better = with_reading_error(again, known, np.random.default_rng(50), adequate=always)
         for kept, fitted in ((misses, again), (left, better)):
             kept.append(
                 [
@@ -111,7 +124,7 @@ def test_a_second_simulation_predicts_by_how_much_estimates_miss(rod):
 
 def test_a_model_that_leaves_more_keeps_its_values_with_wider_errors(rod):
     found, prepared = rod
-    wide = with_reading_error(found, prepared, np.random.default_rng(1), corrected=False)
+    wide = with_reading_error(found, prepared, np.random.default_rng(1), adequate=never)
     for name in found.free:
         before, after = found.model.parameters[name], wide.model.parameters[name]
         assert after.value == before.value
@@ -121,12 +134,29 @@ def test_a_model_that_leaves_more_keeps_its_values_with_wider_errors(rod):
 def test_a_correction_is_the_same_each_time_and_costs_next_to_no_fit(rod):
     found, prepared = rod
     first, second = (
-        with_reading_error(found, prepared, np.random.default_rng(1), corrected=True)
+        with_reading_error(found, prepared, np.random.default_rng(1), adequate=always)
         for _ in range(2)
     )
     assert first.model.parameters == second.model.parameters
     assert first.model.parameters != found.model.parameters
     assert first.check_error == pytest.approx(found.check_error, rel=0.02)
+
+
+def test_what_reading_moves_to_another_magnitude_is_not_corrected(rod, monkeypatch):
+    found, prepared = rod
+    far = np.where(np.arange(len(found.free)) == 0, 5.0, 0.01)  # the inertia, on a log scale
+    error = ReadingError(shift=far, spread=0.001 * np.ones(len(found.free)))
+    monkeypatch.setattr("teleopdesign.diagnose.reading_error.reading_error", lambda *_: error)
+    after = with_reading_error(found, prepared, np.random.default_rng(1), adequate=always)
+    inertia, level = (found.model.parameters[n] for n in found.free[:2])
+    assert after.model.parameters["device.inertia"].value == inertia.value
+    assert after.model.parameters["device.inertia"].stderr > 4.0 * inertia.value
+    assert after.model.parameters["device.coulomb.level"].value == pytest.approx(level.value - 0.01)
+    # and nothing where the corrected model would leave more than noise
+    refused = with_reading_error(
+        found, prepared, np.random.default_rng(1), adequate=lambda fit: fit is found
+    )
+    assert refused.model.parameters["device.coulomb.level"].value == level.value
 
 
 def test_what_cannot_be_simulated_is_left_as_it_is(rod, monkeypatch):
@@ -136,7 +166,7 @@ def test_what_cannot_be_simulated_is_left_as_it_is(rod, monkeypatch):
         raise ModelError("no equations")
 
     monkeypatch.setattr("teleopdesign.diagnose.reading_error.simulated_course", refused)
-    same = with_reading_error(found, prepared, np.random.default_rng(1), corrected=True)
+    same = with_reading_error(found, prepared, np.random.default_rng(1), adequate=always)
     assert same is found
 
 
