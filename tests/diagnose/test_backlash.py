@@ -7,11 +7,8 @@ import pytest
 from diagnose.own_cases import truth_of, write_own
 
 from teleopdesign import Model, find_missing, load_experiment
-from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.force_error import force_error, prepare, residuals
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.rank import is_told
-from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
 from teleopdesign.realise import ode_scan
 
@@ -117,12 +114,12 @@ def test_a_gap_is_found_with_its_width(case):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("effect", ["transmission_compliance", "spring", None])
-def test_no_gap_is_told_where_there_is_none(effect, tmp_path):
-    folder = write_own(tmp_path / "case", effect, seed=5)
-    experiment = load_experiment(folder)
-    prepared, stated = prepare(experiment), Model.from_experiment(experiment)
-    base = estimate_from_starts(stated, prepared)
-    added = base.model.with_effect(BACKLASH, at="device")
-    found = estimate_from_starts(added, prepared, base, stated)
-    if ("backlash", "device") not in found.model.absent:
-        assert not is_told(estimate(found.model, prepared), base)
+def test_no_gap_is_named_where_there_is_none(effect, tmp_path):
+    """Beside noise a gap may look determined; what counts is that no record supports it."""
+    experiment = load_experiment(write_own(tmp_path / "case", effect, seed=5))
+    stated = Model.from_experiment(experiment)
+    known = {n: EFFECTS[n] for n in ("backlash", "transmission_compliance", "spring")}
+    known |= {n: EFFECTS[n] for n, _ in stated.effects}
+    found = find_missing(experiment, Model.from_experiment(experiment, known))
+    assert [c.effect.name for c in found.missing] == [effect] * (effect is not None)
+    assert not any("backlash" in (c.effect.name for c in group) for group in found.groups)
