@@ -17,7 +17,7 @@ from ..quantity import unit_of
 from ..realise.along_motion import residual_along
 from .diagnosis import Diagnosis
 from .fit import Fit
-from .force_error import own_groups
+from .force_error import along_own, own_groups
 from .probability import CandidateEvidence, evidence_of
 
 
@@ -171,14 +171,7 @@ def _predicted(diagnosis: Diagnosis, file: str) -> list[np.ndarray]:
     columns: list[np.ndarray] = []
     stretches = [s for s in diagnosis.prepared.stretches if s.motion.file == file]
     models = (diagnosis.before.model, diagnosis.model)
-    owned = [
-        {
-            i: (own.body, motion)
-            for group, own in own_groups(model, stretches)
-            for i, motion in zip(group, own.motions, strict=True)
-        }
-        for model in models
-    ]
+    along = [along_own(model, stretches) for model in models]
     for body in diagnosis.experiment.bodies:
         interaction = record.signals.get(f"{body}.interaction_force")
         measured = record.signals[f"{body}.actuator_force"] + (
@@ -189,9 +182,8 @@ def _predicted(diagnosis: Diagnosis, file: str) -> list[np.ndarray]:
             motion = stretch.motion
             if motion.body != body:
                 continue
-            for model, own, out in zip(models, owned, (before, after), strict=True):
-                along = residual_along(*own.get(i, (model.body(body), motion)))
-                out[motion.rows] = along.residual.value
+            for own, out in zip(along, (before, after), strict=True):
+                out[motion.rows] = residual_along(*own[i]).residual.value
         columns += [measured, measured - before, measured - after, before, after]
     return columns
 

@@ -108,9 +108,14 @@ class Diagnosis:
         return ladder_text(self)
 
 
+def is_noise(check_error: float, floor: NoiseFloor) -> bool:
+    """Whether so large an error on the check records counts as noise."""
+    return check_error <= max(ADEQUATE * floor.value, TURNED * floor.turning)
+
+
 def is_adequate(found: Fit, floor: NoiseFloor) -> bool:
     """Whether what a model leaves on the check records counts as noise."""
-    return found.check_error <= max(ADEQUATE * floor.value, TURNED * floor.turning)
+    return is_noise(found.check_error, floor)
 
 
 def explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -144,7 +144,7 @@ def _held_out(
     squares = 0.0
     for seen, unseen in folds(prepared.of("fit")):
         solution = solve(fitted, free, prepared, seen, HELD_OUT)
-        model = _at(fitted, free, solution.values)
+        model = fitted.with_values(dict(zip(free, solution.values, strict=True)))
         held += unseen
         parts += [v for v, _ in referred(model, unseen)]
         squares += force_error(model, unseen) ** 2 * sum(s.measured for s in unseen)
@@ -177,7 +177,8 @@ def solve(
         return scale * np.where(decades, np.exp(np.where(decades, x, 0.0)), x)
 
     def both(x: Array) -> tuple[Array, Array]:
-        parts = referred(_at(model, free, values(x)), stretches, free)
+        there = model.with_values(dict(zip(free, values(x), strict=True)))
+        parts = referred(there, stretches, free)
         r = np.concatenate([w * v for w, (v, _) in zip(roots, parts, strict=True)])
         j = np.concatenate([w * t.T for w, (_, t) in zip(roots, parts, strict=True)])
         return r, j * np.where(decades, values(x), scale)
@@ -209,15 +210,6 @@ def over_decades(model: Model, name: str) -> bool:
     if not parameter or declared.lower < 0 or np.isfinite(declared.upper):
         return False
     return model.body(place).effect(effect).absent.get(parameter) != 0.0
-
-
-def _at(model: Model, names: Sequence[str], values: Array) -> Model:
-    return model.with_values(
-        {
-            n: replace(model.parameters[n], value=float(v))
-            for n, v in zip(names, values, strict=True)
-        }
-    )
 
 
 def standard_errors(jacobian: Array, residual: Array, blocks: NDArray[np.intp]) -> Array:

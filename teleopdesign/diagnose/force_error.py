@@ -172,13 +172,11 @@ def _with_acting(
     """Residual and acting plus interaction force, low-passed, on the rows that count; tangents."""
     found = []
     owned = own_groups(model, stretches)
-    along_own = {i: (o.body, m) for g, o in owned for i, m in zip(g, o.motions, strict=True)}
-    for number, stretch in enumerate(stretches):
+    for stretch, (body, there) in zip(stretches, _along(model, stretches, owned), strict=True):
         motion, rows = stretch.motion, stretch.keep
         located = [_located(model, name) for name in wrt]
         mine = [i for i, (place, _) in enumerate(located) if place == motion.body]
         own = [located[i][1] for i in mine]
-        body, there = along_own.get(number, (model.body(motion.body), motion))
         along = residual_along(body, there, own)
         signals = []
         for traced, offset in ((along.residual, 0.0), (along.acting, motion.interaction)):
@@ -213,6 +211,21 @@ def own_groups(model: Model, stretches: Sequence[Stretch]) -> list[tuple[list[in
         motions = [stretches[i].motion for i in group]
         names = stretches[group[0]].own
         found.append((group, own_of(model.body(place), motions, names, residual)))
+    return found
+
+
+def along_own(model: Model, stretches: Sequence[Stretch]) -> list[tuple[Body, Motion]]:
+    """Body and motion of each stretch, with what its record has of its own."""
+    return _along(model, stretches, own_groups(model, stretches))
+
+
+def _along(
+    model: Model, stretches: Sequence[Stretch], owned: Sequence[tuple[list[int], Own]]
+) -> list[tuple[Body, Motion]]:
+    found = [(model.body(s.motion.body), s.motion) for s in stretches]
+    for group, own in owned:
+        for i, motion in zip(group, own.motions, strict=True):
+            found[i] = (own.body, motion)
     return found
 
 

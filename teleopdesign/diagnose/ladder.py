@@ -12,7 +12,7 @@ from ..errors import ModelError
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .candidates import Candidate
-from .diagnosis import MOSTLY, Diagnosis, Rung, explained, is_adequate, verdict
+from .diagnosis import MOSTLY, Diagnosis, Rung, explained, is_adequate, is_noise, verdict
 from .excerpt import excerpt
 from .exchange import best_exchange, rivals_of
 from .fit import Fit, estimate, fit_squares
@@ -120,7 +120,7 @@ def _is_a_tone(found: Fit, tone: float, floor: NoiseFloor) -> bool:
     """Whether a plain tone, which leaves so many check squares, explains all but noise."""
     squares = check_squares(found)
     left = found.check_error * float(np.sqrt(tone / squares)) if squares > 0.0 else 0.0
-    return is_adequate(replace(found, check_error=left), floor)
+    return is_noise(left, floor)
 
 
 def _on_all(found: Fit, whole: Prepared) -> Fit:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Collection
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +13,7 @@ from .evidence import gain_score
 from .fit import ROUGH, Fit, estimate, fit_squares
 from .force_error import Prepared
 from .search import at_stated, estimate_from_starts
+from .threads import in_threads
 
 
 @dataclass(frozen=True)
@@ -166,11 +165,9 @@ def rank_candidates(
     if among is not None:
         wanted = {c.key for c in among}
         possible = tuple(c for c in possible if c.key in wanted)
-    # transforms and kernels release the interpreter's lock, so threads share the cores
-    with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
-        fits = list(pool.map(tried, possible))
-        leading = (1.0 + CONTENDING) * min((fit_squares(f) for _, f in fits), default=0.0)
-        fits = list(pool.map(lambda cf: _refined(cf, leading, prepared, stated), fits))
+    fits = in_threads(tried, possible)
+    leading = (1.0 + CONTENDING) * min((fit_squares(f) for _, f in fits), default=0.0)
+    fits = in_threads(lambda cf: _refined(cf, leading, prepared, stated), fits)
     told = {c.key: is_told(f, base) for c, f in fits}
     fits.sort(key=lambda cf: (not told[cf[0].key], check_squares(cf[1])))
     ranked = [

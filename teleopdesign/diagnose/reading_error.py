@@ -11,9 +11,7 @@ Bootstrap, 1993, chapters 6 and 10).
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,9 +20,10 @@ from ..errors import ModelError
 from ..measurement.filtering import Array
 from ..model import Model
 from .fit import Effort, Fit, estimate, over_decades, solve
-from .force_error import Prepared, Stretch, own_groups, stretch_of
+from .force_error import Prepared, Stretch, along_own, stretch_of
 from .noise_floor import read_again
 from .simulated_course import as_led, dead_times, grid, simulated_course
+from .threads import in_threads
 
 #: gives of an ideal friction, in encoder steps: none can be read, nor which it is, so that each has
 #: its turn (by the largest, turns look as if friction remembered; by the smallest it breaks away
@@ -77,15 +76,15 @@ def reading_error(
         drawn = [as_read(s, prepared, own) for s in stretches]
         again = replace(prepared, stretches=tuple(drawn))
         solution = solve(truth, found.free, again, drawn, AGAIN)
-        by = coordinates(_with(truth, found.free, solution.values), found.free) - true
+        there = truth.with_values(dict(zip(found.free, solution.values, strict=True)))
+        by = coordinates(there, found.free) - true
         for i, name in enumerate(found.free):
             if truth.declared(name).quantity == "angle":
                 by[i] = (by[i] + np.pi) % (2.0 * np.pi) - np.pi
         return by
 
-    # kernels release the interpreter's lock, so threads share the cores
-    with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
-        steps = np.array(list(pool.map(missed, exact * DRAWS, generator.spawn(DRAWS * len(exact)))))
+    own_noise = generator.spawn(DRAWS * len(exact))
+    steps = np.array(in_threads(missed, exact * DRAWS, own_noise))
     if not np.isfinite(steps).all():
         return None
     return ReadingError(np.median(steps, axis=0), steps.std(axis=0, ddof=1))
@@ -104,14 +103,8 @@ def _with_whole_dead_times(model: Model, prepared: Prepared) -> Model:
 def _simulated(model: Model, prepared: Prepared, give: float) -> list[Stretch] | None:
     """The fit records with the model's exact courses in place of theirs; None if it has none."""
     stretches = list(prepared.of("fit"))
-    own = {
-        i: (o.body, m)
-        for group, o in own_groups(model, stretches)
-        for i, m in zip(group, o.motions, strict=True)
-    }
     made = []
-    for i, stretch in enumerate(stretches):
-        body, motion = own.get(i, (model.body(stretch.motion.body), stretch.motion))
+    for stretch, (body, motion) in zip(stretches, along_own(model, stretches), strict=True):
         try:
             course = simulated_course(body, motion, give=give)
         except ModelError:
@@ -126,13 +119,6 @@ def as_read(stretch: Stretch, prepared: Prepared, generator: np.random.Generator
     """A stretch of exact signals as the sensors read it."""
     motion = read_again(stretch, prepared, generator)
     return stretch_of(motion, stretch.use, prepared.bandwidth, stretch.own)
-
-
-def _with(model: Model, names: tuple[str, ...], values: Array) -> Model:
-    new = {
-        n: replace(model.parameters[n], value=float(v)) for n, v in zip(names, values, strict=True)
-    }
-    return model.with_values(new)
 
 
 def _taken_off(found: Fit, shift: Array) -> tuple[Model, Array]:
@@ -153,7 +139,7 @@ def _taken_off(found: Fit, shift: Array) -> tuple[Model, Array]:
         moved[i] = small and inside and name not in found.at_bound
         if not moved[i]:
             there[i] = model.parameters[name].value
-    return _with(model, found.free, there), moved
+    return model.with_values(dict(zip(found.free, there, strict=True))), moved
 
 
 def with_reading_error(
