@@ -65,7 +65,7 @@ def estimate_from_starts(
     elif len(models) == 1:
         return estimate(model, prepared)
     if len(models) > kept + 1:
-        models = _best_stepped(models, prepared, kept)
+        models = _best_stepped(models, prepared, kept, promised=base is not None)
     rough = [estimate(m, prepared, effort=ROUGH) for m in models]
     best = min(rough, key=fit_squares)
     if rugged and base is not None and fit_squares(best) < JOLTED * fit_squares(base):
@@ -164,8 +164,14 @@ def _left(columns: Array, residual: Array) -> float:
     return float(residual @ residual - gradient @ np.linalg.solve(normal, gradient))
 
 
-def _best_stepped(models: list[Model], prepared: Prepared, kept: int) -> list[Model]:
-    """The starts that lie lowest after a few real steps, where these steps have led them."""
+def _best_stepped(
+    models: list[Model], prepared: Prepared, kept: int, *, promised: bool
+) -> list[Model]:
+    """The starts that lie lowest after a few real steps, where these steps have led them.
+
+    promised: whether the first is the one that promised most: it is kept too, for steps that begin
+        far from an optimum may lie above those that never leave the base
+    """
     stretches, found = prepared.of("fit"), []
     for i, model in enumerate(models):
         free = free_parameters(model)
@@ -173,7 +179,8 @@ def _best_stepped(models: list[Model], prepared: Prepared, kept: int) -> list[Mo
         squares = float(solution.residual @ solution.residual)
         found.append((squares, i, dict(zip(free, solution.values.tolist(), strict=True))))
     found.sort(key=lambda f: f[:2])
-    return [models[i].with_values(values) for _, i, values in found[:kept]]
+    best = found[:kept] + [f for f in found[kept:] if promised and f[1] == 0]
+    return [models[i].with_values(values) for _, i, values in best]
 
 
 def _jolted(found: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> Fit:
