@@ -19,9 +19,6 @@ if TYPE_CHECKING:
 
 #: what is left counts as noise up to this many noise floors
 ADEQUATE = 1.8
-#: ... or up to this many floors with the turns of the motion told anew: on 30 simulated records of
-#: right models their errors were 0.86 to 1.18 of these
-TURNED = 1.4
 #: what is named must explain this part of the squares above the noise floor
 MOSTLY = 0.5
 
@@ -110,7 +107,7 @@ class Diagnosis:
 
 def is_noise(check_error: float, floor: NoiseFloor) -> bool:
     """Whether so large an error on the check records counts as noise."""
-    return check_error <= max(ADEQUATE * floor.value, TURNED * floor.turning)
+    return check_error <= ADEQUATE * floor.value
 
 
 def is_adequate(found: Fit, floor: NoiseFloor) -> bool:

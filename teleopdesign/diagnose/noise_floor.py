@@ -28,20 +28,18 @@ DRAWS = 3
 class NoiseFloor:
     """The floor as a relative force error, and where its numbers come from.
 
-    turning: the floor with the turns of the motion told anew as well
     held: kept below what this model makes of sensor errors, or what it leaves would hide in them
     """
 
     value: float
     source: str
-    turning: float = 0.0
     held: bool = False
 
     def at_most(self, value: float) -> NoiseFloor:
         """The floor, held at that value where it is above."""
         if self.value <= value:
             return self
-        return replace(self, value=value, turning=min(self.turning, value), held=True)
+        return replace(self, value=value, held=True)
 
 
 def noise_floor(
@@ -51,24 +49,19 @@ def noise_floor(
     stretches = prepared.of(use) or prepared.of("fit")
     channels = prepared.experiment.channels
     stated = all(channels[f"{s.motion.body}.position"].resolution is not None for s in stretches)
-    kept, turned, before = [], [], residuals(model, stretches)
-
-    def changed(drawn: list[Stretch]) -> float:
-        pairs = zip(residuals(model, drawn), before, strict=True)
-        return error_of(drawn, [r - r0 for (r, _), (r0, _) in pairs])
-
+    errors, before = [], residuals(model, stretches)
     for _ in range(DRAWS):
-        drawn = [replace(s, motion=read_again(s, prepared, generator)) for s in stretches]
-        turned.append(changed(drawn))
-        pairs = zip(drawn, stretches, strict=True)
-        kept.append(changed([replace(d, motion=_keeping(s, d.motion)) for d, s in pairs]))
+        drawn = [_drawn(s, prepared, generator) for s in stretches]
+        pairs = zip(residuals(model, drawn), before, strict=True)
+        errors.append(error_of(drawn, [r - r0 for (r, _), (r0, _) in pairs]))
     source = "stated resolution and noise" if stated else "step and noise seen in the readings"
-    value, turning = (float(np.sqrt(np.mean(np.square(e)))) for e in (kept, turned))
-    return NoiseFloor(value, source, turning)
+    return NoiseFloor(float(np.sqrt(np.mean(np.square(errors)))), source)
 
 
-def _keeping(stretch: Stretch, motion: Motion) -> Motion:
-    return replace(motion, direction=stretch.motion.direction)
+def _drawn(stretch: Stretch, prepared: Prepared, generator: np.random.Generator) -> Stretch:
+    """The stretch read once more, with the directions that were told."""
+    motion = read_again(stretch, prepared, generator)
+    return replace(stretch, motion=replace(motion, direction=stretch.motion.direction))
 
 
 def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Generator) -> Motion:

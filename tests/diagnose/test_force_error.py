@@ -139,15 +139,14 @@ def test_the_floor_is_what_step_and_noise_leave_on_the_true_motion(effect, seed,
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_a_right_model_lies_at_its_floor_with_the_turns_told_anew(seed, tmp_path):
+def test_a_right_model_lies_at_its_floor(seed, tmp_path):
     folder = write_own(tmp_path / "case", None, seed=seed)
     experiment = load_experiment(folder)
     prepared = prepare(experiment)
     found = estimate_from_starts(Model.from_experiment(experiment), prepared)
     floor = noise_floor(found.model, prepared, np.random.default_rng(0))
-    assert floor.turning >= 0.95 * floor.value  # drawn, as the value is
-    # on 30 other machines: 0.86 to 1.18
-    assert 0.75 < found.check_error / floor.turning < 1.4
+    # on 268 other records: 0.97 to 1.22, the middle nine tenths
+    assert 0.75 < found.check_error / floor.value < 1.4
 
 
 def test_the_floor_hardly_depends_on_the_draws(prepared, model):
