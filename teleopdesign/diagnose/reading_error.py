@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -25,12 +26,12 @@ from .noise_floor import read_again
 from .simulated_course import as_led, dead_times, grid, simulated_course
 from .threads import in_threads
 
-#: gives of an ideal friction, in encoder steps: none can be read, nor which it is, so that each has
-#: its turn (by the largest, turns look as if friction remembered; by the smallest it breaks away
-#: at once)
-GIVES = (0.3, 0.1, 0.03)
-#: readings of each simulated motion that are estimated from
-DRAWS = 2
+#: gives of an ideal friction, in encoder steps, and damping ratios of what gives: none can be read,
+#: nor which it is, so that each pair has its turn (by the largest give, turns look as if friction
+#: remembered; by the smallest it breaks away at once; damping resists what moves the contact, be it
+#: a turn or a level that changes). 0 is Dahl's friction, 0.5 what the authors of LuGre chose:
+#: stiffness 1e5 N/m, damping sqrt(1e5) N s/m at 1 kg
+GIVES, DAMPED = (0.3, 0.1, 0.03), (0.0, 0.5)
 #: shift, over the estimate (in decades' logarithms and angles: as it is), from which nothing is
 #: corrected: what reading moves so far is not known well enough
 LARGEST = 0.5
@@ -67,7 +68,7 @@ def reading_error(
     """
     truth = _with_whole_dead_times(found.model, prepared)
     true = coordinates(truth, found.free)
-    made = [_simulated(truth, prepared, give) for give in GIVES]
+    made = [_simulated(truth, prepared, g, d) for g, d in product(GIVES, DAMPED)]
     exact = [stretches for stretches in made if stretches is not None]
     if len(exact) < len(made):
         return None
@@ -83,8 +84,7 @@ def reading_error(
                 by[i] = (by[i] + np.pi) % (2.0 * np.pi) - np.pi
         return by
 
-    own_noise = generator.spawn(DRAWS * len(exact))
-    steps = np.array(in_threads(missed, exact * DRAWS, own_noise))
+    steps = np.array(in_threads(missed, exact, generator.spawn(len(exact))))
     if not np.isfinite(steps).all():
         return None
     return ReadingError(np.median(steps, axis=0), steps.std(axis=0, ddof=1))
@@ -100,13 +100,15 @@ def _with_whole_dead_times(model: Model, prepared: Prepared) -> Model:
     return model
 
 
-def _simulated(model: Model, prepared: Prepared, give: float) -> list[Stretch] | None:
+def _simulated(
+    model: Model, prepared: Prepared, give: float, damping_ratio: float
+) -> list[Stretch] | None:
     """The fit records with the model's exact courses in place of theirs; None if it has none."""
     stretches = list(prepared.of("fit"))
     made = []
     for stretch, (body, motion) in zip(stretches, along_own(model, stretches), strict=True):
         try:
-            course = simulated_course(body, motion, give=give)
+            course = simulated_course(body, motion, give=give, damping_ratio=damping_ratio)
         except ModelError:
             return None
         if not np.isfinite(course.position).all():

@@ -18,7 +18,7 @@ from ..effects import delayed
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..realise.kernel import FASTEST, fastest_rate
-from ..realise.simulated import without_absent
+from ..realise.simulated import with_give, without_absent
 from ..simulate import Sampling, prepare
 
 #: natural frequency of the leading spring over the comparison's bandwidth
@@ -40,13 +40,17 @@ def grid(motion: Motion) -> float:
     return motion.sample_time / STEPS
 
 
-def simulated_course(body: Body, motion: Motion, *, give: float) -> Course:
+def simulated_course(
+    body: Body, motion: Motion, *, give: float, damping_ratio: float = 0.0
+) -> Course:
     """The course that this body takes under a record's forces, led along its motion.
 
     give: of an ideal friction, in steps of the position's reading
+    damping_ratio: of the inertia on what gives
     raises ModelError: the body cannot be simulated, a dead time is no multiple of `grid`
     """
-    step, body = grid(motion), without_absent(body)
+    step = grid(motion)
+    body = with_give(without_absent(body), give * motion.step, damping_ratio=damping_ratio)
     frequency = 2.0 * np.pi * LEADS * motion.bandwidth
     inertia = body.parameters["inertia"].value
     stiffness, damping = inertia * frequency**2, 2.0 * inertia * frequency
@@ -65,7 +69,6 @@ def simulated_course(body: Body, motion: Motion, *, give: float) -> Course:
         initial=start,
         computer=Sampling(period=motion.sample_time),
         step=step,
-        give=give * motion.step,
     )
     rate, _ = fastest_rate(prepared.program, prepared.diagram.values)
     finer = int(np.ceil(rate * step / FASTEST))

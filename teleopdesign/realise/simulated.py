@@ -36,15 +36,21 @@ def without_absent(body: Body) -> Body:
     return body
 
 
-def with_give(body: Body, give: float) -> Body:
-    """Ideal Coulomb friction realised by a bristle that gives by `give` before it slides."""
+def with_give(body: Body, give: float, *, damping_ratio: float = 0.0) -> Body:
+    """Ideal Coulomb friction realised by a bristle that gives by `give` before it slides.
+
+    damping_ratio: of the inertia on this bristle while it sticks
+    """
     roles = {e.role for e in body.effects}
     if "friction_level" not in roles or "friction_shape" in roles:
         return body
     at_rest = dict.fromkeys(SIGNALS.values(), 0) | dict.fromkeys(body.equation().rates, 0)
     level = float(body.equation().level.subs(at_rest).subs(body.numbers()))
-    dahl = EFFECTS["presliding"].without("bristle_damping")
-    return body.with_effect(dahl, {"stiffness": level / give})
+    lugre, stiffness = EFFECTS["presliding"], level / give
+    if not damping_ratio:
+        return body.with_effect(lugre.without("bristle_damping"), {"stiffness": stiffness})
+    damping = 2.0 * damping_ratio * (stiffness * body.parameters["inertia"].value) ** 0.5
+    return body.with_effect(lugre, {"stiffness": stiffness, "bristle_damping": damping})
 
 
 def in_computer(diagram: Diagram, period: float) -> Diagram:
