@@ -9,7 +9,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .design import ONE_COLUMN, STYLE, TWO_COLUMNS, unit_text
-from .frequency_axes import Columns, look, mark_degrees, panels, points, share_abscissa
+from .frequency_axes import (
+    Columns,
+    legend_below,
+    look,
+    mark_degrees,
+    panels,
+    points,
+    share_abscissa,
+)
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -52,7 +60,7 @@ def plot_bode(
         ends = response.data["frequency"].values
         share_abscissa(upper, lower, "frequency (Hz)", (float(ends[0]), float(ends[-1])), columns)
         if measured is not None or len(response.data["case"]) > 1:
-            upper.legend()
+            legend_below(figure, upper)
     return figure
 
 
@@ -94,7 +102,7 @@ def plot_nyquist(
         axis.set_aspect("equal", adjustable="box")
         axis.grid(True)
         if measured is not None or len(response.data["case"]) > 1:
-            axis.legend()
+            legend_below(figure, axis)
     return figure
 
 

@@ -78,3 +78,10 @@ def mark_degrees(axis: matplotlib.axes.Axes) -> None:
     low, high = axis.get_ylim()
     if high - low > 90:
         axis.yaxis.set_major_locator(MultipleLocator(90 if high - low > 270 else 45))
+
+
+def legend_below(figure: matplotlib.figure.Figure, axis: matplotlib.axes.Axes) -> None:
+    """Legend of one axis below the whole figure, where it covers no curve."""
+    handles, labels = axis.get_legend_handles_labels()
+    across = max(1, int(figure.get_figwidth() / 1.7))
+    figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), across))

@@ -5,7 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 from .design import STYLE, unit_text
-from .frequency_axes import Columns, look, mark_degrees, panels, points, share_abscissa
+from .frequency_axes import (
+    Columns,
+    legend_below,
+    look,
+    mark_degrees,
+    panels,
+    points,
+    share_abscissa,
+)
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -101,7 +109,7 @@ def plot_spread(
             axes[0], axes[1], "frequency (Hz)", (float(f.min()), float(f.max())), columns
         )
         if len(result.data["case"]) > 1:
-            axes[0].legend()
+            legend_below(figure, axes[0])
         axes[0].set_title(_WHICH if model else "", loc="left", pad=3)
     return figure
 
