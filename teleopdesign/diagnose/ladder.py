@@ -69,11 +69,12 @@ def find_missing(
     while True:
         here = rungs[-1].fit
         floor = noise_floor(here.model, prepared, np.random.default_rng(seed))
-        first = floor if first is None else first
-        floor = floor.at_most(max(LOUDER * first.value, HIDDEN * rungs[0].fit.check_error))
         step = len(rungs)
         saying = partial(_said, say, f"step {step}: ")
         ranking = rank_candidates(here, prepared, stated=stated, progress=saying)
+        floor = _bounded(floor, here, ranking)
+        first = floor if first is None else first
+        floor = floor.at_most(max(LOUDER * first.value, HIDDEN * rungs[0].fit.check_error))
         tone = tone_left(here, prepared)
         supported = [
             r
@@ -114,6 +115,16 @@ def find_missing(
         rungs = [replace(r, fit=_on_all(r.fit, whole)) for r in rungs]
     said = verdict(rungs, floor)
     return Diagnosis(experiment, whole, said, tuple(rungs), ranking, here, floor)
+
+
+def _bounded(floor: NoiseFloor, here: Fit, ranking: Ranking) -> NoiseFloor:
+    """The floor, no higher than what the model leaves, or any candidate that can be told.
+
+    Without what is missing a parameter may be led where sensor noise would ask for any force: what
+    the records themselves leave shows that it does not.
+    """
+    left = [here.check_error, *(r.fit.check_error for r in ranking.ranked if r.told)]
+    return replace(floor, value=min(floor.value, *left))
 
 
 def _is_a_tone(found: Fit, tone: float, floor: NoiseFloor) -> bool:

@@ -4,13 +4,16 @@ import math
 
 import numpy as np
 import pytest
+from cases import make_case, write_case
 from diagnose.own_cases import FEW, truth_of, write_own
 from truth_effects import TEN
 
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.answer import answer
+from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.effects import EFFECTS
 
+CATALOGUE = ("coulomb", "viscous", "stribeck", "bias", "cogging")
 LOOK_ALIKES = {"bias", "coulomb_asymmetry"}
 
 
@@ -92,6 +95,18 @@ def test_no_effect_is_named_on_records_that_lack_none(tmp_path):
         found = diagnosed(write_own(tmp_path / str(seed), None, seed=seed), EFFECTS)
         named += [str(c) for c in found.missing]
     assert not named
+
+
+def test_a_parameter_led_astray_does_not_make_what_is_missing_pass_for_noise(tmp_path):
+    # without cogging this machine's Stribeck level goes to 100 kN within 0.1 mm/s, where sensor
+    # noise would ask for five times the measured force
+    case = make_case(np.random.default_rng([59183, 138]), "clear", ["cogging"])
+    write_case(case, tmp_path / "case")
+    found = diagnosed(tmp_path / "case", {n: EFFECTS[n] for n in CATALOGUE})
+    alone = noise_floor(found.before.model, found.prepared, np.random.default_rng(0))
+    assert alone.value > 3.0
+    assert [str(c) for c in found.missing] == ["cogging at device"]
+    assert found.floor.value < 0.02
 
 
 # the fit does not lean on the user's numbers
