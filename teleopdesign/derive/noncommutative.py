@@ -20,6 +20,8 @@ from random import Random
 
 import sympy as sp
 
+from ..errors import ModelError
+
 Word = tuple[str, ...]
 Polynomial = dict[Word, Fraction]
 _DEEPEST = 4  # denominators multiplied out, one inside the other
@@ -158,16 +160,25 @@ def proved_equal(left: sp.Expr, right: sp.Expr) -> bool:
     return algebra.vanishes(_sum([a, {w: -c for w, c in b.items()}]))
 
 
-def on_matrices(expression: sp.Expr, blocks: dict[sp.Symbol, sp.Matrix]) -> sp.Matrix:
-    """The expression with matrices in place of its symbols, exact where they are rational."""
-    size = next(iter(blocks.values())).shape[0]
+def on_matrices(
+    expression: sp.Expr, blocks: dict[sp.Symbol, sp.Matrix], *, size: int | None = None
+) -> sp.Matrix:
+    """The expression with matrices in place of its symbols, exact where they are rational.
+
+    size: rows of each matrix; default: as the first of the blocks
+    raises ModelError: there is no block, and no size
+    """
+    if size is None:
+        if not blocks:
+            raise ModelError(f"{expression}: no block is given, expected a size beside it")
+        size = next(iter(blocks.values())).shape[0]
     if expression.is_Number:
         return expression * sp.eye(size)
     if expression.is_Symbol:
         return blocks[expression]
     if expression.is_Pow:
-        return on_matrices(expression.base, blocks) ** int(expression.exp)
-    parts = [on_matrices(a, blocks) for a in expression.args]
+        return on_matrices(expression.base, blocks, size=size) ** int(expression.exp)
+    parts = [on_matrices(a, blocks, size=size) for a in expression.args]
     if expression.is_Add:
         return sum(parts[1:], parts[0])
     product = sp.eye(size)
@@ -187,6 +198,6 @@ def counterexample(
             s: sp.Matrix(size, size, lambda *_: sp.Rational(random.randint(-99, 99), 7))
             for s in symbols
         }
-        if on_matrices(left, blocks) != on_matrices(right, blocks):
+        if on_matrices(left, blocks, size=size) != on_matrices(right, blocks, size=size):
             return blocks
     return None

@@ -14,6 +14,7 @@ from teleopdesign.controllers import controller
 from teleopdesign.derive import (
     all_transfers,
     block_symbol,
+    counterexample,
     on_matrices,
     proved_equal,
     return_difference,
@@ -62,7 +63,7 @@ def test_what_a_driver_works_against_is_the_inverse_of_what_it_moves():
 
 
 def numeric(expression, blocks):
-    return np.array(on_matrices(expression, blocks).tolist(), dtype=float)
+    return np.array(on_matrices(expression, blocks, size=2).tolist(), dtype=float)
 
 
 # no search for a smaller example: with inverses of matrices in it, that takes minutes
@@ -207,3 +208,11 @@ def test_a_polynomial_is_printed_as_it_is_read(coefficients, text):
 def test_names_are_printed_with_their_indices():
     assert name_as_latex("Zhat_M") == r"\hat Z_{M}"
     assert name_as_latex("R_M/R_MBC") == r"R_{M}/R_{\mathrm{MBC}}"
+
+
+def test_numbers_alone_are_told_apart_on_matrices_of_a_given_size():
+    assert counterexample(sp.S(1), sp.S(2)) == {}
+    assert counterexample(sp.S(1), sp.S(1)) is None
+    assert on_matrices(sp.S(3), {}, size=2) == 3 * sp.eye(2)
+    with pytest.raises(ModelError, match="no block is given, expected a size"):
+        on_matrices(sp.S(3), {})
