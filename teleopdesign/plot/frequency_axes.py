@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 
 Columns = Literal[1, 2]
 MEASURED = "#7F7F7F"
+#: inches that the longest entry of a legend takes
+ENTRY = 1.7
 
 
 def look(case: str) -> dict[str, Any]:
@@ -83,5 +85,5 @@ def mark_degrees(axis: matplotlib.axes.Axes) -> None:
 def legend_below(figure: matplotlib.figure.Figure, axis: matplotlib.axes.Axes) -> None:
     """Legend of one axis below the whole figure, where it covers no curve."""
     handles, labels = axis.get_legend_handles_labels()
-    across = max(1, int(figure.get_figwidth() / 1.7))
+    across = max(1, int(figure.get_figwidth() / ENTRY))
     figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), across))
