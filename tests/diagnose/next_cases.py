@@ -195,7 +195,7 @@ POOR = {
     ),
     "one stroke": Poor(
         ("spring", "hardening_spring"),
-        (dict(spring=0.5), dict(hardening=120.0)),
+        (dict(spring=0.3), dict(hardening=75.0)),
         shuttle(10.0, speed=0.2, reach=0.07),
         shuttle(8.0, speed=0.2, reach=0.07),
         wider=2.0,
