@@ -208,23 +208,22 @@ class Effect:
         self, signals: Mapping[str, Any] | None = None, values: Mapping[str, Any] | None = None
     ) -> sp.Expr:
         """The law on symbols, or on whatever is given in their place."""
+        if signals is None and values is None:
+            return _expression(self)
         return sp.sympify(self.law(self._now(signals), self._parameters(values)))
 
     def rates(
         self, signals: Mapping[str, Any] | None = None, values: Mapping[str, Any] | None = None
     ) -> dict[str, sp.Expr]:
         """Hidden state -> its rate of change, on symbols or on what is given."""
+        if signals is None and values is None:
+            return dict(_rates(self))
         now, p = self._now(signals), self._parameters(values)
         return {name: sp.sympify(state.rate(now, p)) for name, state in self.states.items()}
 
     def corrections(self) -> dict[str, sp.Expr]:
         """Hidden state -> rate by which it is corrected, on symbols; {} where all run free."""
-        now, p = self._now(None), self._parameters(None)
-        return {
-            name: sp.sympify(state.correction(now, p))
-            for name, state in self.states.items()
-            if state.correction is not None
-        }
+        return dict(_corrections(self))
 
     def led_momentum(self) -> sp.Expr:
         """Momentum that corrections stand for, on symbols; 0 where there are none."""
@@ -254,6 +253,29 @@ class Effect:
         law = law.subs(settled) if rates else law
         law = law.replace(delayed, lambda signal, delay: signal * sp.exp(-s * delay))
         return sp.simplify(law / drive)
+
+
+# laws on symbols are asked for at every evaluation of a residual: they are built once
+
+
+@lru_cache(maxsize=256)
+def _expression(effect: Effect) -> sp.Expr:
+    return effect.expression({}, {})
+
+
+@lru_cache(maxsize=256)
+def _rates(effect: Effect) -> dict[str, sp.Expr]:
+    return effect.rates({}, {})
+
+
+@lru_cache(maxsize=256)
+def _corrections(effect: Effect) -> dict[str, sp.Expr]:
+    now, p = effect._now(None), effect._parameters(None)
+    return {
+        name: sp.sympify(state.correction(now, p))
+        for name, state in effect.states.items()
+        if state.correction is not None
+    }
 
 
 @lru_cache(maxsize=256)

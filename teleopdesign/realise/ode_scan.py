@@ -33,6 +33,7 @@ MODE_STEP, MOST_STEPS = 1.0, 16
 GROWTH = 30.0
 
 
+@lru_cache(maxsize=256)
 def _drivers(effect: Effect) -> list[str]:
     laws = list(effect.rates().values())
     if corrections := effect.corrections():
