@@ -26,7 +26,7 @@ from .rank import (
 )
 from .reading_error import with_reading_error
 from .search import estimate_from_starts
-from .support import alike, equals_of, is_better, is_supported, simplicity
+from .support import alike, equals_of, is_better, is_supported, simplicity, worth_pursuing
 
 #: an effect that makes sensors count for this much more than they do in the user's model, and for
 #: this part of what that leaves, hides what it leaves in their noise
@@ -71,7 +71,8 @@ def find_missing(
         floor = noise_floor(here.model, prepared, np.random.default_rng(seed))
         step = len(rungs)
         saying = partial(_said, say, f"step {step}: ")
-        ranking = rank_candidates(here, prepared, stated=stated, progress=saying)
+        worth = worth_pursuing(here, floor)
+        ranking = rank_candidates(here, prepared, stated=stated, worth=worth, progress=saying)
         floor = _bounded(floor, here, ranking)
         first = floor if first is None else first
         floor = floor.at_most(max(LOUDER * first.value, HIDDEN * rungs[0].fit.check_error))

@@ -12,7 +12,7 @@ from .candidates import Candidate, candidates
 from .evidence import gain_score
 from .fit import ROUGH, Fit, estimate, fit_squares
 from .force_error import Prepared
-from .search import at_stated, estimate_from_starts
+from .search import WORTH, at_stated, estimate_from_starts
 from .threads import in_threads
 
 
@@ -120,8 +120,13 @@ CONTENDING = 0.5
 
 
 def _refined(
-    tried: tuple[Candidate, Fit], leading: float, prepared: Prepared, stated: Model | None
+    tried: tuple[Candidate, Fit],
+    leading: float,
+    worthless: float,
+    prepared: Prepared,
+    stated: Model | None,
 ) -> tuple[Candidate, Fit]:
+    """Fitted finely, where it leaves no more than `leading` and less than `worthless` squares."""
     candidate, rough = tried
     present = (candidate.effect.name, candidate.at) not in rough.model.absent
     if not present or fit_squares(rough) > leading:
@@ -136,6 +141,8 @@ def _refined(
         )
         if fit_squares(again) < fit_squares(rough):
             rough = again
+    if fit_squares(rough) > worthless:
+        return candidate, rough
     return candidate, estimate(rough.model, prepared)
 
 
@@ -145,6 +152,7 @@ def rank_candidates(
     *,
     among: Collection[Candidate] | None = None,
     stated: Model | None = None,
+    worth: float = WORTH,
     progress: Callable[[str], None] | None = None,
 ) -> Ranking:
     """Try every candidate on top of a fitted model.
@@ -152,6 +160,7 @@ def rank_candidates(
     base: the fitted model that something may be missing in
     among: those that are tried, of all that the model could take
     stated: the model as its user gave it; its values are starts too
+    worth: part of the base's squares on the fit records below which a gain is not pursued
     progress: called with a line of text before each candidate
     """
 
@@ -159,7 +168,7 @@ def rank_candidates(
         if progress is not None:
             progress(str(candidate))
         added = base.model.with_effect(candidate.effect, at=candidate.at)
-        return candidate, estimate_from_starts(added, prepared, base, stated)
+        return candidate, estimate_from_starts(added, prepared, base, stated, worth=worth)
 
     possible = candidates(base.model, [s.motion for s in prepared.of("fit")])
     if among is not None:
@@ -167,7 +176,8 @@ def rank_candidates(
         possible = tuple(c for c in possible if c.key in wanted)
     fits = in_threads(tried, possible)
     leading = (1.0 + CONTENDING) * min((fit_squares(f) for _, f in fits), default=0.0)
-    fits = in_threads(lambda cf: _refined(cf, leading, prepared, stated), fits)
+    worthless = (1.0 - worth) * fit_squares(base)
+    fits = in_threads(lambda cf: _refined(cf, leading, worthless, prepared, stated), fits)
     told = {c.key: is_told(f, base) for c, f in fits}
     fits.sort(key=lambda cf: (not told[cf[0].key], check_squares(cf[1])))
     ranked = [

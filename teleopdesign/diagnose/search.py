@@ -42,12 +42,18 @@ FIRST_STEPS = Effort(1e-3, 4)
 
 
 def estimate_from_starts(
-    model: Model, prepared: Prepared, base: Fit | None = None, stated: Model | None = None
+    model: Model,
+    prepared: Prepared,
+    base: Fit | None = None,
+    stated: Model | None = None,
+    *,
+    worth: float = WORTH,
 ) -> Fit:
     """The best fit of a model, from every starting value of the effects that are still absent.
 
     base: a fit of the model without them: then the best stays rough, to be ranked first
     stated: the model as its user gave it: what the base moved far from it starts there too
+    worth: part of the base's squares that one linear step must promise to take away
     """
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     models = started(model, unit)
@@ -59,7 +65,7 @@ def estimate_from_starts(
         if curved and stated is not None and _moved(base, stated):
             models += [at_stated(m, stated) for m in models]
         most = CORRECTED_PREDICTED if rugged else CURVED_PREDICTED
-        models = _promising(model, models, prepared, base, unit, most)
+        models = _promising(model, models, prepared, base, unit, most, worth)
         if not models:
             return unchanged(model, base)
     elif len(models) == 1:
@@ -92,6 +98,7 @@ def _promising(
     base: Fit,
     unit: dict[str, float],
     most: int,
+    worth: float,
 ) -> list[Model]:
     """The starts from which one linear step promises most; none where none promises a gain.
 
@@ -99,9 +106,9 @@ def _promising(
     """
     linear = _with_strength(model, base)
     if linear is not None:
-        return _by_strength(models, *linear, prepared, base)
+        return _by_strength(models, *linear, prepared, base, worth)
     promised = sorted((_promise(m, prepared, base, unit), i) for i, m in enumerate(models))
-    if promised[0][0] > (1.0 - WORTH) * fit_squares(base):
+    if promised[0][0] > (1.0 - worth) * fit_squares(base):
         return []
     return [models[i] for _, i in promised[:most]]
 
@@ -127,7 +134,7 @@ def _moved(base: Fit, stated: Model) -> bool:
 
 
 def _by_strength(
-    models: list[Model], effect: Effect, at: str, prepared: Prepared, base: Fit
+    models: list[Model], effect: Effect, at: str, prepared: Prepared, base: Fit, worth: float
 ) -> list[Model]:
     """The best starts of an effect that is linear in its strength; none where none is worth it."""
     strength = f"{at}.{effect.name}.{effect.strength}"
@@ -136,7 +143,7 @@ def _by_strength(
         others = {n: v.value for n, v in model.parameters.items() if n != strength}
         distinct.setdefault(tuple(others.values()), model)
     starts = linear_starts(list(distinct.values()), effect, at, prepared, base)
-    if starts[0].promised > (1.0 - WORTH) * fit_squares(base):
+    if starts[0].promised > (1.0 - worth) * fit_squares(base):
         return []
     return [s.model for s in starts[:PREDICTED]]
 

@@ -8,6 +8,7 @@ from .evidence import chance
 from .fit import Fit
 from .noise_floor import NoiseFloor
 from .rank import Ranked, Ranking, check_score, check_squares, whole_score
+from .search import WORTH
 
 #: a gain counts from this many standard deviations of its chance part, or, where it makes an
 #: adequate model of one that is not, from what one catalogue in a hundred reaches by chance ...
@@ -65,6 +66,18 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
         and gain > OF_FLOOR * (floor.value / base.check_error) ** 2
         and chance(score) * len(base.model.known) < BY_CHANCE
     )
+
+
+def worth_pursuing(base: Fit, floor: NoiseFloor) -> float:
+    """Part of the base's squares from which a gain by a first step is worth following up.
+
+    The floor is never above what a candidate leaves. So beside a base that leaves little more than
+    its floor, only what takes away OF_FLOOR / (1 + OF_FLOOR) of the squares can be better: a first
+    step that promises less than a third of that is not followed.
+    """
+    least = OF_FLOOR / (1.0 + OF_FLOOR)
+    only_noise = OF_FLOOR * floor.value**2 >= least * base.check_error**2
+    return least / 3.0 if only_noise else WORTH
 
 
 def alike(supported: list[Ranked]) -> list[Ranked]:
