@@ -84,7 +84,7 @@ def page(runs: Sequence[tuple[str, td.Diagnosis | None, str]]) -> str:
         picture = PICTURES / f"{name}.png"
         with plt.rc_context({"savefig.dpi": 100}):
             found.plot().savefig(picture)
-        left = where_it_fails(found.after, found.prepared)[:SENTENCES]
+        left = where_it_fails(found.after, found.prepared, found.floor)[:SENTENCES]
         said = (
             "\n".join(f"- {one.sentence}" for one in left) or "- nothing that depends on anything"
         )

@@ -13,6 +13,7 @@ from ._options import add_effect_files, add_folder, check_output, say
 if TYPE_CHECKING:
     from ..diagnose.fit import Fit
     from ..diagnose.force_error import Prepared
+    from ..diagnose.noise_floor import NoiseFloor
     from ..diagnose.unexplained import Unexplained
     from ..measurement.experiment import Experiment
     from ..model import Model
@@ -57,9 +58,9 @@ def run(options: argparse.Namespace) -> int:
 
     experiment = load_experiment(options.folder)
     model = Model.from_experiment(experiment, catalogue(options.effect))
-    fit, prepared, said = _fitted(experiment, model, as_is=options.as_is)
+    fit, prepared, floor, said = _fitted(experiment, model, as_is=options.as_is)
     print(f"{said}\n")
-    found = unexplained(fit, prepared)
+    found = unexplained(fit, prepared, floor)
     print(found)
     if options.json is not None:
         text = json.dumps({"model": said, **found.as_data()}, indent=1)
@@ -71,26 +72,28 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _fitted(experiment: Experiment, model: Model, *, as_is: bool) -> tuple[Fit, Prepared, str]:
-    """The fit that is described, with a line that says which model it is."""
+def _fitted(
+    experiment: Experiment, model: Model, *, as_is: bool
+) -> tuple[Fit, Prepared, NoiseFloor | None, str]:
+    """The fit that is described, its noise floor if a diagnosis told it, and which model it is."""
     from ..diagnose import find_missing
     from ..diagnose.force_error import prepare
     from ..diagnose.search import estimate_from_starts
 
     if as_is:
         prepared = prepare(experiment)
-        return estimate_from_starts(model, prepared), prepared, "Your model, re-estimated:"
+        return estimate_from_starts(model, prepared), prepared, None, "Your model, re-estimated:"
     diagnosis = find_missing(experiment, model, progress=say)
     say("")
     prepared, before = diagnosis.prepared, diagnosis.before
     added = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)
     held = diagnosis.floor.held
     if not added:
-        return before, prepared, "Your model, re-estimated:"
+        return before, prepared, diagnosis.floor, "Your model, re-estimated:"
     if not diagnosis.more_is_missing or (diagnosis.missing and not held):
-        return diagnosis.after, prepared, f"Your model with {added}:"
+        return diagnosis.after, prepared, diagnosis.floor, f"Your model with {added}:"
     why = "raise the noise of the sensors" if held else "explain less than half of what it leaves"
-    return before, prepared, f"Your model, re-estimated ({added} would {why}):"
+    return before, prepared, None, f"Your model, re-estimated ({added} would {why}):"
 
 
 def _write(found: Unexplained, path: Path, folder: Path) -> None:

@@ -77,7 +77,7 @@ def _write_report(diagnosis: Diagnosis, path: Path) -> None:
     say("checking the recording")
     soundness = check_experiment(diagnosis.experiment, diagnosis.before.model)
     say("describing what is left")
-    left = where_it_fails(diagnosis.after, diagnosis.prepared)
+    left = where_it_fails(diagnosis.after, diagnosis.prepared, diagnosis.floor)
     open_questions = diagnosis.verdict == "undecided" or bool(diagnosis.groups)
     steps = propose(diagnosis, progress=say).findings() if open_questions else ()
     say("")

@@ -1,9 +1,8 @@
 """What sensors alone would leave in the force error of a model that is right.
 
 The readings are made anew: the smoothed motion is read off by an encoder of the stated step with a
-random zero, and the stated noise is drawn. By how much that changes the residual is the floor.
-Where the drawn readings tell that the body turns a sample earlier or later, its friction turns with
-it: that counts in a floor of its own, above which a right model hardly ever lies.
+random zero, and the stated noise is drawn. By how much that changes the residual is the floor; the
+directions of motion stay those that the record's own readings told.
 Where no resolution is stated, steps and noise of all channels are estimated from the readings, from
 their content near the Nyquist frequency, and the answer says so.
 """
@@ -28,12 +27,19 @@ DRAWS = 3
 class NoiseFloor:
     """The floor as a relative force error, and where its numbers come from.
 
+    drawn: what the readings drawn anew left;  value: what counts of it
     held: kept below what this model makes of sensor errors, or what it leaves would hide in them
     """
 
     value: float
     source: str
+    drawn: float
     held: bool = False
+
+    @property
+    def counted(self) -> float:
+        """Part of what the drawn readings left that counts."""
+        return self.value / self.drawn if self.drawn else 1.0
 
     def at_most(self, value: float) -> NoiseFloor:
         """The floor, held at that value where it is above."""
@@ -55,7 +61,8 @@ def noise_floor(
         pairs = zip(residuals(model, drawn), before, strict=True)
         errors.append(error_of(drawn, [r - r0 for (r, _), (r0, _) in pairs]))
     source = "stated resolution and noise" if stated else "step and noise seen in the readings"
-    return NoiseFloor(float(np.sqrt(np.mean(np.square(errors)))), source)
+    left = float(np.sqrt(np.mean(np.square(errors))))
+    return NoiseFloor(left, source, drawn=left)
 
 
 def _drawn(stretch: Stretch, prepared: Prepared, generator: np.random.Generator) -> Stretch:

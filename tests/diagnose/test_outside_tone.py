@@ -102,7 +102,7 @@ def test_an_effect_that_acts_by_the_clock_may_be_the_tone_itself():
 
 def test_no_pair_is_sought_where_a_tone_leaves_only_noise(rod, monkeypatch):
     prepared, found = rod
-    floor = NoiseFloor(0.01, "stated")
+    floor = NoiseFloor(0.01, "stated", drawn=0.01)
     squares = check_squares(found) * (floor.value / found.check_error) ** 2
     assert _is_a_tone(found, 1.5**2 * squares, floor)
     assert not _is_a_tone(found, 2.5**2 * squares, floor)

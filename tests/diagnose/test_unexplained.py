@@ -115,6 +115,15 @@ def test_a_model_that_leaves_only_noise_is_said_to_be_fine(rod, adequate):
     assert finding.concern == "fine"
 
 
+def test_what_is_left_is_counted_in_the_floors_that_a_diagnosis_kept_to(rod, adequate):
+    floor = noise_floor(adequate.model, rod, np.random.default_rng(0))
+    kept = floor.at_most(0.25 * floor.drawn)
+    assert kept.held and kept.counted == pytest.approx(0.25)
+    ((whole,), (part,)) = (unexplained(adequate, rod, f).parts for f in (floor, kept))
+    assert part.floor == pytest.approx(0.25 * whole.floor)
+    assert whole.is_adequate and not part.is_adequate
+
+
 @pytest.mark.slow
 def test_a_fit_and_its_model_give_the_same_sentences(rod, lacking, failure):
     assert [str(f) for f in where_it_fails(lacking.model, rod)] == list(map(str, failure.findings))

@@ -15,6 +15,7 @@ from ...finding import Finding
 from ...model import Model
 from ..fit import Fit
 from ..force_error import Prepared
+from ..noise_floor import NoiseFloor
 from .description import BodyUnexplained, Described, described, findings_of
 
 if TYPE_CHECKING:
@@ -66,18 +67,24 @@ class Unexplained:
         return "\n".join(str(f) for f in self.findings)
 
 
-def unexplained(model: Model | Fit, prepared: Prepared, *, seed: int = 0) -> Unexplained:
+def unexplained(
+    model: Model | Fit, prepared: Prepared, floor: NoiseFloor | None = None, *, seed: int = 0
+) -> Unexplained:
     """Look at what a fitted model leaves of the force on each body.
 
     model: with its free parameters re-estimated on the fit records (to first order they move here
-    too);  seed: of the draws for the noise floor
+    too);  floor: that of a diagnosis that ended with this model: of the bodies' floors the same
+    part counts;  seed: of the draws for the noise floor
     """
     chosen = model.model if isinstance(model, Fit) else model
     bodies = [b for b in chosen.bodies if any(s.motion.body == b for s in prepared.of("fit"))]
-    parts = tuple(described(chosen, prepared, body, seed=seed) for body in bodies)
+    counted = 1.0 if floor is None else floor.counted
+    parts = tuple(described(chosen, prepared, b, counted=counted, seed=seed) for b in bodies)
     return Unexplained(chosen, prepared, parts)
 
 
-def where_it_fails(model: Model | Fit, prepared: Prepared) -> tuple[Finding, ...]:
+def where_it_fails(
+    model: Model | Fit, prepared: Prepared, floor: NoiseFloor | None = None
+) -> tuple[Finding, ...]:
     """Plain sentences on where a fitted model fails, made from the numbers; see `unexplained`."""
-    return unexplained(model, prepared).findings
+    return unexplained(model, prepared, floor).findings

@@ -80,11 +80,16 @@ class BodyUnexplained:
         return not self.found and self.floors <= ADEQUATE
 
 
-def described(model: Model, prepared: Prepared, body: str, *, seed: int = 0) -> BodyUnexplained:
-    """Look at what a fitted model leaves of one body; seed: of the draws for the noise floor."""
+def described(
+    model: Model, prepared: Prepared, body: str, *, counted: float = 1.0, seed: int = 0
+) -> BodyUnexplained:
+    """Look at what a fitted model leaves of one body; seed: of the draws for the noise floor.
+
+    counted: part of the noise floor that counts
+    """
     own = replace(prepared, stretches=tuple(s for s in prepared.stretches if s.motion.body == body))
     rows = rows_of(model, own, body)
-    floor = noise_floor(model, own, np.random.default_rng(seed)).value
+    floor = counted * noise_floor(model, own, np.random.default_rng(seed)).value
     used = rows.checked
     weight = np.concatenate([np.full(len(a.stretch.keep), a.stretch.weight) for a in rows.alongs])
     whole = float(np.sum((weight * rows.measured**2)[used]))
