@@ -53,6 +53,10 @@ class FrequencyResponse:
         turned = np.exp(1j * np.radians(one["phase"].values))
         return np.asarray(one["magnitude"].values * turned)
 
+    def is_zero(self, case: str = "") -> bool:
+        """Whether a case (default: the first) is zero at every frequency: it has no decibels."""
+        return not self.values(case).any()
+
     def as_frd(self, case: str = "") -> control.FrequencyResponseData:
         """A case (default: the first) as python-control frequency response data, in rad/s."""
         import control
@@ -89,7 +93,8 @@ class FrequencyResponse:
             return f"{head.removesuffix(', at ')}, measured"
         lines = [f"{head}speed {self.data.attrs['speed']:g}"]
         for case, gone in self.left_out.items():
-            lines.append(f"  {case}: left out: {', '.join(gone) or 'nothing'}")
+            zero = "zero at every frequency, " if self.is_zero(case) else ""
+            lines.append(f"  {case}: {zero}left out: {', '.join(gone) or 'nothing'}")
         return "\n".join(lines)
 
 

@@ -34,7 +34,10 @@ def plot_bode(
     measured: FrequencyResponse | None = None,
     columns: Columns = 1,
 ) -> matplotlib.figure.Figure:
-    """Magnitude in dB and phase against frequency; measured: drawn as points beside it."""
+    """Magnitude in dB and phase against frequency; measured: drawn as points beside it.
+
+    A case that is zero at every frequency has neither: its name says so.
+    """
     import matplotlib.pyplot as plt
     import numpy as np
 
@@ -49,6 +52,9 @@ def plot_bode(
                 part = one.data.sel(case=name)
                 style = points(name, alone=len(names) == 1) if one.measured else look(name)
                 style["label"] = _name(one, name)
+                if one.is_zero(name):
+                    upper.plot([], [], **(style | {"label": f"{style['label']} (zero)"}))
+                    continue
                 upper.plot(f, 20 * np.log10(part["magnitude"]), **style)
                 lower.plot(f, _beside(part["phase"], response, name), **style)
         unit = response.data["magnitude"].attrs["units"]

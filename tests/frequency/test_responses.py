@@ -89,3 +89,13 @@ def test_every_figure_comes_in_two_widths(model, columns, width):
         for axis in figure.axes:
             assert "(" in axis.get_ylabel() or "part" in axis.get_ylabel()
         plt.close(figure)
+
+
+def test_a_response_that_is_zero_says_so_and_has_no_decibels():
+    cases = bode(four_cases(world_haptics_2005()))  # its only impedance is ideal friction
+    assert all(cases.is_zero(c) for c in ("none", "MBC", "FF", "hybrid"))
+    assert "MBC: zero at every frequency, left out: Z_M.coulomb" in repr(cases)
+    figure = cases.plot()
+    assert all(len(line.get_xdata()) == 0 for axis in figure.axes for line in axis.lines)
+    names = [t.get_text() for t in figure.legends[0].get_texts()]
+    assert len(names) == 4 and all(n.endswith("(zero)") for n in names)
