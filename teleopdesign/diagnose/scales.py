@@ -10,7 +10,10 @@ from ..measurement.motion import Motion
 
 
 def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
-    """Quantity -> typical size along these motions (SI): rms values and their quotients."""
+    """Quantity -> typical size along these motions (SI): rms values and their quotients.
+
+    "travel" is the widest that one motion covers, "duration" the longest.
+    """
 
     def rms(parts: list[np.ndarray]) -> float:
         return float(np.sqrt(np.mean(np.concatenate(parts) ** 2))) or 1e-12
@@ -33,6 +36,7 @@ def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
         "resonance_damping": force / acceleration * 2 * np.pi * bandwidth,
         "drag": force / velocity**2,
         "cubic_stiffness": force / position**3,
+        "travel": max(float(np.ptp(m.position)) for m in motions),
         "duration": max(float(np.ptp(m.time)) for m in motions),
         "frequency": bandwidth,
         "angle": 1.0,

@@ -51,10 +51,10 @@ ACTUATION_ORDER = (
 #: roles of what belongs to a modelled environment, not to the body that touches it
 CONTACT_ROLES = frozenset({"contact", "contact_shape"})
 
-#: starts for the period of something that repeats along the travel (multiples of rms travel): even
-#: in 1/period, a cycle and a half over the whole travel (four to six times its rms) from one to the
-#: next, so that steps reach the right one
-PERIODS = (8.0, *(4.0 / k for k in range(1, 101)))
+#: starts for the period of something that repeats along the travel (multiples of the whole travel):
+#: even in 1/period, three quarters of a cycle over the travel from one to the next. Where two are
+#: a cycle apart, what lies between them is orthogonal to both for a motion that stays at its ends
+PERIODS = (3.0, *(4.0 / 3.0 / k for k in range(1, 151)))
 
 
 def positive_amplitude(values: Mapping[str, float]) -> dict[str, float]:
@@ -89,7 +89,8 @@ class Parameter:
     """One parameter of an effect: its quantity (a key of `quantity`), meaning and bounds (SI).
 
     starts: where a search begins, as multiples of the record's own scale of that quantity
-    scale: another scale of the record than the quantity's: "duration" for times as long as it
+    scale: another scale of the record than the quantity's: "duration" for times as long as it,
+        "travel" for the whole of its travel
     within: upper bound of a search in that scale, where a larger value would mean something else
     chosen: set at its first start, not estimated: others are meant relative to it
     optional: the effect is there where this is zero too, which it is unless a value is given

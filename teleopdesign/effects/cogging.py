@@ -20,7 +20,13 @@ EFFECT = Effect(
     law=law,
     parameters={
         "amplitude": Parameter("force", "A: amplitude", lower=-float("inf"), starts=(0.03,)),
-        "period": Parameter("position", "p: travel of one period", starts=PERIODS[1:], within=6.0),
+        "period": Parameter(
+            "position",
+            "p: travel of one period",
+            starts=PERIODS[1:],
+            scale="travel",
+            within=2.0,
+        ),
         "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=(0.0,)),
     },
     absent={"amplitude": 0.0},

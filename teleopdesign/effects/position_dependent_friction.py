@@ -27,7 +27,7 @@ EFFECT = Effect(
             upper=1.0,
             starts=(0.05,),
         ),
-        "period": Parameter("position", "p: travel of one period", starts=PERIODS),
+        "period": Parameter("position", "p: travel of one period", starts=PERIODS, scale="travel"),
         "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=(0.0,)),
     },
     absent={"amplitude": 0.0},

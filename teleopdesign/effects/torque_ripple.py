@@ -22,7 +22,13 @@ EFFECT = Effect(
         "amplitude": Parameter(
             "dimensionless", "r: relative amplitude", lower=-1.0, upper=1.0, starts=(0.05,)
         ),
-        "period": Parameter("position", "p: travel of one period", starts=PERIODS[1:], within=6.0),
+        "period": Parameter(
+            "position",
+            "p: travel of one period",
+            starts=PERIODS[1:],
+            scale="travel",
+            within=2.0,
+        ),
         "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=(0.0,)),
     },
     absent={"amplitude": 0.0},

@@ -98,6 +98,19 @@ def test_every_quantity_of_an_effect_has_a_scale(prepared):
     assert wanted <= set(unit)
 
 
+@pytest.mark.parametrize("name", ["cogging", "torque_ripple", "position_dependent_friction"])
+def test_no_period_lies_far_from_where_its_search_starts(name, model, prepared):
+    """Starts a whole cycle apart over the travel leave some between them that neither correlates
+    with, whatever the shape of the motion."""
+    motions = [s.motion for s in prepared.of("fit")]
+    travel = max(np.ptp(m.position) for m in motions)
+    models = started(model.with_effect(name), scales(motions, prepared.bandwidth))
+    periods = {m.parameters[f"device.{name}.period"].value for m in models}
+    cycles = np.sort([travel / p for p in periods])
+    assert np.diff(cycles).max() < 0.76
+    assert cycles[0] < 0.76 and cycles[-1] > 100
+
+
 def test_a_fixed_parameter_stays(experiment, model, prepared):
     inertia = model.parameters["device.inertia"]
     fixed = model.with_values({"device.inertia": replace(inertia, fixed=True)})
