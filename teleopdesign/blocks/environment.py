@@ -3,12 +3,16 @@
     F = max(K d + D v, 0) where d = x - x_c > 0, else 0    subtracted from the body's equation
 
 It is carried by the body that touches it, under the name `environment`; effects of the role
-`contact` add to the sum, one of the role `contact_shape` takes the place of d.
+`contact` add to the sum, one of the role `contact_shape` takes the place of d. A body with a tip
+behind its transmission touches it with the tip: x and v are the tip's.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
+from types import SimpleNamespace
 from typing import Any
 
 import sympy as sp
@@ -47,3 +51,23 @@ def contact_force(effects: Sequence[Effect]) -> sp.Expr:
     laws = (e.expression({"penetration": felt}) for e in effects if e.role == "contact")
     force = sp.Add(*laws)
     return sp.Piecewise((force, sp.And(penetration > 0, force > 0)), (0, True))
+
+
+@lru_cache(maxsize=64)
+def touching(structure: Effect, contact: sp.Expr) -> Effect:
+    """A structure whose tip, not its body, is what the contact force is taken from.
+
+    contact: as `contact_force` gives it, of the body's motion
+    """
+
+    def at_tip(rate: Any) -> Any:
+        def touched(now: Any, p: Any) -> sp.Expr:
+            motion = {"position": now.tip_position, "velocity": now.tip_velocity}
+            taken = contact.subs({SIGNALS[n]: tip for n, tip in motion.items()})
+            left = now.interaction_force - taken
+            return rate(SimpleNamespace(**{**vars(now), "interaction_force": left}), p)
+
+        return touched
+
+    states = {n: replace(state, rate=at_tip(state.rate)) for n, state in structure.states.items()}
+    return replace(structure, states=states)

@@ -22,6 +22,7 @@ import numpy as np
 import sympy as sp
 
 from ..blocks import Body
+from ..blocks.environment import touching
 from ..effects import SIGNALS, UNEXPLAINED, Effect, Role, delayed, ordered
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
@@ -173,10 +174,12 @@ def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
     for effect in _present(body, "force", values):
         needed = needed - _force(effect, given, values, columns, motion.sample_time)
     contact = body.contact()
-    if contact != 0:
+    structures = _present(body, "structure", values)
+    if contact != 0 and structures:
+        structures = [touching(effect, contact) for effect in structures]
+    elif contact != 0:
         needed = needed - law_of(contact)(given, values, columns)
     low, high = _friction_bounds(body, motion, given, values, columns)
-    structures = _present(body, "structure", values)
     for effect in structures:
         rest = (needed, low, high)
         needed = needed - _force(effect, given, values, columns, motion.sample_time, rest)

@@ -83,9 +83,10 @@ def test_tangents_say_what_a_change_that_could_be_made_does(case, monkeypatch):
         sizes = [abs(rattling.parameters[n].value) for n in OWN]
         return max(s * np.abs(t).max() for s, t in zip(sizes, tangents, strict=True)) / acting
 
-    assert largest() < 2
+    kept = largest()
+    assert kept < 2
     monkeypatch.setattr(ode_scan, "GROWTH", np.inf)
-    assert largest() > 10
+    assert largest() > 4 * kept
 
 
 def test_a_tip_without_inertia_follows_nothing():

@@ -19,8 +19,9 @@ from effects.along import (
 from excitation import fit_record
 from truth_effects import PUBLIC
 
-from teleopdesign.effects import EFFECTS
-from teleopdesign.realise.along_motion import residual_along
+from teleopdesign.effects import EFFECTS, SIGNALS
+from teleopdesign.realise.along_motion import Traced, residual_along
+from teleopdesign.realise.ode_scan import ode_scan
 
 STEP = 1e-6  # m, of the encoder
 RATE = 1000.0
@@ -33,20 +34,21 @@ VALUES = {"spring.stiffness": 200.0, "backlash.tip_inertia": 0.03}
 COMMON = [n for n in NAMES if n in PUBLIC and n != "friction_memory"]
 
 
-def true_values(name):
+def true_values(*names):
     """Parameters of the truth simulator for the body that `modelled` makes."""
     values = {"inertia": INERTIA, "level": LEVEL}
-    if "environment" in with_needs(name):
+    needed = [n for name in names for n in with_needs(name)]
+    if "environment" in needed:
         values |= {
             "has_contact": 1.0,
             "contact_stiffness": typical("environment", "stiffness"),
             "contact_position": typical("environment", "contact_position"),
         }
-    for one in with_needs(name):
+    for one in needed:
         for parameter, (known, _) in PUBLIC.get(one, {}).items():
             values[known] = VALUES.get(f"{one}.{parameter}", typical(one, parameter))
     if "contact_power" in values:  # there the stiffness is per metre to the power
-        depth = typical(name, "depth")
+        depth = typical("contact_hardening", "depth")
         values["contact_stiffness"] *= depth ** (1.0 - values["contact_power"])
     values["inertia"] += values.pop("added_inertia", 0.0)
     values["inertia"] -= values.get("tip_inertia", 0.0)  # the package counts both sides
@@ -59,8 +61,8 @@ def modelled(*names):
     return body_of(*names, values={n: v for n, v in VALUES.items() if n.split(".")[0] in names})
 
 
-def simulated(name):
-    """Readings of a device with that effect and Coulomb friction under a position controller.
+def simulated(*names):
+    """Readings of a device with these effects and Coulomb friction under a position controller.
 
     Coulomb friction is a bristle whose give, 0.3 encoder steps, cannot be seen.
     """
@@ -68,7 +70,7 @@ def simulated(name):
     drive = truth_simulator.Drive.zero(len(x))
     drive.reference[:, 0], drive.reference_velocity[:, 0] = 0.01 * x, 0.01 * v
     drive.direct[:, 0] = signals(3, len(x))[2]
-    values = true_values(name) | {"kp": INERTIA * 40.0**2, "kd": 1.5 * INERTIA * 40.0}
+    values = true_values(*names) | {"kp": INERTIA * 40.0**2, "kd": 1.5 * INERTIA * 40.0}
     soft = values.pop("presliding", None)
     hard = (LEVEL + values.get("extra_static_level", 0.0)) / (0.3 * STEP)
     values["bristle_stiffness"] = soft or hard
@@ -102,6 +104,36 @@ def test_the_true_model_leaves_next_to_nothing_of_an_independent_simulation(name
     # force with the samples at which a reversal is told
     assert true < 0.015
     assert without > 5 * true
+
+
+@pytest.mark.parametrize("structure", ["transmission_compliance", "backlash"])
+def test_what_a_device_touches_it_touches_with_its_tip(structure):
+    motion = simulated("environment", structure)
+    known = modelled("coulomb", "environment", structure)
+    true = relative(residual_along(known, motion), motion)
+    rigid = relative(residual_along(modelled("coulomb", "environment"), motion), motion)
+    assert true < 0.015
+    assert rigid > 5 * true
+
+
+@pytest.mark.parametrize("frequency", [20.0, 50.0])
+def test_a_tip_swings_as_its_transfer_function_says_at_ten_samples_a_cycle(frequency):
+    """A straight line between samples would be 3 % too weak at a tenth of the sample rate."""
+    rate, w = 500.0, 2 * np.pi * frequency
+    body = body_of("transmission_compliance", values={"transmission_compliance.stiffness": 8e3})
+    effect, values = body.effects[0], body.numbers()
+    m, k, c = (values[s] for s in effect.symbols().values())
+    t = np.arange(2000) / rate
+    wave = np.exp(1j * w * t)
+    motion = {"position": wave, "velocity": 1j * w * wave, "acceleration": -(w**2) * wave}
+    none = np.zeros((0, len(t)))
+    given = {SIGNALS[n]: Traced(y.real, none) for n, y in motion.items()}
+    given[SIGNALS["interaction_force"]] = Traced(np.zeros(len(t)), none)
+    hidden = ode_scan(effect, given, values, [], 1 / rate)
+    found = hidden[effect.state_symbols()["tip_position"]].value
+    expected = ((k + 1j * w * c) / (k + 1j * w * c - m * w**2) * wave).real
+    settled = slice(1000, None)  # 2 s; the resonance rings for 0.1 s
+    assert np.abs(found - expected)[settled].max() < 2e-3 * np.abs(expected).max()
 
 
 def test_the_direction_of_motion_is_told_within_a_few_steps_of_every_reversal():
