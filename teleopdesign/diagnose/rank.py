@@ -115,6 +115,33 @@ def is_told(found: Fit, base: Fit) -> bool:
     return False
 
 
+def _is_part_of(small: Candidate, large: Candidate) -> bool:
+    """Whether one effect has the parameters of another, at the same place, and more."""
+    ours, theirs = ({n: p.quantity for n, p in c.effect.parameters.items()} for c in (small, large))
+    alike = small.at == large.at and small.effect.role == large.effect.role
+    return alike and ours.items() < theirs.items()
+
+
+def _from_kin(
+    tried: tuple[Candidate, Fit], all_tried: Collection[tuple[Candidate, Fit]], prepared: Prepared
+) -> tuple[Candidate, Fit]:
+    """Started anew where an effect that it is a part of has come to lie lower.
+
+    The larger one may find a way round: a gap that closes leads to the compliance behind it.
+    """
+    candidate, rough = tried
+    kin = [(c, f) for c, f in all_tried if _is_part_of(candidate, c)]
+    larger, found = min(kin, key=lambda cf: fit_squares(cf[1]), default=tried)
+    if fit_squares(found) >= fit_squares(rough):
+        return tried
+    (there, other) = (f"{c.at}.{c.effect.name}." for c in (candidate, larger))
+    values = {
+        n: found.model.parameters[n.replace(there, other, 1)].value for n in rough.model.parameters
+    }
+    again = estimate(rough.model.with_values(values), prepared, effort=ROUGH)
+    return candidate, min((rough, again), key=fit_squares)
+
+
 #: squares on the fit records above the best candidate's up to which another is fitted finely too
 CONTENDING = 0.5
 
@@ -175,6 +202,7 @@ def rank_candidates(
         wanted = {c.key for c in among}
         possible = tuple(c for c in possible if c.key in wanted)
     fits = in_threads(tried, possible)
+    fits = in_threads(lambda cf: _from_kin(cf, fits, prepared), fits)
     leading = (1.0 + CONTENDING) * min((fit_squares(f) for _, f in fits), default=0.0)
     worthless = (1.0 - worth) * fit_squares(base)
     fits = in_threads(lambda cf: _refined(cf, leading, worthless, prepared, stated), fits)
