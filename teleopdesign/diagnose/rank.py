@@ -201,7 +201,9 @@ def rank_candidates(
     if among is not None:
         wanted = {c.key for c in among}
         possible = tuple(c for c in possible if c.key in wanted)
-    fits = in_threads(tried, possible)
+    # those with hidden states take longest: begun last, they would be waited for
+    fits = in_threads(tried, sorted(possible, key=lambda c: not c.effect.states))
+    fits.sort(key=lambda cf: possible.index(cf[0]))
     fits = in_threads(lambda cf: _from_kin(cf, fits, prepared), fits)
     leading = (1.0 + CONTENDING) * min((fit_squares(f) for _, f in fits), default=0.0)
     worthless = (1.0 - worth) * fit_squares(base)
