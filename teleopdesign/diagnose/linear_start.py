@@ -8,6 +8,7 @@ phase turns a sine into a cosine. No steps are needed, so forms by the hundred c
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -27,10 +28,19 @@ AT_ONCE = 48
 
 @dataclass(frozen=True)
 class LinearStart:
-    """A model with the new effect at its best strength, and the squares that one step leaves."""
+    """Where the new effect has its best strength, and the squares that one step leaves.
 
-    model: Model
+    form: the model with the effect's other parameters;  best: strength, and phase, by full name
+    """
+
+    form: Model
+    best: Mapping[str, float]
     promised: float
+
+    @property
+    def model(self) -> Model:
+        """The model with the new effect at its best strength."""
+        return self.form.with_values(self.best)
 
 
 def linear_starts(
@@ -95,7 +105,7 @@ def _start(model: Model, effect: Effect, at: str, left: Array, columns: Array) -
     """The strength, and phase, that takes most away from what is left."""
     assert effect.strength is not None
     if not np.isfinite(columns).all():  # no finite motion with these values
-        return LinearStart(model, math.inf)
+        return LinearStart(model, {}, math.inf)
     size = _size(columns)
     by = -np.linalg.lstsq(columns / size, left, rcond=1e-10)[0] / size
     values = {effect.strength: float(by[0])}
@@ -110,4 +120,4 @@ def _start(model: Model, effect: Effect, at: str, left: Array, columns: Array) -
     values[effect.strength] = inside
     rest = left + part * (columns @ by)
     full = {f"{at}.{effect.name}.{n}": v for n, v in values.items()}
-    return LinearStart(model.with_values(full), float(rest @ rest))
+    return LinearStart(model, full, float(rest @ rest))
