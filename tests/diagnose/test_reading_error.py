@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.blocks import Body
+from teleopdesign.blocks import Body, Value
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.force_error import prepare
 from teleopdesign.diagnose.reading_error import (
@@ -105,13 +105,15 @@ def test_a_second_simulation_predicts_by_how_much_estimates_miss(rod):
             fit.motion, simulated_course(found.model.body("device"), fit.motion, give=0.1)
         ),
     )
-    names = ["device.inertia", "device.stribeck.extra_static_level"]
+    # but the inertia, which misses by less than a thousandth before and after
+    names = [n for n in found.free if n != "device.inertia"]
     misses, left = [], []
     for seed in range(3):
         read = as_read(exact, prepared, np.random.default_rng(seed))
         known = replace(prepared, stretches=(read,))
         again = estimate(found.model, known)
-        better = with_reading_error(again, known, np.random.default_rng(50), adequate=always)
+        drawn = np.random.default_rng(50 + seed)
+        better = with_reading_error(again, known, drawn, adequate=always)
         for kept, fitted in ((misses, again), (left, better)):
             kept.append(
                 [
@@ -157,6 +159,25 @@ def test_what_reading_moves_to_another_magnitude_is_not_corrected(rod, monkeypat
         found, prepared, np.random.default_rng(1), adequate=lambda fit: fit is found
     )
     assert refused.model.parameters["device.coulomb.level"].value == level.value
+
+
+def test_a_shift_that_depends_on_the_values_is_found_where_it_leads(rod, monkeypatch):
+    """An estimate half way from the truth to 2: 1.5 where the truth is 1."""
+    found, prepared = rod
+    name = "device.viscous.damping"
+    i = found.free.index(name)
+    model = found.model.with_values({name: Value(1.5, False, 0.01)})
+
+    def shifted(there, *_):
+        off = np.zeros(len(found.free))
+        off[i] = 0.5 * (2.0 - there.model.parameters[name].value)
+        return ReadingError(shift=off, spread=0.01 + 0 * off)
+
+    monkeypatch.setattr("teleopdesign.diagnose.reading_error.reading_error", shifted)
+    given = replace(found, model=model)
+    after = with_reading_error(given, prepared, np.random.default_rng(1), adequate=always)
+    # 1.5 -> 1.25 -> 1.125 -> 1.06 -> 1.03: four simulations
+    assert after.model.parameters[name].value == pytest.approx(1.0, abs=0.04)
 
 
 def test_what_cannot_be_simulated_is_left_as_it_is(rod, monkeypatch):

@@ -66,7 +66,7 @@ def test_the_verdict_names_the_effect_and_both_errors(diagnosis):
     assert text.startswith(
         "Your model lacks stribeck at device. With it, the force error on records"
     )
-    assert re.search(r"from 7\.05.% to 0\.98.%", text)
+    assert re.search(r"from 7\.05.% to 0\.97.%", text)
 
 
 def test_look_alikes_are_named_together(diagnosis):
