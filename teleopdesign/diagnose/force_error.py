@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import Body
+from ..effects import SIGNALS
 from ..errors import ExperimentError
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
@@ -143,15 +144,15 @@ def referred(
 ) -> list[tuple[Array, Array]]:
     """Residuals relative to the force that acts by the model, at the scale of the measured force.
 
-    A model whose actuator passes next to nothing leaves next to no residual force; relative to
-    what it lets act on each body, nothing is gained. Equal to `residuals` where nothing stands
-    between command and force.
+    A model whose actuator passes next to nothing leaves next to no residual force, nor does one
+    whose friction takes up whatever acts; relative to what it lets act on each body, nothing is
+    gained. Equal to `residuals` where nothing stands between command and force.
     """
     parts = _with_acting(model, stretches, wrt)
     found = [(r, d) for r, d, _, _ in parts]
     for place, body in model.bodies.items():
         mine = [i for i, s in enumerate(stretches) if s.motion.body == place]
-        if not mine or not any(e.role == "actuation" for e in body.effects):
+        if not mine or not _takes_from_what_acts(body):
             continue
         whole = sum(stretches[i].measured for i in mine)
         acting = sum(stretches[i].weight * float(parts[i][2] @ parts[i][2]) for i in mine)
@@ -164,6 +165,12 @@ def referred(
             r, d = found[i]
             found[i] = factor * r, factor * (d - np.outer(slope / acting, r))
     return found
+
+
+def _takes_from_what_acts(body: Body) -> bool:
+    """Whether an actuator's stage, or friction under load, stands before what moves the body."""
+    stages = any(e.role == "actuation" for e in body.effects)
+    return stages or body.level().has(SIGNALS["acting_force"])
 
 
 def _with_acting(
@@ -179,7 +186,7 @@ def _with_acting(
         own = [located[i][1] for i in mine]
         along = residual_along(body, there, own)
         signals = []
-        for traced, offset in ((along.residual, 0.0), (along.acting, motion.interaction)):
+        for traced, offset in ((along.residual, 0.0), (along.moving, motion.interaction)):
             value = motion.lowpassed(traced.value + offset)[rows]
             tangent = np.zeros((len(wrt), len(rows)))
             moving = traced.tangent.any(axis=1)

@@ -3,7 +3,8 @@
     level = F_C + mu abs(acting force)
 
 Gears, screws and capstans press harder on their contacts the more they transmit. Told from
-`coulomb` by commands that vary at equal speed.
+`coulomb` by commands that vary at equal speed. From mu = 1 on no acting force moves the body: a
+search ends before, for friction that takes up whatever acts explains any record.
 """
 
 from ._effect import Effect, Parameter
@@ -16,7 +17,9 @@ def law(now, p):
 EFFECT = Effect(
     role="friction_level",
     law=law,
-    parameters={"coefficient": Parameter("dimensionless", "mu: level per force carried")},
+    parameters={
+        "coefficient": Parameter("dimensionless", "mu: level per force carried", within=0.9)
+    },
     absent={"coefficient": 0.0},
     needs=frozenset({"coulomb"}),
     always=frozenset({"even in velocity", "non-negative", "dissipates"}),

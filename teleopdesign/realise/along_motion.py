@@ -143,13 +143,14 @@ class Residual:
     """What the model leaves along one motion (n samples), SI, tangents (p, n).
 
     residual: force that acts beyond what the model needs;  friction: the model's friction force
-    acting: acting force at the rows
+    acting: acting force at the rows;  moving: less the friction that it makes itself
     """
 
     motion: Motion
     residual: Traced
     friction: Traced
     acting: Traced
+    moving: Traced
 
 
 def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) -> Residual:
@@ -187,7 +188,29 @@ def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
     residual = needed - friction
     for effect in structures:
         residual = residual - _led(effect, motion, residual, values, columns)
-    return Residual(motion, residual, friction, acting)
+    given[SIGNALS["direction"]] = plain(motion.direction.astype(float))
+    moving = acting - _own_friction(body, friction, given, values, columns)
+    return Residual(motion, residual, friction, acting, moving)
+
+
+def _own_friction(
+    body: Body,
+    friction: Traced,
+    given: Mapping[Any, Traced],
+    values: Mapping[Any, float],
+    columns: list[Any],
+) -> Traced:
+    """The part of the friction that the acting force itself makes."""
+    level = body.level()
+    if not level.has(SIGNALS["acting_force"]):
+        return Traced(np.zeros_like(friction.value), np.zeros_like(friction.tangent))
+    rest = level.subs(SIGNALS["acting_force"], 0)
+    part = sp.Piecewise((1 - rest / level, level > 0), (0, True))
+    if not part.free_symbols <= {*given, *values}:
+        return Traced(np.zeros_like(friction.value), np.zeros_like(friction.tangent))
+    share = law_of(part)(given, values, columns)
+    tangent = friction.tangent * share.value + friction.value * share.tangent
+    return Traced(friction.value * share.value, tangent)
 
 
 def _force(

@@ -9,7 +9,7 @@ from diagnose.own_cases import truth_of, write_own
 from measurement.rod_example import write_rod
 from shared_data import shared_folder
 
-from teleopdesign import ExperimentError, Model, load_experiment
+from teleopdesign import ExperimentError, Model, example, load_experiment
 from teleopdesign.diagnose.answer import write_predictions
 from teleopdesign.diagnose.fit import block_numbers, estimate
 from teleopdesign.diagnose.force_error import (
@@ -19,6 +19,7 @@ from teleopdesign.diagnose.force_error import (
     folds,
     force_error,
     prepare,
+    referred,
     residuals,
 )
 from teleopdesign.diagnose.noise_floor import noise_floor
@@ -251,3 +252,22 @@ def test_an_experiment_that_is_no_machine_is_still_compared(tmp_path):
     experiment = load_experiment(write_rod(tmp_path / "rod"))
     found = estimate(Model.from_experiment(experiment), prepare(experiment))
     assert 0.0 <= found.check_error < 10.0
+
+
+def test_a_friction_that_takes_up_whatever_acts_gains_nothing():
+    """At mu near 1 next to no force is left to move the rod, and next to no residual."""
+    experiment = load_experiment(example("rod"))
+    stretches = prepare(experiment).of("fit")
+    stated = Model.from_experiment(experiment)
+    name = "device.load_dependent_friction.coefficient"
+
+    def squares(mu, of):
+        model = stated.with_effect("load_dependent_friction", values={"coefficient": mu})
+        ((r, slope),) = of(model, stretches, [name])
+        return float(r @ r), 2.0 * float(slope[0] @ r)
+
+    plain, (little, _) = squares(0.0, residuals)[0], squares(0.9, referred)
+    assert little > plain
+    value, slope = squares(0.3, referred)
+    ahead, back = (squares(0.3 + h, referred)[0] for h in (1e-5, -1e-5))
+    assert slope == pytest.approx((ahead - back) / 2e-5, rel=1e-3)
