@@ -165,6 +165,8 @@ def on_matrices(
 ) -> sp.Matrix:
     """The expression with matrices in place of its symbols, exact where they are rational.
 
+    Floating numbers in it count as the fractions that they are, so that what is zero stays so.
+
     size: rows of each matrix; default: as the first of the blocks
     raises ModelError: there is no block, and no size
     """
@@ -173,7 +175,8 @@ def on_matrices(
             raise ModelError(f"{expression}: no block is given, expected a size beside it")
         size = next(iter(blocks.values())).shape[0]
     if expression.is_Number:
-        return expression * sp.eye(size)
+        exact = sp.Rational(expression) if expression.is_Float else expression
+        return exact * sp.eye(size)
     if expression.is_Symbol:
         return blocks[expression]
     if expression.is_Pow:
