@@ -51,11 +51,6 @@ ACTUATION_ORDER = (
 #: roles of what belongs to a modelled environment, not to the body that touches it
 CONTACT_ROLES = frozenset({"contact", "contact_shape"})
 
-#: starts for the period of something that repeats along the travel (multiples of the whole travel):
-#: even in 1/period, three quarters of a cycle over the travel from one to the next. Where two are
-#: a cycle apart, what lies between them is orthogonal to both for a motion that stays at its ends
-PERIODS = (3.0, *(4.0 / 3.0 / k for k in range(1, 151)))
-
 
 def positive_amplitude(values: Mapping[str, float]) -> dict[str, float]:
     """The same sinusoid with an amplitude >= 0 and a phase in [0, 2 pi)."""
@@ -107,6 +102,19 @@ class Parameter:
     chosen: bool = False
     optional: bool = False
     essential: bool = False
+
+
+#: period of something that repeats along the travel. Searches start evenly in 1/period, three
+#: quarters of a cycle over the whole travel from one to the next: where two are a cycle apart, what
+#: lies between them is orthogonal to both for a motion that stays at its ends. From two travels on
+#: it is no longer seen to repeat: a bias, or a spring
+PERIOD = Parameter(
+    "position",
+    "p: travel of one period",
+    starts=tuple(4.0 / 3.0 / k for k in range(1, 151)),
+    scale="travel",
+    within=2.0,
+)
 
 
 @dataclass(frozen=True)

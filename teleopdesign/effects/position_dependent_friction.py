@@ -7,9 +7,11 @@ round with the direction, which tells it from `cogging` and `spring`. What other
 level stays as it is.
 """
 
+from dataclasses import replace
+
 from sympy import pi, sin
 
-from ._effect import PERIODS, Effect, Parameter, positive_amplitude
+from ._effect import PERIOD, Effect, Parameter, positive_amplitude
 
 
 def law(now, p):
@@ -27,7 +29,8 @@ EFFECT = Effect(
             upper=1.0,
             starts=(0.05,),
         ),
-        "period": Parameter("position", "p: travel of one period", starts=PERIODS, scale="travel"),
+        # half a wave over the travel is a friction that grows along it
+        "period": replace(PERIOD, starts=(3.0, *PERIOD.starts), within=float("inf")),
         "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=(0.0,)),
     },
     absent={"amplitude": 0.0},

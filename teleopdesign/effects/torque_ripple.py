@@ -8,7 +8,7 @@ that tells it from `cogging`.
 
 from sympy import pi, sin
 
-from ._effect import PERIODS, Effect, Parameter, positive_amplitude
+from ._effect import PERIOD, Effect, Parameter, positive_amplitude
 
 
 def law(now, p):
@@ -22,13 +22,7 @@ EFFECT = Effect(
         "amplitude": Parameter(
             "dimensionless", "r: relative amplitude", lower=-1.0, upper=1.0, starts=(0.05,)
         ),
-        "period": Parameter(
-            "position",
-            "p: travel of one period",
-            starts=PERIODS[1:],
-            scale="travel",
-            within=2.0,
-        ),
+        "period": PERIOD,
         "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=(0.0,)),
     },
     absent={"amplitude": 0.0},
