@@ -3,8 +3,7 @@
     level = F_C + mu abs(acting force)
 
 Gears, screws and capstans press harder on their contacts the more they transmit. Told from
-`coulomb` by commands that vary at equal speed. From mu = 1 on no acting force moves the body: a
-search ends before, for friction that takes up whatever acts explains any record.
+`coulomb` by commands that vary at equal speed. From mu = 1 on no acting force moves the body.
 """
 
 from ._effect import Effect, Parameter
@@ -18,7 +17,7 @@ EFFECT = Effect(
     role="friction_level",
     law=law,
     parameters={
-        "coefficient": Parameter("dimensionless", "mu: level per force carried", within=0.9)
+        "coefficient": Parameter("dimensionless", "mu: level per force carried", within=1.0)
     },
     absent={"coefficient": 0.0},
     needs=frozenset({"coulomb"}),

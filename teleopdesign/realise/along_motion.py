@@ -180,7 +180,9 @@ def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
         structures = [touching(effect, contact) for effect in structures]
     elif contact != 0:
         needed = needed - law_of(contact)(given, values, columns)
-    low, high = _friction_bounds(body, motion, given, values, columns)
+    level, speeds = _level(body, motion, given, values, columns)
+    given |= speeds
+    low, high = _friction_bounds(body, level, motion, given, values, columns)
     for effect in structures:
         rest = (needed, low, high)
         needed = needed - _force(effect, given, values, columns, motion.sample_time, rest)
@@ -189,26 +191,23 @@ def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
     for effect in structures:
         residual = residual - _led(effect, motion, residual, values, columns)
     given[SIGNALS["direction"]] = plain(motion.direction.astype(float))
-    moving = acting - _own_friction(body, friction, given, values, columns)
+    moving = acting - _own_friction(level, friction, given, values, columns)
     return Residual(motion, residual, friction, acting, moving)
 
 
 def _own_friction(
-    body: Body,
+    level: sp.Expr,
     friction: Traced,
     given: Mapping[Any, Traced],
     values: Mapping[Any, float],
     columns: list[Any],
 ) -> Traced:
     """The part of the friction that the acting force itself makes."""
-    level = body.level()
     if not level.has(SIGNALS["acting_force"]):
         return Traced(np.zeros_like(friction.value), np.zeros_like(friction.tangent))
     rest = level.subs(SIGNALS["acting_force"], 0)
     part = sp.Piecewise((1 - rest / level, level > 0), (0, True))
-    if not part.free_symbols <= {*given, *values}:
-        return Traced(np.zeros_like(friction.value), np.zeros_like(friction.tangent))
-    share = law_of(part)(given, values, columns)
+    share = _law_of_level(part, given, values)(given, values, columns)
     tangent = friction.tangent * share.value + friction.value * share.tangent
     return Traced(friction.value * share.value, tangent)
 
@@ -314,30 +313,50 @@ def _shifted(
     return Traced(value, tangent)
 
 
+def _level(
+    body: Body,
+    motion: Motion,
+    given: Mapping[Any, Traced],
+    values: Mapping[Any, float],
+    columns: list[Any],
+) -> tuple[sp.Expr, dict[Any, Traced]]:
+    """The friction level, and along the motion the hidden speeds that it follows."""
+    level = body.level()
+    speeds: dict[Any, Traced] = {}
+    for effect in ordered(body.effects, "friction_speed"):
+        if effect.is_absent(values):
+            level = level.subs(effect.expression(), sp.Abs(SIGNALS["velocity"]))
+        else:
+            speeds |= driven_scan(effect, given, values, columns, motion.sample_time)
+    return level, speeds
+
+
+def _law_of_level(
+    expression: sp.Expr, given: Mapping[Any, Traced], values: Mapping[Any, float]
+) -> Law:
+    """An expression of signals, parameters and hidden speeds, which carry tangents, as a law."""
+    hidden = tuple(s for s in given if s not in SIGNALS.values() and s not in values)
+    return law_of(expression, (*SIGNALS.values(), *hidden), _TRACED | set(hidden))
+
+
 def _friction_bounds(
     body: Body,
+    level: sp.Expr,
     motion: Motion,
     given: Mapping[Any, Traced],
     values: Mapping[Any, float],
     columns: list[Any],
 ) -> tuple[Traced, Traced]:
     """Least and largest friction at each row; they coincide where the motion tells it."""
-    level = body.level()
     zero = np.zeros((len(columns), len(motion.time)))
     if level == 0:
         none = Traced(np.zeros(len(motion.time)), zero)
         return none, none
-    hidden: dict[Any, Traced] = {}
-    for effect in ordered(body.effects, "friction_speed"):
-        if effect.is_absent(values):
-            level = level.subs(effect.expression(), sp.Abs(SIGNALS["velocity"]))
-        else:
-            hidden |= driven_scan(effect, given, values, columns, motion.sample_time)
-    law = law_of(level, (*SIGNALS.values(), *hidden), _TRACED | set(hidden))
+    law = _law_of_level(level, given, values)
 
     def towards(way: float) -> Traced:
         ways = {SIGNALS["direction"]: Traced(np.full(len(motion.time), way), zero)}
-        found = law({**given, **hidden, **ways}, values, columns)
+        found = law({**given, **ways}, values, columns)
         found.tangent[:, found.value < 0] = 0.0
         return Traced(np.maximum(found.value, 0.0), found.tangent)
 

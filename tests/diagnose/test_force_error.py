@@ -254,11 +254,16 @@ def test_an_experiment_that_is_no_machine_is_still_compared(tmp_path):
     assert 0.0 <= found.check_error < 10.0
 
 
-def test_a_friction_that_takes_up_whatever_acts_gains_nothing():
+@pytest.mark.parametrize("beside", [{}, {"friction_memory": {"time_constant": 0.01}}])
+def test_a_friction_that_takes_up_whatever_acts_gains_nothing(beside):
     """At mu near 1 next to no force is left to move the rod, and next to no residual."""
     experiment = load_experiment(example("rod"))
     stretches = prepare(experiment).of("fit")
-    stated = Model.from_experiment(experiment)
+    stated = Model.from_experiment(experiment).with_effect(
+        "stribeck", values={"extra_static_level": 0.2, "stribeck_velocity": 0.02}
+    )
+    for effect, values in beside.items():
+        stated = stated.with_effect(effect, values=values)
     name = "device.load_dependent_friction.coefficient"
 
     def squares(mu, of):
