@@ -186,10 +186,11 @@ def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout)
 
 
 @lru_cache(maxsize=32)
-def _fastest(effect: Effect) -> Any:
-    """Function of the parameters: the largest rate (rad/s) of the states among themselves.
+def _stiffness(effect: Effect) -> tuple[list[str], Any]:
+    """Signals, and a function of them and the parameters: slopes of the rates by the states (1/s).
 
-    Laws with gaps or stops are judged where they are stiffest, by the largest of their pieces.
+    Laws with gaps or stops are judged where they are stiffest, by the first of their pieces, and
+    what stiffens with the motion where no state has left the signal that it starts at.
     """
     # a correction is fastest where little is left unexplained, and then linear in it
     law, corrections = effect.expression(), effect.corrections()
@@ -198,10 +199,24 @@ def _fastest(effect: Effect) -> Any:
         for name, rate in effect.rates().items()
     ]
     rates = [r.replace(sp.Piecewise, lambda *pieces: pieces[0][0]) for r in rates]
-    states = list(effect.state_symbols().values())
-    # what stiffens is judged where it begins
-    matrix = sp.Matrix(rates).jacobian(states).subs({s: 0 for s in states})
-    return sp.lambdify(_parameters(effect), matrix, "numpy")
+    symbols = effect.state_symbols()
+    starts = {symbols[n]: SIGNALS[s.start] if s.start else 0 for n, s in effect.states.items()}
+    matrix = sp.Matrix(rates).jacobian(list(starts)).subs(starts)
+    names = [n for n, s in SIGNALS.items() if matrix.has(s)]
+    return names, sp.lambdify([[SIGNALS[n] for n in names], _parameters(effect)], matrix, "numpy")
+
+
+def _fastest(effect: Effect, given: Mapping[Any, Traced], parameters: Array) -> float:
+    """Largest rate (rad/s) of the states among themselves, at the ends of the measured motion."""
+    names, slopes = _stiffness(effect)
+    signals = [given[SIGNALS[n]].value for n in names]
+    ends = {int(end(row)) for row in signals for end in (np.argmin, np.argmax)} or {0}
+    fastest = 0.0
+    for end in ends:
+        with np.errstate(invalid="ignore"):  # a law beyond where it begins, such as a root
+            at_end = np.array(slopes([row[end] for row in signals], parameters), dtype=float)
+        fastest = max(fastest, float(np.abs(np.linalg.eigvals(np.nan_to_num(at_end))).max()))
+    return fastest
 
 
 #: what each of these goes on by
@@ -246,8 +261,8 @@ def ode_scan(
     parameters = np.array([values[s] for s in own], dtype=float)
     symbols = [getattr(c, "symbol", c) for c in columns]  # of a probe: its strength
     places = np.array([symbols.index(s) if s in symbols else -1 for s in own], dtype=int)
-    modes = np.linalg.eigvals(np.nan_to_num(np.array(_fastest(effect)(*parameters), dtype=float)))
-    covered = step * float(np.abs(modes).max())
+    fastest = _fastest(effect, given, parameters)
+    covered = step * fastest
     steps = int(np.clip(np.ceil(covered / MODE_STEP), 1, MOST_STEPS))
     corrected = rest if effect.corrections() else ()
     drivers = [given[SIGNALS[n]].value for n in _drivers(effect)]
@@ -262,7 +277,7 @@ def ode_scan(
     )
     out, tangent = np.empty((count, n)), np.empty((count, len(columns), n))
     # a difference of one in position goes with one of the fastest mode's rate in velocity
-    rate = max(float(np.abs(modes).max()), 1e-300)
+    rate = max(fastest, 1e-300)
     size = np.array([rate if s.quantity == "velocity" else 1.0 for s in effect.states.values()])
     growth = GROWTH if effect.corrections() else np.inf
     scan = compiled(_source(effect), "scan")

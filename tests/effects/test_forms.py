@@ -107,11 +107,12 @@ def test_the_true_model_leaves_next_to_nothing_of_an_independent_simulation(name
 
 
 @pytest.mark.parametrize("structure", ["transmission_compliance", "backlash"])
-def test_what_a_device_touches_it_touches_with_its_tip(structure):
-    motion = simulated("environment", structure)
-    known = modelled("coulomb", "environment", structure)
-    true = relative(residual_along(known, motion), motion)
-    rigid = relative(residual_along(modelled("coulomb", "environment"), motion), motion)
+@pytest.mark.parametrize("contact", [(), ("contact_hardening",)])
+def test_what_a_device_touches_it_touches_with_its_tip(structure, contact):
+    touched = ("environment", *contact)
+    motion = simulated(*touched, structure)
+    true = relative(residual_along(modelled("coulomb", *touched, structure), motion), motion)
+    rigid = relative(residual_along(modelled("coulomb", *touched), motion), motion)
     assert true < 0.015
     assert rigid > 5 * true
 
