@@ -18,6 +18,7 @@ from ..realise.along_motion import residual_along
 from .diagnosis import Diagnosis
 from .fit import Fit
 from .force_error import along_own, own_groups
+from .one_moment import Moment
 from .probability import CandidateEvidence, evidence_of
 
 
@@ -44,8 +45,22 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "own": _own(diagnosis),
         "model_parameters": _parameters(diagnosis.after, _added(diagnosis)),
         "left_over_noise_floors": _finite(diagnosis.left),
+        "one_moment": _moment(diagnosis.moment),
         "at_bound": list(diagnosis.after.at_bound),
         "evidence": [_evidence(one) for one in evidence_of(diagnosis) if one.share > 0],
+    }
+
+
+def _moment(moment: Moment | None) -> dict[str, Any] | None:
+    """The moment that holds all that is left above noise."""
+    if moment is None:
+        return None
+    return {
+        "record": moment.file,
+        "at": moment.body,
+        "begin": {"value": moment.begin, "unit": "s"},
+        "end": {"value": moment.end, "unit": "s"},
+        "left_over_noise_floors_without": moment.without,
     }
 
 
@@ -233,8 +248,14 @@ def sentence(diagnosis: Diagnosis) -> str:
     left = diagnosis.left
     more = f" What is left is {left:.1f} noise floors: more is missing."
     rest = more if diagnosis.more_is_missing else ""
+    if (moment := diagnosis.moment) is not None:
+        rest = (
+            f" What is left is {left:.1f} noise floors, but {moment.without:.1f} without one "
+            f"moment ({moment})."
+        )
     if diagnosis.verdict == "model_adequate":
-        return f"verdict: model_adequate. What is left is noise ({left:.2f} noise floors)."
+        noise = f" What is left is noise ({left:.2f} noise floors)."
+        return f"verdict: model_adequate.{rest or noise}"
     if diagnosis.verdict == "effects_missing":
         equals = {r.added: r.equals for r in diagnosis.rungs if r.added is not None}
         names = ", ".join(" or ".join(map(str, (c, *equals[c]))) for c in diagnosis.missing)

@@ -12,6 +12,7 @@ from .candidates import Candidate
 from .fit import Fit
 from .force_error import Prepared
 from .noise_floor import NoiseFloor
+from .one_moment import Moment, worst_moment
 from .rank import Ranking
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ class Diagnosis:
     last: ranking after the last rung, none of which was accepted
     estimated: the last rung's fit before what its readings do was taken off: to be held against
         other fits
+    moment: the one moment that holds all that is left above noise; None where there is none
     """
 
     experiment: Experiment
@@ -54,6 +56,7 @@ class Diagnosis:
     last: Ranking
     estimated: Fit
     floor: NoiseFloor
+    moment: Moment | None = None
 
     @property
     def before(self) -> Fit:
@@ -86,7 +89,7 @@ class Diagnosis:
     @property
     def more_is_missing(self) -> bool:
         """Whether more than noise is left."""
-        return not is_adequate(self.after, self.floor)
+        return not is_adequate(self.after, self.floor) and self.moment is None
 
     @property
     def left(self) -> float:
@@ -115,17 +118,29 @@ def is_adequate(found: Fit, floor: NoiseFloor) -> bool:
     return is_noise(found.check_error, floor)
 
 
+def moment_above_noise(found: Fit, prepared: Prepared, floor: NoiseFloor) -> Moment | None:
+    """The one moment that holds all that a model leaves above noise; None where none does."""
+    if is_adequate(found, floor):
+        return None
+    moment = worst_moment(found, prepared, floor)
+    return moment if moment is not None and moment.without <= ADEQUATE else None
+
+
 def explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
     """Part of the squares above the noise floor that the effects between the two explain."""
     whole, left = before.check_error**2, after.check_error**2
     return (whole - left) / max(whole - floor.value**2, 1e-300)
 
 
-def verdict(rungs: Sequence[Rung], floor: NoiseFloor) -> str:
-    """ "effects_missing", "model_adequate" or "undecided"."""
+def verdict(rungs: Sequence[Rung], floor: NoiseFloor, moment: Moment | None = None) -> str:
+    """ "effects_missing", "model_adequate" or "undecided".
+
+    moment: as `moment_above_noise` says; what is left at one moment only is no missing physics
+    """
     added = [r for r in rungs if r.added is not None]
     if not added:
-        return "model_adequate" if is_adequate(rungs[-1].fit, floor) else "undecided"
+        adequate = is_adequate(rungs[-1].fit, floor) or moment is not None
+        return "model_adequate" if adequate else "undecided"
     if explained(rungs[0].fit, rungs[-1].fit, floor) < MOSTLY or all(r.equals for r in added):
         return "undecided"
     return "effects_missing"

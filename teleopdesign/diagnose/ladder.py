@@ -12,7 +12,16 @@ from ..errors import ModelError
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .candidates import Candidate
-from .diagnosis import MOSTLY, Diagnosis, Rung, explained, is_adequate, is_noise, verdict
+from .diagnosis import (
+    MOSTLY,
+    Diagnosis,
+    Rung,
+    explained,
+    is_adequate,
+    is_noise,
+    moment_above_noise,
+    verdict,
+)
 from .excerpt import excerpt
 from .exchange import best_exchange, rivals_of
 from .fit import Fit, estimate, fit_squares
@@ -111,11 +120,12 @@ def find_missing(
         here, prepared, generator, adequate=lambda fit: is_adequate(fit, floor)
     )
     rungs[-1] = replace(rungs[-1], fit=read)
+    moment = moment_above_noise(read, prepared, floor)
     if long:
         say("errors on the whole records")
         rungs = [replace(r, fit=_on_all(r.fit, whole)) for r in rungs]
-    said = verdict(rungs, floor)
-    return Diagnosis(experiment, whole, said, tuple(rungs), ranking, here, floor)
+    said = verdict(rungs, floor, moment)
+    return Diagnosis(experiment, whole, said, tuple(rungs), ranking, here, floor, moment)
 
 
 def _bounded(floor: NoiseFloor, here: Fit, ranking: Ranking) -> NoiseFloor:

@@ -92,10 +92,15 @@ def verdict(diagnosis: Diagnosis) -> str:
         if more
         else f"What is left is near what sensor noise alone would leave, {floor}."
     )
+    if (moment := diagnosis.moment) is not None:
+        rest = (
+            f"What is left is {left} times what sensor noise alone would leave, "
+            f"{number(moment.without, 2)} times without one moment ({moment})."
+        )
     if diagnosis.verdict == "model_adequate":
         return (
             f"Your model is adequate: it leaves {percent(after)} of the force unexplained, and "
-            f"sensor noise alone would leave {floor}."
+            f"sensor noise alone would leave {floor}." + (f" {rest}" if moment is not None else "")
         )
     if diagnosis.verdict == "effects_missing":
         return f"Your model lacks {listed(added)}. With {_it(added)}, {fell}. {rest}"

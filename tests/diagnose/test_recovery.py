@@ -1,6 +1,7 @@
 """Plant an effect, diagnose, find it. Plant none, find none. Plant a look-alike, hear so."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from diagnose.own_cases import FEW, truth_of, write_own
 from truth_effects import TEN
 
 from teleopdesign import Model, find_missing, load_experiment
-from teleopdesign.diagnose.answer import answer
+from teleopdesign.diagnose.answer import answer, ladder_text
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.effects import EFFECTS
 
@@ -51,6 +52,28 @@ def test_where_nothing_is_missing_nothing_is_named(tmp_path):
     assert found.verdict == "model_adequate"
     assert not found.missing and not found.groups
     assert len(found.rungs) == 1
+
+
+@pytest.mark.parametrize("pushes", [1, 4])
+def test_what_happens_once_is_no_missing_physics(pushes, tmp_path):
+    experiment = load_experiment(write_own(tmp_path / "null", None, seed=4))
+    (check,) = experiment.check_records
+    command = check.signals["device.actuator_force"].copy()
+    size = 0.3 * np.sqrt(np.mean(command**2))
+    for begin in np.arange(1, pushes + 1) * 1.5:  # a force that nobody logged
+        command[(check.time > begin) & (check.time < begin + 0.06)] -= size
+    pushed = replace(check, signals={**check.signals, "device.actuator_force": command})
+    records = tuple(pushed if r is check else r for r in experiment.records)
+    experiment = replace(experiment, records=records)
+    found = find_missing(experiment, Model.from_experiment(experiment, FEW))
+    assert not found.missing and found.left > 2.5
+    if pushes > 1:
+        assert found.verdict == "undecided" and found.moment is None
+        return
+    assert found.verdict == "model_adequate" and not found.more_is_missing
+    assert found.moment.begin < 1.51 and found.moment.end > 1.55 and found.moment.without < 1.5
+    assert f"without one moment ({found.moment})" in ladder_text(found)
+    assert answer(found)["one_moment"]["record"] == check.file
 
 
 def test_one_of_two_look_alikes_is_undecided_between_them(tmp_path):

@@ -1,0 +1,63 @@
+"""One moment of the check records that holds all that is left above noise.
+
+Physics that is missing shows again and again, wherever the motion asks for it. Where all but one
+block of the check records is noise, something happened then, or readings misled: no law follows
+from it, and the records do not say that the model lacks one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .fit import Fit, block_numbers
+from .force_error import Prepared
+from .noise_floor import NoiseFloor
+
+#: least number of moments of which one may be left out: of fewer, each is too much of the records
+MOMENTS = 10
+
+
+@dataclass(frozen=True)
+class Moment:
+    """Half a second of a check record, and how many noise floors are left without it.
+
+    file, body: where;  begin, end: s, of the rows that it holds
+    """
+
+    file: str
+    body: str
+    begin: float
+    end: float
+    without: float
+
+    def __str__(self) -> str:
+        return f"{self.body} in {self.file}, {self.begin:.2f} to {self.end:.2f} s"
+
+
+def worst_moment(found: Fit, prepared: Prepared, floor: NoiseFloor) -> Moment | None:
+    """The two blocks in a row that leave most; None of fewer than `MOMENTS`, or without check."""
+    stretches = prepared.of("check")
+    if not stretches or not floor.value:
+        return None
+    numbers = block_numbers(stretches)
+    squares = np.bincount(numbers, found.check_residual**2)
+    rows = np.bincount(numbers)
+    lengths = [len(s.keep) for s in stretches]
+    whose = np.repeat(np.arange(len(stretches)), lengths)
+    of_block = np.full(len(rows), -1)
+    of_block[numbers] = whose
+    together = of_block[1:] == of_block[:-1]
+    pairs = np.where(together, squares[1:] + squares[:-1], 0.0)
+    if np.count_nonzero(rows) < 2 * MOMENTS or not pairs.any():
+        return None
+    worst = int(np.argmax(pairs))
+    rest = 1.0 - pairs[worst] / squares.sum()
+    others = 1.0 - (rows[worst] + rows[worst + 1]) / rows.sum()
+    without = found.check_error / floor.value * float(np.sqrt(rest / others))
+    stretch = stretches[of_block[worst]]
+    inside = (numbers == worst) | (numbers == worst + 1)
+    motion = stretch.motion
+    time = motion.time[stretch.keep[inside[whose == of_block[worst]]]]
+    return Moment(motion.file, motion.body, float(time[0]), float(time[-1]), without)
