@@ -110,7 +110,27 @@ def _promising(
     promised = sorted((_promise(m, prepared, base, unit), i) for i, m in enumerate(models))
     if promised[0][0] > (1.0 - worth) * fit_squares(base):
         return []
-    return [models[i] for _, i in promised[:most]]
+    return _varied(model, [models[i] for _, i in promised])[:most]
+
+
+def _varied(model: Model, ordered: list[Model]) -> list[Model]:
+    """The starts with the first at each value of what the new effects cannot do without in front.
+
+    A search that begins at a gap too narrow closes it, and never opens it again.
+    """
+    essential = [
+        f"{at}.{name}.{n}"
+        for name, at in model.absent
+        for n, p in model.body(at).effect(name).parameters.items()
+        if p.essential
+    ]
+    first: dict[tuple[float, ...], Model] = {}
+    rest = []
+    for start in ordered:
+        value = tuple(start.parameters[n].value for n in essential)
+        if first.setdefault(value, start) is not start:
+            rest.append(start)
+    return [*first.values(), *rest]
 
 
 def _with_strength(model: Model, base: Fit) -> tuple[Effect, str] | None:

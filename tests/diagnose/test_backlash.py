@@ -9,6 +9,7 @@ from diagnose.own_cases import truth_of, write_own
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.force_error import force_error, prepare, residuals
 from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.diagnose.search import CORRECTED_PREDICTED, _varied
 from teleopdesign.effects import EFFECTS
 from teleopdesign.realise import ode_scan
 
@@ -47,6 +48,25 @@ def test_a_true_model_leaves_what_its_sensors_leave(case):
     assert left < 2.0 * floor
     # its meetings last: without correction it falls out of step
     assert left < 0.5 * force_error(free_running(true), prepared.of("check"))
+
+
+def test_a_gap_is_sought_from_every_width_however_little_it_promises(case):
+    _, _, stated, _ = case
+    new = stated.with_effect(BACKLASH, at="device")
+    widths = BACKLASH.parameters["gap"].starts
+    inertias = (0.1, 0.3, 0.2)
+    # as if the narrowest promised most by far
+    ordered = [
+        new.with_values({"device.backlash.gap": w, "device.backlash.tip_inertia": m})
+        for w in widths
+        for m in inertias
+    ]
+    tried = _varied(new, ordered)[:CORRECTED_PREDICTED]
+    values = [
+        [start.parameters[f"device.backlash.{n}"].value for n in ("gap", "tip_inertia")]
+        for start in tried
+    ]
+    assert values == [[w, inertias[0]] for w in widths] + [[widths[0], inertias[1]]]
 
 
 def test_tangents_of_the_led_tip_are_the_slopes_of_the_residual(case, monkeypatch):
