@@ -27,7 +27,7 @@ from .exchange import best_exchange, rivals_of
 from .fit import Fit, estimate, fit_squares
 from .force_error import Prepared, force_error, prepare
 from .noise_floor import NoiseFloor, noise_floor
-from .outside_tone import acts_by_the_clock, tone_left
+from .outside_tone import Tone, acts_by_the_clock, best_tone
 from .rank import (
     Ranking,
     check_squares,
@@ -85,12 +85,12 @@ def find_missing(
         floor = _bounded(floor, here, ranking)
         first = floor if first is None else first
         floor = floor.at_most(max(LOUDER * first.value, HIDDEN * rungs[0].fit.check_error))
-        tone = tone_left(here, prepared)
+        tone = best_tone(here, prepared)
         supported = [
             r
             for r in ranking.ranked
             if is_supported(here, r, floor)
-            and (check_squares(r.fit) < tone or acts_by_the_clock(r.candidate.effect))
+            and (tone.is_beaten_by(r.fit) or acts_by_the_clock(r.candidate.effect))
         ]
         if len(rungs) > MOST:
             break
@@ -138,10 +138,10 @@ def _bounded(floor: NoiseFloor, here: Fit, ranking: Ranking) -> NoiseFloor:
     return replace(floor, value=min(floor.value, *left))
 
 
-def _is_a_tone(found: Fit, tone: float, floor: NoiseFloor) -> bool:
-    """Whether a plain tone, which leaves so many check squares, explains all but noise."""
+def _is_a_tone(found: Fit, tone: Tone, floor: NoiseFloor) -> bool:
+    """Whether a plain tone explains all but noise."""
     squares = check_squares(found)
-    left = found.check_error * float(np.sqrt(tone / squares)) if squares > 0.0 else 0.0
+    left = found.check_error * float(np.sqrt(tone.squares / squares)) if squares > 0.0 else 0.0
     return is_noise(left, floor)
 
 
@@ -216,7 +216,7 @@ def _stands(base: Fit, rungs: list[Rung], prepared: Prepared, floor: NoiseFloor)
     assert first is not None
     if not is_better(base, both, floor) or explained(base, both, floor) < MOSTLY:
         return False
-    if check_squares(both) >= tone_left(base, prepared):
+    if not best_tone(base, prepared).is_beaten_by(both):
         return False
     try:
         without = estimate(both.model.without_effect(first.effect.name, at=first.at), prepared)

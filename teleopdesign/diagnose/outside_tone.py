@@ -2,8 +2,8 @@
 
 It moves the machine a little, at its own frequency. A body with a lightly damped tip that resonates
 there moves so without any force, and effects that are not there can stand in for the tone. So an
-effect counts only if it leaves less than a plain tone does, where motion holds next to nothing at
-the tone's frequency that could have brought it about.
+effect counts only if it leaves surely less than a plain tone does, where motion holds next to
+nothing at the tone's frequency that could have brought it about.
 
 A body that sticks shows nothing of the tone, for its friction balances it: so the tone is taken
 both off the residual and as a force on the body, whichever leaves less.
@@ -12,7 +12,7 @@ both off the residual and as a force on the body, whichever leaves less.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import fft
@@ -21,9 +21,11 @@ from scipy.optimize import minimize_scalar
 from ..effects import SIGNALS, Effect
 from ..measurement.filtering import Array
 from ..model import Model
+from .evidence import gain_score
 from .fit import Fit, estimate
 from .force_error import Prepared, Stretch, residuals
 from .rank import check_squares
+from .support import CLOSE
 
 #: frequencies tried per inverse of the longest stretch
 FINENESS = 4
@@ -40,54 +42,80 @@ def acts_by_the_clock(effect: Effect) -> bool:
     return bool(effect.expression().has(SIGNALS["time"]))
 
 
-def tone_left(found: Fit, prepared: Prepared) -> float:
-    """Check squares (as `check_squares`) that are left beside the best tone on one of the bodies.
+@dataclass(frozen=True)
+class Tone:
+    """What the best tone on one of the bodies leaves of the check records' residuals.
+
+    residual: as `Fit.check_residual`; None: there is none that the motion does not hold itself
+    """
+
+    residual: Array | None = None
+
+    @property
+    def squares(self) -> float:
+        """Check squares (as `check_squares`); inf: there is none."""
+        return float("inf") if self.residual is None else float(self.residual @ self.residual)
+
+    def is_beaten_by(self, found: Fit) -> bool:
+        """Whether a fit leaves less by more than chance."""
+        if self.residual is None:
+            return True
+        return gain_score(self.residual, found.check_residual, found.check_blocks) > CLOSE
+
+
+def best_tone(found: Fit, prepared: Prepared) -> Tone:
+    """The tone that leaves least of what a model does.
 
     Its frequency is found on the fit records; amplitude and phase are those of each check stretch.
-    inf: the motion holds that frequency itself
     """
     fit, check = prepared.of("fit"), prepared.of("check")
     if not check:
-        return float("inf")
+        return Tone()
     before = _parts(found.fit_residual, fit)
     after = _parts(found.check_residual, check)
-    whole = float(found.check_residual @ found.check_residual)
-    least = float("inf")
+    whole = check_squares(found)
+    least = Tone()
     for body in {s.motion.body for s in fit}:
         own = [(s, r) for s, r in zip(fit, before, strict=True) if s.motion.body == body]
         there = [(s, r) for s, r in zip(check, after, strict=True) if s.motion.body == body]
         frequency = _frequency(own)
         if frequency > 0 and all(_share(s, frequency) < MOVED for s, _ in own + there):
-            left = whole - sum(_taken(s, r, frequency) for s, r in there)
-            if left < (1 - HEARD) * whole:
-                left = min(left, _left_beside_a_force(found, prepared, body, frequency))
-            least = min(least, left)
+            left = [
+                _without(s, r, frequency) if s.motion.body == body else r
+                for s, r in zip(check, after, strict=True)
+            ]
+            tones = [least, Tone(np.concatenate(left))]
+            if tones[-1].squares < (1 - HEARD) * whole:
+                tones.append(Tone(_beside_a_force(found, prepared, body, frequency)))
+            least = min(tones, key=lambda tone: tone.squares)
     return least
 
 
-def _left_beside_a_force(found: Fit, prepared: Prepared, body: str, frequency: float) -> float:
-    """Check squares of the model, estimated again, where a tone acts on the body as a force."""
+def _beside_a_force(found: Fit, prepared: Prepared, body: str, frequency: float) -> Array:
+    """Check residual of the model, estimated again, where a tone acts on the body as a force."""
     stretches = prepared.stretches
     for _ in range(ESTIMATES):
         stretches = tuple(
             _driven(found.model, s, frequency) if s.motion.body == body else s for s in stretches
         )
         found = estimate(found.model, replace(prepared, stretches=stretches))
-    return check_squares(found)
+    return found.check_residual
 
 
 def _driven(model: Model, stretch: Stretch, frequency: float) -> Stretch:
     """The stretch with the tone, of any amplitude and phase, among the forces that act.
 
-    What sticks hides a part of it from each turn.
+    What sticks hides a part of it from each turn; the residual shows it low-passed.
     """
+    waves = _waves(stretch, frequency)
+    shown = stretch.motion.lowpassed(waves.T).T[stretch.keep]
     for _ in range(TURNS):
         ((residual, _),) = residuals(model, [stretch])
         if len(residual) < 3:
             break
         motion = stretch.motion
-        size, *_ = np.linalg.lstsq(_waves(stretch, frequency)[stretch.keep], residual, rcond=None)
-        force = motion.interaction - _waves(stretch, frequency) @ size
+        size, *_ = np.linalg.lstsq(shown, residual, rcond=None)
+        force = motion.interaction - waves @ size
         stretch = replace(stretch, motion=replace(motion, interaction=force))
     return stretch
 
@@ -129,11 +157,17 @@ def _frequency(parts: Sequence[tuple[Stretch, Array]]) -> float:
 
 def _taken(stretch: Stretch, residual: Array, frequency: float) -> float:
     """Squares that a tone of any amplitude and phase takes from one residual."""
+    left = _without(stretch, residual, frequency)
+    return float(residual @ residual - left @ left)
+
+
+def _without(stretch: Stretch, residual: Array, frequency: float) -> Array:
+    """A residual less the tone, of any amplitude and phase, that takes most from it."""
     if len(residual) < 3:
-        return 0.0
+        return residual
     waves = _waves(stretch, frequency)[stretch.keep]
     size, *_ = np.linalg.lstsq(waves, residual, rcond=None)
-    return float(residual @ residual - np.sum((residual - waves @ size) ** 2))
+    return np.asarray(residual - waves @ size)
 
 
 def _share(stretch: Stretch, frequency: float) -> float:

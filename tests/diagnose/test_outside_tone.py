@@ -11,7 +11,7 @@ from teleopdesign.diagnose.fit import estimate, weighted
 from teleopdesign.diagnose.force_error import prepare
 from teleopdesign.diagnose.ladder import _is_a_tone
 from teleopdesign.diagnose.noise_floor import NoiseFloor
-from teleopdesign.diagnose.outside_tone import _taken, acts_by_the_clock, tone_left
+from teleopdesign.diagnose.outside_tone import Tone, _taken, acts_by_the_clock, best_tone
 from teleopdesign.diagnose.rank import Ranking, check_squares
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
@@ -44,14 +44,14 @@ def test_a_tone_is_taken_away_whatever_its_phase_on_each_record(rod, frequency):
         lambda t: np.sin(2 * np.pi * frequency * t + t[0]) + 0.1 * noise.standard_normal(len(t)),
     )
     # noise of a tenth: a hundredth of twice the squares
-    assert tone_left(hum, prepared) < 0.03 * check_squares(hum)
+    assert best_tone(hum, prepared).squares < 0.03 * check_squares(hum)
 
 
 def test_noise_is_no_tone(rod):
     prepared, found = rod
     noise = np.random.default_rng(2)
     plain = with_residual(found, prepared, lambda t: noise.standard_normal(len(t)))
-    assert tone_left(plain, prepared) > 0.98 * check_squares(plain)
+    assert best_tone(plain, prepared).squares > 0.98 * check_squares(plain)
 
 
 def test_what_repeats_with_the_motion_is_no_tone_from_outside(rod):
@@ -61,12 +61,12 @@ def test_what_repeats_with_the_motion_is_no_tone_from_outside(rod):
     power = np.abs(np.fft.rfft(motion.velocity))
     own = np.fft.rfftfreq(len(motion.velocity), motion.sample_time)[int(np.argmax(power))]
     swing = with_residual(found, prepared, lambda t: np.sin(2 * np.pi * own * t))
-    assert tone_left(swing, prepared) == float("inf")
+    assert best_tone(swing, prepared).squares == float("inf")
 
 
 def test_the_effect_that_is_missing_leaves_less_than_a_tone(rod):
     prepared, found = rod
-    assert tone_left(found, prepared) > 0.9 * check_squares(found)
+    assert best_tone(found, prepared).squares > 0.9 * check_squares(found)
 
 
 def test_a_tone_on_a_body_that_often_sticks_is_taken_as_the_force_it_is(rod):
@@ -83,8 +83,35 @@ def test_a_tone_on_a_body_that_often_sticks_is_taken_as_the_force_it_is(rod):
     hummed = replace(prepared, stretches=stretches)
     before = estimate(found.model, hummed)
     off = _off_the_residual(before, hummed)
-    assert tone_left(before, hummed) == pytest.approx(check_squares(found), rel=0.05)
+    assert best_tone(before, hummed).squares == pytest.approx(check_squares(found), rel=0.05)
     assert off > 1.5 * check_squares(found)
+
+
+@pytest.mark.parametrize("bandwidth", [18.0, 60.0])
+def test_a_tone_above_the_band_is_as_strong_as_what_the_band_shows_of_it_says(rod, bandwidth):
+    """At 23 Hz a band of 18 Hz shows an eighth of the force."""
+    prepared, found = rod
+    prepared = prepare(prepared.experiment, bandwidth=bandwidth)
+    found = estimate(found.model, prepared)
+    size = 0.8 * found.model.parameters["device.coulomb.level"].value
+
+    def driven(stretch):
+        motion = stretch.motion
+        wave = size * np.sin(2 * np.pi * 23.0 * motion.time)
+        return replace(stretch, motion=replace(motion, interaction=motion.interaction + wave))
+
+    hummed = replace(prepared, stretches=tuple(driven(s) for s in prepared.stretches))
+    before = estimate(found.model, hummed)
+    assert best_tone(before, hummed).squares == pytest.approx(check_squares(found), rel=0.05)
+
+
+def test_what_leaves_as_much_as_a_tone_does_not_beat_it(rod):
+    prepared, found = rod
+    noise = np.random.default_rng(3).standard_normal(len(found.check_residual))
+    tone = Tone(found.check_residual + 0.1 * np.std(found.check_residual) * noise)
+    assert not tone.is_beaten_by(found)
+    assert Tone(3.0 * found.check_residual).is_beaten_by(found)
+    assert Tone().is_beaten_by(found)
 
 
 def _off_the_residual(found, prepared):
@@ -104,9 +131,11 @@ def test_no_pair_is_sought_where_a_tone_leaves_only_noise(rod, monkeypatch):
     prepared, found = rod
     floor = NoiseFloor(0.01, "stated", drawn=0.01)
     squares = check_squares(found) * (floor.value / found.check_error) ** 2
-    assert _is_a_tone(found, 1.5**2 * squares, floor)
-    assert not _is_a_tone(found, 2.5**2 * squares, floor)
-    assert not _is_a_tone(found, float("inf"), floor)
+    noise = Tone(found.check_residual * floor.value / found.check_error)
+    assert noise.squares == pytest.approx(squares)
+    assert _is_a_tone(found, Tone(1.5 * noise.residual), floor)
+    assert not _is_a_tone(found, Tone(2.5 * noise.residual), floor)
+    assert not _is_a_tone(found, Tone(), floor)
 
     def searched(*_, **__):
         raise AssertionError("a pair was sought")
@@ -115,6 +144,6 @@ def test_no_pair_is_sought_where_a_tone_leaves_only_noise(rod, monkeypatch):
     monkeypatch.setattr(ladder, "_pair", searched)
     with pytest.raises(AssertionError, match="sought"):
         ladder.find_missing(prepared.experiment)
-    monkeypatch.setattr(ladder, "tone_left", lambda *_: squares)
+    monkeypatch.setattr(ladder, "best_tone", lambda *_: noise)
     diagnosis = ladder.find_missing(prepared.experiment)
     assert diagnosis.verdict == "undecided" and diagnosis.missing == ()
