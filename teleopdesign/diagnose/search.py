@@ -57,7 +57,8 @@ def estimate_from_starts(
     """
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     models = started(model, unit)
-    rugged = any(model.body(at).effect(name).corrections() for name, at in model.absent)
+    absent = [model.body(at).effect(name) for name, at in model.absent]
+    rugged = any(e.corrections() and not e.linear for e in absent)
     kept = CORRECTED_STEPPED if rugged else CURVED_STEPPED
     if base is not None:
         curved = _with_strength(model, base) is None

@@ -15,8 +15,9 @@ from ._effect import State
 
 Expression = Callable[[Any, Any], Any]
 #: rate at which a tip is led back, over its natural frequency in contact and its part of the body's
-#: inertia: a lighter tip, whose force shows less, is led by less
-FOLLOWING = 3.0
+#: inertia: a lighter tip, whose force shows less, is led by less. One for all structures, so that
+#: none explains more than another by being led more closely
+FOLLOWING = 1.0
 
 
 def behind(

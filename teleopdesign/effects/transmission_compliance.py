@@ -6,10 +6,13 @@
 Cables, belts, harmonic drives. Position and friction are those of the actuator side; the
 interaction force acts on the tip. Below the resonance it looks like `added_inertia`, or like
 nothing at all where the inertia is free.
+
+Noise of the readings swings a lightly damped tip, which swings on: along a measured motion the tip
+is led back to its course (`_tip.py`).
 """
 
 from ._effect import Effect, Parameter
-from ._tip import behind
+from ._tip import behind, led_back
 
 
 def coupling(now, p):
@@ -18,12 +21,13 @@ def coupling(now, p):
     )
 
 
-LAW, TIP = behind(coupling)
+LAW, TIP = behind(coupling, led_back)
 EFFECT = Effect(
     role="structure",
     law=LAW,
     linear=True,
     states=TIP,
+    led=lambda p: p.tip_inertia,
     parameters={
         "tip_inertia": Parameter("inertia", "m_t: inertia of the tip side", starts=(0.1, 0.5)),
         "stiffness": Parameter(

@@ -279,7 +279,7 @@ def ode_scan(
     # a difference of one in position goes with one of the fastest mode's rate in velocity
     rate = max(fastest, 1e-300)
     size = np.array([rate if s.quantity == "velocity" else 1.0 for s in effect.states.values()])
-    growth = GROWTH if effect.corrections() else np.inf
+    growth = GROWTH if effect.corrections() and not effect.linear else np.inf
     scan = compiled(_source(effect), "scan")
     scan(step, steps, parameters, places, drive, bends, moving, size, growth, start, out, tangent)
     if covered > STABLE * MOST_STEPS or not np.isfinite(out).all():

@@ -116,10 +116,6 @@ def test_a_tip_without_inertia_follows_nothing():
     assert BACKLASH.corrections()["tip_position"].subs(symbols["tip_inertia"], 0) == 0
 
 
-def test_structures_without_a_gap_run_free():
-    assert not EFFECTS["transmission_compliance"].corrections()
-
-
 @pytest.mark.slow
 def test_a_gap_is_found_with_its_width(case):
     experiment, _, stated, true = case

@@ -1,5 +1,7 @@
 """Bodies and motions that the tests of effects share."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from teleopdesign.blocks import CONTACT, Body, Value
@@ -70,6 +72,16 @@ def body_of(*names, absent=(), values=(), axis="prismatic"):
             numbers[f"{name}.{parameter}"] = number
     parameters = {n: Value(v) for n, v in (numbers | dict(values)).items()}
     return Body(axis, parameters, tuple(KNOWN[n] for n in names))
+
+
+def unled(body):
+    """The body with hidden tips that nothing leads back to their course."""
+
+    def free(effect):
+        states = {n: replace(s, correction=None) for n, s in effect.states.items()}
+        return replace(effect, states=states, led=None)
+
+    return replace(body, effects=tuple(free(e) if e.states else e for e in body.effects))
 
 
 def motion_along(

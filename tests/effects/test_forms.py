@@ -1,6 +1,7 @@
 """The residual along a motion: against an independent simulation, and against its own tangents."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,11 +15,13 @@ from effects.along import (
     motion_along,
     signals,
     typical,
+    unled,
     with_needs,
 )
 from excitation import fit_record
 from truth_effects import PUBLIC
 
+from teleopdesign.blocks import Value
 from teleopdesign.effects import EFFECTS, SIGNALS
 from teleopdesign.realise.along_motion import Traced, residual_along
 from teleopdesign.realise.ode_scan import ode_scan
@@ -61,10 +64,11 @@ def modelled(*names):
     return body_of(*names, values={n: v for n, v in VALUES.items() if n.split(".")[0] in names})
 
 
-def simulated(*names):
+def simulated(*names, step=STEP):
     """Readings of a device with these effects and Coulomb friction under a position controller.
 
     Coulomb friction is a bristle whose give, 0.3 encoder steps, cannot be seen.
+    step: m, of the encoder
     """
     x, v = fit_record(np.random.default_rng(5), RATE, 6.0, "normal", 16.0)
     drive = truth_simulator.Drive.zero(len(x))
@@ -72,17 +76,17 @@ def simulated(*names):
     drive.direct[:, 0] = signals(3, len(x))[2]
     values = true_values(*names) | {"kp": INERTIA * 40.0**2, "kd": 1.5 * INERTIA * 40.0}
     soft = values.pop("presliding", None)
-    hard = (LEVEL + values.get("extra_static_level", 0.0)) / (0.3 * STEP)
+    hard = (LEVEL + values.get("extra_static_level", 0.0)) / (0.3 * step)
     values["bristle_stiffness"] = soft or hard
     values["bristle_damping"] = (
         values.get("bristle_damping", 0.0) if soft else 0.3 * math.sqrt(hard * INERTIA)
     )
     run = truth_simulator.simulate([truth_simulator.body(**values)], drive, RATE, 50)
     return motion_along(
-        encoded(run.rows("x")[:, 0], STEP),
+        encoded(run.rows("x")[:, 0], step),
         run.command[:, 0],
         run.rows("interaction")[:, 0],
-        resolution=STEP,
+        resolution=step,
     )
 
 
@@ -117,11 +121,24 @@ def test_what_a_device_touches_it_touches_with_its_tip(structure, contact):
     assert rigid > 5 * true
 
 
+def test_noise_that_swings_a_lightly_damped_tip_is_led_out_of_it(monkeypatch):
+    """At 22 Hz, with a band of 60 Hz, what an encoder of 10 um leaves swings on in the tip."""
+    structure = "transmission_compliance"
+    monkeypatch.setitem(VALUES, f"{structure}.damping", 0.5)  # a fiftieth of the critical one
+    motion = simulated(structure, step=1e-5)
+    body = modelled("coulomb", structure)
+    led, free = (relative(residual_along(b, motion), motion) for b in (body, unled(body)))
+    wrong = replace(body, parameters={**body.parameters, f"{structure}.stiffness": Value(1.5e3)})
+    assert led < 0.6 * free  # measured: 0.51
+    assert relative(residual_along(wrong, motion), motion) > 3 * led
+
+
 @pytest.mark.parametrize("frequency", [20.0, 50.0])
 def test_a_tip_swings_as_its_transfer_function_says_at_ten_samples_a_cycle(frequency):
     """A straight line between samples would be 3 % too weak at a tenth of the sample rate."""
     rate, w = 500.0, 2 * np.pi * frequency
-    body = body_of("transmission_compliance", values={"transmission_compliance.stiffness": 8e3})
+    stiff = {"transmission_compliance.stiffness": 8e3}
+    body = unled(body_of("transmission_compliance", values=stiff))
     effect, values = body.effects[0], body.numbers()
     m, k, c = (values[s] for s in effect.symbols().values())
     t = np.arange(2000) / rate
