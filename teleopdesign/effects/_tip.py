@@ -14,10 +14,6 @@ from sympy import sqrt
 from ._effect import State
 
 Expression = Callable[[Any, Any], Any]
-#: rate at which a tip is led back, over its natural frequency in contact and its part of the body's
-#: inertia: a lighter tip, whose force shows less, is led by less. One for all structures, so that
-#: none explains more than another by being led more closely
-FOLLOWING = 1.0
 
 
 def behind(
@@ -43,11 +39,17 @@ def behind(
     }
 
 
-def led_back(now: Any, p: Any) -> Any:
+def led_back(following: float) -> Expression:
     """Velocity of a tip towards where the unexplained force r says that it is: -rate r / K.
 
     What it takes to lead the tip so, m_t rate / K dr/dt, is left unexplained as well: an effect
     says so by `led`. Needs a parameter `stiffness`.
+    following: rate over the tip's natural frequency in contact and its part of the body's inertia:
+        a lighter tip, whose force shows less, is led by less
     """
-    rate = FOLLOWING * sqrt(p.stiffness / p.tip_inertia) * p.tip_inertia / now.inertia
-    return -rate * now.unexplained / p.stiffness
+
+    def towards(now: Any, p: Any) -> Any:
+        rate = following * sqrt(p.stiffness / p.tip_inertia) * p.tip_inertia / now.inertia
+        return -rate * now.unexplained / p.stiffness
+
+    return towards

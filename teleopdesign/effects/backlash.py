@@ -25,7 +25,9 @@ def coupling(now, p):
     )
 
 
-LAW, TIP = behind(coupling, led_back)
+#: how closely the tip is led: by less, courses of meetings fall out of step more often
+FOLLOWING = 3.0
+LAW, TIP = behind(coupling, led_back(FOLLOWING))
 EFFECT = Effect(
     role="structure",
     law=LAW,

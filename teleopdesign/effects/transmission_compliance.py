@@ -21,7 +21,9 @@ def coupling(now, p):
     )
 
 
-LAW, TIP = behind(coupling, led_back)
+#: how closely the tip is led: by more, what it takes to lead it counts more than what it saves
+FOLLOWING = 1.0
+LAW, TIP = behind(coupling, led_back(FOLLOWING))
 EFFECT = Effect(
     role="structure",
     law=LAW,
