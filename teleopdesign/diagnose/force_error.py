@@ -22,7 +22,8 @@ from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motions
 from ..model import Model
-from ..realise.along_motion import Probe, residual_along
+from ..realise.along_motion import residual_along
+from ..realise.traced import Probe
 from .own import Own, own_of
 
 #: seconds at each end of a stretch where the low-pass has not settled

@@ -18,7 +18,7 @@ import sympy as sp
 from ..effects import Effect
 from ..measurement.filtering import Array
 from ..model import Model
-from ..realise.along_motion import Probe
+from ..realise.traced import Probe
 from .fit import Fit
 from .force_error import Prepared, referred
 

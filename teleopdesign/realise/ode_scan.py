@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -25,9 +25,7 @@ from ..effects import SIGNALS, UNEXPLAINED, Effect
 from ..measurement.filtering import Array
 from .compiled import compiled
 from .scan import code_of, indented
-
-if TYPE_CHECKING:
-    from .along_motion import Traced
+from .traced import Traced
 
 #: part of a radian of the fastest mode that one sub-step may cover (at half a radian it swings
 #: 0.05 % too slowly, at one 0.8 %), the most sub-steps, and how much one may cover then
@@ -255,8 +253,6 @@ def ode_scan(
     rest: what corrections need: force at the rows that the effect and friction have to take up,
         and the least and largest that friction can; with tangents
     """
-    from .along_motion import Traced
-
     own = _parameters(effect)
     parameters = np.array([values[s] for s in own], dtype=float)
     symbols = [getattr(c, "symbol", c) for c in columns]  # of a probe: its strength

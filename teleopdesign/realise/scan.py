@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -19,9 +19,7 @@ from ..errors import ModelError
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from .compiled import compiled
-
-if TYPE_CHECKING:
-    from .along_motion import Traced
+from .traced import Traced
 
 _HEAD = '''"""Generated from an effect's law; do not edit."""
 from math import *
@@ -158,8 +156,6 @@ def driven_scan(
 
     The motion at a row stands for the sample before it: without a lag the state is in step with it.
     """
-    from .along_motion import Traced
-
     (end, _) = _advanced(effect, given, given[SIGNALS["velocity"]], values, columns, step)
     (symbol,) = effect.state_symbols().values()
     later = np.minimum(np.arange(1, len(end.value) + 1), len(end.value) - 1)
@@ -175,8 +171,6 @@ def _advanced(
     step: float,
 ) -> tuple[Traced, Traced]:
     """The effect's state at the rows and its average over the hold of each."""
-    from .along_motion import Traced
-
     scan = compiled(_stage_source(effect), "stage")
     end, dend = np.empty_like(command.value), np.empty_like(command.tangent)
     mean, dmean = np.empty_like(command.value), np.empty_like(command.tangent)
@@ -267,8 +261,6 @@ def shape_bounds(
     They coincide where the motion is told; where it is not, they lie apart by what half a step of
     the position means to the bristle, and no further than the level.
     """
-    from .along_motion import Traced
-
     scan = compiled(_shape_source(effect), "shape")
     used = _used_by_shape(effect)
     low, high = np.empty_like(forward.value), np.empty_like(forward.value)

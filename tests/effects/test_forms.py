@@ -23,8 +23,9 @@ from truth_effects import PUBLIC
 
 from teleopdesign.blocks import Value
 from teleopdesign.effects import EFFECTS, SIGNALS
-from teleopdesign.realise.along_motion import Traced, residual_along
+from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.ode_scan import ode_scan
+from teleopdesign.realise.traced import Traced
 
 STEP = 1e-6  # m, of the encoder
 RATE = 1000.0
