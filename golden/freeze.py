@@ -1,0 +1,243 @@
+"""Write what the package answers today into a folder; see the README beside this file.
+
+python golden/freeze.py OUT [PART ...]
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import io
+import json
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+#: measurements that are not part of the project; the parts that need them are left out without
+SHARED = ROOT.parent / "shared"
+#: draws of the tests' own simulator: (number of cases, seed)
+DRAWN = (30, 20261)
+#: candidates of an answer that are kept, best first
+BEST = 5
+#: instants of a simulation that are kept
+INSTANTS = 25
+
+
+def derivations() -> dict[str, Any]:
+    """Every transfer function of every shipped diagram, as it is printed and as LaTeX."""
+    from teleopdesign.derive import all_transfers
+    from teleopdesign.diagrams import SHIPPED, shipped
+    from teleopdesign.realise.tips import linear_tips
+
+    found = {}
+    for name in sorted(SHIPPED):
+        transfers = all_transfers(linear_tips(shipped(name)))
+        found[name] = {"text": repr(transfers).splitlines(), "latex": transfers.latex().split("\n")}
+    return found
+
+
+def simulations() -> dict[str, Any]:
+    """Signals of the diagrams that ship, with friction, at some instants."""
+    from teleopdesign.blocks import Body, Value
+    from teleopdesign.controllers import controller, scheduled_force_feedback
+    from teleopdesign.diagrams import four_cases, haptic_interface, teleoperator
+    from teleopdesign.effects import EFFECTS
+    from teleopdesign.simulate import Sampling, simulate
+
+    def device(*effects: tuple[str, dict[str, float]]) -> Body:
+        body = Body("prismatic", {"inertia": Value(0.15)})
+        for name, values in effects:
+            body = body.with_effect(EFFECTS[name], values)
+        return body
+
+    def push(t: float) -> float:
+        return 2.0 * np.sin(2 * np.pi * 4 * t)
+
+    coulomb = ("coulomb", {"level": 0.5})
+    soft = ("presliding", {"stiffness": 2e4})
+    plants = {
+        "ideal friction": device(coulomb, ("viscous", {"damping": 0.4})),
+        "lugre": device(
+            coulomb,
+            soft,
+            ("viscous", {"damping": 0.4}),
+            ("stribeck", {"extra_static_level": 0.2, "stribeck_velocity": 0.01}),
+        ),
+        "compliance": device(
+            coulomb,
+            soft,
+            (
+                "transmission_compliance",
+                {"tip_inertia": 0.05, "stiffness": 4e3, "damping": 1.0},
+            ),
+        ),
+    }
+    cancel = controller("dahl", {"level": 0.4, "stiffness": 1e4})
+    feed = scheduled_force_feedback(gain=5.0, scheduling_velocity=0.08, bandwidth=20.0)
+    runs: dict[str, Any] = {}
+    for name, plant in plants.items():
+        whole = haptic_interface(plant, hand=device(), cancellation=cancel, force_feedback=feed)
+        for case, diagram in four_cases(whole).items():
+            for computer in ("continuous", Sampling(period=1e-3)):
+                said = "continuous" if isinstance(computer, str) else "sampled"
+                runs[f"haptic interface, {name}, {case}, {said}"] = simulate(
+                    diagram, duration=0.5, inputs={"R_V": push}, computer=computer
+                )
+    link = controller("spring_damper", {"stiffness": 200.0, "damping": 3.0})
+    coupled = teleoperator(plants["lugre"], plants["ideal friction"], coupling=link, hand=device())
+    runs["teleoperator"] = simulate(
+        coupled, duration=0.5, inputs={"F_u": push}, computer=Sampling(period=1e-3)
+    )
+    return {name: _at_instants(run) for name, run in runs.items()}
+
+
+def _at_instants(run: Any) -> dict[str, Any]:
+    data = run.data
+    chosen = np.linspace(0, data.sizes["time"] - 1, INSTANTS).astype(int)
+    return {
+        str(name): [float(x) for x in np.asarray(data[name].values)[chosen].ravel()]
+        for name in sorted(map(str, data.data_vars))
+    }
+
+
+def claims() -> dict[str, Any]:
+    """Claims of the package's own example and of linear systems, with their certificates."""
+    import sympy as sp
+
+    from teleopdesign import passivity as p
+
+    s = sp.Symbol("s")
+    made = {
+        "rod and spring": p.positive_real(0.15 * s + 4 + 300 / s),
+        "active": p.positive_real((s**2 - 0.1 * s + 1) / (s + 1) ** 2),
+        "teleoperator": p.passive(
+            p.teleoperator(master=0.2 * s + 3, slave=0.3 * s + 4, stiffness=200.0, damping=2.0)
+        ),
+        "absolutely stable": p.absolutely_stable(
+            p.teleoperator(master=0.2 * s + 3, slave=0.3 * s + 4, stiffness=200.0, damping=2.0)
+        ),
+        "late": p.passive(
+            p.teleoperator(master=0.2 * s + 3, slave=0.3 * s + 4, stiffness=200.0, delay=0.05)
+        ),
+        "dahl beside coulomb": p.dahl_compensation(
+            coulomb_level=0.5, compensator_level=0.4, compensator_stiffness=1e4
+        ),
+        "dahl beside dahl": p.dahl_compensation(
+            coulomb_level=0.5,
+            compensator_level=0.4,
+            compensator_stiffness=1e4,
+            presliding_stiffness=2e4,
+        ),
+        "too much": p.dahl_compensation(
+            coulomb_level=0.5, compensator_level=0.6, compensator_stiffness=1e4
+        ),
+        "bounded": p.bounded_compensation(coulomb_level=0.5, bound=0.4),
+    }
+    return {name: _claim(claim) for name, claim in made.items()}
+
+
+def _claim(claim: Any) -> dict[str, Any]:
+    return {
+        "status": claim.status,
+        "said": repr(claim).splitlines(),
+        "certificates": [dict(c.content) for c in claim.certificates],
+    }
+
+
+def pages() -> dict[str, Any]:
+    """What commands print for the example that ships with the package."""
+    from teleopdesign.cli import main
+    from teleopdesign.examples import example
+
+    rod = str(example("rod"))
+    found = {}
+    for words in (
+        ["effects"],
+        ["check-papers"],
+        ["check", rod],
+        ["describe", rod],
+        ["design", rod],
+        ["passivity", rod, "--dahl", "0.3", "20000", "--period", "0.001"],
+        ["passivity", "haptic-interface"],
+    ):
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            status = main(words)
+        text = said.getvalue().replace(rod, "rod").replace(str(ROOT), "")
+        name = " ".join("rod" if word == rod else word for word in words)
+        found[name] = {"status": status, "text": text.splitlines()}
+    return found
+
+
+def answers() -> dict[str, Any]:
+    """Answers on simulated cases: those beside the project, and draws of the tests' simulator."""
+    sys.path[:0] = [str(ROOT / "studies"), str(ROOT / "tests")]
+    from _campaign import plan
+    from _one_case import make
+
+    with tempfile.TemporaryDirectory() as scratch:
+        jobs = {f"hidden {f.name}": f for f in sorted((SHARED / "hidden" / "cases").glob("*"))}
+        for case in plan(DRAWN[0], seed=DRAWN[1]):
+            planned = {k: v for k, v in vars(case).items()}
+            make(Path(scratch), case.name, planned)
+            jobs[f"drawn {case.name}"] = Path(scratch) / "cases" / case.name
+        return _diagnosed({n: f for n, f in jobs.items() if (f / "experiment.toml").is_file()})
+
+
+def recordings() -> dict[str, Any]:
+    """Answers on the real recordings beside the project."""
+    folders = sorted(f.parent for f in (SHARED / "data").glob("*/experiment.toml"))
+    return _diagnosed({f.name: f for f in folders})
+
+
+def _diagnosed(folders: dict[str, Path]) -> dict[str, Any]:
+    with ProcessPoolExecutor(max_workers=2) as pool:
+        return dict(zip(folders, pool.map(_answer, folders.values()), strict=True))
+
+
+def _answer(folder: Path) -> dict[str, Any]:
+    from teleopdesign.cli import main
+
+    with tempfile.TemporaryDirectory() as scratch:
+        path, said = Path(scratch) / "answer.json", io.StringIO()
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(said):
+            status = main(["diagnose", str(folder), "--json", str(path)])
+        if status != 0:
+            return {"status": status, "said": said.getvalue().strip().replace(str(folder), "")}
+        answer = json.loads(path.read_text(encoding="utf-8"))
+    keep = ("verdict", "missing", "ladder", "noise_floor", "indistinguishable", "model_parameters")
+    kept = {name: answer[name] for name in keep if name in answer}
+    return {**kept, "candidates": answer["candidates"][:BEST]}
+
+
+PARTS: dict[str, Callable[[], dict[str, Any]]] = {
+    "derivations": derivations,
+    "simulations": simulations,
+    "claims": claims,
+    "pages": pages,
+    "answers": answers,
+    "recordings": recordings,
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Write the parts that are asked for."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("output", type=Path)
+    parser.add_argument("parts", nargs="*", metavar="PART", help=", ".join(PARTS))
+    options = parser.parse_args(arguments)
+    options.output.mkdir(parents=True, exist_ok=True)
+    for part in options.parts or PARTS:
+        lines = json.dumps(PARTS[part](), indent=0, sort_keys=True)
+        (options.output / f"{part}.json").write_text(lines + "\n", encoding="utf-8")
+        print(part, flush=True)
+
+
+if __name__ == "__main__":
+    main()
