@@ -89,6 +89,7 @@ def _draw(series: Series, axes: Axes, colour: str) -> None:
     if series.kind in POINTS:
         size = 3.6 if len(series.x) <= FEW else 2.4
         style = {"linestyle": "none", "marker": ".", "markersize": size}
+        style["rasterized"] = len(series.x) > FEW  # a vector each would be most of a page
     elif series.kind == "limit":
         style = {"linestyle": "--", "linewidth": 0.8}
     else:

@@ -11,8 +11,8 @@ from ..finding import Graph
 from ..plot.diagnosis import AFTER, BEFORE
 from ..plot.graph import draw_graph
 from .before_and_after import YOURS
+from .picture import picture
 from .residuals import BodyView, Step
-from .svg import inline_svg
 from .words import number, percent
 
 if TYPE_CHECKING:
@@ -49,7 +49,11 @@ def ladder_figure(rows: tuple[LadderRow, ...], floor: float) -> Markup:
             axes.barh(y, 100 * row.check_error, height=0.42, color=colour)
             axes.plot(100 * row.fit_error, y, "o", ms=4.5, mfc="w", mec="k", mew=0.9)
             name = row.name if y == 0 else f"+ {row.name}"
-            axes.text(0, y - 0.29, name, va="bottom", ha="left", parse_math=False)
+            # on paper of its own, for the line of the noise floor may cross it
+            paper = {"facecolor": "w", "edgecolor": "none", "pad": 0.8}
+            axes.text(
+                0, y - 0.29, name, va="bottom", ha="left", parse_math=False, bbox=paper, zorder=3.5
+            )
             error = percent(row.check_error)
             right = axes.get_yaxis_transform()
             axes.text(1.0, y, error, transform=right, ha="right", va="center", weight="bold")
@@ -63,10 +67,10 @@ def ladder_figure(rows: tuple[LadderRow, ...], floor: float) -> Markup:
     errors = ", ".join(f"{r.name}: {percent(r.check_error)}" for r in rows)
     alt = f"Bars of the force error. {errors}. Noise floor: {percent(floor)}."
     height = 0.55 + 0.52 * len(rows)
-    return inline_svg(draw, size=(WIDE, height), name="ladder", alt=alt)
+    return picture(draw, size=(WIDE, height), alt=alt)
 
 
-def step_figure(view: BodyView, index: int, name: str) -> Markup:
+def step_figure(view: BodyView, index: int) -> Markup:
     """One rung on one body: mean residual over position and velocity, above its trace over time."""
     step = view.steps[index]
 
@@ -83,7 +87,7 @@ def step_figure(view: BodyView, index: int, name: str) -> Markup:
     )
     # two maps beside each other have more room than three
     size = (PANEL, 3.3) if len(view.steps) in (3, 5, 6, 7) else (WIDE, 3.7)
-    return inline_svg(draw, size=size, name=name, alt=alt)
+    return picture(draw, size=size, alt=alt)
 
 
 def _map(view: BodyView, step: Step, axes: Axes) -> None:
@@ -126,7 +130,7 @@ def _trace(view: BodyView, step: Step, axes: Axes, colour: str) -> None:
     axes.set_ylabel(f"residual ({view.force_scale.unit})")
 
 
-def colour_scale(view: BodyView, name: str) -> Markup:
+def colour_scale(view: BodyView) -> Markup:
     """The scale that all maps of a body share."""
 
     def draw(figure: Figure) -> None:
@@ -145,14 +149,14 @@ def colour_scale(view: BodyView, name: str) -> Markup:
 
     end = number(view.force_scale.factor * view.limit, 3)
     alt = f"Colour scale from blue, -{end} {view.force_scale.unit}, over grey to orange, +{end}."
-    return inline_svg(draw, size=(PANEL, 0.5), name=name, alt=alt)
+    return picture(draw, size=(PANEL, 0.5), alt=alt)
 
 
-def graph_figure(graph: Graph, name: str, alt: str, *, width: float = PANEL) -> Markup:
+def graph_figure(graph: Graph, alt: str, *, width: float = PANEL) -> Markup:
     """The graph of a finding."""
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots()
         draw_graph(graph, axes, colours={YOURS: BEFORE})
 
-    return inline_svg(draw, size=(width, 0.62 * width), name=name, alt=alt)
+    return picture(draw, size=(width, 0.62 * width), alt=alt)

@@ -75,33 +75,28 @@ def figures_of(page: Page) -> Figures:
         "next": page.next_steps,
         "soundness": page.soundness,
     }
-    views = list(enumerate(page.views))
     return Figures(
         ladder=ladder_figure(page.ladder, page.floor),
-        scales=tuple(colour_scale(v, f"scale{i}") for i, v in views),
-        steps=tuple(
-            tuple(step_figure(v, k, f"map{i}-{k}") for k in range(len(v.steps))) for i, v in views
-        ),
+        scales=tuple(colour_scale(v) for v in page.views),
+        steps=tuple(tuple(step_figure(v, k) for k in range(len(v.steps))) for v in page.views),
         over_velocity=tuple(
             graph_figure(
                 v.over_velocity,
-                f"velocity{i}",
                 _alt(v.body, "mean residual over velocity"),
                 width=WIDE,
             )
-            for i, v in views
+            for v in page.views
         ),
         excerpts=tuple(
             graph_figure(
                 v.excerpt,
-                f"excerpt{i}",
                 _alt(v.body, "measured and modelled force"),
                 width=WIDE,
             )
-            for i, v in views
+            for v in page.views
         ),
         findings={
-            (section, i): graph_figure(f.graph, f"{section}{i}", f"{f.topic}: {f.sentence}")
+            (section, i): graph_figure(f.graph, f"{f.topic}: {f.sentence}")
             for section, rows in sections.items()
             for i, f in enumerate(rows)
             if f.graph is not None

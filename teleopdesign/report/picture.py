@@ -1,0 +1,60 @@
+"""A matplotlib figure as an <img> element that holds its own SVG: nothing is loaded from elsewhere.
+
+The SVG is the library's own output. As the content of an image its identifiers and styles cannot
+meet those of the page, and no text in it can become an element of the page. The same figure gives
+the same bytes. On a dark page the style sheet inverts the picture's lightness.
+"""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Callable
+from io import BytesIO
+from typing import TYPE_CHECKING, Any
+
+from markupsafe import Markup
+
+from ..plot.diagnosis import STYLE
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: what a picture of a page sets beside the house style
+SETTINGS: Any = {
+    "svg.fonttype": "none",  # text stays text: small, and sharp at every size
+    "svg.hashsalt": "teleopdesign",  # the same identifiers in every process
+    "text.parse_math": False,  # a name from a file may hold a dollar sign
+    "axes.formatter.use_mathtext": False,
+    "axes.formatter.limits": (-4, 5),
+    "font.family": "sans-serif",
+    "font.sans-serif": "DejaVu Sans",  # comes with matplotlib, and is wider than most
+    "font.size": 7.5,
+    "axes.labelsize": 7.5,
+    "axes.titlesize": 7.5,
+    "figure.facecolor": "none",
+    "axes.facecolor": "none",
+    "savefig.facecolor": "none",
+}
+#: pixels per inch of what is drawn as pixels: three of them to one of a usual screen
+PIXELS_PER_INCH = 288
+
+
+def picture(draw: Callable[[Figure], None], *, size: tuple[float, float], alt: str) -> Markup:
+    """What `draw` draws, as an <img> element with an alternative text.
+
+    draw: is given an empty figure in house style;  size: width and height, inches
+    alt: plain text, escaped here
+    """
+    import matplotlib.style
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+    from matplotlib.figure import Figure
+
+    with matplotlib.style.context(STYLE), rc_context(SETTINGS):
+        figure = Figure(figsize=size, layout="constrained")
+        FigureCanvasSVG(figure)
+        draw(figure)
+        out = BytesIO()
+        figure.savefig(out, format="svg", metadata={"Date": None}, dpi=PIXELS_PER_INCH)
+    data = b64encode(out.getvalue()).decode("ascii")
+    return Markup('<img alt="{}" src="data:image/svg+xml;base64,{}">').format(alt, data)
