@@ -10,6 +10,7 @@ from .transfer_functions import (
     transfer_functions,
 )
 from .two_port import two_port_functions
+from .with_values import transfer_function, with_values
 
 __all__ = [
     "Transfer",
@@ -25,6 +26,8 @@ __all__ = [
     "proved_equal",
     "return_difference",
     "transfer",
+    "transfer_function",
     "transfer_functions",
     "two_port_functions",
+    "with_values",
 ]

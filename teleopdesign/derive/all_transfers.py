@@ -15,6 +15,7 @@ from ..errors import ModelError, did_you_mean
 from .printing import as_latex, as_text, block_symbol, name_as_latex, with_gamma
 from .transfer_functions import Case, named_cases
 from .two_port import two_port_cases
+from .with_values import transfer_function
 
 if TYPE_CHECKING:
     import control
@@ -47,8 +48,6 @@ class Transfer:
         speed: m/s or rad/s, at which smoothed friction and schedules are frozen
         raises ModelError: a block has no values, or a loop no solution at its values
         """
-        from ..frequency import transfer_function
-
         case = self.case
         try:
             return transfer_function(

@@ -1,5 +1,6 @@
 """Frequency responses of a diagram."""
 
+from ..derive import transfer_function
 from .describing_function import describing_function
 from .grid import falling
 from .impedance_map import ImpedanceMap
@@ -8,7 +9,7 @@ from .matrix_response import MatrixResponse, matrix_response
 from .measured_impedance import measured_impedance
 from .measured_response import measured_response, simulated_response
 from .quasi_linear import quasi_linear_impedance
-from .response import FrequencyResponse, bode, transfer_function
+from .response import FrequencyResponse, bode
 
 __all__ = [
     "FrequencyResponse",

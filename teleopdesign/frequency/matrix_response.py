@@ -18,7 +18,7 @@ from ..derive.printing import block_symbol
 from ..diagrams import Diagram, Moving
 from ..errors import ModelError
 from ..realise.lti import S, linear_blocks
-from .parted import linear_parted
+from ..realise.parted import linear_parted
 
 if TYPE_CHECKING:
     import control

@@ -15,11 +15,11 @@ import numpy as np
 from ..blocks import Body
 from ..diagrams import Diagram
 from ..quantity import unit_of
+from ..realise.parted import simulated_parted
 from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
 from .grid import Amplitude, Grid
 from .impedance_map import ImpedanceMap
-from .parted import simulated_parted
 from .sinusoid import GIVE, Sinusoid, settled_harmonics
 
 

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import sympy as sp
 
-from ..derive import block_symbol, transfer
+from ..derive import with_values
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
-from ..realise.lti import LinearBlocks, S, as_transfer_function, linear_blocks
+from ..realise.lti import S
 from ..realise.tips import linear_tips
-from .parted import linear_parted
 
 if TYPE_CHECKING:
     import control
@@ -117,7 +116,9 @@ def bode(
     f = np.geomspace(0.1, 1000.0, 2001) if frequency is None else np.asarray(frequency, dtype=float)
     rows, left_out = [], {}
     for name, diagram in cases.items():
-        expression, linear = _scalar(diagram, output, input, given, speed)
+        expression, linear = with_values(
+            diagram, output=output, input=input, given=given, speed=speed
+        )
         call = sp.lambdify(S, expression, "numpy")
         rows.append(np.broadcast_to(np.asarray(call(2j * np.pi * f), dtype=complex), f.shape))
         left_out[name] = linear.left_out
@@ -153,34 +154,3 @@ def ratio_unit(diagram: Diagram, output: str, source: str) -> str:
     units = signal_units(diagram)
     above, below = units(output), units(source)
     return "1" if above == below else f"{above}/{below}"
-
-
-def transfer_function(
-    diagram: Diagram,
-    *,
-    output: str = "R_M",
-    input: str = "R_D",
-    given: str | tuple[str, ...] = "",
-    speed: float = 0.0,
-    delay_order: int = 4,
-) -> tuple[control.TransferFunction, tuple[str, ...]]:
-    """The transfer function as a python-control system, and what has no linear form.
-
-    Arguments as in `bode`;  delay_order: of the Pade approximation of dead times
-    """
-    expression, linear = _scalar(diagram, output, input, given, speed)
-    return as_transfer_function(expression, delay_order=delay_order), linear.left_out
-
-
-def _scalar(
-    diagram: Diagram, output: str, source: str, given: str | tuple[str, ...], speed: float
-) -> tuple[sp.Expr, LinearBlocks]:
-    """Symbolic transfer function with each block's linear form in place; one degree of freedom."""
-    motions = given if isinstance(given, tuple) else (given,) if given else ()
-    diagram, led = linear_parted(diagram, motions)
-    output, source = led.get(output, output), led.get(source, source)
-    linear = linear_blocks(diagram, speed=speed)
-    form = transfer(diagram, output, (source,), given=tuple(led.values()))[source]
-    values = {block_symbol(n): e for n, e in linear.blocks.items()}
-    values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
-    return sp.sympify(form).subs(values), linear

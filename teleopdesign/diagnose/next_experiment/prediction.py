@@ -25,6 +25,11 @@ from .synthesis import Bench, Planned, record_under
 
 #: the two records of a proposed motion
 FIT, CHECK = "next_fit", "next_check"
+#: separation (noise floors) from which a motion decides: a right model's own error lies between one
+#: and about one and a half noise floors, so that less may be the method's own
+DECIDES = 1.0
+#: separation below which two models' forces count as the same: a twentieth of what sensors leave
+SAME = 0.05
 
 
 @dataclass(frozen=True)

@@ -10,19 +10,14 @@ from ...finding import Finding
 from ...measurement.filtering import Array
 from ..diagnosis import Diagnosis
 from .limits import Limits
-from .prediction import Curves, Determined, Separation
+from .prediction import DECIDES, SAME, Curves, Determined, Separation
 from .remedies import Remedy
 from .rivals import Rival
 from .synthesis import Bench, Planned
+from .words import proposal_findings, proposal_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-#: separation (noise floors) from which a motion decides: a right model's own error lies between one
-#: and about one and a half noise floors, so that less may be the method's own
-DECIDES = 1.0
-#: separation below which two models' forces count as the same: a twentieth of what sensors leave
-SAME = 0.05
 
 
 @dataclass(frozen=True)
@@ -81,14 +76,10 @@ class Proposal:
         return any(s.predicted > max(s.present, SAME) for s in self.separations)
 
     def __repr__(self) -> str:
-        from .words import proposal_text
-
         return proposal_text(self)
 
     def findings(self) -> tuple[Finding, ...]:
         """The proposal as findings for a report."""
-        from .words import proposal_findings
-
         return proposal_findings(self)
 
     def plot(self) -> Figure:

@@ -10,6 +10,8 @@ import numpy as np
 
 from ...finding import Finding, Graph, Series
 from ...quantity import si_factor
+from .prediction import DECIDES, SAME
+from .rivals import pairs
 
 if TYPE_CHECKING:
     from .prediction import Separation
@@ -59,8 +61,6 @@ def _nothing_open(proposal: Proposal) -> str:
 
 def unordered(proposal: Proposal) -> list[tuple[int, int]]:
     """Pairs of rivals of one question, each once."""
-    from .rivals import pairs
-
     return [(i, j) for i, j in pairs(proposal.rivals) if i < j]
 
 
@@ -118,8 +118,6 @@ def _what_stays_open(proposal: Proposal, pair: tuple[int, int]) -> str:
 
 
 def _remedies_said(tried: Sequence[Remedy]) -> str:
-    from .proposal import DECIDES, SAME
-
     helping = [r for r in tried if r.separation >= DECIDES]
     if helping:
         listed = "; or ".join(f"{r.change} ({r.separation:.1f})" for r in helping)

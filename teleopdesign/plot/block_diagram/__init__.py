@@ -11,11 +11,11 @@ import math
 from ...diagrams import Diagram
 from ...errors import ModelError
 from .cells import place
+from .drawing import Drawing
 from .from_diagram import network
 from .network import Network, Node
 from .paths import Path, paths
 from .routes import route
-from .shapes import Drawing
 from .sheet import sheet
 
 __all__ = ["Drawing", "draw_diagram"]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..design import STYLE
-from .shapes import SIZES, SMALLER, Box, Circle, Dot, Drawing, Run, Text, Wire
+from .shapes import SIZES, SMALLER, Box, Circle, Dot, Run, Shape, Text, Wire
 from .svg import BASELINE, RAISED, arrow_head, shaft
 
 if TYPE_CHECKING:
@@ -18,18 +19,18 @@ LINE = 0.8
 FONT = ["STIXGeneral", "DejaVu Sans"]
 
 
-def figure(drawing: Drawing) -> Figure:
-    """The drawing in its own size."""
+def figure(shapes: Sequence[Shape], *, width: float, height: float) -> Figure:
+    """The shapes on a sheet of that size (points)."""
     import matplotlib.pyplot as plt
 
     with plt.style.context(STYLE):
-        size = drawing.width / POINTS_PER_INCH, drawing.height / POINTS_PER_INCH
+        size = width / POINTS_PER_INCH, height / POINTS_PER_INCH
         made = plt.figure(figsize=size, layout="none")
         axes = made.add_axes((0.0, 0.0, 1.0, 1.0))
         axes.set_axis_off()
-        axes.set_xlim(0.0, drawing.width)
-        axes.set_ylim(drawing.height, 0.0)
-        for shape in drawing.shapes:
+        axes.set_xlim(0.0, width)
+        axes.set_ylim(height, 0.0)
+        for shape in shapes:
             if isinstance(shape, Text):
                 _write(shape, axes)
             else:

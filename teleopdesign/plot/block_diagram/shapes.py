@@ -7,11 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Literal
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from typing import Literal
 
 Point = tuple[float, float]
 #: "block": name of a block, "signal": name of a signal, "sign": at a junction, "law": in a box
@@ -98,32 +94,6 @@ class Text:
 
 
 Shape = Box | Circle | Wire | Dot | Text
-
-
-@dataclass(frozen=True)
-class Drawing:
-    """Shapes on a sheet of that size;  title: alternative text."""
-
-    shapes: tuple[Shape, ...]
-    width: float
-    height: float
-    title: str
-
-    def svg(self) -> str:
-        """The drawing as a text of SVG; the same drawing gives the same text."""
-        from .svg import svg
-
-        return svg(self)
-
-    def plot(self) -> Figure:
-        """The drawing as a matplotlib figure in its own size, for `save_figure`."""
-        from .figure import figure
-
-        return figure(self)
-
-    def to_svg(self, path: str | Path) -> None:
-        """Write the drawing to an SVG file."""
-        Path(path).write_text(self.svg(), encoding="utf-8")
 
 
 def symbol(name: str) -> tuple[Run, ...]:

@@ -8,9 +8,10 @@ from itertools import pairwise
 from typing import Literal
 
 from .cells import LEFT, RIGHT, Cells
+from .drawing import Drawing
 from .network import MINUS, RADIUS, Network, Node, label
 from .routes import Grid, Route
-from .shapes import SIZES, Box, Circle, Dot, Drawing, Point, Run, Shape, Text, Wire, width
+from .shapes import SIZES, Box, Circle, Dot, Point, Run, Shape, Text, Wire, width
 
 MARGIN, PITCH = 8.0, 11.0
 APPROACH = 15.0  # arrow head and sign before a node

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from xml.sax.saxutils import escape, quoteattr
 
-from .shapes import SIZES, SMALLER, Box, Circle, Dot, Drawing, Point, Shape, Text, Wire, readable
+from .shapes import SIZES, SMALLER, Box, Circle, Dot, Point, Shape, Text, Wire, readable
 
 ARROW = (6.0, 2.2)  # length, half width
 FONT = "'STIX Two Text', STIXGeneral, 'Times New Roman', serif"
@@ -13,16 +14,14 @@ BASELINE = 0.32
 RAISED = {0: 0.0, -1: 0.22, 1: -0.38}
 
 
-def svg(drawing: Drawing) -> str:
-    """The whole file."""
-    w, h = drawing.width, drawing.height
-    title = escape(readable(drawing.title))
+def svg(shapes: Sequence[Shape], *, width: float, height: float, title: str) -> str:
+    """The whole file, on a sheet of that size (points); title: alternative text."""
     lines = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{w:g}pt" height="{h:g}pt" '
-        f'viewBox="0 0 {w:g} {h:g}" role="img" fill="none" stroke="black" stroke-width="0.8" '
-        f"font-family={quoteattr(FONT)}>",
-        f"<title>{title}</title>",
-        *(_element(shape) for shape in drawing.shapes),
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}pt" height="{height:g}pt" '
+        f'viewBox="0 0 {width:g} {height:g}" role="img" fill="none" stroke="black" '
+        f'stroke-width="0.8" font-family={quoteattr(FONT)}>',
+        f"<title>{escape(readable(title))}</title>",
+        *(_element(shape) for shape in shapes),
         "</svg>",
     ]
     return "\n".join(lines) + "\n"

@@ -9,8 +9,8 @@ from collections.abc import Mapping
 
 from ..blocks import Body
 from ..diagrams import Diagram
-from ..realise.simulated import without_absent
-from ..realise.tips import led, linear_tips, with_tips
+from .simulated import without_absent
+from .tips import led, linear_tips, with_tips
 
 
 def linear_parted(diagram: Diagram, given: tuple[str, ...]) -> tuple[Diagram, Mapping[str, str]]:

@@ -1,0 +1,56 @@
+"""A derived transfer function with the linear form of every block in place."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+from ..diagrams import Diagram
+from ..realise.lti import LinearBlocks, as_transfer_function, linear_blocks
+from ..realise.parted import linear_parted
+from .elimination import transfer
+from .printing import block_symbol
+
+if TYPE_CHECKING:
+    import control
+
+
+def with_values(
+    diagram: Diagram,
+    *,
+    output: str,
+    input: str,
+    given: str | tuple[str, ...] = "",
+    speed: float = 0.0,
+) -> tuple[sp.Expr, LinearBlocks]:
+    """Transfer function in `realise.lti.S` with numbers, and the linear forms that it rests on.
+
+    One degree of freedom. given: motions that are prescribed
+    speed: m/s or rad/s, at which smoothed friction and schedules are frozen
+    """
+    motions = given if isinstance(given, tuple) else (given,) if given else ()
+    diagram, tips = linear_parted(diagram, motions)
+    output, input = tips.get(output, output), tips.get(input, input)
+    linear = linear_blocks(diagram, speed=speed)
+    form = transfer(diagram, output, (input,), given=tuple(tips.values()))[input]
+    values = {block_symbol(n): e for n, e in linear.blocks.items()}
+    values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
+    return sp.sympify(form).subs(values), linear
+
+
+def transfer_function(
+    diagram: Diagram,
+    *,
+    output: str = "R_M",
+    input: str = "R_D",
+    given: str | tuple[str, ...] = "",
+    speed: float = 0.0,
+    delay_order: int = 4,
+) -> tuple[control.TransferFunction, tuple[str, ...]]:
+    """The transfer function as a python-control system, and what has no linear form.
+
+    Arguments as in `with_values`;  delay_order: of the Pade approximation of dead times
+    """
+    expression, linear = with_values(diagram, output=output, input=input, given=given, speed=speed)
+    return as_transfer_function(expression, delay_order=delay_order), linear.left_out

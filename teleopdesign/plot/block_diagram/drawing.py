@@ -1,0 +1,36 @@
+"""A drawing: shapes on a sheet, written as SVG or painted by matplotlib."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .figure import figure
+from .shapes import Shape
+from .svg import svg
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Shapes on a sheet of that size (points);  title: alternative text."""
+
+    shapes: tuple[Shape, ...]
+    width: float
+    height: float
+    title: str
+
+    def svg(self) -> str:
+        """The drawing as a text of SVG; the same drawing gives the same text."""
+        return svg(self.shapes, width=self.width, height=self.height, title=self.title)
+
+    def plot(self) -> Figure:
+        """The drawing as a matplotlib figure in its own size, for `save_figure`."""
+        return figure(self.shapes, width=self.width, height=self.height)
+
+    def to_svg(self, path: str | Path) -> None:
+        """Write the drawing to an SVG file."""
+        Path(path).write_text(self.svg(), encoding="utf-8")
