@@ -23,6 +23,7 @@ $(BIN)/python:
 
 $(VENV)/installed-core: EXTRAS =
 $(VENV)/installed-test: EXTRAS = [test]
+$(VENV)/installed-studies: EXTRAS = [studies]
 $(VENV)/installed-docs: EXTRAS = [docs]
 $(VENV)/installed-%: pyproject.toml | $(BIN)/python
 	@echo "== Installing teleopdesign$(EXTRAS) and what it needs into $(VENV) (once; some minutes)"
@@ -63,7 +64,7 @@ docs: $(VENV)/installed-docs  ## documentation in docs/_build/html, warnings are
 	@$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
 	@echo "docs/_build/html/index.html"
 
-studies: $(VENV)/installed-core  ## every study, figures and numbers into STUDY_OUTPUT (STUDY_ARGS=--quick)
+studies: $(VENV)/installed-studies  ## every study, figures and numbers into STUDY_OUTPUT (STUDY_ARGS=--quick)
 	@set -e; for study in studies/[!_]*.py; do \
 		echo "== $$study"; \
 		$(BIN)/python "$$study" $(STUDY_ARGS) --output "$(STUDY_OUTPUT)"; \

@@ -1,0 +1,66 @@
+"""What pyproject.toml asks for is imported somewhere, and every import is asked for."""
+
+import ast
+import re
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+#: distribution -> module, where the two have other names
+MODULES = {"z3-solver": "z3", "myst-parser": "myst_parser"}
+#: tools that are run, not imported
+TOOLS = {"import-linter", "mypy", "pytest-xdist", "ruff", "scipy-stubs"}
+#: what another library is asked for by a text: themes and readers of sphinx, a solver of cvxpy
+NAMED = {"clarabel", "furo", "myst-parser", "sphinx"}
+
+
+def names(requirements):
+    """Distributions of a list of requirements, without versions and extras."""
+    found = [re.match(r"[A-Za-z0-9-]+", r)[0] for r in requirements]
+    return {n for n in found if n != PROJECT["name"]}
+
+
+def imported(*folders):
+    """Top-level modules that Python files of these folders import, by name or by import_module."""
+    found = set()
+    for folder in folders:
+        for path in (ROOT / folder).rglob("*.py"):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.Import):
+                    found |= {a.name for a in node.names}
+                elif isinstance(node, ast.ImportFrom) and node.level == 0:
+                    found.add(node.module)
+                elif isinstance(node, ast.Call) and node.args:
+                    first = node.args[0]
+                    if isinstance(first, ast.Constant) and isinstance(first.value, str):
+                        name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+                        if name in ("import_module", "find_spec", "importorskip"):
+                            found.add(first.value)
+    return {name.partition(".")[0] for name in found}
+
+
+CORE = names(PROJECT["dependencies"])
+EXTRAS = {extra: names(wanted) for extra, wanted in PROJECT["optional-dependencies"].items()}
+PACKAGE = imported("teleopdesign")
+EVERYWHERE = PACKAGE | imported("studies", "tests", "docs", "benchmarks")
+
+
+@pytest.mark.parametrize("name", sorted(CORE))
+def test_a_core_dependency_is_imported_by_the_package(name):
+    assert MODULES.get(name, name) in PACKAGE
+
+
+@pytest.mark.parametrize("name", sorted(set().union(*EXTRAS.values()) - TOOLS - NAMED))
+def test_a_dependency_of_an_extra_is_imported_somewhere(name):
+    assert MODULES.get(name, name) in EVERYWHERE
+
+
+def test_the_package_imports_only_what_it_asks_for():
+    asked = {MODULES.get(n, n) for n in CORE.union(*EXTRAS.values())}
+    # markupsafe comes with jinja2, whose documentation says to import it from there
+    known = {*asked, *sys.stdlib_module_names, "teleopdesign", "markupsafe"}
+    assert known >= PACKAGE
