@@ -1,0 +1,34 @@
+"""Diagrams that ship with the package: one file is one diagram, named by the file.
+
+Each has a docstring, whose first line says what it is, and a function `diagram()` that makes it.
+Commands know it by the file's name with dashes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from pkgutil import iter_modules
+from types import MappingProxyType
+
+from ...errors import ModelError, did_you_mean
+from ..wiring import Diagram
+
+
+def _shipped() -> Mapping[str, Callable[[], Diagram]]:
+    files = sorted(m.name for m in iter_modules(__path__) if not m.name.startswith("_"))
+    makers = {n: import_module(f"{__name__}.{n}").diagram for n in files}
+    return MappingProxyType({n.replace("_", "-"): maker for n, maker in makers.items()})
+
+
+#: name -> what makes the diagram
+SHIPPED: Mapping[str, Callable[[], Diagram]] = _shipped()
+
+
+def shipped(name: str) -> Diagram:
+    """The shipped diagram of that name; ModelError with the nearest one."""
+    if name not in SHIPPED:
+        raise ModelError(
+            f'no diagram "{name}", has {", ".join(SHIPPED)}{did_you_mean(name, SHIPPED)}'
+        )
+    return SHIPPED[name]()
