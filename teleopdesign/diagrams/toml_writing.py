@@ -15,6 +15,7 @@ from ..blocks import Body, Value, with_block_effects
 from ..controllers import CONTROLLERS, Controller
 from ..effects import EFFECTS, Effect
 from ..errors import ModelError
+from ..plain_data import write_text
 from .expressions import expression_text
 from .parts import AnyBlock, Attached, Block, Control, Junction, Kinematics, Linked, Moving
 from .short_form import kind_of
@@ -32,7 +33,7 @@ def write_diagram(
         of the package's, an expression holds other functions than a file may
     """
     text = diagram_text(diagram, effects=effects)
-    Path(path).write_text(text, encoding="utf-8", newline="\n")
+    write_text(path, text)
 
 
 def diagram_text(diagram: Diagram, *, effects: Mapping[str, Effect] = EFFECTS) -> str:

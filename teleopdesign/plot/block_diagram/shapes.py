@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from ...plain_data import write_text
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -123,7 +125,7 @@ class Drawing:
 
     def to_svg(self, path: str | Path) -> None:
         """Write the drawing to an SVG file."""
-        Path(path).write_text(self.svg(), encoding="utf-8")
+        write_text(path, self.svg())
 
 
 def symbol(name: str) -> tuple[Run, ...]:
