@@ -110,9 +110,14 @@ def _body(name: str, body: Body | AnyBlock, known: Mapping[str, Effect]) -> list
     for effect in body.effects:
         if known.get(effect.name) is not effect:
             raise ModelError(f'{name}: effect "{effect.name}" is not the one known by that name')
+    return body_lines(f"blocks.{_key(name)}", body)
+
+
+def body_lines(table: str, body: Body) -> list[str]:
+    """What stands under [table] for a body, in SI: `model.device`, or `blocks.M` of a diagram."""
     lines = [f"axis = {_text(body.axis)}", f"inertia = {_value(body.parameters['inertia'])}"]
     for effect in body.effects:
-        lines += [f"[blocks.{_key(name)}.effects.{_key(effect.name)}]"]
+        lines += [f"[{table}.effects.{_key(effect.name)}]"]
         own = ((p, body.parameters[f"{effect.name}.{p}"]) for p in effect.parameters)
         lines += [f"{p} = {_value(value)}" for p, value in own]
     return lines
