@@ -10,12 +10,11 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 from .blocks import CONTACT, Body, Value
-from .blocks.body import INERTIA
+from .blocks.described import body_of, effects_of, value_of
 from .effects import CONTACT_ROLES, EFFECTS, Effect, Parameter, find_effect
 from .errors import ExperimentError, ModelError, did_you_mean
-from .measurement.description import BodyDescription, EnvironmentDescription, ModelValue
+from .measurement.description import BodyDescription, EnvironmentDescription
 from .measurement.experiment import Experiment
-from .quantity import to_si
 
 
 @dataclass(frozen=True)
@@ -208,21 +207,6 @@ class Model:
         return "Model\n" + "\n".join(lines)
 
 
-def _number(value: ModelValue, parameter: Parameter, axis: str) -> Value:
-    unit = value.unit
-    if unit is None:
-        if parameter.quantity != "dimensionless":
-            raise ExperimentError(f"{value.where}: no unit given")
-        unit = "1"
-    number = to_si(value.value, unit, quantity=parameter.quantity, axis=axis, where=value.where)
-    if not parameter.lower <= number <= parameter.upper:
-        raise ExperimentError(
-            f"{value.where}: {value.value:g} {unit} is outside {parameter.lower:g} .. "
-            f"{parameter.upper:g}"
-        )
-    return Value(number, value.fixed)
-
-
 def _touching(body: Body, description: EnvironmentDescription, known: Mapping[str, Effect]) -> Body:
     """The body with the environment that it runs into; damping is none unless one is given."""
     if "stiffness" not in description.values:
@@ -232,10 +216,10 @@ def _touching(body: Body, description: EnvironmentDescription, known: Mapping[st
         f"{CONTACT.name}.contact_position": Value(0.0, fixed=True),
     }
     for name, value in description.values.items():
-        values[f"{CONTACT.name}.{name}"] = _number(value, CONTACT.parameters[name], body.axis)
+        values[f"{CONTACT.name}.{name}"] = value_of(value, CONTACT.parameters[name], body.axis)
     body = body.with_effect(CONTACT).with_values(values)
     where = f"{description.where}.effects"
-    effects, parameters = _effects(description.effects, where, body.axis, known)
+    effects, parameters = effects_of(description.effects, where, body.axis, known)
     for effect in effects:
         if effect.role not in CONTACT_ROLES:
             raise ExperimentError(f'{where}: "{effect.name}" acts at a body, not at an environment')
@@ -244,47 +228,10 @@ def _touching(body: Body, description: EnvironmentDescription, known: Mapping[st
 
 
 def _body(description: BodyDescription, known: Mapping[str, Effect]) -> Body:
-    if description.inertia is None:
-        raise ExperimentError(f"{description.where}: no inertia given")
-    where = f"{description.where}.effects"
-    effects, parameters = _effects(description.effects, where, description.axis, known)
-    for effect in effects:
-        if effect.role in CONTACT_ROLES:
+    for name in description.effects:
+        if name in known and known[name].role in CONTACT_ROLES:
             raise ExperimentError(
-                f'{where}: "{effect.name}" acts at an environment: see [model.environment.effects]'
+                f'{description.where}.effects: "{name}" acts at an environment: '
+                "see [model.environment.effects]"
             )
-    parameters["inertia"] = _number(description.inertia, INERTIA, description.axis)
-    try:
-        return Body(description.axis, parameters, tuple(effects))
-    except ModelError as error:
-        raise ExperimentError(f"{description.where}: {error}") from error
-
-
-def _effects(
-    written: Mapping[str, Mapping[str, ModelValue]],
-    where: str,
-    axis: str,
-    known: Mapping[str, Effect],
-) -> tuple[list[Effect], dict[str, Value]]:
-    """Effects of a table of an experiment, and their parameters by name within the body."""
-    effects: list[Effect] = []
-    parameters: dict[str, Value] = {}
-    for name, given in written.items():
-        try:
-            effect = find_effect(name, known, where)
-        except ModelError as error:
-            raise ExperimentError(str(error)) from error
-        effects.append(effect)
-        for key in given:
-            if key not in effect.parameters:
-                raise ExperimentError(
-                    f'{where}.{name}: no parameter "{key}", has {", ".join(effect.parameters)}'
-                    f"{did_you_mean(key, effect.parameters)}"
-                )
-        for key, parameter in effect.parameters.items():
-            if key in given:
-                number = _number(given[key], parameter, axis)
-            else:
-                number = Value(effect.default(key), fixed=parameter.chosen)
-            parameters[f"{name}.{key}"] = number
-    return effects, parameters
+    return body_of(description, known)

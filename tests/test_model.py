@@ -129,7 +129,7 @@ IN_THE_TOML = {
     "unknown effect": ("viscous", "viscus", 'effects: no effect "viscus"; did you mean "viscous"'),
     "unknown parameter": ("{ level =", "{ levl =", 'coulomb: no parameter "levl".*"level"'),
     "wrong unit": ('0.50, unit = "N"', '0.50, unit = "kg"', 'found "kg", expected a force'),
-    "no unit": ('0.50, unit = "N"', "0.50", "level.*no unit"),
+    "negative error": ("0.50, unit", "0.50, stderr = -1, unit", "level.stderr: found -1, expec"),
     "out of bounds": ("value = 0.50", "value = -0.50", "outside 0 .. inf"),
     "needs another": ("coulomb = {", "stribeck = {}\nspring = { stiffness = { value = 1, unit"
                       ' = "N/m" } } #', 'model.device.*"stribeck" needs "coulomb"'),

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..plain_data import write_json
 from ._claims import claim_lines, plain
 from .derive import diagram_of
 
@@ -44,7 +44,7 @@ def settle_diagram(options: argparse.Namespace, computer: Sampling | None) -> in
             "nonlinear": list(found.nonlinear),
             "claims": [plain(s) for s in found.settled],
         }
-        options.json.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+        write_json(options.json, content)
     return 0
 
 

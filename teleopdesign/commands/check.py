@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
-import math
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..plain_data import write_json
 from ._options import add_effect_files, add_folder, check_output
 
 if TYPE_CHECKING:
@@ -42,8 +41,8 @@ def run(options: argparse.Namespace) -> int:
     findings = check_experiment(experiment, model)
     print(text_of(findings))
     if options.json is not None:
-        content = {"findings": [plain(f) for f in findings]}
-        options.json.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+        content = {"findings": [finding_data(f) for f in findings]}
+        write_json(options.json, content)
     return 0
 
 
@@ -59,12 +58,12 @@ def text_of(findings: Sequence[Finding]) -> str:
     return "\n".join(lines)
 
 
-def plain(finding: Finding) -> dict[str, Any]:
+def finding_data(finding: Finding) -> dict[str, Any]:
     """A finding as plain data; numbers in SI, null where there is none or it is infinite."""
     return {
         "topic": finding.topic,
         "concern": finding.concern,
         "where": finding.where,
         "sentence": finding.sentence,
-        "numbers": {n: v if math.isfinite(v) else None for n, v in finding.numbers.items()},
+        "numbers": dict(finding.numbers),
     }

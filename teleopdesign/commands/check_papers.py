@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import json
 import shutil
 import textwrap
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..plain_data import write_json
 from ._options import check_output, say
 
 if TYPE_CHECKING:
@@ -42,8 +42,7 @@ def run(options: argparse.Namespace) -> int:
     )
     print(_summary(results))
     if options.json is not None:
-        text = json.dumps([as_json(r) for r in results], indent=2)
-        options.json.write_text(f"{text}\n", encoding="utf-8")
+        write_json(options.json, [as_json(r) for r in results])
     return 0 if all(r.as_stated for r in results) else 1
 
 
@@ -112,9 +111,6 @@ def as_json(result: Result) -> dict[str, Any]:
     """A result as plain data; figures with the range that they must lie in and their margin."""
     s = result.statement
 
-    def number(x: float) -> float | None:
-        return x if abs(x) != float("inf") else None
-
     return {
         "statement": s.name,
         "outcome": result.outcome,
@@ -132,10 +128,10 @@ def as_json(result: Result) -> dict[str, Any]:
             {
                 "what": f.what.strip(),
                 "found": f.found,
-                "low": number(f.low),
-                "high": number(f.high),
+                "low": f.low,
+                "high": f.high,
                 "unit": f.unit,
-                "margin": number(f.margin),
+                "margin": f.margin,
             }
             for f in result.figures
         ],

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import ModelError, did_you_mean
+from ..plain_data import write_json
 from ._options import add_effect_files, check_output
 
 if TYPE_CHECKING:
@@ -48,8 +48,7 @@ def run(options: argparse.Namespace) -> int:
     found = all_transfers(linear_tips(diagram))  # with the wiring that is simulated
     print(found.latex() if options.latex else _page(found, options.speed))
     if options.json is not None:
-        text = json.dumps(found.as_data(speed=options.speed), indent=1)
-        options.json.write_text(f"{text}\n", encoding="utf-8")
+        write_json(options.json, found.as_data(speed=options.speed))
     if options.figure is not None:
         _draw(diagram, options.figure)
     return 0

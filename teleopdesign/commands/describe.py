@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import ModelError
+from ..plain_data import replacing, write_json
 from ._options import add_effect_files, add_folder, check_output, say
 
 if TYPE_CHECKING:
@@ -63,10 +63,10 @@ def run(options: argparse.Namespace) -> int:
     found = unexplained(fit, prepared, floor)
     print(found)
     if options.json is not None:
-        text = json.dumps({"model": said, **found.as_data()}, indent=1)
-        options.json.write_text(text + "\n", encoding="utf-8")
+        write_json(options.json, {"model": said, **found.as_data()})
     if options.figure is not None:
-        found.plot().savefig(options.figure)
+        with replacing(options.figure) as part:
+            found.plot().savefig(part)
     if options.effect_file is not None:
         _write(found, options.effect_file, options.folder)
     return 0

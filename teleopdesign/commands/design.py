@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ExperimentError, did_you_mean
+from ..plain_data import write_json, write_text
 from ._options import add_effect_files, add_folder, check_output, say
 
 if TYPE_CHECKING:
@@ -132,7 +132,7 @@ def _write(designs: dict[str, Design], options: argparse.Namespace) -> None:
 
     content = {"bodies": {place: d.as_dict() for place, d in designs.items()}}
     if options.json is not None:
-        options.json.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+        write_json(options.json, content)
     if options.figure is not None:
         save_figure(
             next(iter(designs.values())).plot(), options.figure, suffixes=(options.figure.suffix,)
@@ -144,5 +144,5 @@ def _write(designs: dict[str, Design], options: argparse.Namespace) -> None:
         files = save_figure(made.plot(), options.output / f"{place}_design")
         made.to_json(options.output / f"{place}_design.json")
         diagram = options.output / f"{place}_interface.toml"
-        diagram.write_text(made.to_toml(), encoding="utf-8")
+        write_text(diagram, made.to_toml())
         print(f"written: {', '.join(map(str, files))}, {diagram}")

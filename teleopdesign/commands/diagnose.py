@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..plain_data import replacing
 from ._options import add_effect_files, add_folder, check_output, say
 
 if TYPE_CHECKING:
@@ -59,7 +60,8 @@ def run(options: argparse.Namespace) -> int:
     if options.predictions is not None:
         write_predictions(diagnosis, options.predictions)
     if options.figure is not None:
-        diagnosis.plot().savefig(options.figure)
+        with replacing(options.figure) as part:
+            diagnosis.plot().savefig(part)
     if options.report is not None:
         _write_report(diagnosis, options.report)
     for line in _next_commands(diagnosis, options.folder):

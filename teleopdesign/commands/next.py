@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import re
 import textwrap
@@ -12,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ExperimentError, did_you_mean
+from ..plain_data import replacing, write_json
 from ._options import add_effect_files, add_folder, check_output, say
 
 if TYPE_CHECKING:
@@ -103,9 +103,10 @@ def run(options: argparse.Namespace) -> int:
             print(f"\nnot written: {options.output}, for no motion is proposed")
     if options.json is not None:
         content = _content(proposal, shown)
-        options.json.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+        write_json(options.json, content)
     if options.figure is not None:
-        proposal.plot().savefig(options.figure)
+        with replacing(options.figure) as part:
+            proposal.plot().savefig(part)
     return 0
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError
+from ..plain_data import write_json
 from ._answer import body_of_answer
 from ._claims import WIDTH, claim_lines, plain
 from ._diagram_passivity import BESIDE_A_DIAGRAM, is_diagram, settle_diagram
@@ -94,7 +95,7 @@ def run(options: argparse.Namespace) -> int:
         print("\n" + _z_width(device, options.period, options.delay))
     if options.json is not None:
         content = {"claims": [plain(s) for s in settled], "margins": [vars(m) for m in found]}
-        options.json.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+        write_json(options.json, content)
     return 0
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,6 +13,7 @@ from ..diagrams.toml_writing import diagram_text
 from ..errors import ModelError
 from ..frequency import FrequencyResponse
 from ..passivity import Claim
+from ..plain_data import write_json
 from ..simulate import Sampling
 from .assumptions import Assumptions
 from .chosen import Chosen
@@ -105,14 +105,13 @@ class Design:
 
     def as_dict(self) -> dict[str, Any]:
         """The design as plain data; SI units."""
-        from .plain_data import design_data
+        from .design_data import design_data
 
         return design_data(self)
 
     def to_json(self, path: str | Path) -> None:
         """Write it as JSON."""
-        text = json.dumps(self.as_dict(), indent=1, allow_nan=False) + "\n"
-        Path(path).write_text(text, encoding="utf-8")
+        write_json(path, self.as_dict())
 
     def __repr__(self) -> str:
         from .sentences import design_text

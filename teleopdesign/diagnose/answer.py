@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import csv
 import gzip
-import json
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from io import TextIOWrapper
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import numpy as np
 
 from ..model import Model
+from ..plain_data import plain, replacing, write_json
 from ..quantity import unit_of
 from ..realise.along_motion import residual_along
 from .diagnosis import Diagnosis
@@ -44,7 +46,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "indistinguishable": [[_place(c.key) for c in g] for g in diagnosis.groups],
         "own": _own(diagnosis),
         "model_parameters": _parameters(diagnosis.after, _added(diagnosis)),
-        "left_over_noise_floors": _finite(diagnosis.left),
+        "left_over_noise_floors": plain(diagnosis.left),
         "one_moment": _moment(diagnosis.moment),
         "at_bound": list(diagnosis.after.at_bound),
         "evidence": [_evidence(one) for one in evidence_of(diagnosis) if one.share > 0],
@@ -85,10 +87,6 @@ def _place(key: tuple[str, str]) -> dict[str, str]:
     return {"effect": key[0], "at": key[1]}
 
 
-def _finite(x: float) -> float | None:
-    return float(x) if math.isfinite(x) else None
-
-
 def _added(diagnosis: Diagnosis) -> set[str]:
     return {f"{r.added.at}.{r.added.effect.name}" for r in diagnosis.rungs if r.added is not None}
 
@@ -96,8 +94,8 @@ def _added(diagnosis: Diagnosis) -> set[str]:
 def _parameter(model: Model, name: str) -> dict[str, Any]:
     value = model.parameters[name]
     return {
-        "value": _finite(value.value),
-        "stderr": _finite(value.stderr),
+        "value": plain(value.value),
+        "stderr": plain(value.stderr),
         "unit": model.unit(name),
     }
 
@@ -127,7 +125,7 @@ def _evidence(one: CandidateEvidence) -> dict[str, Any]:
     return _place(one.ranked.candidate.key) | {
         "accepted": one.accepted,
         "as_good": one.as_good,
-        "score": _finite(one.ranked.score),
+        "score": plain(one.ranked.score),
         "share": one.share,
         "explained": one.explained,
     }
@@ -152,7 +150,7 @@ def _row(diagnosis: Diagnosis, one: CandidateEvidence, probability: float) -> di
 
 def write_answer(diagnosis: Diagnosis, path: str | Path) -> None:
     """Write the answer as JSON."""
-    Path(path).write_text(json.dumps(answer(diagnosis), indent=1) + "\n", encoding="utf-8")
+    write_json(path, answer(diagnosis))
 
 
 def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
@@ -167,10 +165,7 @@ def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
     for body in bodies:
         head += [f"{body}.{q}" for q in ("measured", "model_before", "model_after")]
         head += [f"{body}.residual_before", f"{body}.residual_after"]
-    opened = (
-        gzip.open(path, "wt", newline="") if path.suffix == ".gz" else path.open("w", newline="")
-    )
-    with opened as file:
+    with replacing(path) as part, _opened(part, path) as file:
         out = csv.writer(file)
         out.writerow(head)
         for record in diagnosis.experiment.records:
@@ -179,6 +174,19 @@ def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
                 out.writerow(
                     [record.file, f"{record.time[k]:.9g}", *(f"{c[k]:.7g}" for c in columns)]
                 )
+
+
+@contextmanager
+def _opened(part: Path, path: Path) -> Iterator[TextIO]:
+    """A text file to write to, packed where the name says so; the name within is the path's."""
+    with part.open("wb") as raw:
+        if path.suffix != ".gz":
+            with TextIOWrapper(raw, encoding="utf-8", newline="") as file:
+                yield file
+            return
+        with gzip.GzipFile(path.name, "wb", fileobj=raw) as packed:
+            with TextIOWrapper(packed, encoding="utf-8", newline="") as file:
+                yield file
 
 
 def _predicted(diagnosis: Diagnosis, file: str) -> list[np.ndarray]:

@@ -12,13 +12,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..blocks import Body, Value, with_block_effects
-from ..blocks.body import INERTIA
+from ..blocks import Body, with_block_effects
+from ..blocks.described import body_of
 from ..controllers import CONTROLLERS, Controller, Stage
-from ..effects import EFFECTS, Effect, Parameter, find_effect
+from ..effects import EFFECTS, Effect
 from ..errors import ExperimentError, ModelError, did_you_mean, quoted
+from ..measurement.description import BODY, body_from
 from ..measurement.toml_table import Table, described, read_toml
-from ..quantity import AXES, QUANTITIES, to_si
+from ..quantity import AXES, QUANTITIES
 from .expressions import read_expression
 from .parts import (
     ANY,
@@ -36,7 +37,6 @@ from .short_form import KINDS, Content
 from .toml_matrices import MATRICES, read_matrices
 from .wiring import Diagram
 
-BODY = ("axis", "inertia", "effects")
 LAW = ("law", "parameters", "series")
 #: keys of a block by its kind, beside those of its body or law
 WIRING = {
@@ -164,37 +164,7 @@ def _kinematics(table: Table, name: str) -> Kinematics:
 def _body(table: Table, effects: Mapping[str, Effect]) -> Body | AnyBlock:
     if not any(key in table.content for key in BODY):
         return ANY
-    axis = _one_of(table, "axis", AXES)
-    values = {"inertia": _value(table, "inertia", INERTIA, axis)}
-    written, own = table.table("effects"), []
-    for name in written.content:
-        effect = find_effect(name, effects, written.where())
-        own.append(effect)
-        parameters = written.table(name)
-        parameters.allow(effect.parameters)
-        for key, parameter in effect.parameters.items():
-            if key in parameters.content or not parameter.optional:
-                values[f"{name}.{key}"] = _value(parameters, key, parameter, axis)
-    try:
-        return Body(axis, values, tuple(own))
-    except ModelError as error:
-        raise ExperimentError(f"{table.where()}: {error}") from error
-
-
-def _value(table: Table, key: str, parameter: Parameter, axis: str) -> Value:
-    """A number in SI, or { value = 150, unit = "g", fixed = true, stderr = 2 }."""
-    if not isinstance(table.content.get(key), dict):
-        return Value(table.number(key))
-    entry = table.table(key)
-    entry.allow(("value", "unit", "fixed", "stderr"))
-    number, error = entry.number("value"), entry.number_or_none("stderr")
-    fixed = entry.flag("fixed", False)
-    if "unit" in entry.content:
-        unit, where = entry.text("unit"), entry.where("unit")
-        number = to_si(number, unit, quantity=parameter.quantity, axis=axis, where=where)
-        if error is not None:
-            error = to_si(error, unit, quantity=parameter.quantity, axis=axis, where=where)
-    return Value(number, fixed) if error is None else Value(number, fixed, error)
+    return body_of(body_from(table.key, table), effects, complete=True)
 
 
 def _controller(table: Table) -> Controller | AnyBlock:

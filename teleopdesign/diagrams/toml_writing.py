@@ -15,6 +15,7 @@ from ..blocks import Body, Value, with_block_effects
 from ..controllers import CONTROLLERS, Controller
 from ..effects import EFFECTS, Effect
 from ..errors import ModelError
+from ..plain_data import write_text
 from .expressions import expression_text
 from .parts import AnyBlock, Attached, Block, Control, Junction, Kinematics, Linked, Moving
 from .short_form import kind_of
@@ -32,7 +33,7 @@ def write_diagram(
         of the package's, an expression holds other functions than a file may
     """
     text = diagram_text(diagram, effects=effects)
-    Path(path).write_text(text, encoding="utf-8", newline="\n")
+    write_text(path, text)
 
 
 def diagram_text(diagram: Diagram, *, effects: Mapping[str, Effect] = EFFECTS) -> str:
@@ -109,9 +110,14 @@ def _body(name: str, body: Body | AnyBlock, known: Mapping[str, Effect]) -> list
     for effect in body.effects:
         if known.get(effect.name) is not effect:
             raise ModelError(f'{name}: effect "{effect.name}" is not the one known by that name')
+    return body_lines(f"blocks.{_key(name)}", body)
+
+
+def body_lines(table: str, body: Body) -> list[str]:
+    """What stands under [table] for a body, in SI: `model.device`, or `blocks.M` of a diagram."""
     lines = [f"axis = {_text(body.axis)}", f"inertia = {_value(body.parameters['inertia'])}"]
     for effect in body.effects:
-        lines += [f"[blocks.{_key(name)}.effects.{_key(effect.name)}]"]
+        lines += [f"[{table}.effects.{_key(effect.name)}]"]
         own = ((p, body.parameters[f"{effect.name}.{p}"]) for p in effect.parameters)
         lines += [f"{p} = {_value(value)}" for p, value in own]
     return lines

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from ..errors import ModelError
+from ..plain_data import write_json
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -118,8 +118,7 @@ class ImpedanceMap:
             str(case): {name: _rounded(t.sel(case=case).values) for name, t in tables.items()}
             for case in self.data["case"].values
         }
-        text = json.dumps({**written, "cases": cases}, indent=1)
-        Path(path).write_text(text + "\n", encoding="utf-8")
+        write_json(path, {**written, "cases": cases})
 
     def __repr__(self) -> str:
         f, a = self.data["frequency"].values, self.data["amplitude"].values

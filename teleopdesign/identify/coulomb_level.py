@@ -10,7 +10,6 @@ Bernstein, Lawrence, Pao, World Haptics 2005, section 5; Mahvash, Okamura, ICRA 
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +20,7 @@ import numpy as np
 from ..errors import ExperimentError
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
+from ..plain_data import plain, write_json
 from ..quantity import unit_of
 from .mean_error import mean_error
 from .steady_runs import SteadyRun, steady_runs
@@ -89,13 +89,13 @@ class CoulombLevel:
         return plot_force_velocity_curve(self)
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data, SI units."""
+        """Plain data, SI units; null for a number that is not finite."""
         force, speed = unit_of("force", self.axis), unit_of("velocity", self.axis)
-        return {
+        data = {
             "experiment": self.experiment,
             "coulomb_level": None if self.level is None else list(self.level),
             **{
-                name: None if line is None else {n: _finite(x) for n, x in vars(line).items()}
+                name: None if line is None else dict(vars(line))
                 for name, line in self.lines.items()
             },
             "speeds": [vars(s) for s in self.speeds],
@@ -106,11 +106,12 @@ class CoulombLevel:
             ],
             "units": {"force": force, "velocity": speed},
         }  # fmt: skip
+        content: dict[str, Any] = plain(data)
+        return content
 
     def to_json(self, path: str | Path) -> None:
         """Write it as JSON."""
-        text = json.dumps(self.as_dict(), indent=1, allow_nan=False) + "\n"
-        Path(path).write_text(text, encoding="utf-8")
+        write_json(path, self.as_dict())
 
     @property
     def level(self) -> tuple[float, float] | None:
@@ -288,7 +289,3 @@ def _line(speed: Array, force: Array, error: Array) -> Line | None:
     wider = np.sqrt(max(chi, 1.0)) if freedom else 1.0
     errors = wider * np.sqrt(np.diag(covariance))
     return Line(float(level), float(errors[0]), float(damping), float(errors[1]), chi)
-
-
-def _finite(x: float) -> float | None:
-    return x if np.isfinite(x) else None

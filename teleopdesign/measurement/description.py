@@ -1,7 +1,8 @@
-"""What the user believes so far, as written in experiment.toml: bodies, effects, an environment.
+"""Bodies and an environment as written: in experiment.toml, in a diagram's file, in an answer.
 
-Values keep the unit they were written in. Which quantity an effect's parameter is, only the effect
-knows; the model converts it (`quantity.to_si`) and repeats `where` in its messages.
+A value is a number in SI, or { value = 150, unit = "g", fixed = true, stderr = 2 }; values keep the
+unit they were written in. Which quantity an effect's parameter is, only the effect knows:
+`blocks.described` converts it and repeats `where` in its messages.
 """
 
 from collections.abc import Mapping
@@ -13,17 +14,34 @@ from .toml_table import Table
 
 ONE_BODY = ("device",)
 TWO_BODIES = ("master", "slave")
+#: keys of a table that describes a body
+BODY = ("axis", "inertia", "effects")
 _ENVIRONMENT = {"stiffness": "stiffness", "damping": "damping", "contact_position": "position"}
 
 
 @dataclass(frozen=True)
 class ModelValue:
-    """A number as written, in `unit` (None: none written); `fixed`: not to be re-estimated."""
+    """A number as written, in `unit` (None: SI); `fixed`: not to be re-estimated.
+
+    stderr: standard error in the same unit; None: not written
+    """
 
     value: float
     unit: str | None
     fixed: bool
     where: str
+    stderr: float | None = None
+
+    def in_si(self, quantity: str, axis: str) -> tuple[float, float | None]:
+        """Value and standard error in SI; raises ExperimentError: the unit of something else."""
+        if self.unit is None:
+            return self.value, self.stderr
+
+        def converted(number: float) -> float:
+            where = f"{self.where}.unit"
+            return to_si(number, self.unit, quantity=quantity, axis=axis, where=where)
+
+        return converted(self.value), None if self.stderr is None else converted(self.stderr)
 
 
 Effects = Mapping[str, Mapping[str, ModelValue]]
@@ -60,7 +78,7 @@ def bodies_from(model: Table) -> dict[str, BodyDescription]:
             f"{model.where()}: found {found}, "
             "expected [model.device], or [model.master] and [model.slave]"
         )
-    return {name: _body(name, model.table(name)) for name in names}
+    return {name: _moving(name, model.table(name)) for name in names}
 
 
 def environment_from(
@@ -76,12 +94,26 @@ def environment_from(
     for name, quantity in _ENVIRONMENT.items():
         if name in table.content:
             values[name] = _value(table, name)
-            _in_si(values[name], quantity, axis)
+            values[name].in_si(quantity, axis)
     return EnvironmentDescription(values, _effects(table), table.where())
 
 
-def _body(name: str, table: Table) -> BodyDescription:
-    table.allow(("axis", "inertia", "effects"))
+def _moving(name: str, table: Table) -> BodyDescription:
+    """A body that records show in motion: it has an inertia, if it says which."""
+    table.allow(BODY)
+    body = body_from(name, table)
+    if body.inertia is not None and body.inertia.value <= 0:
+        raise ExperimentError(
+            f"{body.inertia.where}: found {body.inertia.value:g}, expected a number above 0"
+        )
+    return body
+
+
+def body_from(name: str, table: Table) -> BodyDescription:
+    """The body that a table describes by its keys `BODY`; other keys are the caller's.
+
+    raises ExperimentError: a wrong type, no axis, no number, the unit of something else
+    """
     axis = table.text("axis")
     if axis not in AXES:
         raise ExperimentError(
@@ -91,16 +123,8 @@ def _body(name: str, table: Table) -> BodyDescription:
     inertia = None
     if "inertia" in table.content:
         inertia = _value(table, "inertia")
-        if _in_si(inertia, "inertia", axis) <= 0:
-            raise ExperimentError(
-                f"{inertia.where}: found {inertia.value:g}, expected a number above 0"
-            )
+        inertia.in_si("inertia", axis)
     return BodyDescription(name, axis, inertia, _effects(table), table.where())
-
-
-def _in_si(value: ModelValue, quantity: str, axis: str) -> float:
-    where = value.where if value.unit is None else f"{value.where}.unit"
-    return to_si(value.value, value.unit, quantity=quantity, axis=axis, where=where)
 
 
 def _effects(table: Table) -> dict[str, dict[str, ModelValue]]:
@@ -113,10 +137,13 @@ def _effects(table: Table) -> dict[str, dict[str, ModelValue]]:
 
 
 def _value(table: Table, key: str) -> ModelValue:
-    """{ value = 0.5, unit = "N", fixed = true }, or a bare number (without unit)."""
+    """{ value = 0.5, unit = "N", fixed = true, stderr = 0.1 }, or a number in SI."""
     if not isinstance(table.content[key], dict):
         return ModelValue(table.number(key), None, False, table.where(key))
     entry = table.table(key)
-    entry.allow(("value", "unit", "fixed"))
+    entry.allow(("value", "unit", "fixed", "stderr"))
     unit = entry.text("unit") if "unit" in entry.content else None
-    return ModelValue(entry.number("value"), unit, entry.flag("fixed", False), table.where(key))
+    number, error = entry.number("value"), entry.number_or_none("stderr")
+    if error is not None and error < 0:
+        raise ExperimentError(f"{entry.where('stderr')}: found {error:g}, expected 0 or more")
+    return ModelValue(number, unit, entry.flag("fixed", False), table.where(key), error)

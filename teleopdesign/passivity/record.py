@@ -10,6 +10,7 @@ from typing import Any
 import sympy as sp
 
 from ..errors import ModelError
+from ..plain_data import write_json
 from ..realise.lti import S
 from .check_certificate import _read
 from .claim import Record
@@ -26,8 +27,7 @@ _ELEMENTS = {"coulomb": Coulomb, "dahl": Dahl, "spring": Spring}
 
 def write_record(record: Record, path: str | Path) -> None:
     """Write a refuting motion as JSON."""
-    text = json.dumps(record.as_dict(), indent=1)
-    Path(path).write_text(text + "\n", encoding="utf-8")
+    write_json(path, record.as_dict())
 
 
 def read_record(path: str | Path) -> Record:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..plain_data import replacing
+
 if TYPE_CHECKING:
     import matplotlib.figure
 
@@ -61,7 +63,8 @@ def save_figure(
     own = {"figure.constrained_layout.use": figure.get_layout_engine() is not None}
     with plt.style.context([STYLE, own]):
         for file in files:
-            figure.savefig(file)
+            with replacing(file) as part:
+                figure.savefig(part)
     return files
 
 

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from typing import Any
 
-import numpy as np
-
 from ..diagnose import Diagnosis
 from ..diagnose.answer import answer
 from ..finding import Finding, Graph
+from ..plain_data import plain
 from ..plot.graph import thinned
 from .candidate_table import CandidateRow, LadderRow, candidate_rows, ladder_rows
 from .cannot_tell import cannot_tell
@@ -120,29 +118,6 @@ def _thinned(graph: Graph) -> Graph:
     return dataclasses.replace(graph, series=series)
 
 
-def plain(value: Any) -> Any:
-    """Dataclasses, arrays and mappings as what JSON knows; a number that is not finite is None."""
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
-    if isinstance(value, Mapping):
-        return {str(k): plain(v) for k, v in value.items()}
-    if isinstance(value, np.ndarray):
-        return [plain(_rounded(v)) if np.ndim(v) == 0 else plain(v) for v in value]
-    if isinstance(value, list | tuple):
-        return [plain(v) for v in value]
-    if isinstance(value, bool | np.bool_):
-        return bool(value)
-    if isinstance(value, int | np.integer):
-        return int(value)
-    if isinstance(value, float | np.floating):
-        return float(value) if math.isfinite(value) else None
-    return value
-
-
-def _rounded(value: float) -> float:
-    return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else float("nan")
-
-
 def page_data(page: Page, diagnosis: Diagnosis) -> dict[str, Any]:
     """What is embedded in the page: the answer, and every number that the page shows."""
-    return {"answer": plain(answer(diagnosis)), "report": plain(page)}
+    return {"answer": plain(answer(diagnosis)), "report": plain(page, digits=DIGITS)}

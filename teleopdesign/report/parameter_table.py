@@ -9,6 +9,7 @@ from ..blocks import CONTACT, NINETY_FIVE, Value
 from ..diagnose import Diagnosis
 from ..errors import ExperimentError
 from ..model import Model
+from ..plain_data import plain
 
 
 @dataclass(frozen=True)
@@ -71,9 +72,9 @@ def parameter_rows(diagnosis: Diagnosis) -> tuple[ParameterRow, ...]:
                 unit=diagnosis.model.unit(name),
                 stated=stated.get(name),
                 before=None if first is None else first.value,
-                before_stderr=None if first is None else _finite(first.stderr),
+                before_stderr=None if first is None else plain(first.stderr),
                 after=value.value,
-                stderr=None if value.fixed else _finite(value.stderr),
+                stderr=None if value.fixed else plain(value.stderr),
                 low=low,
                 high=high,
                 fixed=value.fixed,
@@ -124,7 +125,3 @@ def _interval(value: Value, lower: float, upper: float) -> tuple[float | None, f
         return None, None
     half = NINETY_FIVE * value.stderr
     return max(value.value - half, lower), min(value.value + half, upper)
-
-
-def _finite(x: float) -> float | None:
-    return x if math.isfinite(x) else None

@@ -16,6 +16,7 @@ from markupsafe import Markup
 
 from ..diagnose import Diagnosis
 from ..finding import Finding
+from ..plain_data import write_text
 from .figures import WIDE, colour_scale, graph_figure, ladder_figure, step_figure
 from .page import Page, page_data, page_of
 from .words import number, percent, short, unit_text, with_error
@@ -50,7 +51,7 @@ def write_report(
     """
     page = page_of(diagnosis, soundness=soundness, unexplained=unexplained, next_steps=next_steps)
     html = render(page, figures_of(page), page_data(page, diagnosis))
-    Path(path).write_text(html, encoding="utf-8", newline="\n")
+    write_text(path, html)
 
 
 def render(page: Page, figures: Figures, data: dict[str, Any]) -> str:

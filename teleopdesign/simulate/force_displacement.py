@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import ModelError
+from ..plain_data import write_json
 from .simulation import Simulation
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ class ForceDisplacement:
             }
             for case, loop in self.loops.items()
         }
-        Path(path).write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
+        write_json(path, figures)
 
     def __repr__(self) -> str:
         lines = [

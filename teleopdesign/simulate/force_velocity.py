@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..plain_data import write_json
 from .simulation import Simulation
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class ForceVelocity:
             case: {"rms": self.rms[case], "at_peak_speed": self.at_peak_speed[case], "unit": unit}
             for case in self.rms
         }
-        Path(path).write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
+        write_json(path, figures)
 
     def __repr__(self) -> str:
         unit = self.data["force"].attrs["units"]

@@ -176,10 +176,15 @@ def test_the_short_form_is_wired_as_the_package_does(reading):
         (FREE, 'kind = "moving"', "", 'loop.toml: blocks.M: no key "kind"'),
         (FREE, "coulomb]", "coulom]", 'blocks.M.effects: no effect "coulom"; did you mean "coul'),
         (FREE, "level = 0.5\n\n", "levl = 0.5\n\n", "did you mean"),
-        (FREE, "level = 0.5\n\n", "level = -0.5\n\n", "loop.toml: blocks.M: body: coulomb.level ="),
+        (
+            FREE,
+            "level = 0.5\n\n",
+            "level = -0.5\n\n",
+            "M.effects.coulomb.level: -0.5 N is outside",
+        ),
         (FREE, '"g"', '"mm"', 'blocks.M.inertia.unit: found "mm", expected a mass'),
         (FREE, "150", "nan", "loop.toml: blocks.M.inertia.value: found nan"),
-        (FREE, '"prismatic"', '"x"', 'blocks.M.axis: found "x", expected prismatic, revolute'),
+        (FREE, '"prismatic"', '"x"', 'blocks.M.axis: found "x", expected "prismatic" or '),
         (FREE, "smoothed_", "smooth_", 'blocks.C.law: found "smooth_coulomb"'),
         (
             FREE,

@@ -52,7 +52,6 @@ IN_THE_TOML = {
     "unit of the other axis": ('"prismatic"', '"revolute"', 'found "kg", expected a moment of in'),
     "unknown unit": ('unit = "mm"', 'unit = "mmm"', 'found "mmm".*; did you mean "mm"?'),
     "unit of inertia": ('"kg"', '"kgg"', 'inertia.unit: found "kgg".*a mass.*mean "kg"?'),
-    "inertia without unit": (INERTIA, "inertia = 0.15", "inertia: no unit, expected a mass"),
     "no position": (POSITION, "", 'channels: no "position", found time, actuator_force'),
     "no command": (FORCE, "", 'channels: no "actuator_force", found time, position'),
     "no time": (TIME, "", 'channels: no "time", expected .*sample_rate'),

@@ -19,9 +19,10 @@ from report.html_page import HtmlPage
 
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.finding import Finding, Graph, Series
+from teleopdesign.plain_data import plain
 from teleopdesign.report import write_report
 from teleopdesign.report.figures import graph_figure
-from teleopdesign.report.page import page_of, plain
+from teleopdesign.report.page import page_of
 from teleopdesign.report.write import Figures, embedded_json, render
 
 HOSTILE = (

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ...measurement.experiment import Experiment
+from ...plain_data import replacing
 from ...quantity import si_factor
 from .proposal import Reference
 
@@ -27,6 +28,6 @@ def write_reference(reference: Reference, experiment: Experiment, path: str | Pa
         head.append(channel.column)
         columns.append(position / factor)
         forms.append("%.9g")
-    with Path(path).open("w", encoding="utf-8", newline="") as file:
+    with replacing(path) as part, part.open("w", encoding="utf-8", newline="") as file:
         file.write(",".join(head) + "\n")
         np.savetxt(file, np.column_stack(columns), fmt=forms, delimiter=",")

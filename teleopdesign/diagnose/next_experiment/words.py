@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...finding import Finding, Graph, Series
+from ...plain_data import plain
 from ...quantity import si_factor
 from .prediction import DECIDES, SAME
 from .rivals import pairs
@@ -156,7 +157,7 @@ def _percent(part: float) -> str:
 def proposal_data(proposal: Proposal) -> dict[str, Any]:
     """The proposal as plain data (SI) for a JSON file."""
     reference = proposal.reference
-    return {
+    data = {
         "verdict": proposal.diagnosis.verdict,
         "sentence": proposal.sentence,
         "rivals": [_place(r) for r in proposal.rivals],
@@ -177,7 +178,7 @@ def proposal_data(proposal: Proposal) -> dict[str, Any]:
             }
             for s in proposal.separations
         ],
-        "determined": [_finite(asdict(d)) for d in proposal.determined],
+        "determined": [asdict(d) for d in proposal.determined],
         "remedies": [
             {
                 "rivals": [_place(proposal.rivals[i]) for i in pair],
@@ -187,14 +188,12 @@ def proposal_data(proposal: Proposal) -> dict[str, Any]:
         ],
         "limits": {b: asdict(own) for b, own in proposal.limits.items()},
     }
+    content: dict[str, Any] = plain(data)
+    return content
 
 
 def _place(rival: Any) -> dict[str, str]:
     return {"effect": rival.candidate.effect.name, "at": rival.candidate.at}
-
-
-def _finite(row: dict[str, Any]) -> dict[str, Any]:
-    return {k: None if isinstance(v, float) and not np.isfinite(v) else v for k, v in row.items()}
 
 
 def proposal_findings(proposal: Proposal) -> tuple[Finding, ...]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
+from ...plain_data import plain
 from ...quantity import unit_of
 from .description import BodyUnexplained, Described
 from .sentences import formula_text
@@ -15,23 +15,21 @@ if TYPE_CHECKING:
 
 def as_data(found: Unexplained) -> dict[str, Any]:
     """Sentences, dependences with curves, and every test; SI units."""
-    return {
+    data = {
         "findings": [
             {
                 "topic": f.topic,
                 "concern": f.concern,
                 "where": f.where,
                 "sentence": f.sentence,
-                "numbers": {k: _finite(v) for k, v in f.numbers.items()},
+                "numbers": dict(f.numbers),
             }
             for f in found.findings
         ],
         "bodies": [_body(p) for p in found.parts],
     }
-
-
-def _finite(x: float) -> float | None:
-    return float(x) if math.isfinite(x) else None
+    content: dict[str, Any] = plain(data)
+    return content
 
 
 def _body(part: BodyUnexplained) -> dict[str, Any]:

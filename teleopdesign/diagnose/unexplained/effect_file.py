@@ -10,6 +10,7 @@ import textwrap
 from pathlib import Path
 
 from ...errors import ModelError
+from ...plain_data import write_text
 from ..force_error import Prepared
 from ..scales import scales
 from .amounts import between
@@ -69,7 +70,7 @@ def write_effect(
     if not path.stem.isidentifier() or path.suffix != ".py":
         raise ModelError(f'{path}: the file name "{path.name}" must be a name such as my_effect.py')
     text = effect_text(part, described, prepared)
-    path.write_text(text, encoding="utf-8")
+    write_text(path, text)
 
 
 def effect_text(part: BodyUnexplained, described: Described, prepared: Prepared) -> str:

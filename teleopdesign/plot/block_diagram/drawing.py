@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...plain_data import write_text
 from .figure import figure
 from .shapes import Shape
 from .svg import svg
@@ -33,4 +34,4 @@ class Drawing:
 
     def to_svg(self, path: str | Path) -> None:
         """Write the drawing to an SVG file."""
-        Path(path).write_text(self.svg(), encoding="utf-8")
+        write_text(path, self.svg())

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
 from ..passivity import Claim
+from ..plain_data import plain
 from ..quantity import unit_of
 from .chosen import Chosen
 from .felt_impedance import FeltImpedance
@@ -49,8 +48,7 @@ def design_data(design: Design) -> dict[str, Any]:
         "notes": list(design.notes),
         "diagram_toml": design.to_toml(),
     }
-    found = _finite(content)
-    assert isinstance(found, dict)
+    found: dict[str, Any] = plain(content)
     return found
 
 
@@ -100,11 +98,3 @@ def _claim(claim: Claim) -> dict[str, Any]:
         "how": str(claim.verdict),
         "certificates": len(claim.certificates),
     }
-
-
-def _finite(x: object) -> object:
-    if isinstance(x, Mapping):
-        return {k: _finite(v) for k, v in x.items()}
-    if isinstance(x, list | tuple):
-        return [_finite(v) for v in x]
-    return None if isinstance(x, float) and not math.isfinite(x) else x
