@@ -21,7 +21,7 @@ def _pull(position: Any, velocity: Any, stiffness: Any, damping: Any) -> sp.Expr
     """Force of a spring beside a damper."""
     now = SimpleNamespace(position=position, velocity=velocity)
     p = SimpleNamespace(stiffness=stiffness, damping=damping)
-    return sp.sympify(_SPRING.law(now, p) + _DAMPER.law(now, p))
+    return sp.sympify(_SPRING.law(now, p) + _DAMPER.law(now, p), strict=True)
 
 
 def _grip(now: Any, p: Any) -> sp.Expr:

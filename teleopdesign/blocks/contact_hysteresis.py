@@ -22,7 +22,7 @@ _DAHL = EFFECTS["presliding"].without("bristle_damping")
 
 
 def _law(now: Any, p: Any) -> sp.Expr:
-    return sp.sympify(_DAHL.law(now, p))
+    return sp.sympify(_DAHL.law(now, p), strict=True)
 
 
 def _bristle(now: Any, p: Any) -> sp.Expr:

@@ -6,10 +6,10 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import ExperimentError, did_you_mean
+from ..errors import ExperimentError, ModelError, did_you_mean
 
 if TYPE_CHECKING:
-    from ..blocks import Body
+    from ..blocks import Body, Value
 
 #: unit of the inertia -> axis
 _AXES = {"kg": "prismatic", "kg*m^2": "revolute"}
@@ -20,10 +20,40 @@ def body_of_answer(path: Path, at: str | None) -> Body:
 
     raises ExperimentError: no answer of `teleopdesign diagnose --json`, or no such body
     """
-    from ..blocks import Body, Value
+    from ..blocks import Body
     from ..effects import EFFECTS
 
     content = _content(path)
+    try:
+        found = _parameters(content)
+        place = at or next(iter(found))
+        if place not in found:
+            known = ", ".join(found)
+            raise ExperimentError(
+                f"{path}: no body {place!r}, has {known}{did_you_mean(place, found)}"
+            )
+        if at is None and len(found) > 1:
+            raise ExperimentError(f"{path}: bodies {', '.join(found)}: choose one with --body")
+        parameters = found[place]
+        if "inertia" not in parameters:
+            raise ExperimentError(f"{path}: model_parameters.{place}.inertia: missing")
+        axis = _AXES.get(parameters["inertia"]["unit"], "prismatic")
+        effects = {n.partition(".")[0] for n in parameters} - {"inertia"}
+        if unknown := effects - set(EFFECTS):
+            raise ExperimentError(f"{path}: unknown effect {min(unknown)!r}")
+        values = {n: _value(n, v) for n, v in parameters.items()}
+        # parameters that are optional are zero where the answer does not hold them
+        return Body(axis, values, tuple(EFFECTS[name] for name in sorted(effects)))
+    except (KeyError, TypeError, AttributeError, ValueError, StopIteration) as problem:
+        raise ExperimentError(
+            f"{path}: no answer of `teleopdesign diagnose --json`: {problem}"
+        ) from problem
+    except ModelError as problem:
+        raise ExperimentError(f"{path}: {problem}") from problem
+
+
+def _parameters(content: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """Place -> name within its body -> the parameter, those of what was missing among them."""
     found: dict[str, dict[str, Any]] = {}
     for name, value in content["model_parameters"].items():
         place, _, own = name.partition(".")
@@ -33,31 +63,22 @@ def body_of_answer(path: Path, at: str | None) -> Body:
         if key in content["missing"]:
             for name, value in candidate["parameters"].items():
                 found.setdefault(key["at"], {})[f"{key['effect']}.{name}"] = value
-    place = at or next(iter(found))
-    if place not in found:
-        known = ", ".join(found)
-        raise ExperimentError(f"{path}: no body {place!r}, has {known}{did_you_mean(place, found)}")
-    if at is None and len(found) > 1:
-        raise ExperimentError(f"{path}: bodies {', '.join(found)}: choose one with --body")
-    parameters = found[place]
-    if "inertia" not in parameters:
-        raise ExperimentError(f"{path}: model_parameters.{place}.inertia: missing")
-    axis = _AXES.get(parameters["inertia"]["unit"], "prismatic")
-    effects = {n.partition(".")[0] for n in parameters} - {"inertia"}
-    if unknown := effects - set(EFFECTS):
-        raise ExperimentError(f"{path}: unknown effect {min(unknown)!r}")
-    values = {
-        n: Value(v["value"], stderr=float("nan") if v["stderr"] is None else v["stderr"])
-        for n, v in parameters.items()
-    }
-    # parameters that are optional are zero where the answer does not hold them
-    return Body(axis, values, tuple(EFFECTS[name] for name in sorted(effects)))
+    return found
+
+
+def _value(name: str, parameter: Any) -> Value:
+    from ..blocks import Value
+    from ..design.from_answer import number_of
+
+    stderr = parameter["stderr"]
+    error = float("nan") if stderr is None else number_of(stderr, f"{name}.stderr")
+    return Value(number_of(parameter["value"], name), stderr=error)
 
 
 def _content(path: Path) -> dict[str, Any]:
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as problem:
+    except (OSError, ValueError, RecursionError) as problem:
         raise ExperimentError(f"{path}: no answer: {problem}") from problem
     expected = ("model_parameters", "candidates", "missing")
     if not isinstance(content, dict) or not all(n in content for n in expected):

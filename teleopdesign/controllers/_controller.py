@@ -187,10 +187,10 @@ class Controller:
                         f"{prefix}: {law.name} has no form in continuous time: it needs a computer "
                         "that samples it"
                     )
-                changes[symbol] = sp.sympify(change(now, p))
-                if sp.sympify(change(probe, p)).has(SIGNALS["travel_rate"]):
+                changes[symbol] = sp.sympify(change(now, p), strict=True)
+                if sp.sympify(change(probe, p), strict=True).has(SIGNALS["travel_rate"]):
                     before.add(symbol)
-            value = sp.sympify(law.law(now, p))
+            value = sp.sympify(law.law(now, p), strict=True)
         return ControllerEquation(
             value, MappingProxyType(rates), MappingProxyType(steps), frozenset(before)
         )

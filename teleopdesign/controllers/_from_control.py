@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import ModelError
+from ..names import check_name
 from . import _state_space
 from ._controller import Controller
 from ._opaque import opaque
@@ -28,6 +29,7 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
     """
     import control
 
+    check_name(name, where="from_control")
     if not isinstance(system, control.InputOutputSystem):
         raise ModelError(
             f"from_control: expected a python-control system, found {type(system).__name__}"

@@ -62,7 +62,7 @@ class _Algebra:
             ((word, factor),) = polynomial.items()
             return self.reduced({tuple(_inverse_letter(x) for x in reversed(word)): 1 / factor})
         if base not in self.names:
-            letter = f"d{len(self.names)}"
+            letter = f"|{len(self.names)}|"  # no name of a block
             self.names[base] = letter
             self.denominators[letter] = polynomial
         return {(self.names[base],): Fraction(1)}
@@ -156,7 +156,7 @@ def proved_equal(left: sp.Expr, right: sp.Expr) -> bool:
     True is an exact proof; False says only that none was found.
     """
     algebra = _Algebra()
-    a, b = algebra.read(sp.sympify(left)), algebra.read(sp.sympify(right))
+    a, b = algebra.read(sp.sympify(left, strict=True)), algebra.read(sp.sympify(right, strict=True))
     return algebra.vanishes(_sum([a, {w: -c for w, c in b.items()}]))
 
 

@@ -73,7 +73,7 @@ def whole_inertia(body: Body) -> float:
 def identified_delay(body: Body) -> float:
     """Delay at low frequency of the body's identified actuation (dead time and lag), s."""
     form, _ = body.actuation(S)
-    form = sp.sympify(form).subs(body.numbers())
+    form = sp.sympify(form, strict=True).subs(body.numbers())
     return float(sp.limit(-sp.diff(form, S) / form, S, 0))
 
 

@@ -48,19 +48,26 @@ def read_answer(
             model = _with_effect(model, one["effect"], one["at"], tried)
         model = _with_values(model, content["model_parameters"])
         left = content.get("left_over_noise_floors")
-        left = float("inf") if left is None else float(left)
-        return Diagnosed(experiment, model, content["verdict"], left)
+        left = float("inf") if left is None else number_of(left, "left_over_noise_floors")
+        return Diagnosed(experiment, model, str(content["verdict"]), left)
     except OSError as error:
         raise ExperimentError(f"{where}: {error.strerror}") from error
     except json.JSONDecodeError as error:
         raise ExperimentError(f"{where}: line {error.lineno}: no JSON: {error.msg}") from error
-    except (KeyError, TypeError, AttributeError) as error:
+    except (KeyError, TypeError, AttributeError, ValueError, RecursionError) as error:
         raise ExperimentError(
             f"{where}: no answer of `teleopdesign diagnose --json`: {error}"
         ) from error
     except ModelError as error:
         folder = experiment.folder.name
         raise ExperimentError(f"{where}: is not an answer to {folder}: {error}") from error
+
+
+def number_of(value: object, name: str) -> float:
+    """The number under that name of an answer; TypeError where it is none, such as a text."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise TypeError(f"{name}: found {type(value).__name__}, expected a number")
+    return float(value)
 
 
 def _with_effect(
@@ -76,7 +83,8 @@ def _with_values(model: Model, parameters: Mapping[str, Any]) -> Model:
     for name, found in parameters.items():
         if found["value"] is None:
             continue
-        error = float("nan") if found["stderr"] is None else found["stderr"]
+        stderr = found["stderr"]
+        error = float("nan") if stderr is None else number_of(stderr, f"{name}.stderr")
         own = model.parameters.get(name, Value(0.0))  # an unknown name: with_values says so
-        values[name] = replace(own, value=found["value"], stderr=error)
+        values[name] = replace(own, value=number_of(found["value"], name), stderr=error)
     return model.with_values(values)

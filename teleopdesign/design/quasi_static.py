@@ -54,7 +54,7 @@ def force_needed(body: Body, motion: StatedMotion, *, rows: int = 2000) -> tuple
 
 
 def _along(law: sp.Expr, body: Body, values: dict[sp.Symbol, Array]) -> Array:
-    call = sp.lambdify(list(values), sp.sympify(law).subs(body.numbers()), "numpy")
+    call = sp.lambdify(list(values), sp.sympify(law, strict=True).subs(body.numbers()), "numpy")
     rows = next(iter(values.values())).shape
     return np.broadcast_to(np.asarray(call(*values.values()), dtype=float), rows)
 

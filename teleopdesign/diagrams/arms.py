@@ -19,7 +19,17 @@ import sympy as sp
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller, controller
 from ..errors import ModelError
-from .parts import Block, Control, Junction, Kinematics, Linked, Moving, Weight, position_symbol
+from .parts import (
+    Block,
+    Control,
+    Junction,
+    Kinematics,
+    Linked,
+    Moving,
+    Weight,
+    as_expression,
+    position_symbol,
+)
 from .wiring import Diagram
 
 
@@ -46,7 +56,7 @@ class Arm:
     def __post_init__(self) -> None:
         known = {joint(n + 1) for n in range(len(self.joints))}
         for expression in self.coordinates:
-            if unknown := sp.sympify(expression).free_symbols - known:
+            if unknown := as_expression(expression, where="arm").free_symbols - known:
                 raise ModelError(
                     f"arm: coordinate {expression} has {min(map(str, unknown))}, joints are "
                     f"{', '.join(sorted(map(str, known)))}"
@@ -139,7 +149,7 @@ def _side(
     motions = tuple(f"q_{side}{n}" for n in numbers)
     tips = tuple(f"X_{side}{k}" for k in places)
     named = {joint(n): position_symbol(q) for n, q in zip(numbers, motions, strict=True)}
-    where = [sp.sympify(x).xreplace(named) for x in arm.coordinates]
+    where = [sp.sympify(x, strict=True).xreplace(named) for x in arm.coordinates]
     blocks: list[Block] = []
     at_tip: dict[int, dict[str, Weight]] = {k: {f"{own}{k}": 1} for k in places}
     for block, z, force in (

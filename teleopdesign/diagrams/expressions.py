@@ -1,46 +1,64 @@
 """Expressions of positions as text: lever arms and kinematics, read without running anything.
 
-    "0.3*cos(q_1) + 0.2*cos(q_1 + q_2)"
+"0.3*cos(q_1) + 0.2*cos(q_1 + q_2)"
 
 Numbers, names of positions, + - * / **, pi, and the functions of `FUNCTIONS`. The text goes through
-Python's syntax tree; nothing in it is ever evaluated as code.
+Python's syntax tree; nothing in it is ever evaluated as code. Every number that a part of the text
+has is computed in floating point first, and the size of every part is bounded: what would take
+sympy for ever, or fill the memory, is refused before sympy sees it.
 """
 
 from __future__ import annotations
 
 import ast
+import math
 import operator
-from collections.abc import Callable, Mapping
-from types import MappingProxyType
-from typing import Any
+import sys
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from math import comb
+from types import FrameType, MappingProxyType
+from typing import NamedTuple
 
 import sympy as sp
+from sympy.core.cache import clear_cache
 from sympy.printing.str import StrPrinter
 
 from ..errors import ExperimentError, ModelError, did_you_mean, quoted
+from ..names import check_name
 from .parts import position_symbol
 
-#: name -> (function, number of arguments)
-FUNCTIONS: Mapping[str, tuple[Callable[..., sp.Expr], int]] = MappingProxyType(
-    {
-        "sin": (sp.sin, 1),
-        "cos": (sp.cos, 1),
-        "tan": (sp.tan, 1),
-        "asin": (sp.asin, 1),
-        "acos": (sp.acos, 1),
-        "atan": (sp.atan, 1),
-        "atan2": (sp.atan2, 2),
-        "sqrt": (sp.sqrt, 1),
-        "exp": (sp.exp, 1),
-        # what sympy makes of the others: sqrt(x^2), its derivative, tan(pi/2 - x) ...
-        "abs": (sp.Abs, 1),
-        "sign": (sp.sign, 1),
-        "cot": (sp.cot, 1),
-        "sec": (sp.sec, 1),
-        "csc": (sp.csc, 1),
-    }
-)
-_OPERATORS: Mapping[type, Callable[[Any, Any], sp.Expr]] = MappingProxyType(
+
+class _Function(NamedTuple):
+    """What sympy makes of it, its value, its number of arguments."""
+
+    symbolic: Callable[..., sp.Expr]
+    value: Callable[..., float]
+    arguments: int = 1
+
+
+_TABLE = {
+    "sin": _Function(sp.sin, math.sin),
+    "cos": _Function(sp.cos, math.cos),
+    "tan": _Function(sp.tan, math.tan),
+    "asin": _Function(sp.asin, math.asin),
+    "acos": _Function(sp.acos, math.acos),
+    "atan": _Function(sp.atan, math.atan),
+    "atan2": _Function(sp.atan2, math.atan2, 2),
+    "sqrt": _Function(sp.sqrt, math.sqrt),
+    "exp": _Function(sp.exp, math.exp),
+    # what sympy makes of the others: sqrt(x^2), its derivative, tan(pi/2 - x) ...
+    "abs": _Function(sp.Abs, abs),
+    "sign": _Function(sp.sign, lambda x: math.copysign(float(x != 0), x)),
+    "cot": _Function(sp.cot, lambda x: 1.0 / math.tan(x)),
+    "sec": _Function(sp.sec, lambda x: 1.0 / math.cos(x)),
+    "csc": _Function(sp.csc, lambda x: 1.0 / math.sin(x)),
+}
+#: functions that a text may hold, by name
+FUNCTIONS: Mapping[str, _Function] = MappingProxyType(_TABLE)
+_VALUES = {f.symbolic: f.value for f in _TABLE.values()} | {sp.exp: math.exp}
+_OPERATORS: Mapping[type, Callable[[sp.Expr, sp.Expr], sp.Expr]] = MappingProxyType(
     {
         ast.Add: operator.add,
         ast.Sub: operator.sub,
@@ -48,82 +66,265 @@ _OPERATORS: Mapping[type, Callable[[Any, Any], sp.Expr]] = MappingProxyType(
         ast.Div: operator.truediv,
     }
 )
-#: longest text, largest power that is a number, bits of a fraction: what geometry never reaches,
-#: and what keeps `9**9**9**9` from taking an hour
-_LONGEST, _LARGEST_POWER, _MOST_BITS = 10_000, 64, 4096
+#: what geometry never reaches, and what keeps a text from taking an hour: characters; parts and
+#: brackets in brackets of the text; a power that is a number, also where powers of powers meet;
+#: bits of a fraction; terms of what is multiplied out; roots and functions of numbers, one inside
+#: the other (sympy's assumptions about them double their work with each); different roots of
+#: numbers (in a product it compares each with each)
+_LONGEST, _MOST_PARTS, _DEEPEST = 10_000, 4_000, 60
+_LARGEST_POWER, _MOST_BITS, _MOST_TERMS, _DEEPEST_NUMBER = 64, 1024, 10_000, 8
+_MOST_ROOTS = 24
+#: calls and returns of Python that reading may take, about 2 s: no bound on a text's form tells how
+#: long sympy thinks about it. An arm of six joints takes a tenth.
+_MOST_CALLS = 4_000_000
+_NO_VALUE = "has no finite real value"
 
 
 def read_expression(text: str, *, where: str) -> sp.Expr:
     """The expression on `position_symbol`s.
 
     where: beginning of a message
-    raises ExperimentError: what is no expression of those, or has no finite real value
+    raises ExperimentError: what is no expression of those, has no finite real value, or is larger
+        than the bounds of this module
     """
     if len(text) > _LONGEST:
         raise ExperimentError(f"{where}: found {len(text)} characters, at most {_LONGEST}")
     try:
-        tree = ast.parse(text.strip(), mode="eval")
-        return _checked(_built(tree.body))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # Python's, on text that is refused below anyway
+            tree = ast.parse(text.strip(), mode="eval")
+        with _bounded_work():
+            return _Reader().read(tree.body)
     except (SyntaxError, RecursionError, MemoryError, ValueError):
         raise ExperimentError(f"{where}: found {quoted(text)}, expected an expression") from None
+    except _Endless:
+        clear_cache()  # of what sympy was about to find out
+        raise ExperimentError(f"{where}: {quoted(text)} takes sympy too long to read") from None
+    except (ArithmeticError, NotImplementedError, TypeError):  # sympy on what makes no sense
+        raise ExperimentError(f"{where}: {quoted(text)} has no value that sympy knows") from None
     except ModelError as error:
         raise ExperimentError(f"{where}: {error}") from None
 
 
-def _built(node: ast.expr) -> sp.Expr:
-    if isinstance(node, ast.Constant):
-        return _number(node.value)
-    if isinstance(node, ast.Name):
-        return sp.pi if node.id == "pi" else position_symbol(node.id)
-    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd | ast.USub):
-        inside = _built(node.operand)
-        return -inside if isinstance(node.op, ast.USub) else inside
-    if isinstance(node, ast.BinOp):
-        left, right = _built(node.left), _built(node.right)
-        if isinstance(node.op, ast.Pow):
-            return _power(left, right)
-        if type(node.op) in _OPERATORS:
-            return _checked(_OPERATORS[type(node.op)](left, right))
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
-        return _called(node.func.id, [_built(a) for a in node.args])
-    raise ModelError(
-        f"found {quoted(ast.unparse(node))}, expected numbers, positions, + - * / **, pi, "
-        f"{', '.join(FUNCTIONS)}"
-    )
+class _Endless(BaseException):
+    """Out of work; no `Exception`, so that nothing on the way takes it for one of its own."""
+
+
+@contextmanager
+def _bounded_work() -> Iterator[None]:
+    """Ends what takes more than `_MOST_CALLS` calls of Python; the same on every machine."""
+    left, before = _MOST_CALLS, sys.getprofile()
+
+    def count(frame: FrameType, event: str, argument: object) -> None:
+        nonlocal left
+        left -= 1
+        # at calls of C only: raised where Python closes a generator, it would be lost
+        if left < 0 and event == "c_call":
+            raise _Endless
+
+    sys.setprofile(count)
+    try:
+        yield
+    finally:
+        sys.setprofile(before)
+
+
+class _Reader:
+    """Reads one text; remembers the value and the size of every part."""
+
+    def __init__(self) -> None:
+        self.parts = 0
+        self.values: dict[sp.Expr, float | None] = {}
+        self.sizes: dict[sp.Expr, int] = {}
+        self.depths: dict[sp.Expr, int] = {}
+        self.roots: set[sp.Expr] = set()
+
+    def read(self, node: ast.expr) -> sp.Expr:
+        whole = self._built(node, 0)
+        if whole.has(sp.nan, sp.oo, -sp.oo, sp.zoo, sp.I):
+            raise ModelError(_NO_VALUE)
+        for part in sp.preorder_traversal(whole):
+            self._value(part)
+        return whole
+
+    def _built(self, node: ast.expr, depth: int) -> sp.Expr:
+        self.parts += 1
+        if self.parts > _MOST_PARTS:
+            raise ModelError(f"found more than {_MOST_PARTS} numbers, names and signs")
+        if depth > _DEEPEST:
+            raise ModelError(f"found more than {_DEEPEST} brackets, one inside the other")
+        if isinstance(node, ast.Constant):
+            return self._checked(_number(node.value))
+        if isinstance(node, ast.Name):
+            return sp.pi if node.id == "pi" else position_symbol(check_name(node.id, where="name"))
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd | ast.USub):
+            inside = self._built(node.operand, depth + 1)
+            return -inside if isinstance(node.op, ast.USub) else inside
+        if isinstance(node, ast.BinOp) and type(node.op) in _OPERATORS:
+            return self._chain(node, depth)
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
+            return self._power(*(self._built(n, depth + 1) for n in (node.left, node.right)))
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
+            return self._called(node.func.id, [self._built(a, depth + 1) for a in node.args])
+        raise ModelError(
+            f"found {quoted(ast.unparse(node))}, expected numbers, positions, + - * / **, pi, "
+            f"{', '.join(FUNCTIONS)}"
+        )
+
+    def _chain(self, node: ast.BinOp, depth: int) -> sp.Expr:
+        """a + b - c, or a * b / c: from left to right, however long; numbers are kept apart."""
+        whole: type[sp.Expr] = sp.Add if isinstance(node.op, ast.Add | ast.Sub) else sp.Mul
+        number: sp.Expr = whole.identity
+        rest = []
+        for operation, part in _links(node):
+            found = self._built(part, depth + 1)
+            one = _OPERATORS[operation](whole.identity, found)
+            if found.is_Number:
+                number = self._checked(_OPERATORS[operation](number, found))
+            else:
+                rest.append(self._checked(one))
+        return self._checked(whole(number, *rest))
+
+    def _power(self, base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
+        values = self._value(base), self._value(exponent)
+        if values[1] is not None and not abs(values[1]) <= _LARGEST_POWER:
+            raise ModelError(f"found a power larger than {_LARGEST_POWER} in size")
+        _finite(_raised, *values)
+        if exponent.is_Integer and not base.is_number:
+            self._check_size(_multiplied_out(self._size(base), abs(int(exponent))))
+        if base.is_Rational and exponent.is_Integer:
+            bits = max(map(int.bit_length, _parts(base))) * abs(int(exponent))
+            if bits > _MOST_BITS:
+                raise ModelError(f"found a number of more than {_MOST_BITS} bits")
+        return self._checked(base**exponent)
+
+    def _called(self, name: str, arguments: list[sp.Expr]) -> sp.Expr:
+        if name not in FUNCTIONS:
+            raise ModelError(
+                f"found function {quoted(name)}, expected {', '.join(FUNCTIONS)}"
+                f"{did_you_mean(name, FUNCTIONS)}"
+            )
+        function = FUNCTIONS[name]
+        if len(arguments) != function.arguments:
+            count = function.arguments
+            raise ModelError(f"{name}: found {len(arguments)} arguments, expected {count}")
+        values = [self._value(a) for a in arguments]
+        _finite(function.value, *values)
+        return self._checked(function.symbolic(*arguments))
+
+    def _checked(self, expression: sp.Expr) -> sp.Expr:
+        """The expression if its numbers, its powers and its size are moderate."""
+        if expression in (sp.nan, sp.oo, -sp.oo, sp.zoo):
+            raise ModelError(_NO_VALUE)
+        for part in (expression, *expression.args):
+            self._value(part)
+            if part.is_Pow:
+                power = self._value(part.exp)
+                if power is not None and not abs(power) <= _LARGEST_POWER:
+                    raise ModelError(f"found a power larger than {_LARGEST_POWER} in size")
+        self._check_size(self._size(expression))
+        return expression
+
+    def _value(self, expression: sp.Expr) -> float | None:
+        """The number that it is, None where it holds a position; ModelError where it is none."""
+        if expression not in self.values:
+            self.values[expression] = self._computed(expression)
+        return self.values[expression]
+
+    def _computed(self, expression: sp.Expr) -> float | None:
+        if expression.is_Symbol:
+            return None
+        if expression in (sp.nan, sp.oo, -sp.oo, sp.zoo, sp.I):
+            raise ModelError(_NO_VALUE)
+        if expression.is_Rational and max(map(int.bit_length, _parts(expression))) > _MOST_BITS:
+            raise ModelError(f"found a number of more than {_MOST_BITS} bits")
+        if not expression.args:
+            return _finite(float, expression)
+        values = [self._value(a) for a in expression.args]
+        if expression.is_number:
+            self.depths[expression] = 1 + max(self.depths.get(a, 0) for a in expression.args)
+            if self.depths[expression] > _DEEPEST_NUMBER:
+                raise ModelError(
+                    f"found a number of more than {_DEEPEST_NUMBER} operations, one in the other"
+                )
+        if expression.is_Add:
+            return _finite(lambda *x: math.fsum(x), *values)
+        if expression.is_Mul:
+            return _finite(lambda *x: math.prod(x), *values)
+        if expression.is_Pow:
+            if expression.is_number:
+                self.roots.add(expression)
+            if len(self.roots) > _MOST_ROOTS:
+                raise ModelError(f"found more than {_MOST_ROOTS} roots of numbers")
+            return _finite(_raised, *values)
+        if expression.func in _VALUES:
+            return _finite(_VALUES[expression.func], *values)
+        return None  # of other functions that sympy may make of these, only the arguments are known
+
+    def _size(self, expression: sp.Expr) -> int:
+        """Terms that it has once it is multiplied out, at least one."""
+        if not expression.args or expression.is_number:
+            return 1
+        if expression not in self.sizes:
+            self.sizes[expression] = self._counted(expression)
+        return self.sizes[expression]
+
+    def _counted(self, expression: sp.Expr) -> int:
+        if expression.is_Pow and expression.exp.is_Integer:
+            return _multiplied_out(self._size(expression.base), abs(int(expression.exp)))
+        sizes = [self._size(a) for a in expression.args]
+        if expression.is_Add:
+            return sum(sizes)
+        # of a function or a root, what is inside is multiplied out by itself
+        return math.prod(sizes) if expression.is_Mul else max(sizes)
+
+    def _check_size(self, terms: int) -> None:
+        if terms > _MOST_TERMS:
+            raise ModelError(f"has more than {_MOST_TERMS} terms when it is multiplied out")
+
+
+def _links(node: ast.BinOp) -> Iterator[tuple[type, ast.expr]]:
+    """The parts of a chain of one kind of operator, from left to right, each with its own."""
+    pair = (ast.Add, ast.Sub) if isinstance(node.op, ast.Add | ast.Sub) else (ast.Mult, ast.Div)
+    found: list[tuple[type, ast.expr]] = []
+    left: ast.expr = node
+    while isinstance(left, ast.BinOp) and isinstance(left.op, pair):
+        found.append((type(left.op), left.right))
+        left = left.left
+    yield pair[0], left
+    yield from reversed(found)
 
 
 def _number(value: object) -> sp.Expr:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ModelError(f"found {quoted(repr(value))}, expected a number")
-    return _checked(sp.Integer(value) if isinstance(value, int) else sp.Float(value))
-
-
-def _called(name: str, arguments: list[sp.Expr]) -> sp.Expr:
-    if name not in FUNCTIONS:
-        raise ModelError(
-            f"found function {quoted(name)}, expected {', '.join(FUNCTIONS)}"
-            f"{did_you_mean(name, FUNCTIONS)}"
-        )
-    function, count = FUNCTIONS[name]
-    if len(arguments) != count:
-        raise ModelError(f"{name}: found {len(arguments)} arguments, expected {count}")
-    return _checked(function(*arguments))
-
-
-def _power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
-    if exponent.is_number and not abs(exponent) <= _LARGEST_POWER:
-        raise ModelError(f"found a power larger than {_LARGEST_POWER} in size")
-    return _checked(base**exponent)
-
-
-def _checked(expression: sp.Expr) -> sp.Expr:
-    """The expression if its numbers are finite, real and of moderate size."""
-    imaginary = expression.is_number and expression.is_real is False
-    if imaginary or expression.has(sp.nan, sp.oo, -sp.oo, sp.zoo, sp.I):
-        raise ModelError("has no finite real value")
-    if expression.is_Rational and max(map(int.bit_length, _parts(expression))) > _MOST_BITS:
+    if isinstance(value, int) and value.bit_length() > _MOST_BITS:
         raise ModelError(f"found a number of more than {_MOST_BITS} bits")
-    return expression
+    if not math.isfinite(value):
+        raise ModelError(_NO_VALUE)
+    return sp.Integer(value) if isinstance(value, int) else sp.Float(value)
+
+
+def _finite(call: Callable[..., float], *values: object) -> float | None:
+    """call(*values), None where one is not known; ModelError where it is no finite real number."""
+    if any(v is None for v in values):
+        return None
+    try:
+        found = call(*values)
+    except (ArithmeticError, ValueError, TypeError):
+        raise ModelError(_NO_VALUE) from None
+    if isinstance(found, complex) or not math.isfinite(found):
+        raise ModelError(_NO_VALUE)
+    return found
+
+
+def _raised(base: float, exponent: float) -> float:
+    return float(base**exponent)
+
+
+def _multiplied_out(terms: int, power: int) -> int:
+    """Terms of a sum of so many to that power."""
+    return comb(terms + power - 1, power) if terms > 1 else 1
 
 
 def _parts(number: sp.Expr) -> tuple[int, int]:

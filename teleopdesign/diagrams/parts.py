@@ -10,7 +10,8 @@ import sympy as sp
 
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
-from ..errors import ModelError
+from ..errors import ModelError, quoted
+from ..names import check_name
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,26 @@ def position_symbol(name: str) -> sp.Symbol:
     return sp.Symbol(name, real=True)
 
 
+def as_expression(weight: Weight, *, where: str) -> sp.Expr:
+    """A weight as sympy expression; text is none: `read_expression` reads text.
+
+    raises ModelError: neither a number nor an expression
+    """
+    try:
+        found = sp.sympify(weight, strict=True)
+    except sp.SympifyError:
+        found = None
+    if not isinstance(found, sp.Expr):
+        shown = quoted(weight) if isinstance(weight, str) else type(weight).__name__
+        raise ModelError(f"{where}: found {shown}, expected a number or a sympy expression")
+    return found
+
+
+def _check_names(where: str, *names: str) -> None:
+    for name in names:
+        check_name(name, where=where)
+
+
 @dataclass(frozen=True)
 class Moving:
     """A body that forces move:  Z motion = command + loads.
@@ -43,6 +64,14 @@ class Moving:
     command: str
     loads: Mapping[str, int]
     driver: str
+
+    def __post_init__(self) -> None:
+        check_name(self.name, where="block")
+        _check_names(f"block {self.name}", self.motion, self.command, *self.loads)
+        if self.driver:  # blank: none
+            check_name(self.driver, where=f"block {self.name}: driver")
+        for signal, sign in self.loads.items():
+            as_expression(sign, where=f"block {self.name}: {signal}")
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -62,6 +91,10 @@ class Attached:
     motion: str
     force: str
     sign: int = -1
+
+    def __post_init__(self) -> None:
+        check_name(self.name, where="block")
+        _check_names(f"block {self.name}", self.motion, self.force)
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -83,6 +116,8 @@ class Linked:
     sign: int = -1
 
     def __post_init__(self) -> None:
+        check_name(self.name, where="block")
+        _check_names(f"block {self.name}", *self.motions, *self.forces)
         if not len(self.motions) == len(self.forces) == self.body.size:
             raise ModelError(
                 f"{self.name}: {self.body.size} rows, found {len(self.motions)} motions and "
@@ -123,6 +158,10 @@ class Control:
     motion: str
     analog: bool = False
 
+    def __post_init__(self) -> None:
+        check_name(self.name, where="block")
+        _check_names(f"block {self.name}", self.input, self.output, self.motion)
+
     @property
     def outputs(self) -> tuple[str, ...]:
         return (self.output,)
@@ -141,6 +180,13 @@ class Junction:
 
     output: str
     terms: Mapping[str, Weight]
+
+    def __post_init__(self) -> None:
+        check_name(self.output, where="junction")
+        _check_names(self.name, *self.terms)
+        for signal, weight in self.terms.items():
+            as_expression(weight, where=f"{self.name}: {signal}")
+        _check_names(self.name, *self.arms)
 
     @property
     def name(self) -> str:
@@ -171,6 +217,11 @@ class Kinematics:
     expression: sp.Expr
     axis: str = "prismatic"
 
+    def __post_init__(self) -> None:
+        check_name(self.output, where="kinematics")
+        as_expression(self.expression, where=self.name)
+        _check_names(self.name, *self.inputs)
+
     @property
     def name(self) -> str:
         return f"kinematics {self.output}"
@@ -189,4 +240,4 @@ Part = Moving | Attached | Linked | Control | Junction | Kinematics
 
 
 def _names(expression: Weight) -> tuple[str, ...]:
-    return tuple(sorted(s.name for s in sp.sympify(expression).free_symbols))
+    return tuple(sorted(s.name for s in sp.sympify(expression, strict=True).free_symbols))

@@ -73,7 +73,7 @@ def _terms(junction: Junction) -> dict[str, Any]:
 
 
 def _where(kinematics: Kinematics) -> Any:
-    text = expression_text(sp.sympify(kinematics.expression), name=kinematics.name)
+    text = expression_text(sp.sympify(kinematics.expression, strict=True), name=kinematics.name)
     if kinematics.axis == "prismatic":
         return text
     return {"expression": text, "axis": kinematics.axis}

@@ -15,6 +15,7 @@ import sympy as sp
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..errors import ModelError, did_you_mean
+from ..names import check_name
 from .parts import (
     AnyBlock,
     Attached,
@@ -51,6 +52,9 @@ class Diagram:
     pose: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        for where in ("outside", "measured", "texts", "pose"):
+            for name in getattr(self, where):
+                check_name(name, where=f"{self.name}: {where}")
         made: dict[str, str] = dict.fromkeys(self.outside, "outside")
         names = [b.name for b in self.blocks]
         if doubled := {n for n in names if names.count(n) > 1}:
@@ -108,11 +112,12 @@ class Diagram:
             whole = maker.expression
         else:
             whole = sp.Add(*(w * position_symbol(s) for s, w in maker.terms.items()))
-        return sp.sympify(whole).xreplace({position_symbol(s): p for s, p in parts.items()})
+        placed = {position_symbol(s): p for s, p in parts.items()}
+        return sp.sympify(whole, strict=True).xreplace(placed)
 
     def here(self, weight: Weight) -> sp.Expr:
         """A weight (or derivative of kinematics) at the diagram's pose."""
-        expression = sp.sympify(weight)
+        expression = sp.sympify(weight, strict=True)
         pose = {
             s: self.position(s.name).subs(
                 {x: self.pose.get(x.name, 0.0) for x in self.position(s.name).free_symbols}

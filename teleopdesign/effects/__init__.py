@@ -11,7 +11,10 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import MappingProxyType, ModuleType
 
+from sympy import SympifyError
+
 from ..errors import ModelError, did_you_mean
+from ..names import check_name
 from ._effect import (
     CONTACT_ROLES,
     INERTIA,
@@ -73,6 +76,10 @@ def _checked(module: ModuleType, path: Path) -> Effect:
             f'{path}: role "{effect.role}" is none of {", ".join(ROLES)}'
             f"{did_you_mean(effect.role, ROLES)}"
         )
+    for name in (*effect.parameters, *effect.states):
+        check_name(name, where=f"{path}")
+    if both := set(effect.parameters) & set(effect.states):
+        raise ModelError(f'{path}: "{min(both)}" is a parameter and a state: call one otherwise')
     for name in effect.absent:
         if name not in effect.parameters:
             raise ModelError(f'{path}: absent: no parameter "{name}"')
@@ -85,7 +92,7 @@ def _checked(module: ModuleType, path: Path) -> Effect:
         for law in effect.corrections().values():
             if strangers := law.free_symbols - allowed - {INERTIA, UNEXPLAINED}:
                 raise ModelError(f"{path}: correction uses {', '.join(map(str, strangers))}")
-    except (AttributeError, TypeError) as error:
+    except (AttributeError, TypeError, SympifyError) as error:
         raise ModelError(f"{path}: law: {error}") from error
     return effect
 

@@ -219,7 +219,7 @@ class Effect:
         """The law on symbols, or on whatever is given in their place."""
         if signals is None and values is None:
             return _expression(self)
-        return sp.sympify(self.law(self._now(signals), self._parameters(values)))
+        return sp.sympify(self.law(self._now(signals), self._parameters(values)), strict=True)
 
     def rates(
         self, signals: Mapping[str, Any] | None = None, values: Mapping[str, Any] | None = None
@@ -228,7 +228,8 @@ class Effect:
         if signals is None and values is None:
             return dict(_rates(self))
         now, p = self._now(signals), self._parameters(values)
-        return {name: sp.sympify(state.rate(now, p)) for name, state in self.states.items()}
+        rates = {name: state.rate(now, p) for name, state in self.states.items()}
+        return {name: sp.sympify(rate, strict=True) for name, rate in rates.items()}
 
     def corrections(self) -> dict[str, sp.Expr]:
         """Hidden state -> rate by which it is corrected, on symbols; {} where all run free."""
@@ -281,7 +282,7 @@ def _rates(effect: Effect) -> dict[str, sp.Expr]:
 def _corrections(effect: Effect) -> dict[str, sp.Expr]:
     now, p = effect._now(None), effect._parameters(None)
     return {
-        name: sp.sympify(state.correction(now, p))
+        name: sp.sympify(state.correction(now, p), strict=True)
         for name, state in effect.states.items()
         if state.correction is not None
     }

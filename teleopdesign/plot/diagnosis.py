@@ -126,7 +126,8 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
         if changed:
             _over_time(ax, after, "model", AFTER, "with what was missing", 0.6)
         _force_axes(ax, before)
-        figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left")
+        # anybody's text: no formula in it
+        figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
         ax = axes["time"]
         _over_time(ax, before, "residual", BEFORE, "before", 0.7)
         if changed:

@@ -56,7 +56,7 @@ def plot_unexplained(found: Unexplained) -> Figure:
                 s.kind == "rest" for s in graph.series
             ):
                 ax.legend(markerscale=3, fontsize=6, loc="best")
-        figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=7)
+        figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=7, parse_math=False)
     return figure
 
 

@@ -9,15 +9,12 @@ sample.
 
 from __future__ import annotations
 
-import keyword
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
 import sympy as sp
 
-from ..errors import ModelError
 from .equations import (
     PERIOD,
     TIME,
@@ -76,11 +73,6 @@ ARGUMENTS = (
     "samples inner h period lag late_steps encoder_step smoothing parameters inputs sampled start "
     "computer_start every_step held history out"
 ).split()
-#: names that the generated code has for itself
-RESERVED = frozenset(
-    [*ARGUMENTS, *keyword.kwlist, *dir(math), "abs", "max", "min", "range"]
-    + "c e f j m made n now q row time values worst y z rates slopes signals computer phi".split()
-)
 
 
 @dataclass(frozen=True)
@@ -121,7 +113,7 @@ def needed_steps(
     results: Iterable[sp.Expr], joined: Mapping[sp.Symbol, sp.Expr]
 ) -> dict[sp.Symbol, sp.Expr]:
     """Those of the named steps that the results are written in, in their order."""
-    wanted = set().union(*(sp.sympify(r).free_symbols for r in results))
+    wanted = set().union(*(sp.sympify(r, strict=True).free_symbols for r in results))
     found = {}
     for symbol, expression in reversed(list(joined.items())):
         if symbol in wanted:
@@ -141,7 +133,8 @@ def _function(
     if not results:
         return ""
     shared, out = sp.cse(
-        [sp.sympify(r).xreplace(renamed) for r in results], symbols=sp.numbered_symbols("k")
+        [sp.sympify(r, strict=True).xreplace(renamed) for r in results],
+        symbols=sp.numbered_symbols("k"),
     )
     needed = needed_steps(results, joined)
     lines = [f"    {s} = {_code(e.xreplace(renamed))}" for s, e in needed.items()]
@@ -160,7 +153,6 @@ class Generator:
     def __init__(self, equations: Equations, *, observer: int = 0) -> None:
         e = self.equations = equations
         self.observer = observer
-        self._refuse_reserved()
         self.slopes = slopes(e)
         self.states = sorted(e.rates, key=str)
         self.computer_states = sorted((*e.computer.rates, *e.computer.steps), key=str)
@@ -193,14 +185,6 @@ class Generator:
         ]
         self.renamed = {p: sp.Symbol(f"p{i}", real=True) for i, p in enumerate(self.parameters)}
         self.motion_signals = [f(m) for m in self.motions for f in (signal, velocity, acceleration)]
-
-    def _refuse_reserved(self) -> None:
-        e = self.equations
-        names = {*e.signals, *e.computer.signals, *e.motions, *map(str, e.inputs)}
-        for name in sorted(names & RESERVED):
-            raise ModelError(
-                f'signal "{name}" has a name that generated code needs itself: call it otherwise'
-            )
 
     def _computer_expressions(self) -> list[sp.Expr]:
         computer = self.equations.computer

@@ -173,7 +173,7 @@ class _Builder:
             if isinstance(part, Moving | Attached | Linked):
                 raise ModelError(
                     f'{self.diagram.name}: the computer uses "{name}" of {part.name}, which is not '
-                    f"measured; sensors give {', '.join(sensors)}"
+                    f"measured; sensors give {', '.join(sorted(sensors))}"
                 )
             inputs = () if part is None else part.inputs
             if name in electronic:
@@ -399,7 +399,7 @@ def summed(part: Junction | Kinematics, of: _Reader) -> sp.Expr:
 
 
 def _read(weight: Weight, of: _Reader) -> sp.Expr:
-    expression = sp.sympify(weight)
+    expression = sp.sympify(weight, strict=True)
     return expression.xreplace({x: of(x.name) for x in expression.free_symbols})
 
 

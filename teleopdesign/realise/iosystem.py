@@ -20,6 +20,7 @@ from ..diagrams import Control, Diagram, Junction, Kinematics
 from ..errors import ModelError
 from ._codegen import needed_steps
 from .equations import TIME, Equations, equations, motion_of, signal, summed, velocity
+from .private_names import PrivateNames, private_names
 from .simulated import simulated
 
 if TYPE_CHECKING:
@@ -38,13 +39,20 @@ def to_iosystem(
     Inputs are the signals from outside, outputs all others; states are those of `simulate`.
     raises ModelError: a block without laws, or a dead time, which python-control cannot hold
     """
-    import control
-
     diagram = simulated(diagram, give, prescribed)
     blocks = tuple(
         replace(b, analog=False) if isinstance(b, Control) else b for b in diagram.blocks
     )
-    diagram = replace(diagram, blocks=blocks)
+    names = private_names(replace(diagram, blocks=blocks))
+    with names.in_errors():
+        return _joined(names, tuple(names.private.get(motion, motion) for motion in prescribed))
+
+
+def _joined(names: PrivateNames, prescribed: tuple[str, ...]) -> control.InterconnectedSystem:
+    """The parts of the diagram, built on private names, joined by the user's."""
+    import control
+
+    diagram = names.diagram
     parts = equations(_known(diagram), prescribed=prescribed)
     if parts.late:
         raise ModelError(
@@ -57,33 +65,39 @@ def to_iosystem(
     # python-control has no system without inputs: what never changes is an output of the mechanics
     idle = {signal(p.output): float(summed(p, signal)) for p in static if not p.inputs}
     numbers |= idle
-    systems = [_mechanics(parts, numbers, idle)]
+    systems = [_mechanics(parts, numbers, idle, names)]
     for part in diagram.controls:
-        systems.append(_controller(diagram, part, numbers))
-    systems += [_static(p) for p in static if p.inputs]
+        systems.append(_controller(part, numbers, names))
+    systems += [_static(p, names) for p in static if p.inputs]
     driven = {f"{m}{end}" for m in parts.prescribed for end in ("", "_velocity", "_acceleration")}
     outside = [s for s in diagram.outside if s not in parts.signals]
+    given = names.public_names(*outside, *sorted(driven))
     taken = {s for system in systems for s in system.input_labels}
     made = [s for system in systems for s in system.output_labels]
+    labels = [*parts.inputs, *parts.signals, *parts.computer.signals, *parts.rates]
+    names.public_names(*map(str, labels))
     return control.interconnect(
         systems,
-        inputs=[s for s in [*outside, *sorted(driven)] if s in taken],
+        inputs=[s for s in given if s in taken],
         outputs=made,
-        name=diagram.name.replace(" ", "_"),
+        name=names.public_name(diagram.name).replace(" ", "_"),
     )
 
 
 def _mechanics(
-    parts: Equations, numbers: dict[sp.Symbol, float], idle: Mapping[sp.Symbol, float]
+    parts: Equations,
+    numbers: dict[sp.Symbol, float],
+    idle: Mapping[sp.Symbol, float],
+    names: PrivateNames,
 ) -> Any:
     moved = [s for m in parts.motions for s in (signal(m), velocity(m))]
     given = [s for s in (*parts.inputs, *parts.commands.values()) if s not in idle]
-    states = sorted(parts.rates, key=str)
+    states = sorted(parts.rates, key=lambda state: names.public_name(str(state)))
     # a signal that the system takes and gives under one name would be wired to itself
     outputs = {str(s): s for s in moved} | {n: e for n, e in parts.signals.items()}
     outputs |= {str(s): s for s in idle}
     rates = [parts.rates[s] for s in states]
-    return _nlsys(MECHANICS, states, given, rates, outputs, numbers, parts.joined)
+    return _nlsys(MECHANICS, states, given, rates, outputs, names, numbers, parts.joined)
 
 
 def _known(diagram: Diagram) -> Diagram:
@@ -101,11 +115,11 @@ def _code(part: Control) -> Any:
     return stages[0].law.system if len(stages) == 1 else None
 
 
-def _controller(diagram: Diagram, part: Control, numbers: dict[sp.Symbol, float]) -> Any:
+def _controller(part: Control, numbers: dict[sp.Symbol, float], names: PrivateNames) -> Any:
     if (system := _code(part)) is not None:
-        return _renamed(system, part)
+        return _renamed(system, part, names)
     assert isinstance(part.controller, Controller)
-    _, v, _ = motion_of(diagram, part.motion)
+    _, v, _ = motion_of(names.diagram, part.motion)
     signals = {"input": signal(part.input), "velocity": v, "speed": sp.Abs(v), "travel_rate": v}
     signals["period"] = sp.S(0)
     equation = part.controller.equation(part.name, signals)
@@ -113,27 +127,29 @@ def _controller(diagram: Diagram, part: Control, numbers: dict[sp.Symbol, float]
     rates = [equation.rates[s] for s in states]
     used = set().union(*(e.free_symbols for e in (equation.output, *rates)))
     given = sorted(used - set(states) - set(numbers) - {TIME}, key=str)
-    return _nlsys(part.name, states, given, rates, {part.output: equation.output}, numbers)
+    outputs = {part.output: equation.output}
+    return _nlsys(names.public_name(part.name), states, given, rates, outputs, names, numbers)
 
 
-def _static(part: Junction | Kinematics) -> Any:
+def _static(part: Junction | Kinematics, names: PrivateNames) -> Any:
     """A sum or a position without states."""
     given = [signal(s) for s in part.inputs]
     value = summed(part, signal)
-    return _nlsys(f"sum_{part.output}", [], given, [], {part.output: value}, {})
+    name = f"sum_{names.public_name(part.output)}"
+    return _nlsys(name, [], given, [], {part.output: value}, names, {})
 
 
-def _renamed(system: Any, part: Control) -> Any:
+def _renamed(system: Any, part: Control, names: PrivateNames) -> Any:
     """A python-control system under the block's name, on its signals."""
     import control
 
     return control.nlsys(
         (lambda t, x, u, params: system.dynamics(t, x, u)) if system.nstates else None,
         lambda t, x, u, params: system.output(t, x, u),
-        inputs=[part.input],
-        outputs=[part.output],
+        inputs=[names.public_name(part.input)],
+        outputs=[names.public_name(part.output)],
         states=list(system.state_labels) or None,
-        name=part.name,
+        name=names.public_name(part.name),
     )
 
 
@@ -143,13 +159,14 @@ def _nlsys(
     inputs: Sequence[sp.Symbol],
     rates: Sequence[sp.Expr],
     outputs: dict[str, sp.Expr],
+    names: PrivateNames,
     numbers: dict[sp.Symbol, float],
     joined: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
 ) -> Any:
     import control
 
     def function(expressions: Sequence[sp.Expr]) -> Callable[..., Any]:
-        found = [sp.sympify(e).subs(numbers) for e in expressions]
+        found = [sp.sympify(e, strict=True).subs(numbers) for e in expressions]
         steps = [(s, e.subs(numbers)) for s, e in needed_steps(expressions, joined).items()]
 
         def shared(results: list[sp.Expr]) -> tuple[list[Any], list[sp.Expr]]:
@@ -168,8 +185,8 @@ def _nlsys(
     return control.nlsys(
         function(rates) if states else None,
         function(list(outputs.values())),
-        inputs=[str(s) for s in inputs],
-        outputs=list(outputs),
-        states=[str(s) for s in states] or None,
+        inputs=[names.public_name(str(s)) for s in inputs],
+        outputs=[names.public_name(s) for s in outputs],
+        states=[names.public_name(str(s)) for s in states] or None,
         name=name,
     )

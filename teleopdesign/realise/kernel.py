@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
 
@@ -27,6 +27,7 @@ from ..errors import ModelError
 from ._codegen import Generator, Layout
 from ._codegen_loop import loop_source
 from .equations import Equations, equations
+from .private_names import PrivateNames, private_names
 
 #: h times the fastest rate of the equations at rest; 0.3: 20 steps a period
 FASTEST = 0.3
@@ -41,6 +42,7 @@ class Program:
     """The simulation loop for one structure of a diagram, for any values.
 
     run: generated loop, compiled or plain Python;  functions: the module's plain functions by name
+    equations: on private symbols (`private_names`), their parameters by the user's names
     """
 
     equations: Equations
@@ -91,16 +93,34 @@ def program(
     observer: its order, where the computer observes velocities in place of filtering differences
     jit: False runs the same generated source in plain Python, some hundred times slower
     """
-    key = (_structure(diagram), prescribed, sampled, observer, jit)
+    names = private_names(diagram)
+    given = tuple(names.private.get(motion, motion) for motion in prescribed)
+    key = (_structure(names.diagram), given, sampled, observer, jit)
     if key not in _programs:
-        found = equations(diagram, prescribed=prescribed, sampled=sampled)
+        with names.in_errors():
+            found = equations(names.diagram, prescribed=given, sampled=sampled)
         generator = Generator(found, observer=observer)
         loop = loop_source(generator)
         source = generator.source(jit=jit) + loop
         plain = _executed(generator.source(jit=False) + loop)
         run = _compiled(source) if jit else plain["run"]
         _programs[key] = Program(generator.equations, generator.layout(), run, plain)
-    return _programs[key]
+    return _in_public(_programs[key], names)
+
+
+def _in_public(private: Program, names: PrivateNames) -> Program:
+    """The program with the user's names of signals, states and parameters."""
+    layout = private.layout
+    named = (*layout.columns, *layout.states, *layout.computer_states, *layout.inputs)
+    names.public_names(*named, *layout.sampled_inputs)
+    public = {
+        field.name: tuple(map(names.public_name, getattr(layout, field.name)))
+        for field in fields(layout)
+    }
+    parameters = private.equations.parameters
+    told = {symbol: names.public_name(name) for symbol, name in parameters.items()}
+    equations = replace(private.equations, parameters=told)
+    return replace(private, equations=equations, layout=Layout(**public))
 
 
 def _compiled(source: str) -> Callable[..., float]:

@@ -82,7 +82,7 @@ def as_transfer_function(expression: sp.Expr, *, delay_order: int = 4) -> contro
         above, below = control.pade(tau, delay_order)
         return sp.Poly(above, S).as_expr() / sp.Poly(below, S).as_expr()
 
-    expression = sp.sympify(expression).replace(sp.exp, rational)
+    expression = sp.sympify(expression, strict=True).replace(sp.exp, rational)
     above, below = sp.fraction(sp.cancel(sp.together(sp.nsimplify(expression, rational=True))))
     coefficients = [[float(c) for c in sp.Poly(p, S).all_coeffs()] for p in (above, below)]
     lead = coefficients[1][0]

@@ -63,43 +63,6 @@ def test_two_bodies_swing_against_each_other():
     assert found["x_e"].attrs["units"] == "m" and found["f_p"].attrs["units"] == "N"
 
 
-def test_a_signal_may_not_be_called_as_the_generated_code_calls_its_own():
-    with pytest.raises(ModelError, match='signal "exp" has a name'):
-        free = Diagram(
-            "free",
-            (Moving("M", body(0.5), "exp", "u_m", {"f_u": 1}, "f_u"),),
-            (Junction("u_m", {}),),
-            {"f_u": "force"},
-            measured=(),
-        )
-        simulate(free, duration=0.01, jit=False)
-
-
-@pytest.mark.parametrize(
-    ("parts", "words"),
-    [
-        ({"junctions": (Junction("u", {"f_x": 1}),)}, 'junction u: nothing makes signal "f_x"'),
-        ({"junctions": (Junction("u", {"f_": 1}),)}, 'did you mean "f"'),
-        (
-            {"junctions": (Junction("u", {"f": 1}), Junction("u", {"f": 1}))},
-            'signal "u" is made by',
-        ),
-        ({"measured": ("X",)}, 'measured: nothing makes signal "X"'),
-    ],
-)
-def test_a_wiring_without_meaning_is_refused(parts, words):
-    whole = {
-        "name": "one body",
-        "blocks": (Moving("M", ANY, "x", "u", {"f": 1}, "f"),),
-        "junctions": (Junction("u", {"f": 1}),),
-        "outside": {"f": "force"},
-        "measured": ("x",),
-    }
-    with pytest.raises(ModelError) as caught:
-        Diagram(**(whole | parts))
-    assert words in str(caught.value) and "\n" not in str(caught.value)
-
-
 def test_values_are_read_and_changed_by_name():
     diagram = haptic_interface(body(0.2, coulomb__level=0.5), cancellation=CANCELLATION)
     assert diagram.values["C.smoothed_coulomb.level"] == 0.5

@@ -172,11 +172,11 @@ def test_a_matrix_of_many_motions_gathers_them_by_bars():
     assert sum(not b.block for b in of(drawing, Box)) == 2
 
 
-def test_a_name_with_marks_of_its_own_is_escaped(tmp_path):
+def test_a_title_with_marks_of_its_own_is_escaped(tmp_path):
     odd = '<a & "b"$x$\x07'
     diagram = Diagram(
         odd,
-        (Moving(odd, ANY, "x", "u", {}, "u"),),
+        (Moving("M", ANY, "x", "u", {}, "u"),),
         (Junction("y", {"x": 0.5}),),
         {"u": "force"},
         measured=(),

@@ -153,5 +153,10 @@ def _names(law: str) -> str:
 
 
 def _wrapped(text: str) -> str:
-    plain = text.replace("\\", "/").replace('"""', "'")
+    """The text as it may stand in a docstring: nothing in it can end it, or begin an escape.
+
+    It holds titles and file names, which are anybody's.
+    """
+    plain = "".join(c if c.isprintable() else " " for c in text)
+    plain = plain.replace("\\", "/").replace('"', "'")
     return "\n".join(textwrap.wrap(plain, 96))

@@ -20,7 +20,7 @@ class _Printer(StrPrinter):
 
 def formula(expression: sp.Expr, *, short: str) -> tuple[str, ...]:
     """The expression on lines of its terms; `short` where it is too long to be read."""
-    terms = sp.Add.make_args(sp.sympify(expression))
+    terms = sp.Add.make_args(sp.sympify(expression, strict=True))
     lines: list[str] = []
     for term in sorted(terms, key=sp.default_sort_key):
         text = _pretty(term)

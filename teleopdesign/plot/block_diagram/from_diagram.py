@@ -102,7 +102,7 @@ class _Making:
 
     def kinematics(self, part: Kinematics) -> None:
         name = f"block {part.name}"
-        said = formula(sp.sympify(part.expression), short="kinematics")
+        said = formula(sp.sympify(part.expression, strict=True), short="kinematics")
         self.made.nodes[name] = Node(name, "box", symbol(part.output), said)
         self.wire(name, part.output)
         self.gathered(name, [self.net(s) for s in part.inputs])
@@ -206,7 +206,7 @@ def _box(block: Block) -> str:
 
 def _depends(weight: Weight) -> bool:
     """Whether a weight depends on positions."""
-    return bool(sp.sympify(weight).free_symbols)
+    return bool(sp.sympify(weight, strict=True).free_symbols)
 
 
 def _once(names: Iterable[str]) -> list[str]:

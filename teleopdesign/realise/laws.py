@@ -1,0 +1,65 @@
+"""Laws as source text: the one place where an expression becomes code that is run.
+
+An expression is printed with the private name of each of its symbols; a symbol without one, or a
+function that neither Python nor the package knows, has no source. So nothing that a user calls
+something by can stand in generated code.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+from sympy.printing.pycode import PythonCodePrinter
+
+from ..errors import ModelError, quoted
+
+#: symbol -> its private name in the source
+Names = Mapping[sp.Symbol, str]
+
+
+class _Printer(PythonCodePrinter):
+    """Python of the functions of `math`; symbols by their private names, in sympy's own order."""
+
+    def __init__(self, names: Names) -> None:
+        super().__init__({"fully_qualified_modules": False})
+        self.names = names
+
+    def _print_Symbol(self, expr: sp.Symbol) -> str:
+        if expr not in self.names:
+            raise ModelError(f"a law holds {quoted(expr.name)}, which nothing gives: no source")
+        return self.names[expr]
+
+
+def source_of(expression: sp.Expr, names: Names) -> str:
+    """The expression as one line of Python.
+
+    raises ModelError: a symbol without a private name, a function of no known source
+    """
+    if strangers := sorted(str(f.func) for f in expression.atoms(AppliedUndef)):
+        raise ModelError(f"a law holds the function {quoted(strangers[0])}, which has no source")
+    text = str(_Printer(names).doprint(expression))
+    if "\n" in text or "#" in text:  # how sympy marks what it cannot print
+        raise ModelError(f"a law holds {quoted(text.splitlines()[-1])}, which has no source")
+    return text
+
+
+def assignments(results: Mapping[str, sp.Expr], names: Names, *, shared: str = "") -> list[str]:
+    """Lines that compute the results, each under its private name.
+
+    shared: beginning of the names of parts that several results hold, computed once; "": none are
+    raises ModelError: as `source_of`
+    """
+    if not shared:
+        return [f"{name} = {source_of(e, names)}" for name, e in results.items()]
+    common, out = sp.cse(list(results.values()), symbols=sp.numbered_symbols("k", cls=sp.Dummy))
+    known = {**names, **{symbol: f"{shared}{i}" for i, (symbol, _) in enumerate(common)}}
+    lines = [f"{known[symbol]} = {source_of(e, known)}" for symbol, e in common]
+    pairs = zip(results, out, strict=True)
+    return [*lines, *(f"{name} = {source_of(e, known)}" for name, e in pairs)]
+
+
+def indented(lines: Sequence[str], depth: int) -> str:
+    """Lines of source at a depth."""
+    return "\n".join(" " * depth + line for line in lines)
