@@ -63,7 +63,7 @@ def test_the_rod_from_folder_to_controllers(tmp_path, capsys):
     [
         (["--body", "devise"], '--body: no body "devise", has device; did you mean "device"?'),
         (["--fraction", "1.5"], "design: fraction: found 1.5, expected above 0, at most 1"),
-        (["--answer", "nothing.json"], "nothing.json: No such file or directory"),
+        (["--answer", "nothing.json"], "nothing.json: cannot be read: No such file or directory"),
         (["--json", "design.txt"], "design.txt: found '.txt', expected .json"),
     ],
 )
