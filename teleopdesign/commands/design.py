@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from ..errors import ExperimentError, did_you_mean
 from ..plain_data import write_json, write_text
 from ._diagnosis import add_experiment, diagnosis_of, experiment_of, known_of
-from ._options import check_output, say
+from ._options import check_output, make_folder, say
 
 if TYPE_CHECKING:
     from ..design import Assumptions, Design, Diagnosed
@@ -56,6 +56,8 @@ def run(options: argparse.Namespace) -> int:
     ):
         if path is not None:
             check_output(path, endings)
+    if options.output is not None:
+        make_folder(options.output)
     assumptions = _assumptions(options)
     experiment = experiment_of(options.folder)
     places = _places(options, experiment)
@@ -125,7 +127,6 @@ def _write(designs: dict[str, Design], options: argparse.Namespace) -> None:
         )
     if options.output is None:
         return
-    options.output.mkdir(parents=True, exist_ok=True)
     for place, made in designs.items():
         files = save_figure(made.plot(), options.output / f"{place}_design")
         made.to_json(options.output / f"{place}_design.json")

@@ -220,8 +220,8 @@ def _check(path: Path) -> int:
 
     try:
         claims = json.loads(path.read_text(encoding="utf-8"))["claims"]
-        found = [(c["statement"], c["certificates"]) for c in claims]
-    except (OSError, ValueError, KeyError, TypeError) as problem:
+        found = [(str(c["statement"]), list(c["certificates"])) for c in claims]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as problem:
         raise ExperimentError(f"{path}: no file of claims: {problem!r}") from problem
     count = 0
     for statement, certificates in found:

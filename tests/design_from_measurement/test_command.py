@@ -25,6 +25,15 @@ def answer(tmp_path_factory):
     return path
 
 
+def test_a_folder_that_cannot_be_made_is_one_line(answer, tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    out = tmp_path / "file" / "out"
+    assert (
+        main(["design", str(td.example("rod")), "--answer", str(answer), "--output", str(out)]) == 2
+    )
+    assert capsys.readouterr().err == f"teleopdesign: {out}: Not a directory\n"
+
+
 def designs(path):
     return json.loads(path.read_text())["bodies"]
 

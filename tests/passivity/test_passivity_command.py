@@ -190,3 +190,14 @@ def test_in_a_computer_the_pair_is_held_against_what_readings_do_not_show(answer
     assert claims["estimate, continuous time"]["status"] == "proved"
     assert claims["small motion, sampled"]["status"] == "proved"
     assert claims["any motion, sampled"]["status"] == "refuted"
+
+
+@pytest.mark.parametrize(
+    "text", ["[" * 100_000, '{"claims": 1}', '{"claims": [{"statement": 1, "certificates": 2}]}']
+)
+def test_a_file_that_holds_no_claims_is_one_line(text, tmp_path, capsys):
+    file = tmp_path / "claims.json"
+    file.write_text(text)
+    assert main(["passivity", "--check", str(file)]) == 2
+    error = capsys.readouterr().err
+    assert f"{file}: no file of claims" in error and error.count("\n") == 1
