@@ -1,5 +1,6 @@
-"""A body is the same table, by the same rules, in an experiment and in a diagram's file."""
+"""A body is the same table, by the same rules, in an experiment, a diagram's file and an answer."""
 
+import json
 import tomllib
 
 import pytest
@@ -10,6 +11,7 @@ from measurement.rod_example import write_rod
 from teleopdesign import load_experiment
 from teleopdesign.blocks import BLOCK_EFFECTS, Body, Value, with_block_effects
 from teleopdesign.blocks.described import body_of
+from teleopdesign.diagnose.answers.bodies import body_data, model_from
 from teleopdesign.diagrams import read_diagram
 from teleopdesign.diagrams.toml_writing import body_lines
 from teleopdesign.effects import EFFECTS
@@ -82,6 +84,8 @@ def test_what_is_written_of_a_body_is_read_as_the_same_body(name, axis, tmp_path
     at_a_contact = any(e.role.startswith("contact") or e.name in BLOCK_EFFECTS
                        for e in body.effects)  # fmt: skip
     assert same(in_a_diagram(body_lines("blocks.Z_M", body), tmp_path), body)
+    data = json.loads(json.dumps({"device": body_data(body)}))
+    assert same(model_from(data, EFFECTS, file="a.json", key="models").bodies["device"], body)
     if not at_a_contact:
         assert same(in_an_experiment(body_lines("model.device", body), tmp_path), body)
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..simulate import Sampling
 
 #: options that describe a compensator or choose a body of a diagnosis
-BESIDE_A_DIAGRAM = ("body", "dahl", "smoothed-coulomb", "wall")
+BESIDE_A_DIAGRAM = ("answer", "body", "dahl", "smoothed-coulomb", "wall")
 
 
 def is_diagram(source: Path) -> bool:

@@ -36,6 +36,15 @@ def check_output(path: Path, endings: tuple[str, ...]) -> None:
         raise ExperimentError(f"{path}: is a folder, expected a file")
 
 
+def make_folder(path: Path) -> Path:
+    """The folder, made where it is not there; raises ExperimentError where it cannot be made."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ExperimentError(f"{path}: {error.strerror}") from error
+    return path
+
+
 def say(text: str) -> None:
     """Progress on one line of the terminal; nothing where nobody watches."""
     if sys.stderr.isatty():

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..plain_data import write_json
-from ._options import add_effect_files, add_folder, check_output
+from ._diagnosis import add_experiment, experiment_of, stated_model
+from ._options import check_output
 
 if TYPE_CHECKING:
     from ..finding import Finding
@@ -20,9 +21,8 @@ WIDTH, INDENT = 100, 9
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    add_folder(parser)
+    add_experiment(parser, answer=False)
     parser.add_argument("--json", type=Path, metavar="F", help="write the findings there")
-    add_effect_files(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -30,12 +30,9 @@ def run(options: argparse.Namespace) -> int:
     if options.json is not None:
         check_output(options.json, (".json",))
     from ..diagnose.soundness_check import check_experiment
-    from ..effects import catalogue
-    from ..measurement import load_experiment
-    from ..model import Model
 
-    experiment = load_experiment(options.folder)
-    model = Model.from_experiment(experiment, catalogue(options.effect))
+    experiment = experiment_of(options.folder)
+    model = stated_model(experiment, options)
     print(experiment)
     print()
     findings = check_experiment(experiment, model)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ..errors import ExperimentError
 from . import diagnose
+from ._options import make_folder
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -20,11 +20,7 @@ def run(options: argparse.Namespace) -> int:
     """Diagnose the shipped experiment; everything that can be written goes into one folder."""
     from ..examples import example
 
-    output: Path = options.output
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ExperimentError(f"{output}: {error.strerror}") from error
+    output = make_folder(options.output)
     written = {
         "json": output / "answer.json",
         "predictions": output / "predictions.csv.gz",

@@ -8,20 +8,19 @@ from typing import TYPE_CHECKING
 
 from ..errors import ModelError
 from ..plain_data import replacing, write_json
-from ._options import add_effect_files, add_folder, check_output, say
+from ._diagnosis import add_experiment, diagnosis_of, experiment_of, stated_model
+from ._options import check_output
 
 if TYPE_CHECKING:
     from ..diagnose.fit import Fit
     from ..diagnose.force_error import Prepared
     from ..diagnose.noise_floor import NoiseFloor
     from ..diagnose.unexplained import Unexplained
-    from ..measurement.experiment import Experiment
-    from ..model import Model
 
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    add_folder(parser)
+    add_experiment(parser)
     parser.add_argument(
         "--as-is",
         action="store_true",
@@ -37,7 +36,6 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="NAME.py",
         help="write the largest dependence as an effect file, to diagnose with",
     )
-    add_effect_files(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -52,13 +50,8 @@ def run(options: argparse.Namespace) -> int:
     if options.effect_file is not None and not options.effect_file.stem.isidentifier():
         raise ModelError(f"{options.effect_file}: expected a name such as my_effect.py")
     from ..diagnose.unexplained import unexplained
-    from ..effects import catalogue
-    from ..measurement import load_experiment
-    from ..model import Model
 
-    experiment = load_experiment(options.folder)
-    model = Model.from_experiment(experiment, catalogue(options.effect))
-    fit, prepared, floor, said = _fitted(experiment, model, as_is=options.as_is)
+    fit, prepared, floor, said = _fitted(options)
     print(f"{said}\n")
     found = unexplained(fit, prepared, floor)
     print(found)
@@ -72,22 +65,22 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _fitted(
-    experiment: Experiment, model: Model, *, as_is: bool
-) -> tuple[Fit, Prepared, NoiseFloor | None, str]:
+def _fitted(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor | None, str]:
     """The fit that is described, its noise floor if a diagnosis told it, and which model it is."""
-    from ..diagnose import find_missing
     from ..diagnose.force_error import prepare
     from ..diagnose.search import estimate_from_starts
 
-    if as_is:
+    experiment = experiment_of(options.folder)
+    if options.as_is and options.answer is None:
+        model = stated_model(experiment, options)
         prepared = prepare(experiment)
         return estimate_from_starts(model, prepared), prepared, None, "Your model, re-estimated:"
-    diagnosis = find_missing(experiment, model, progress=say)
-    say("")
+    diagnosis = diagnosis_of(experiment, options)
     prepared, before = diagnosis.prepared, diagnosis.before
     added = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)
     held = diagnosis.floor.held
+    if options.as_is:
+        return before, prepared, None, "Your model, re-estimated:"
     if not added:
         return before, prepared, diagnosis.floor, "Your model, re-estimated:"
     if not diagnosis.more_is_missing or (diagnosis.missing and not held):

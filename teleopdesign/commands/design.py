@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError, did_you_mean
 from ..plain_data import write_json, write_text
-from ._options import add_effect_files, add_folder, check_output, say
+from ._diagnosis import add_experiment, diagnosis_of, experiment_of, known_of
+from ._options import check_output, make_folder, say
 
 if TYPE_CHECKING:
     from ..design import Assumptions, Design, Diagnosed
@@ -32,13 +33,7 @@ STATED = {
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    add_folder(parser)
-    parser.add_argument(
-        "--answer",
-        type=Path,
-        metavar="F",
-        help="an answer of `teleopdesign diagnose --json` for that folder, in place of a diagnosis",
-    )
+    add_experiment(parser)
     parser.add_argument("--body", metavar="NAME", help="one body of a teleoperator (all of them)")
     parser.add_argument("--json", type=Path, metavar="F", help="write the designs there")
     parser.add_argument(
@@ -50,7 +45,6 @@ def add(parser: argparse.ArgumentParser) -> None:
     for name, (unit, text) in STATED.items():
         option = f"--{name.replace('_', '-')}"
         parser.add_argument(option, type=float, metavar="X", help=f"{unit}: {text}")
-    add_effect_files(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -62,14 +56,12 @@ def run(options: argparse.Namespace) -> int:
     ):
         if path is not None:
             check_output(path, endings)
-    from ..effects import catalogue
-    from ..measurement import load_experiment
-
+    if options.output is not None:
+        make_folder(options.output)
     assumptions = _assumptions(options)
-    experiment = load_experiment(options.folder)
+    experiment = experiment_of(options.folder)
     places = _places(options, experiment)
-    known = catalogue(options.effect)
-    found = _diagnosed(options.answer, experiment, known)
+    found = _diagnosed(experiment, options)
     designs = {}
     for place in places:
         designs[place] = _design(found, place, assumptions)
@@ -103,16 +95,12 @@ def _places(options: argparse.Namespace, experiment: Experiment) -> list[str]:
     return places
 
 
-def _diagnosed(answer: Path | None, experiment: Experiment, known: Any) -> Diagnosed:
+def _diagnosed(experiment: Experiment, options: argparse.Namespace) -> Diagnosed:
     from ..design import diagnosed, read_answer
 
-    if answer is not None:
-        return read_answer(answer, experiment, known)
-    from ..diagnose import find_missing
-    from ..model import Model
-
-    diagnosis = find_missing(experiment, Model.from_experiment(experiment, known), progress=say)
-    say("")
+    if options.answer is not None:
+        return read_answer(options.answer, experiment, known_of(options))
+    diagnosis = diagnosis_of(experiment, options)
     print(diagnosis)
     print()
     return diagnosed(diagnosis)
@@ -139,7 +127,6 @@ def _write(designs: dict[str, Design], options: argparse.Namespace) -> None:
         )
     if options.output is None:
         return
-    options.output.mkdir(parents=True, exist_ok=True)
     for place, made in designs.items():
         files = save_figure(made.plot(), options.output / f"{place}_design")
         made.to_json(options.output / f"{place}_design.json")

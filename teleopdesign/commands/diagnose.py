@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..plain_data import replacing
-from ._options import add_effect_files, add_folder, check_output, say
+from ._diagnosis import add_experiment, diagnosis_of, experiment_of
+from ._options import check_output, say
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    add_folder(parser)
+    add_experiment(parser, answer=False)
     parser.add_argument("--json", type=Path, metavar="F", help="write the answer there")
     parser.add_argument(
         "--predictions",
@@ -29,7 +30,6 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--report", type=Path, metavar="F", help="write a page with everything (.html)"
     )
-    add_effect_files(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -42,18 +42,12 @@ def run(options: argparse.Namespace) -> int:
     ):
         if path is not None:
             check_output(path, endings)
-    from ..diagnose import find_missing
     from ..diagnose.answer import write_answer, write_predictions
-    from ..effects import catalogue
-    from ..measurement import load_experiment
-    from ..model import Model
 
-    experiment = load_experiment(options.folder)
-    model = Model.from_experiment(experiment, catalogue(options.effect))
+    experiment = experiment_of(options.folder)
     print(experiment)
     print()
-    diagnosis = find_missing(experiment, model, progress=say)
-    say("")
+    diagnosis = diagnosis_of(experiment, options)
     print(diagnosis)
     if options.json is not None:
         write_answer(diagnosis, options.json)

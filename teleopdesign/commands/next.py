@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import ExperimentError, did_you_mean
 from ..plain_data import replacing, write_json
-from ._options import add_effect_files, add_folder, check_output, say
+from ._diagnosis import add_experiment, diagnosis_of, experiment_of
+from ._options import check_output, say
 
 if TYPE_CHECKING:
     from ..diagnose.next_experiment import Limits, Shown
@@ -33,7 +34,7 @@ QUANTITY = {
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    add_folder(parser)
+    add_experiment(parser)
     parser.add_argument(
         "--output", type=Path, metavar="F", help="write the position reference (.csv)"
     )
@@ -60,7 +61,6 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="make each rival the truth and diagnose; none is begun after S seconds (120)",
     )
-    add_effect_files(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -74,16 +74,11 @@ def run(options: argparse.Namespace) -> int:
             check_output(path, endings)
     if not (math.isfinite(options.duration) and options.duration > 0):
         raise ExperimentError(f"--duration: found {options.duration:g}, expected more than 0 s")
-    from ..diagnose import find_missing
     from ..diagnose.next_experiment import propose, show_in_simulation, write_reference
-    from ..effects import catalogue
-    from ..measurement import load_experiment
-    from ..model import Model
 
-    experiment = load_experiment(options.folder)
+    experiment = experiment_of(options.folder)
     limits = _limits(_asked(options.limit, experiment), experiment)
-    model = Model.from_experiment(experiment, catalogue(options.effect))
-    diagnosis = find_missing(experiment, model, progress=say)
+    diagnosis = diagnosis_of(experiment, options)
     proposal = propose(diagnosis, duration=options.duration, limits=limits, progress=say)
     say("")
     print(diagnosis)

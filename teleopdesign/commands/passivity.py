@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError
 from ..plain_data import write_json
-from ._answer import body_of_answer
 from ._claims import WIDTH, claim_lines, plain
+from ._diagnosis import add_answer, body_of_source
 from ._diagram_passivity import BESIDE_A_DIAGRAM, is_diagram, settle_diagram
-from ._options import add_effect_files, check_output, say
+from ._options import add_effect_files, check_output
 
 if TYPE_CHECKING:
-    from ..blocks import Body
     from ..passivity.device_claims import Compensator, Margin, Settled
     from ..passivity.identified import IdentifiedDevice
     from ..simulate import Sampling
@@ -33,6 +32,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="folder with experiment.toml, which is diagnosed, a diagnosis's answer (.json), or a "
         "diagram: a file NAME.toml or a shipped one",
     )
+    add_answer(parser)
     parser.add_argument("--body", help="which body of the answer: device, master or slave")
     law = parser.add_mutually_exclusive_group()
     law.add_argument(
@@ -86,7 +86,7 @@ def run(options: argparse.Namespace) -> int:
     from ..passivity.device_claims import margins
     from ..passivity.identified import identified
 
-    device = identified(_body(options))
+    device = identified(body_of_source(options.source, options))
     compensator = _compensator(options)
     settled = _settled(options, device, compensator)
     found = margins(device, compensator)
@@ -136,28 +136,6 @@ def _sound(options: argparse.Namespace) -> None:
 
 def _given(options: argparse.Namespace, name: str) -> bool:
     return getattr(options, name.replace("-", "_")) is not None
-
-
-def _body(options: argparse.Namespace) -> Body:
-    """The diagnosed body: read from an answer, or from a diagnosis that is made now."""
-    source: Path = options.source
-    if source.suffix == ".json":
-        return body_of_answer(source, options.body)
-    from ..diagnose import find_missing
-    from ..effects import catalogue
-    from ..measurement import load_experiment
-    from ..model import Model
-
-    experiment = load_experiment(source)
-    model = Model.from_experiment(experiment, catalogue(options.effect))
-    bodies = list(model.bodies)
-    if options.body is None and len(bodies) > 1:
-        raise ExperimentError(f"{source}: bodies {', '.join(bodies)}: choose one with --body")
-    diagnosis = find_missing(experiment, model, progress=say)
-    say("")
-    print(diagnosis)
-    print()
-    return diagnosis.after.model.body(options.body or bodies[0])
 
 
 def _compensator(options: argparse.Namespace) -> Compensator | None:
@@ -242,8 +220,8 @@ def _check(path: Path) -> int:
 
     try:
         claims = json.loads(path.read_text(encoding="utf-8"))["claims"]
-        found = [(c["statement"], c["certificates"]) for c in claims]
-    except (OSError, ValueError, KeyError, TypeError) as problem:
+        found = [(str(c["statement"]), list(c["certificates"])) for c in claims]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as problem:
         raise ExperimentError(f"{path}: no file of claims: {problem!r}") from problem
     count = 0
     for statement, certificates in found:

@@ -1,17 +1,14 @@
-"""The model that a diagnosis ended with, read back from its answer file."""
+"""What a design starts from: the model that a diagnosis ended with, live or from its answer."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from ..blocks import Value
 from ..diagnose import Diagnosis
+from ..diagnose.answers import load_answer
 from ..effects import EFFECTS, Effect
-from ..errors import ExperimentError, ModelError
 from ..measurement.experiment import Experiment
 from ..model import Model
 
@@ -36,55 +33,8 @@ def read_answer(
 ) -> Diagnosed:
     """The model of an answer that `teleopdesign diagnose --json` wrote for that experiment.
 
-    raises ExperimentError: no such file, no such answer, or one of another experiment
+    raises ExperimentError: no such file, no such answer, one of another experiment, or an effect
+        that is not known
     """
-    where = str(path)
-    try:
-        content = json.loads(Path(path).read_text(encoding="utf-8"))
-        added = [row["added"] for row in content["ladder"] if row["added"] is not None]
-        tried = {(c["effect"], c["at"]): c["parameters"] for c in content["candidates"]}
-        model = Model.from_experiment(experiment, known)
-        for one in added:
-            model = _with_effect(model, one["effect"], one["at"], tried)
-        model = _with_values(model, content["model_parameters"])
-        left = content.get("left_over_noise_floors")
-        left = float("inf") if left is None else number_of(left, "left_over_noise_floors")
-        return Diagnosed(experiment, model, str(content["verdict"]), left)
-    except OSError as error:
-        raise ExperimentError(f"{where}: {error.strerror}") from error
-    except json.JSONDecodeError as error:
-        raise ExperimentError(f"{where}: line {error.lineno}: no JSON: {error.msg}") from error
-    except (KeyError, TypeError, AttributeError, ValueError, RecursionError) as error:
-        raise ExperimentError(
-            f"{where}: no answer of `teleopdesign diagnose --json`: {error}"
-        ) from error
-    except ModelError as error:
-        folder = experiment.folder.name
-        raise ExperimentError(f"{where}: is not an answer to {folder}: {error}") from error
-
-
-def number_of(value: object, name: str) -> float:
-    """The number under that name of an answer; TypeError where it is none, such as a text."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise TypeError(f"{name}: found {type(value).__name__}, expected a number")
-    return float(value)
-
-
-def _with_effect(
-    model: Model, effect: str, at: str, tried: Mapping[tuple[str, str], Mapping[str, Any]]
-) -> Model:
-    model = model.with_effect(effect, at=at)
-    return _with_values(model, {f"{at}.{effect}.{n}": p for n, p in tried[effect, at].items()})
-
-
-def _with_values(model: Model, parameters: Mapping[str, Any]) -> Model:
-    """The model with these values and errors; those that are not finite stay as they were."""
-    values: dict[str, float | Value] = {}
-    for name, found in parameters.items():
-        if found["value"] is None:
-            continue
-        stderr = found["stderr"]
-        error = float("nan") if stderr is None else number_of(stderr, f"{name}.stderr")
-        own = model.parameters.get(name, Value(0.0))  # an unknown name: with_values says so
-        values[name] = replace(own, value=number_of(found["value"], name), stderr=error)
-    return model.with_values(values)
+    saved = load_answer(path)
+    return Diagnosed(experiment, saved.model(known, experiment), saved.verdict, saved.left)

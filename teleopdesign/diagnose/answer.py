@@ -17,9 +17,12 @@ from ..model import Model
 from ..plain_data import plain, replacing, write_json
 from ..quantity import unit_of
 from ..realise.along_motion import residual_along
+from .answers.bodies import model_data
+from .answers.fingerprint import experiment_data
 from .diagnosis import Diagnosis
 from .fit import Fit
 from .force_error import along_own, own_groups
+from .next_experiment.rivals import open_questions
 from .one_moment import Moment
 from .probability import CandidateEvidence, evidence_of
 
@@ -50,7 +53,27 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "one_moment": _moment(diagnosis.moment),
         "at_bound": list(diagnosis.after.at_bound),
         "evidence": [_evidence(one) for one in evidence_of(diagnosis) if one.share > 0],
+        "experiment": experiment_data(diagnosis.experiment),
+        "models": {
+            "ladder": [model_data(r.fit.model) for r in diagnosis.rungs],
+            "estimated": model_data(diagnosis.estimated.model),
+        },
+        "floor": {"drawn": diagnosis.floor.drawn, "held": diagnosis.floor.held},
+        "open": _open(diagnosis),
     }
+
+
+def _open(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """What the records leave open: an accepted effect, and others with the models they were in."""
+    return [
+        {
+            "added": None if question.added is None else _place(question.added.key),
+            "others": [
+                _place(c.key) | {"model": model_data(fit.model)} for c, fit in question.others
+            ],
+        }
+        for question in open_questions(diagnosis)
+    ]
 
 
 def _moment(moment: Moment | None) -> dict[str, Any] | None:

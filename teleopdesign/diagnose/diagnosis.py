@@ -38,6 +38,17 @@ class Rung:
 
 
 @dataclass(frozen=True)
+class OpenQuestion:
+    """An accepted effect and what may stand in its place as well; None: nothing was accepted.
+
+    others: each with the fit that it was compared by
+    """
+
+    added: Candidate | None
+    others: tuple[tuple[Candidate, Fit], ...]
+
+
+@dataclass(frozen=True)
 class Diagnosis:
     """What a recording says about a model.
 
@@ -47,6 +58,7 @@ class Diagnosis:
     estimated: the last rung's fit before what its readings do was taken off: to be held against
         other fits
     moment: the one moment that holds all that is left above noise; None where there is none
+    open: what the records leave open, of a diagnosis that was read back: it has no rankings
     """
 
     experiment: Experiment
@@ -57,6 +69,7 @@ class Diagnosis:
     estimated: Fit
     floor: NoiseFloor
     moment: Moment | None = None
+    open: tuple[OpenQuestion, ...] | None = None
 
     @property
     def before(self) -> Fit:

@@ -25,6 +25,15 @@ def answer(tmp_path_factory):
     return path
 
 
+def test_a_folder_that_cannot_be_made_is_one_line(answer, tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    out = tmp_path / "file" / "out"
+    assert (
+        main(["design", str(td.example("rod")), "--answer", str(answer), "--output", str(out)]) == 2
+    )
+    assert capsys.readouterr().err == f"teleopdesign: {out}: Not a directory\n"
+
+
 def designs(path):
     return json.loads(path.read_text())["bodies"]
 
@@ -63,7 +72,7 @@ def test_the_rod_from_folder_to_controllers(tmp_path, capsys):
     [
         (["--body", "devise"], '--body: no body "devise", has device; did you mean "device"?'),
         (["--fraction", "1.5"], "design: fraction: found 1.5, expected above 0, at most 1"),
-        (["--answer", "nothing.json"], "nothing.json: No such file or directory"),
+        (["--answer", "nothing.json"], "nothing.json: cannot be read: No such file or directory"),
         (["--json", "design.txt"], "design.txt: found '.txt', expected .json"),
     ],
 )

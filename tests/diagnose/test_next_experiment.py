@@ -14,6 +14,8 @@ from hypothesis import strategies as st
 
 from teleopdesign import Model, find_missing
 from teleopdesign.cli import main
+from teleopdesign.diagnose.answer import write_answer
+from teleopdesign.diagnose.answers import load_answer, restored
 from teleopdesign.diagnose.next_experiment import (
     Limits,
     proposal_data,
@@ -47,6 +49,14 @@ def one_speed(tmp_path_factory):
     """Rod with quadratic drag, recorded at one speed; what is proposed for it."""
     rod, experiment = POOR["one speed"].experiment(tmp_path_factory.mktemp("next") / "drag", 1)
     return rod, experiment, propose(diagnosed(experiment, FEW))
+
+
+@pytest.mark.slow
+def test_a_proposal_from_the_answer_is_the_same(one_speed, tmp_path):
+    _, experiment, proposal = one_speed
+    write_answer(proposal.diagnosis, tmp_path / "answer.json")
+    again = propose(restored(load_answer(tmp_path / "answer.json"), experiment, FEW))
+    assert proposal.rivals and proposal_data(again) == proposal_data(proposal)
 
 
 # the motion

@@ -22,6 +22,16 @@ def answer(tmp_path):
     path = tmp_path / "answer.json"
     content = {
         "verdict": "effects_missing",
+        "noise_floor": 0.02,
+        "indistinguishable": [],
+        "ladder": [
+            {"added": None, "fit_error": 0.2, "check_error": 0.2},
+            {
+                "added": {"effect": "presliding", "at": "device"},
+                "fit_error": 0.02,
+                "check_error": 0.02,
+            },
+        ],
         "missing": [{"effect": "presliding", "at": "device"}],
         "model_parameters": {
             "device.inertia": number(0.15, 0.001, "kg"),
@@ -32,9 +42,17 @@ def answer(tmp_path):
             {
                 "effect": "presliding",
                 "at": "device",
+                "probability": 0.9,
+                "check_error": 0.02,
                 "parameters": {"stiffness": number(2e4, 500.0, "N/m")},
             },
-            {"effect": "bias", "at": "device", "parameters": {"force": number(1, 1, "N")}},
+            {
+                "effect": "bias",
+                "at": "device",
+                "probability": 0.1,
+                "check_error": 0.2,
+                "parameters": {"force": number(1, 1, "N")},
+            },
         ],
     }
     path.write_text(json.dumps(content))
@@ -96,7 +114,7 @@ def test_a_tampered_certificate_is_refused(answer, tmp_path, capsys):
     ("arguments", "said"),
     [
         ([], "expected a folder, an answer"),
-        (["missing.json"], "no answer"),
+        (["missing.json"], "missing.json: cannot be read: No such file"),
         (["--check", "missing.json"], "no file of claims"),
         (["x.json", "--dahl", "0", "1"], "expected two numbers > 0"),
         (["x.json", "--period", "0"], "more than 0 s"),
@@ -172,3 +190,14 @@ def test_in_a_computer_the_pair_is_held_against_what_readings_do_not_show(answer
     assert claims["estimate, continuous time"]["status"] == "proved"
     assert claims["small motion, sampled"]["status"] == "proved"
     assert claims["any motion, sampled"]["status"] == "refuted"
+
+
+@pytest.mark.parametrize(
+    "text", ["[" * 100_000, '{"claims": 1}', '{"claims": [{"statement": 1, "certificates": 2}]}']
+)
+def test_a_file_that_holds_no_claims_is_one_line(text, tmp_path, capsys):
+    file = tmp_path / "claims.json"
+    file.write_text(text)
+    assert main(["passivity", "--check", str(file)]) == 2
+    error = capsys.readouterr().err
+    assert f"{file}: no file of claims" in error and error.count("\n") == 1

@@ -9,7 +9,7 @@ from ...effects import SIGNALS
 from ...errors import ModelError
 from ...model import Model
 from ..candidates import Candidate
-from ..diagnosis import Diagnosis, Rung
+from ..diagnosis import Diagnosis, OpenQuestion, Rung
 from ..fit import Fit, estimate
 from ..rank import Ranked
 from ..support import is_supported
@@ -49,17 +49,32 @@ def rivals_of(diagnosis: Diagnosis) -> tuple[Rival, ...]:
     would be added next.
     """
     found: list[Rival] = []
-    for question, rung in enumerate(diagnosis.rungs):
-        if rung.added is not None:
-            found += _of_rung(diagnosis, rung, question)
-    if not found and diagnosis.verdict == "undecided":
-        told = [r for r in diagnosis.last.ranked if r.told and r.score > 0.0]
-        found = [Rival(r.candidate, r.fit) for r in told[: MOST - 1]]
+    questions = open_questions(diagnosis)
+    for number, question in enumerate(questions):
+        if question.added is not None:
+            found += _of_question(diagnosis, question, number)
+    if not found:
+        next_ones = [q for q in questions if q.added is None]
+        found = [Rival(c, fit) for q in next_ones for c, fit in q.others]
     return tuple(found) if len(found) > 1 else ()
 
 
-def _of_rung(diagnosis: Diagnosis, rung: Rung, question: int) -> list[Rival]:
-    """The accepted effect of a rung and what may stand in its place, in the final model."""
+def open_questions(diagnosis: Diagnosis) -> tuple[OpenQuestion, ...]:
+    """What `rivals_of` makes rivals of, before anything is fitted anew: one entry an accepted
+    effect that others could replace, and what would be added next where the verdict is undecided.
+    """
+    if diagnosis.open is not None:
+        return diagnosis.open
+    found = [_of_rung(diagnosis, rung) for rung in diagnosis.rungs if rung.added is not None]
+    if diagnosis.verdict == "undecided":
+        told = [r for r in diagnosis.last.ranked if r.told and r.score > 0.0]
+        others = tuple((r.candidate, r.fit) for r in told[: MOST - 1])
+        found.append(OpenQuestion(None, others))
+    return tuple(q for q in found if q.others)
+
+
+def _of_rung(diagnosis: Diagnosis, rung: Rung) -> OpenQuestion:
+    """The accepted effect of a rung and what may stand in its place."""
     assert rung.added is not None and rung.ranking is not None
     equals = {c.key for c in rung.equals}
     ranked = [r for r in rung.ranking.ranked if r.candidate.key != rung.added.key]
@@ -67,11 +82,17 @@ def _of_rung(diagnosis: Diagnosis, rung: Rung, question: int) -> list[Rival]:
         (r for r in ranked if r.candidate.key in equals or _is_open(r, rung, diagnosis)),
         key=lambda r: (r.candidate.key not in equals, r.fit.check_error),
     )
-    found = [Rival(rung.added, diagnosis.estimated, question)]
-    for other in close[: MOST - 1]:
-        fit = _instead(diagnosis, rung.added, other)
+    return OpenQuestion(rung.added, tuple((r.candidate, r.fit) for r in close[: MOST - 1]))
+
+
+def _of_question(diagnosis: Diagnosis, question: OpenQuestion, number: int) -> list[Rival]:
+    """The accepted effect of a question and its rivals, each in the final model."""
+    assert question.added is not None
+    found = [Rival(question.added, diagnosis.estimated, number)]
+    for candidate, there in question.others:
+        fit = _instead(diagnosis, question.added, candidate, there)
         if fit is not None:
-            found.append(Rival(other.candidate, fit, question))
+            found.append(Rival(candidate, fit, number))
     return found if len(found) > 1 else []
 
 
@@ -84,11 +105,14 @@ def _is_open(ranked: Ranked, rung: Rung, diagnosis: Diagnosis) -> bool:
     return near and is_supported(rung.ranking.base, ranked, diagnosis.floor)
 
 
-def _instead(diagnosis: Diagnosis, added: Candidate, other: Ranked) -> Fit | None:
-    """The final model with another effect in the place of an accepted one; None if it has none."""
-    effect, at = other.candidate.effect, other.candidate.at
+def _instead(diagnosis: Diagnosis, added: Candidate, other: Candidate, there: Fit) -> Fit | None:
+    """The final model with another effect in the place of an accepted one; None if it has none.
+
+    there: the fit that the other was compared by
+    """
+    effect, at = other.effect, other.at
     names = effect.parameters
-    values = {n: other.fit.model.parameters[f"{at}.{effect.name}.{n}"].value for n in names}
+    values = {n: there.model.parameters[f"{at}.{effect.name}.{n}"].value for n in names}
     model = diagnosis.estimated.model
     if model.body(at).has(effect.name):
         return None  # a later rung has added it beside

@@ -1,0 +1,72 @@
+"""The bodies of a model as plain data: the tables that experiments and diagrams have for them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from ...blocks import Body, with_block_effects
+from ...blocks.described import body_of
+from ...effects import Effect
+from ...errors import ExperimentError, did_you_mean, quoted
+from ...measurement.description import bodies_from
+from ...measurement.toml_table import Table
+from ...model import Model
+
+
+def model_data(model: Model) -> dict[str, Any]:
+    """The bodies by their places; SI, with units."""
+    return {place: body_data(body) for place, body in model.bodies.items()}
+
+
+def body_data(body: Body) -> dict[str, Any]:
+    """A body as the table that `measurement.description.body_from` reads.
+
+    A value that is not finite is left out: its effect is absent there, and is read so.
+    """
+    return {
+        "axis": body.axis,
+        "inertia": _value(body, "inertia"),
+        "effects": {
+            e.name: {
+                p: _value(body, f"{e.name}.{p}")
+                for p in e.parameters
+                if math.isfinite(body.parameters[f"{e.name}.{p}"].value)
+            }
+            for e in body.effects
+        },
+    }
+
+
+def _value(body: Body, name: str) -> dict[str, Any]:
+    value = body.parameters[name]
+    data = {"value": value.value, "unit": body.unit(name), "fixed": value.fixed}
+    return data | ({"stderr": value.stderr} if math.isfinite(value.stderr) else {})
+
+
+def model_from(
+    content: Mapping[str, Any], known: Mapping[str, Effect], *, file: str, key: str
+) -> Model:
+    """The model of such data.
+
+    file, key: where the data stand, for messages;  known: effects by name
+    raises ExperimentError: what no model is, or an effect that is not known
+    """
+    bodies = {}
+    effects = with_block_effects(known)
+    for place, described in bodies_from(Table(content, file, key)).items():
+        for name in described.effects:
+            known_effect(name, effects, where=f"{described.where}.effects")
+        bodies[place] = body_of(described, effects)
+    return Model(bodies, known)
+
+
+def known_effect(name: str, known: Mapping[str, Effect], *, where: str) -> Effect:
+    """The effect of that name; a line that asks for its file where it is the user's own."""
+    if name not in known:
+        raise ExperimentError(
+            f"{where}: no effect {quoted(name)}{did_you_mean(name, known)}; "
+            "if it is your own, give its file with --effect FILE"
+        )
+    return known[name]

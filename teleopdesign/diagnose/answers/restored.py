@@ -1,0 +1,187 @@
+"""A diagnosis from its answer file and its experiment: nothing is sought or estimated anew."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from ...blocks import with_block_effects
+from ...effects import EFFECTS, Effect
+from ...errors import ExperimentError, ModelError
+from ...measurement.experiment import Experiment
+from ...model import Model
+from ..candidates import Candidate
+from ..diagnosis import Diagnosis, OpenQuestion, Rung
+from ..excerpt import excerpt
+from ..fit import Effort, Fit, estimate
+from ..force_error import Prepared, prepare
+from ..ladder import LONG, WINDOWS
+from ..noise_floor import NoiseFloor
+from ..one_moment import Moment
+from ..rank import Ranking
+from .bodies import known_effect, model_from
+from .saved import SavedAnswer
+
+#: a fit that stays where it begins: its residuals and their derivatives are all that is wanted
+AS_IT_IS = Effort(tolerance=1.0, evaluations=1)
+#: what an answer holds that an older one does not
+_NEEDED = ("models", "floor", "open", "bandwidth")
+
+
+@dataclass(frozen=True)
+class _Steps:
+    """What an answer says of a diagnosis, before any residual is computed.
+
+    models: of each rung;  estimated: the last before what its readings do was taken off
+    added, equals: of each rung;  open: candidates with the models that they were compared by
+    """
+
+    models: tuple[Model, ...]
+    estimated: Model
+    added: tuple[Candidate | None, ...]
+    equals: tuple[tuple[Candidate, ...], ...]
+    open: tuple[tuple[Candidate | None, tuple[tuple[Candidate, Model], ...]], ...]
+
+
+def restored(
+    saved: SavedAnswer, experiment: Experiment, known: Mapping[str, Effect] = EFFECTS
+) -> Diagnosis:
+    """The diagnosis that an answer tells of, with its figures; fits are evaluated, not made.
+
+    known: effects by name, the user's own among them
+    It has no rankings: what was tried is in the answer, what is left open in `Diagnosis.open`.
+    raises ExperimentError: the answer to another experiment, one of an earlier version, an effect
+        that is not known
+    """
+    saved.require(experiment)
+    steps, content = steps_of(saved, known), saved.content
+    for model in (*steps.models, steps.estimated, *(m for _, o in steps.open for _, m in o)):
+        saved.require_bodies(model, experiment)
+    whole = prepare(experiment, bandwidth=float(content["bandwidth"]["value"]))
+    prepared = whole
+    if sum(len(r.time) for r in experiment.records) > LONG:
+        prepared = prepare(excerpt(experiment, most=WINDOWS), bandwidth=whole.bandwidth)
+    fits = [
+        replace(
+            evaluated(model, prepared),
+            fit_error=_error(row["fit_error"]),
+            check_error=_error(row["check_error"]),
+        )
+        for model, row in zip(steps.models, content["ladder"], strict=True)
+    ]
+    fits[-1] = replace(fits[-1], at_bound=tuple(content.get("at_bound", ())))
+    rungs = tuple(
+        Rung(added, fit, None, equals)
+        for added, fit, equals in zip(steps.added, fits, steps.equals, strict=True)
+    )
+    return Diagnosis(
+        experiment=experiment,
+        prepared=whole,
+        verdict=saved.verdict,
+        rungs=rungs,
+        last=Ranking(fits[-1], ()),
+        estimated=evaluated(steps.estimated, prepared),
+        floor=_floor(content),
+        moment=_moment(content.get("one_moment")),
+        open=tuple(
+            OpenQuestion(added, tuple((c, evaluated(m, prepared)) for c, m in others))
+            for added, others in steps.open
+        ),
+    )
+
+
+def evaluated(model: Model, prepared: Prepared) -> Fit:
+    """What a fitted model leaves of these records, and its derivatives; the model stays as it is.
+
+    Without check records, what is held out is fitted from here, as `estimate` does.
+    """
+    return replace(estimate(model, prepared, effort=AS_IT_IS), model=model)
+
+
+def steps_of(saved: SavedAnswer, known: Mapping[str, Effect]) -> _Steps:
+    """The models and candidates of an answer; raises ExperimentError: they do not go together."""
+    content = saved.content
+    for key in _NEEDED:
+        if key not in content:
+            raise ExperimentError(
+                f'{saved.file}: no key "{key}": the answer of an earlier version, from which a '
+                "diagnosis cannot be taken up again; diagnose anew, or leave --answer out"
+            )
+    rows, models = content["ladder"], content["models"]
+    if len(models["ladder"]) != len(rows):
+        raise ExperimentError(
+            f"{saved.file}: models.ladder: found {len(models['ladder'])} models, expected "
+            f"{len(rows)}, one for each row of the ladder"
+        )
+
+    def model(data: Mapping[str, Any], key: str) -> Model:
+        return model_from(data, known, file=saved.file, key=key)
+
+    def candidate(place: Mapping[str, Any], key: str, *there: Model) -> Candidate:
+        effects = with_block_effects(known)
+        effect = known_effect(place["effect"], effects, where=f"{saved.file}: {key}")
+        return _in_model(saved, Candidate(effect, place["at"]), key, there)
+
+    ladder = tuple(model(data, "models.ladder") for data in models["ladder"])
+    estimated = model(models["estimated"], "models.estimated")
+    last = (ladder[-1], estimated)
+    added = tuple(
+        None if row["added"] is None else candidate(row["added"], "ladder", *last) for row in rows
+    )
+    if added[0] is not None or None in added[1:]:
+        raise ExperimentError(
+            f"{saved.file}: ladder: expected the user's model first (added: null), then effects"
+        )
+    alike = {
+        (group[0]["effect"], group[0]["at"]): tuple(
+            candidate(place, "indistinguishable") for place in group[1:]
+        )
+        for group in content["indistinguishable"]
+    }
+    questions = []
+    for question in content["open"]:
+        first = question["added"]
+        others = []
+        for row in question["others"]:
+            there = model(row["model"], "open")
+            others.append((candidate(row, "open", there), there))
+        instead = None if first is None else candidate(first, "open", *last)
+        questions.append((instead, tuple(others)))
+    equals = tuple(() if one is None else alike.get(one.key, ()) for one in added)
+    return _Steps(ladder, estimated, added, equals, tuple(questions))
+
+
+def _in_model(
+    saved: SavedAnswer, candidate: Candidate, key: str, models: tuple[Model, ...]
+) -> Candidate:
+    for model in models:
+        try:
+            there = model.body(candidate.at).has(candidate.effect.name)
+        except ModelError as error:
+            raise ExperimentError(f"{saved.file}: {key}: {candidate}: {error}") from error
+        if not there:
+            raise ExperimentError(f"{saved.file}: {key}: {candidate}: its model has no such effect")
+    return candidate
+
+
+def _error(told: float | None) -> float:
+    return float("nan") if told is None else float(told)
+
+
+def _floor(content: Mapping[str, Any]) -> NoiseFloor:
+    return NoiseFloor(
+        value=float(content["noise_floor"]),
+        source=str(content.get("noise_floor_source", "as the answer says")),
+        drawn=float(content["floor"]["drawn"]),
+        held=bool(content["floor"]["held"]),
+    )
+
+
+def _moment(told: Mapping[str, Any] | None) -> Moment | None:
+    if told is None:
+        return None
+    begin, end = (float(told[key]["value"]) for key in ("begin", "end"))
+    return Moment(
+        told["record"], told["at"], begin, end, float(told["left_over_noise_floors_without"])
+    )

@@ -1,0 +1,210 @@
+"""An answer file and the model in it, of this version or an older one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from ...blocks import CONTACT
+from ...effects import EFFECTS, Effect
+from ...errors import ExperimentError, quoted
+from ...measurement.experiment import Experiment
+from ...model import Model
+from ...quantity import AXES, unit_of
+from .bodies import model_from
+from .fingerprint import bodies_text, difference
+from .schema import read_content
+
+
+@dataclass(frozen=True)
+class SavedAnswer:
+    """The content of an answer file, whose keys and types are right.
+
+    file: its name in messages;  content: as `diagnose.answer.answer` tells it
+    """
+
+    file: str
+    content: Mapping[str, Any]
+
+    @property
+    def verdict(self) -> str:
+        """ "effects_missing", "model_adequate" or "undecided"."""
+        return str(self.content["verdict"])
+
+    @property
+    def left(self) -> float:
+        """Error that is left, in noise floors."""
+        floor, last = self.content["noise_floor"], self.content["ladder"][-1]["check_error"]
+        computed = last / floor if floor and last is not None else None
+        left = self.content.get("left_over_noise_floors", computed)
+        return float("inf") if left is None else float(left)
+
+    def model(
+        self, known: Mapping[str, Effect] = EFFECTS, experiment: Experiment | None = None
+    ) -> Model:
+        """The model that the diagnosis ended with.
+
+        known: effects by name, the user's own among them;  experiment: that of the answer. An older
+            answer says neither axes nor what is fixed: they are the experiment's, or without it
+            what the units of the inertias say, and nothing is fixed
+        raises ExperimentError: the answer to another experiment, an effect that is not known
+        """
+        if experiment is not None:
+            self.require(experiment)
+        if "models" in self.content:
+            last = self.content["models"]["ladder"][-1]
+            model = model_from(last, known, file=self.file, key="models.ladder")
+            if experiment is not None:
+                self.require_bodies(model, experiment)
+            return model
+        bodies = _older_bodies(self, experiment, known)
+        model = model_from(bodies, known, file=self.file, key="model_parameters")
+        return model if experiment is None else _as_stated(model, experiment, known)
+
+    def require(self, experiment: Experiment) -> None:
+        """Refuse the answer to another experiment; of an older answer, what is there is compared.
+
+        raises ExperimentError: with what differs
+        """
+        told = self.content.get("experiment")
+        if told is None:
+            differs = _older_difference(self, experiment)
+        else:
+            differs = difference(told, experiment)
+        if differs is not None:
+            raise ExperimentError(
+                f"{self.file}: is not an answer to {experiment.folder.name} but to another "
+                f"experiment: {differs}"
+            )
+
+    def require_bodies(self, model: Model, experiment: Experiment) -> None:
+        """Refuse a model of other bodies, or on other axes, than were recorded."""
+        found = {name: body.axis for name, body in model.bodies.items()}
+        expected = {name: body.axis for name, body in experiment.bodies.items()}
+        if found != expected:
+            raise ExperimentError(
+                f"{self.file}: models: found {bodies_text(found)}, expected "
+                f"{bodies_text(expected)} as in {experiment.folder.name}"
+            )
+
+
+def load_answer(path: str | Path) -> SavedAnswer:
+    """Read an answer that `teleopdesign diagnose --json` wrote.
+
+    raises ExperimentError: no such file, or no such answer: where, found, expected
+    """
+    return SavedAnswer(str(path), read_content(path))
+
+
+def _parameters(saved: SavedAnswer) -> dict[str, Mapping[str, Any]]:
+    """Every parameter of the last model by its full name: the user's, then those of each rung."""
+    content = saved.content
+    found = dict(content["model_parameters"])
+    rows = {(c["effect"], c["at"]): c["parameters"] for c in content["candidates"]}
+    for row in content["ladder"]:
+        if (added := row["added"]) is None:
+            continue
+        key = added["effect"], added["at"]
+        if key not in rows:
+            raise ExperimentError(
+                f"{saved.file}: candidates: none is {key[0]} at {key[1]}, which the ladder adds"
+            )
+        found |= {f"{key[1]}.{key[0]}.{n}": p for n, p in rows[key].items()}
+    return found
+
+
+def _older_bodies(
+    saved: SavedAnswer, experiment: Experiment | None, known: Mapping[str, Effect]
+) -> dict[str, Any]:
+    """Bodies as tables, from the full names of parameters; places in the order of an experiment."""
+    parameters = _parameters(saved)
+    places = list(dict.fromkeys(name.partition(".")[0] for name in parameters))
+    bodies = [place for place in places if place != CONTACT.name]
+    tables: dict[str, Any] = {}
+    for place in bodies:
+        inertia = parameters.get(f"{place}.inertia")
+        if inertia is None:
+            raise ExperimentError(f'{saved.file}: model_parameters: no key "{place}.inertia"')
+        axis = experiment.axis(place) if experiment else _axis_of(saved, place, inertia["unit"])
+        tables[place] = {"axis": axis, "inertia": _value(inertia, False), "effects": {}}
+    for name, parameter in parameters.items():
+        place, _, own = name.partition(".")
+        if own == "inertia" or not bodies:
+            continue
+        effect, _, key = own.rpartition(".")
+        if place == CONTACT.name:
+            effect = effect or place  # environment.stiffness: the contact itself
+        if not effect:
+            raise ExperimentError(f"{saved.file}: model_parameters: no body has a {quoted(name)}")
+        holder = bodies[-1] if place == CONTACT.name else place
+        row = tables[holder]["effects"].setdefault(effect, {})
+        if parameter["value"] is not None:
+            row[key] = _value(parameter, _is_chosen(known.get(effect), key))
+    return tables
+
+
+def _value(parameter: Mapping[str, Any], fixed: bool) -> dict[str, Any]:
+    stderr = parameter["stderr"]
+    error = {} if stderr is None else {"stderr": stderr}
+    return {"value": parameter["value"], "unit": parameter["unit"], "fixed": fixed} | error
+
+
+def _is_chosen(effect: Effect | None, key: str) -> bool:
+    return effect is not None and key in effect.parameters and effect.parameters[key].chosen
+
+
+def _axis_of(saved: SavedAnswer, place: str, unit: str) -> str:
+    """The axis of an older answer, whose inertias are in SI: each axis has a unit of its own."""
+    for axis in AXES:
+        if unit == unit_of("inertia", axis):
+            return axis
+    raise ExperimentError(
+        f"{saved.file}: model_parameters.{place}.inertia.unit: found {quoted(unit)}, expected "
+        f"{' or '.join(quoted(unit_of('inertia', a)) for a in AXES)}: the answer of an earlier "
+        "version, it says no axis"
+    )
+
+
+def _as_stated(model: Model, experiment: Experiment, known: Mapping[str, Effect]) -> Model:
+    """The model with what its experiment holds fixed."""
+    stated = Model.from_experiment(experiment, known).parameters
+    fixed = {n for n, v in stated.items() if v.fixed}
+    values = {n: replace(v, fixed=True) for n, v in model.parameters.items() if n in fixed}
+    return model.with_values(values)
+
+
+def _older_difference(saved: SavedAnswer, experiment: Experiment) -> str | None:
+    """What of an older answer cannot be of this experiment; None: nothing that it tells."""
+    content = saved.content
+    parameters = content["model_parameters"]
+    places = dict.fromkeys(name.partition(".")[0] for name in parameters)
+    bodies = [place for place in places if place != CONTACT.name]
+    if bodies != list(experiment.bodies):
+        return f"bodies {', '.join(bodies) or 'none'}, found {', '.join(experiment.bodies)}"
+    for place in bodies:
+        unit = unit_of("inertia", experiment.axis(place))
+        told = parameters.get(f"{place}.inertia", {}).get("unit", unit)
+        if told != unit:
+            return f"{place}.inertia in {quoted(told)}, found {quoted(unit)}"
+    stated = {place: set(body.effects) for place, body in experiment.bodies.items()}
+    touched = experiment.environment
+    stated[CONTACT.name] = set() if touched is None else set(touched.effects)
+    for name in parameters:
+        place, _, own = name.partition(".")
+        effect, _, _ = own.partition(".") if "." in own else ("", "", "")
+        if effect and effect not in stated[place]:
+            return f"a model with {effect} at {place}, found {', '.join(stated[place]) or 'none'}"
+    check = "records" if experiment.check_records else "blocks of fit"
+    if content.get("check", check) != check:
+        return f"check by {content['check']}, found {check}"
+    moment = content.get("one_moment")
+    files = {r.file for r in experiment.records}
+    told_of = [o["record"] for o in content.get("own", [])] + ([moment["record"]] if moment else [])
+    if others := [file for file in told_of if file not in files]:
+        return f"a record {quoted(others[0])}, found {', '.join(sorted(files))}"
+    bandwidth = content.get("bandwidth", {}).get("value", experiment.bandwidth)
+    if experiment.bandwidth is not None and bandwidth != experiment.bandwidth:
+        return f"bandwidth {bandwidth:g} Hz, found {experiment.bandwidth:g} Hz"
+    return None

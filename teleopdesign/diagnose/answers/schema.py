@@ -1,0 +1,224 @@
+"""What an answer file must hold: every key, its type and range, told in one line where it fails.
+
+Keys that are not known here are allowed: a later version may say more. `models`, `experiment`,
+`floor` and `open` came later than the rest: an older answer has none of them.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NoReturn
+
+from ...errors import ExperimentError, quoted
+from ...measurement.toml_table import described
+
+#: checks a value; the text is where it stands, for the message
+Check = Callable[[object, str], None]
+
+VERDICTS = ("effects_missing", "model_adequate", "undecided")
+WRITER = "`teleopdesign diagnose --json`"
+
+
+def read_content(path: str | Path) -> dict[str, Any]:
+    """The content of an answer file, checked.
+
+    raises ExperimentError: cannot be read, is no JSON, or is no answer
+    """
+    try:
+        content = json.loads(Path(path).read_bytes().decode("utf-8-sig"), parse_constant=_constant)
+    except OSError as error:
+        raise ExperimentError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise ExperimentError(f"{path}: not UTF-8 text (byte {error.start})") from None
+    except json.JSONDecodeError as error:
+        raise ExperimentError(f"{path}: line {error.lineno}: no JSON: {error.msg}") from None
+    except RecursionError:
+        raise ExperimentError(f"{path}: brackets nested too deeply") from None
+    except ValueError as error:  # a number too long to convert, NaN, a null character in the path
+        raise ExperimentError(f"{path}: no JSON: {error}") from None
+    try:
+        check_answer(content)
+    except ExperimentError as error:
+        raise ExperimentError(f"{path}: {error}") from None
+    found: dict[str, Any] = content
+    return found
+
+
+def check_answer(content: object) -> None:
+    """Refuse what is no answer; raises ExperimentError with the key in front."""
+    if not isinstance(content, dict):
+        raise ExperimentError(f"found {_found(content)}, expected an answer of {WRITER}")
+    if lacking := [key for key in _REQUIRED if key not in content]:
+        raise ExperimentError(f"no key {quoted(lacking[0])}, expected an answer of {WRITER}")
+    for key, check in (_REQUIRED | _LATER).items():
+        if key in content:
+            check(content[key], key)
+
+
+def _constant(name: str) -> NoReturn:
+    raise ValueError(f"found {name}, expected a finite number or null")
+
+
+def _found(value: object) -> str:
+    return "null" if value is None else described(value)
+
+
+def _wrong(where: str, value: object, expected: str) -> ExperimentError:
+    return ExperimentError(f"{where}: found {_found(value)}, expected {expected}")
+
+
+def _number(*, low: float = -math.inf, null: bool = False) -> Check:
+    expected = "a finite number" if low == -math.inf else f"a finite number, {low:g} or more"
+
+    def check(value: object, where: str) -> None:
+        if null and value is None:
+            return
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise _wrong(where, value, f"{expected} or null" if null else expected)
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if not (math.isfinite(number) and number >= low):
+            raise ExperimentError(f"{where}: found {number:g}, expected {expected}")
+
+    return check
+
+
+def _text(value: object, where: str) -> None:
+    if not isinstance(value, str):
+        raise _wrong(where, value, "a text in quotes")
+
+
+def _flag(value: object, where: str) -> None:
+    if not isinstance(value, bool):
+        raise _wrong(where, value, "true or false")
+
+
+def _one_of(*known: str) -> Check:
+    def check(value: object, where: str) -> None:
+        if not isinstance(value, str) or value not in known:
+            raise _wrong(where, value, " or ".join(map(quoted, known)))
+
+    return check
+
+
+def _or_null(inside: Check) -> Check:
+    def check(value: object, where: str) -> None:
+        if value is not None:
+            inside(value, where)
+
+    return check
+
+
+def _list_of(inside: Check, *, least: int = 0) -> Check:
+    def check(value: object, where: str) -> None:
+        if not isinstance(value, list):
+            raise _wrong(where, value, "a list")
+        if len(value) < least:
+            raise ExperimentError(f"{where}: found {len(value)} entries, expected {least} or more")
+        for i, one in enumerate(value, start=1):
+            inside(one, f"{where}[{i}]")
+
+    return check
+
+
+def _table_of(inside: Check) -> Check:
+    """Any names, each with such a value."""
+
+    def check(value: object, where: str) -> None:
+        if not isinstance(value, dict):
+            raise _wrong(where, value, "a table")
+        for key, one in value.items():
+            inside(one, f"{where}.{key}")
+
+    return check
+
+
+def _table(required: Mapping[str, Check], optional: Mapping[str, Check] | None = None) -> Check:
+    """These names, and any others beside them."""
+
+    def check(value: object, where: str) -> None:
+        if not isinstance(value, dict):
+            raise _wrong(where, value, "a table")
+        if lacking := [key for key in required if key not in value]:
+            raise ExperimentError(f"{where}: no key {quoted(lacking[0])}")
+        for key, one in {**required, **(optional or {})}.items():
+            if key in value:
+                one(value[key], f"{where}.{key}")
+
+    return check
+
+
+_PLACE = _table({"effect": _text, "at": _text})
+_SIZE = _number(low=0.0)
+#: null where there is no such record
+_ERROR = _number(low=0.0, null=True)
+_PARAMETER = _table(
+    {"value": _number(null=True), "stderr": _number(low=0.0, null=True), "unit": _text}
+)
+_TIME = _table({"value": _number()})
+#: what a model's bodies hold in detail is for the reader of bodies to say
+_BODIES = _table_of(_table({}))
+
+_REQUIRED: dict[str, Check] = {
+    "verdict": _one_of(*VERDICTS),
+    "missing": _list_of(_PLACE),
+    "ladder": _list_of(
+        _table({"added": _or_null(_PLACE), "fit_error": _ERROR, "check_error": _ERROR}), least=1
+    ),
+    "noise_floor": _SIZE,
+    "candidates": _list_of(
+        _table(
+            {
+                "effect": _text,
+                "at": _text,
+                "probability": _SIZE,
+                "check_error": _ERROR,
+                "parameters": _table_of(_PARAMETER),
+            }
+        )
+    ),
+    "indistinguishable": _list_of(_list_of(_PLACE, least=2)),
+    "model_parameters": _table_of(_PARAMETER),
+}
+_LATER: dict[str, Check] = {
+    "noise_floor_source": _text,
+    "check": _one_of("records", "blocks of fit"),
+    "bandwidth": _table({"value": _number(low=1e-9)}),
+    "own": _list_of(_table({"record": _text, "at": _text})),
+    "left_over_noise_floors": _number(low=0.0, null=True),
+    "one_moment": _or_null(
+        _table(
+            {
+                "record": _text,
+                "at": _text,
+                "begin": _TIME,
+                "end": _TIME,
+                "left_over_noise_floors_without": _SIZE,
+            }
+        )
+    ),
+    "at_bound": _list_of(_text),
+    "experiment": _table(
+        {
+            "title": _text,
+            "axes": _table_of(_text),
+            "records": _list_of(_table({"file": _text, "use": _text, "samples": _SIZE}), least=1),
+            "digest": _text,
+        }
+    ),
+    "models": _table({"ladder": _list_of(_BODIES, least=1), "estimated": _BODIES}),
+    "floor": _table({"drawn": _SIZE, "held": _flag}),
+    "open": _list_of(
+        _table(
+            {
+                "added": _or_null(_PLACE),
+                "others": _list_of(_table({"effect": _text, "at": _text, "model": _BODIES})),
+            }
+        )
+    ),
+}

@@ -1,0 +1,339 @@
+"""An answer read back: the same model, the same diagnosis, and one line for whatever else it is."""
+
+import copy
+import json
+from dataclasses import replace
+
+import pytest
+from diagnose.own_cases import FEW
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from measurement.rod_example import PAIR, rows
+
+import teleopdesign as td
+from teleopdesign import EFFECTS, ExperimentError, Model, Value
+from teleopdesign.blocks import CONTACT, Body
+from teleopdesign.cli import main
+from teleopdesign.diagnose.answer import answer, ladder_text, write_answer
+from teleopdesign.diagnose.answers import load_answer, restored
+from teleopdesign.diagnose.answers.bodies import model_data, model_from
+from teleopdesign.diagnose.answers.fingerprint import digest
+from teleopdesign.diagnose.answers.restored import steps_of
+from teleopdesign.diagnose.unexplained import unexplained
+from teleopdesign.effects import catalogue
+from teleopdesign.errors import TeleopDesignError
+from teleopdesign.plain_data import write_json
+
+#: what came later than the rest of the format
+LATER = ("experiment", "models", "floor", "open")
+
+
+@pytest.fixture(scope="module")
+def path(diagnosis, tmp_path_factory):
+    file = tmp_path_factory.mktemp("answer") / "answer.json"
+    write_answer(diagnosis, file)
+    return file
+
+
+@pytest.fixture(scope="module")
+def content(path):
+    return json.loads(path.read_text())
+
+
+@pytest.fixture
+def changed(content, tmp_path):
+    """Writes the answer with some keys changed (None: taken away); returns its path."""
+
+    def write(**values):
+        new = copy.deepcopy(content) | values
+        file = tmp_path / "changed.json"
+        file.write_text(json.dumps({k: v for k, v in new.items() if v is not ...}))
+        return file
+
+    return write
+
+
+def numbers(model):
+    return {n: (v.value, v.fixed, repr(v.stderr)) for n, v in model.parameters.items()}
+
+
+def assert_same(one, other):
+    assert one.effects == other.effects
+    assert {n: b.axis for n, b in one.bodies.items()} == {
+        n: b.axis for n, b in other.bodies.items()
+    }
+    assert numbers(one) == numbers(other)
+
+
+def test_the_model_is_read_back_to_the_last_digit(path, diagnosis, experiment):
+    saved = load_answer(path)
+    assert_same(saved.model(), diagnosis.model)
+    assert_same(saved.model(FEW, experiment), diagnosis.model)
+    assert saved.verdict == diagnosis.verdict
+    assert saved.left == pytest.approx(diagnosis.left, rel=1e-12)
+
+
+def test_a_diagnosis_is_read_back_with_its_figures(path, diagnosis, experiment):
+    found = restored(load_answer(path), experiment, FEW)
+    assert ladder_text(found) == ladder_text(diagnosis)
+    for one, other in zip(found.rungs, diagnosis.rungs, strict=True):
+        assert_same(one.fit.model, other.fit.model)
+        assert one.added == other.added and one.equals == other.equals
+        assert one.fit.free == other.fit.free
+    assert_same(found.estimated.model, diagnosis.estimated.model)
+    # a search ends a trifle inside its bounds (1e-7 of a scale), and so does what is evaluated
+    assert found.estimated.fit_residual == pytest.approx(diagnosis.estimated.fit_residual, abs=1e-6)
+    assert found.floor == diagnosis.floor and found.moment == diagnosis.moment
+
+
+@pytest.mark.slow
+def test_what_is_described_is_the_same_from_the_answer(path, diagnosis, experiment):
+    found = restored(load_answer(path), experiment, FEW)
+    told = unexplained(found.before, found.prepared, found.floor)
+    live = unexplained(diagnosis.before, diagnosis.prepared, diagnosis.floor)
+    assert told.as_data() == live.as_data()
+
+
+def test_an_older_answer_is_read_with_what_its_experiment_says(changed, diagnosis, experiment):
+    file = changed(**dict.fromkeys(LATER, ...))
+    assert_same(load_answer(file).model(FEW, experiment), diagnosis.model)
+    alone = load_answer(file).model(FEW)
+    assert alone.bodies["device"].axis == "revolute", "the inertia is in kg*m^2"
+    values = {n: v.value for n, v in diagnosis.model.parameters.items()}
+    assert {n: v.value for n, v in alone.parameters.items()} == values
+    with pytest.raises(ExperimentError, match='no key "models": the answer of an earlier version'):
+        restored(load_answer(file), experiment, FEW)
+
+
+def test_an_older_answer_without_an_axis_is_not_guessed_at(changed, content):
+    parameters = copy.deepcopy(content["model_parameters"])
+    parameters["device.inertia"]["unit"] = "g"
+    file = changed(**dict.fromkeys(LATER, ...), model_parameters=parameters)
+    with pytest.raises(ExperimentError, match='inertia.unit: found "g", expected "kg" or "kg'):
+        load_answer(file).model()
+
+
+@pytest.mark.parametrize("old", [False, True])
+def test_the_answer_to_another_experiment_is_refused(old, changed, experiment, diagnosis):
+    file = changed(**dict.fromkeys(LATER, ...)) if old else changed()
+    rod = td.load_experiment(td.example("rod"))
+    for taken in (lambda s: s.model(EFFECTS, rod), lambda s: restored(s, rod)):
+        with pytest.raises(ExperimentError, match="is not an answer to rod but to another") as why:
+            taken(load_answer(file))
+        assert str(why.value).startswith(f"{file}: ") and "\n" not in str(why.value)
+
+
+def test_records_that_read_differently_now_are_noticed(path, experiment):
+    record = experiment.records[0]
+    signals = {n: v.copy() for n, v in record.signals.items()}
+    signals["device.position"][100] += 1e-12
+    other = replace(experiment, records=(replace(record, signals=signals), *experiment.records[1:]))
+    with pytest.raises(ExperimentError, match="records of the same names, but they read differ"):
+        load_answer(path).require(other)
+    load_answer(path).require(experiment)
+    assert digest(other) != digest(experiment)
+
+
+def test_models_of_other_bodies_than_those_recorded_are_refused(changed, content, experiment):
+    models = copy.deepcopy(content["models"])
+    models["ladder"][-1] = model_data(Model({"device": Body("prismatic", {"inertia": Value(1.0)})}))
+    models["ladder"][-1]["device"]["effects"] = {"coulomb": {}, "stribeck": {}}
+    models["estimated"] = models["ladder"][-1]
+    file = changed(models=models)
+    for taken in (lambda s: s.model(FEW, experiment), lambda s: restored(s, experiment, FEW)):
+        with pytest.raises(ExperimentError, match=r"models: found device \(prismatic\), expected"):
+            taken(load_answer(file))
+
+
+def test_a_users_own_effect_is_asked_for_and_then_there(changed, content, experiment, tmp_path):
+    own = tmp_path / "magnet.py"
+    own.write_text(
+        '"""A magnet."""\n'
+        "from teleopdesign.effects import Effect, Parameter\n"
+        'EFFECT = Effect(role="force", law=lambda now, p: p.pull * now.position, linear=True,\n'
+        '    parameters={"pull": Parameter("stiffness", "its pull")}, absent={"pull": 0.0},\n'
+        '    source="a test")\n'
+    )
+    models = copy.deepcopy(content["models"])
+    for row in (*models["ladder"], models["estimated"]):
+        row["device"]["effects"]["magnet"] = {"pull": {"value": 2.0, "unit": "N*m/rad"}}
+    file = changed(models=models)
+    with pytest.raises(ExperimentError, match='no effect "magnet".*give its file with --effect'):
+        load_answer(file).model()
+    model = load_answer(file).model(catalogue([own]), experiment)
+    assert model.parameters["device.magnet.pull"].value == 2.0
+
+
+def test_a_modelled_environment_comes_back(tmp_path):
+    text = PAIR.replace('axis = "prismatic"', 'axis = "prismatic"\ninertia = 0.3').replace(
+        'axis = "revolute"', 'axis = "revolute"\ninertia = 2e-4'
+    )
+    (tmp_path / "experiment.toml").write_text(text)
+    (tmp_path / "fit.csv").write_text(rows({n: range(400) for n in ("x_m", "u_m", "x_s", "u_s")}))
+    experiment = td.load_experiment(tmp_path)
+    model = Model.from_experiment(experiment)
+    model = model.with_values({"environment.stiffness": Value(3.0, stderr=0.1)})
+    data = json.loads(json.dumps(model_data(model)))
+    assert_same(model_from(data, EFFECTS, file="a.json", key="models"), model)
+    assert model.places[-1] == "environment"
+    older = {
+        "verdict": "undecided", "missing": [], "noise_floor": 0.1, "indistinguishable": [],
+        "ladder": [{"added": None, "fit_error": 0.2, "check_error": 0.2}], "candidates": [],
+        "model_parameters": {
+            n: {"value": v.value, "stderr": None if v.stderr != v.stderr else v.stderr,
+                "unit": model.unit(n)} for n, v in model.parameters.items()
+        },
+    }  # fmt: skip
+    write_json(tmp_path / "older.json", older)
+    saved = load_answer(tmp_path / "older.json")
+    assert_same(saved.model(EFFECTS, experiment), model)
+    assert saved.model().body("environment").axis == "revolute"
+
+
+@pytest.mark.parametrize("name", sorted(EFFECTS))
+def test_any_body_comes_back_even_where_its_effects_are_absent(name):
+    body = Body("prismatic", {"inertia": Value(0.2)})
+    needs = [name]
+    while needs[0] in EFFECTS and EFFECTS[needs[0]].needs:
+        needs = [*sorted(EFFECTS[needs[0]].needs), *needs]
+    for effect in dict.fromkeys(needs):
+        body = body.with_effect(EFFECTS.get(effect, CONTACT))
+    model = Model({"device": body})
+    data = json.loads(json.dumps(model_data(model), allow_nan=False))
+    assert_same(model_from(data, EFFECTS, file="a.json", key="models"), model)
+
+
+MISTAKES = {
+    "no JSON": ("not json", "line 1: no JSON"),
+    "no text": (b"\xff\xfe\x00", "not UTF-8 text"),
+    "an empty table": ("{}", 'no key "verdict", expected an answer of `teleopdesign diagnose'),
+    "a list": ("[]", "found a list, expected an answer"),
+    "NaN": ('{"verdict": NaN}', "found NaN, expected a finite number or null"),
+    "nested": ("[" * 100_000, "brackets nested too deeply"),
+    "a long number": ("9" * 5000, "no JSON: Exceeds the limit"),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_file_that_is_no_answer_is_one_line(mistake, tmp_path):
+    text, said = MISTAKES[mistake]
+    file = tmp_path / "answer.json"
+    file.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(ExperimentError, match=said) as caught:
+        load_answer(file)
+    assert str(caught.value).startswith(f"{file}: ") and "\n" not in str(caught.value)
+
+
+KEYS = {
+    "verdict": ({"verdict": "maybe"}, 'verdict: found "maybe", expected "effects_missing" or'),
+    "ladder": ({"ladder": []}, "ladder: found 0 entries, expected 1 or more"),
+    "no error": ({"ladder": [{"added": None}]}, r'ladder\[1\]: no key "fit_error"'),
+    "negative": ({"noise_floor": -1}, "noise_floor: found -1, expected a finite number, 0 or more"),
+    "huge": ({"noise_floor": 10**400}, "noise_floor: found inf, expected a finite"),
+    "true": ({"noise_floor": True}, "noise_floor: found true, expected a finite number"),
+    "null": ({"candidates": None}, "candidates: found null, expected a list"),
+}
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_a_wrong_key_is_named_with_what_was_found_and_expected(key, changed):
+    values, said = KEYS[key]
+    with pytest.raises(ExperimentError, match=said):
+        load_answer(changed(**values))
+
+
+def paths_of(data, before=()):
+    """Every place in the data, as the keys that lead to it."""
+    items = data.items() if isinstance(data, dict) else enumerate(data)
+    for key, value in items:
+        yield (*before, key)
+        if isinstance(value, dict | list):
+            yield from paths_of(value, (*before, key))
+
+
+ANYTHING = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8)
+    | st.sampled_from(("device", "stribeck", "coulomb", "viscous", "revolute", 10**400)),
+    lambda own: st.lists(own, max_size=3) | st.dictionaries(st.text(max_size=4), own, max_size=3),
+    max_leaves=4,
+)  # fmt: skip
+
+
+# 250 answers in about 3 s: most places of the format are hit
+@settings(max_examples=250, deadline=None)
+@given(data=st.data())
+def test_a_spoilt_answer_is_read_or_refused_in_one_line(
+    data, content, experiment, tmp_path_factory
+):
+    spoilt = copy.deepcopy(content)
+    for _ in range(data.draw(st.integers(1, 3))):
+        path = data.draw(st.sampled_from(list(paths_of(spoilt))))
+        there = spoilt
+        for key in path[:-1]:
+            there = there[key]
+        how = data.draw(st.sampled_from(("other", "gone", "twice")))
+        if how == "gone":
+            del there[path[-1]]
+        elif how == "other" or not isinstance(there, list):
+            there[path[-1]] = data.draw(ANYTHING)
+        else:
+            there.append(copy.deepcopy(there[path[-1]]))
+        if not spoilt:
+            break
+    file = tmp_path_factory.getbasetemp() / "spoilt.json"
+    file.write_text(json.dumps(spoilt))
+    for use in (
+        lambda saved: saved.model(FEW),
+        lambda saved: saved.model(FEW, experiment),
+        lambda saved: steps_of(saved, FEW),
+    ):
+        try:
+            use(load_answer(file))
+        except TeleopDesignError as error:
+            assert str(error).startswith(str(file)) and "\n" not in str(error)
+
+
+def test_what_a_diagnosis_says_is_what_its_answer_says_again(path, diagnosis):
+    assert json.loads(path.read_text()) == json.loads(json.dumps(answer(diagnosis)))
+
+
+@pytest.mark.parametrize("command", ["design", "describe", "next", "passivity"])
+def test_every_command_refuses_the_answer_to_another_experiment(command, path, capsys):
+    assert main([command, str(td.example("rod")), "--answer", str(path)]) == 2
+    error = capsys.readouterr().err
+    assert "is not an answer to rod but to another experiment: title" in error
+    assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize("command", ["design", "describe", "next", "check", "diagnose"])
+def test_an_answer_in_the_place_of_a_folder_is_told_where_it_goes(command, path, capsys):
+    assert main([command, str(path)]) == 2
+    error = capsys.readouterr().err
+    assert error == (
+        f"teleopdesign: {path}: holds no records: give the folder of its experiment, and "
+        f"--answer {path}\n"
+    )
+
+
+@pytest.mark.slow
+def test_describe_takes_a_diagnosis_up_from_its_answer(path, stribeck_case, tmp_path, capsys):
+    out = tmp_path / "left.json"
+    arguments = ["describe", str(stribeck_case), "--answer", str(path), "--json", str(out)]
+    assert main(arguments) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("Your model with stribeck at device:\n")
+    assert json.loads(out.read_text())["model"] == "Your model with stribeck at device:"
+    assert main([*arguments, "--as-is"]) == 0
+    assert capsys.readouterr().out.startswith("Your model, re-estimated:\n")
+
+
+def test_passivity_takes_the_model_with_or_without_its_folder(path, stribeck_case, capsys):
+    assert main(["passivity", str(path)]) == 0
+    alone = capsys.readouterr().out
+    assert "friction level" in alone and "N*m" in alone
+    assert main(["passivity", str(stribeck_case), "--answer", str(path)]) == 0
+    assert capsys.readouterr().out == alone
+    assert main(["passivity", str(path), "--answer", str(path)]) == 2
+    assert "--answer: found beside" in capsys.readouterr().err
+    assert main(["passivity", str(path), "--body", "devise"]) == 2
+    assert 'no body "devise", has device; did you mean "device"?' in capsys.readouterr().err
