@@ -9,9 +9,10 @@ from typing import Any
 
 import sympy as sp
 
-from ..errors import ModelError
+from ..diagrams.expressions import read_expression
+from ..diagrams.parts import position_symbol
+from ..errors import ExperimentError, ModelError
 from ..realise.lti import S
-from .check_certificate import _read
 from .claim import Record
 from .growing_wave import GrowingWave
 from .lugre import Jumps
@@ -49,13 +50,12 @@ def read_record(path: str | Path) -> Record:
 def _made(c: dict[str, Any]) -> Record:
     kind = c["kind"]
     if kind == "growing wave":
-        names = {"s": S, "exp": sp.exp}
-        z = sp.ImmutableMatrix([[_read(e, names) for e in row] for row in c["impedance"]])
+        z = sp.ImmutableMatrix([[_read(e, S) for e in row] for row in c["impedance"]])
         velocity = tuple(complex(*v) for v in c["velocity"])
         return GrowingWave(z, Fraction(c["rate"]), Fraction(c["frequency"]), velocity)
     if kind == "sampled wave":
-        law = _read(c["law"], {"z": Z})
-        b, late, k = (_read(c[n], {}) for n in ("damping", "sample_time", "stiffness"))
+        law = _read(c["law"], Z)
+        b, late, k = (_read(c[n]) for n in ("damping", "sample_time", "stiffness"))
         return sampled_wave(law, b, late, k, Fraction(c["rate"]), Fraction(c["frequency"]))
     if kind == "cycle":
         helps, *against = (_ELEMENTS[n](*v) for n, *v in [c["compensator"], *c["friction"]])
@@ -72,6 +72,18 @@ def _made(c: dict[str, Any]) -> Record:
     if kind == "flip":
         return Flip(**fields)
     raise ModelError(f'record: no kind "{kind}"')
+
+
+def _read(text: str, *names: sp.Symbol) -> sp.Expr:
+    """An expression of these names, read without running anything."""
+    try:
+        e = read_expression(text, where="record")
+    except ExperimentError as error:
+        raise ValueError(str(error)) from None
+    e = e.subs({position_symbol(n.name): n for n in names})
+    if e.free_symbols - {*names}:
+        raise ValueError(f"record: unknown names in {text[:60]}")
+    return e
 
 
 def _tuples(value: Any) -> Any:

