@@ -1,6 +1,7 @@
-"""Certificates: what a proof rests on, in a form that a program of 80 lines verifies.
+"""Certificates: what a proof rests on, in a form that a small program verifies.
 
-`check_certificate.py` knows nothing of this package; it reads the JSON that is written here.
+`check_certificate.py` knows nothing of this package; it reads the JSON that is written here, and
+states what that proves in words of its own. A title is for people; it proves nothing.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import Any
 import sympy as sp
 
 from ..errors import ModelError
-from .check_certificate import check
+from .check_certificate import Refused, check, load
 
 #: weight * product of factor^power * square^2
 Term = tuple[sp.Expr | int, Mapping[str, int], sp.Expr | int]
@@ -33,11 +34,15 @@ class Certificate:
         return str(self.content["kind"])
 
     def check(self) -> str:
-        """Verify with `check_certificate.py`; returns the claim, ModelError where it is refused."""
+        """Verify with `check_certificate.py`.
+
+        returns: the statement that is proved, which the checker makes from the content
+        raises ModelError: refused, and why
+        """
         try:
-            return str(check(dict(self.content)))
-        except Exception as problem:  # whatever a tampered file trips over, it proves nothing
-            raise ModelError(f"certificate: {problem}") from problem
+            return check(dict(self.content))
+        except Refused as problem:
+            raise ModelError(f"certificate: {problem}") from None
 
     def write(self, path: str | Path) -> None:
         """Write the JSON file that `python check_certificate.py PATH` verifies."""
@@ -48,19 +53,22 @@ class Certificate:
 def read_certificate(path: str | Path) -> Certificate:
     """Read a certificate; it proves nothing before `check` accepted it."""
     try:
-        return Certificate(json.loads(Path(path).read_text(encoding="utf-8")))
-    except (OSError, ValueError) as problem:
-        raise ModelError(f"{path}: no certificate: {problem}") from problem
+        content = load(str(path))
+    except Refused as problem:
+        raise ModelError(f"{path}: {problem}") from None
+    if not isinstance(content, dict):
+        raise ModelError(f"{path}: no certificate: expected named fields")
+    return Certificate(content)
 
 
-def positive_real_certificate(claim: str, impedance: Sequence[Sequence[sp.Expr]]) -> Certificate:
+def positive_real_certificate(title: str, impedance: Sequence[Sequence[sp.Expr]]) -> Certificate:
     """That a matrix of rational functions of s (1x1 or 2x2) is positive real."""
-    rows = [[str(sp.sympify(e)) for e in row] for row in impedance]
-    return _sealed({"kind": "positive real", "claim": claim, "impedance": rows})
+    rows = [[_written(e) for e in row] for row in impedance]
+    return _sealed({"kind": "positive real", "title": title, "impedance": rows})
 
 
 def storage_certificate(
-    claim: str,
+    title: str,
     *,
     supply: sp.Expr,
     storage: sp.Expr | int = 0,
@@ -78,8 +86,8 @@ def storage_certificate(
     rates: state -> rate of change;  constants: names that do not change; other names are signals
     positive, nonnegative: name -> expression that is assumed to be > 0, >= 0
     invariant: name -> (h, rate): h >= 0 at the start is kept, for h' + rate h >= 0
-    signs: signals x with sign_x and abs_x; `proofs` has an entry for each combination of signs,
-        "1 -1", or "" for all of them
+    signs: signals and states x with sign_x and abs_x; `proofs` has an entry for each
+        combination of signs, "1 -1", or "" for all of them
     proofs: "supply", "storage" or invariant -> signs -> terms (weight, factor -> power, square)
     example: values that meet all assumptions (for `signs` the size)
     """
@@ -87,28 +95,29 @@ def storage_certificate(
     positive, nonnegative = positive or {}, nonnegative or {}
     used = [supply, storage, *rates.values(), *positive.values(), *nonnegative.values()]
     used += [e for pair in invariant.values() for e in pair]
-    names = {s.name for e in used for s in sp.sympify(e).free_symbols}
-    names |= {*rates, *constants, *(p + x for x in signs for p in ("", "abs_", "sign_"))}
+    names = {s.name for e in used for s in sp.sympify(e).free_symbols} | {*signs}
+    known = {*rates, *constants, *(prefix + x for x in signs for prefix in ("abs_", "sign_"))}
     cases = _cases(len(signs))
     content = {
         "kind": "storage",
-        "claim": claim,
-        "symbols": sorted(names),
+        "title": title,
         "constants": sorted(constants),
+        "signals": sorted(names - known),
         "positive": _text(positive),
         "nonnegative": _text(nonnegative),
         "rates": _text(rates),
-        "supply": str(supply),
-        "storage": str(storage),
+        "supply": _written(supply),
+        "storage": _written(storage),
         "signs": list(signs),
         "invariant": {
-            n: {"expression": str(h), "rate": str(rate)} for n, (h, rate) in invariant.items()
+            n: {"expression": _written(h), "rate": _written(rate)}
+            for n, (h, rate) in invariant.items()
         },
         "proofs": {
             goal: {case: _terms(by_case.get(case, by_case.get("", ()))) for case in cases}
             for goal, by_case in proofs.items()
         },
-        "example": _text(example),
+        "example": _text({n: e for n, e in example.items() if n in {*names, *rates, *constants}}),
     }
     return _sealed(content)
 
@@ -121,11 +130,21 @@ def _cases(number: int) -> list[str]:
 
 
 def _text(expressions: Mapping[str, sp.Expr | int]) -> dict[str, str]:
-    return {name: str(sp.sympify(e)) for name, e in expressions.items()}
+    return {name: _written(e) for name, e in expressions.items()}
 
 
 def _terms(terms: Sequence[Term]) -> list[list[object]]:
-    return [[str(sp.sympify(w)), dict(powers), str(sp.sympify(e))] for w, powers, e in terms]
+    return [[_written(w), dict(powers), _written(e)] for w, powers, e in terms]
+
+
+def _written(expression: sp.Expr | int) -> str:
+    """Text that the checker reads; ModelError for what is not rational, floats included."""
+    e = sp.sympify(expression)
+    for part in sp.preorder_traversal(e):
+        rational = part.is_Rational or part.is_Symbol or part.is_Add or part.is_Mul
+        if not rational and not (part.is_Pow and part.exp.is_Integer):
+            raise ModelError(f"certificate: found {part} in {e}, expected a rational expression")
+    return str(e)
 
 
 def _sealed(content: dict[str, Any]) -> Certificate:

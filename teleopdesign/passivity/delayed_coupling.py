@@ -11,8 +11,9 @@ from typing import Any
 import sympy as sp
 
 from ..errors import ModelError
-from .certificate import storage_certificate
+from .certificate import Certificate, storage_certificate
 from .claim import Claim, Proof
+from .dahl_certificates import Values
 from .impedance import decimal, exact
 from .two_port import teleoperator
 from .two_port_claims import absolutely_stable
@@ -46,7 +47,7 @@ def delayed_spring(
         method = "Llewellyn's criterion with the exact delay, b_m b_s >= (P T)^2"
         margin = float(b_m * b_s - (k * late) ** 2)
         equality = "for w -> 0" if margin == 0 else ""
-        certificate = _certificate()
+        certificate = _certificate({"b_m": b_m, "b_s": b_s, "P": k, "T": late})
         return Claim(statement, Proof(method, (certificate,), margin, "(N s/m)^2", equality))
     found = absolutely_stable(
         teleoperator(master=master, slave=slave, stiffness=k, damping=0, delay=late)
@@ -54,7 +55,8 @@ def delayed_spring(
     return Claim(statement, found.verdict)
 
 
-def _certificate() -> Any:
+def _certificate(values: Values) -> Certificate:
+    """Llewellyn's inequality; values: b_m, b_s, P, T."""
     b_m, b_s, k, late, q = sp.symbols("b_m b_s P T q", real=True)
     enough = b_m * b_s - (k * late) ** 2
     return storage_certificate(
@@ -65,5 +67,5 @@ def _certificate() -> Any:
             "supply": {"": [(1, {"enough": 1}, 1), (1, {"below_one": 1}, k * late)]},
             "storage": {"": ()},
         },
-        example={"b_m": 2, "b_s": 2, "P": 1, "T": 1, "q": 1},
+        example={**values, "q": 1},
     )

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import json
+import re
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import sympy as sp
 
-from ..errors import ModelError
+from ..diagrams.expressions import read_expression
+from ..diagrams.parts import position_symbol
+from ..errors import ExperimentError, ModelError
 from ..plain_data import write_json
 from ..realise.lti import S
-from .check_certificate import _read
 from .claim import Record
 from .growing_wave import GrowingWave
 from .lugre import Jumps
@@ -23,6 +26,10 @@ from .sampled_data import Z, sampled_wave
 from .velocity_compensation import SteadyStrokes
 
 _ELEMENTS = {"coulomb": Coulomb, "dahl": Dahl, "spring": Spring}
+#: longer than any that a search writes, short enough to be read at once
+_FRACTION = re.compile(r"-?[0-9]{1,2000}(/[0-9]{1,2000})?")
+#: strokes of a motion that are replayed: searches write at most 40 000, a million take seconds
+MOST_STROKES = 1_000_000
 
 
 def write_record(record: Record, path: str | Path) -> None:
@@ -38,9 +45,10 @@ def read_record(path: str | Path) -> Record:
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
         record = _made(content)
-        stated, found = float(content["energy"]), record.energy
-    except (OSError, ValueError, KeyError, TypeError) as problem:
-        raise ModelError(f"{path}: no record of a motion: {problem}") from problem
+        with np.errstate(over="raise", invalid="raise"):
+            stated, found = float(content["energy"]), record.energy
+    except (OSError, ValueError, KeyError, TypeError, ArithmeticError, RecursionError) as problem:
+        raise ModelError(f"{path}: no record of a motion: {problem}"[:300]) from problem
     if abs(found - stated) > 1e-6 * abs(stated) or found <= 0:
         raise ModelError(f"{path}: states {stated:g} J, the replay gives out {found:g} J")
     return record
@@ -48,15 +56,17 @@ def read_record(path: str | Path) -> Record:
 
 def _made(c: dict[str, Any]) -> Record:
     kind = c["kind"]
+    strokes = int(c.get("rounds", 1)) * max(len(c.get(n, ())) for n in ("turning_points", "legs"))
+    if not 0 <= strokes <= MOST_STROKES:
+        raise ValueError(f"found {strokes} strokes, expected at most {MOST_STROKES}")
     if kind == "growing wave":
-        names = {"s": S, "exp": sp.exp}
-        z = sp.ImmutableMatrix([[_read(e, names) for e in row] for row in c["impedance"]])
+        z = sp.ImmutableMatrix([[_read(e, S) for e in row] for row in c["impedance"]])
         velocity = tuple(complex(*v) for v in c["velocity"])
-        return GrowingWave(z, Fraction(c["rate"]), Fraction(c["frequency"]), velocity)
+        return GrowingWave(z, _fraction(c["rate"]), _fraction(c["frequency"]), velocity)
     if kind == "sampled wave":
-        law = _read(c["law"], {"z": Z})
-        b, late, k = (_read(c[n], {}) for n in ("damping", "sample_time", "stiffness"))
-        return sampled_wave(law, b, late, k, Fraction(c["rate"]), Fraction(c["frequency"]))
+        law = _read(c["law"], Z)
+        b, late, k = (_read(c[n]) for n in ("damping", "sample_time", "stiffness"))
+        return sampled_wave(law, b, late, k, _fraction(c["rate"]), _fraction(c["frequency"]))
     if kind == "cycle":
         helps, *against = (_ELEMENTS[n](*v) for n, *v in [c["compensator"], *c["friction"]])
         return Cycle(helps, tuple(against), tuple(c["turning_points"]), int(c["rounds"]))
@@ -72,6 +82,25 @@ def _made(c: dict[str, Any]) -> Record:
     if kind == "flip":
         return Flip(**fields)
     raise ModelError(f'record: no kind "{kind}"')
+
+
+def _fraction(text: str) -> Fraction:
+    """A fraction such as "-3/4"; a power of ten would cost time and memory without end."""
+    if not (isinstance(text, str) and _FRACTION.fullmatch(text)):
+        raise ValueError(f"expected a fraction such as 3/4, found {str(text)[:60]!r}")
+    return Fraction(text)
+
+
+def _read(text: str, *names: sp.Symbol) -> sp.Expr:
+    """An expression of these names, read without running anything."""
+    try:
+        e = read_expression(text, where="record")
+    except ExperimentError as error:
+        raise ValueError(str(error)) from None
+    e = e.subs({position_symbol(n.name): n for n in names})
+    if e.free_symbols - {*names}:
+        raise ValueError(f"record: unknown names in {text[:60]}")
+    return e
 
 
 def _tuples(value: Any) -> Any:

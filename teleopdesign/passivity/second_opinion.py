@@ -1,21 +1,19 @@
 """The inequalities of a storage certificate put to z3, without the identities that show them.
 
 z3 decides polynomial inequalities over the reals (extra `proof`). Asked for values that meet all
-that a certificate assumes and break what it claims, it finds none, finds some, or gives up.
+that a certificate assumes and break what it claims, it finds none, finds some, or gives up. What
+a certificate means is read by the checker, whose rules for it hold here too.
 """
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
-import sympy as sp
-
 from ..errors import ModelError
 from .certificate import Certificate
-from .check_certificate import _read
+from .check_certificate import Poly, Refused, read
 
 
 @dataclass(frozen=True)
@@ -35,69 +33,48 @@ def second_opinion(certificate: Certificate, *, seconds: float = 10.0) -> Second
     """Whether the inequalities of a storage certificate hold, by z3.
 
     seconds: for each inequality
-    raises ModelError: z3 (extra `proof`) is not installed, or a certificate of another kind
+    raises ModelError: z3 (extra `proof`) is not installed, a certificate of another kind, or one
+        that the checker refuses for what it assumes, before any proof
     """
-    c = certificate.content
-    if c["kind"] != "storage":
-        raise ModelError(f'second_opinion: a storage certificate is needed, found "{c["kind"]}"')
+    try:
+        _, storage = read(dict(certificate.content))
+    except Refused as problem:
+        raise ModelError(f"second_opinion: {problem}") from None
+    if storage is None:
+        found = certificate.kind
+        raise ModelError(f'second_opinion: a storage certificate is needed, found "{found}"')
     try:
         z3: Any = import_module("z3")
     except ModuleNotFoundError as missing:
         raise ModelError("z3 is not installed: pip install 'teleopdesign[proof]'") from missing
     still_open, example = [], ""
-    for signs in itertools.product((1, -1), repeat=len(c["signs"])):
-        assumed, goals = _inequalities(c, dict(zip(c["signs"], signs, strict=True)))
-        for name, goal in goals.items():
+    for case in storage.cases:
+        names = [z3.Real(n) for n in case.algebra.names]
+        for goal, claimed in case.goals.items():
             solver = z3.Solver()
             solver.set("timeout", int(1000 * seconds))
-            for e, strict in assumed:
-                solver.add(_z3(z3, e) > 0 if strict else _z3(z3, e) >= 0)
-            above, below = sp.fraction(sp.together(goal))
-            solver.add(_z3(z3, sp.expand(above)) * _z3(z3, sp.factor(below)) < 0)
+            for n, e in case.factors.items():
+                # that an invariant is kept is shown where none is assumed: on the border of all of
+                # them at once, an inequality there alone would not keep the motion inside
+                if goal in case.invariants and n in case.invariants:
+                    continue
+                above = _z3(z3, e.above, names)  # what stands below is positive
+                solver.add(above > 0 if n in certificate.content["positive"] else above >= 0)
+            solver.add(_z3(z3, claimed.above, names) < 0)
             answer = str(solver.check())
             if answer != "unsat":
-                still_open.append(f"{name} {signs}")
-            if answer == "sat":
+                still_open.append(f"{goal} {tuple(case.signs.values())}")
+            if answer == "sat" and goal not in case.invariants:
                 example = str(solver.model())
     if example:
         return SecondOpinion("refuted", tuple(still_open), example)
     return SecondOpinion("unknown" if still_open else "confirmed", tuple(still_open))
 
 
-def _inequalities(
-    c: Any, signs: dict[str, int]
-) -> tuple[list[tuple[sp.Expr, bool]], dict[str, sp.Expr]]:
-    """What is assumed, (expression, strict), and what is claimed to be >= 0."""
-    names = {n: sp.Symbol(n, real=True) for n in c["symbols"]}
-    put: dict[sp.Symbol, sp.Expr] = {}
-    for x, s in signs.items():
-        put |= {names["sign_" + x]: sp.Integer(s), names["abs_" + x]: names[x]}
-        put[names[x]] = s * names[x]
-
-    def get(text: str) -> sp.Expr:
-        return _read(text, names).subs(put, simultaneous=True)
-
-    rates = {names[x]: signs.get(x, 1) * get(text) for x, text in c["rates"].items()}
-    storage = get(c["storage"])
-    change = sum((sp.diff(storage, x) * r for x, r in rates.items()), sp.S(0))
-    assumed = [(get(t), True) for t in c["positive"].values()]
-    assumed += [(get(t), False) for t in c["nonnegative"].values()]
-    assumed += [(get(h["expression"]), False) for h in c["invariant"].values()]
-    assumed += [(names[x], False) for x in signs]
-    return assumed, {"storage": storage, "supply": get(c["supply"]) - change}
-
-
-def _z3(z3: Any, e: sp.Expr) -> Any:
-    """A rational sympy expression as a z3 term."""
-    if e.is_Rational:
-        return z3.Q(int(e.p), int(e.q))
-    if e.is_Symbol:
-        return z3.Real(e.name)
-    parts = [_z3(z3, a) for a in e.args if not (e.is_Pow and a is e.exp)]
-    if e.is_Add:
-        return z3.Sum(parts)
-    if e.is_Mul:
-        return z3.Product(parts)
-    if e.is_Pow and e.exp.is_Integer and e.exp > 0:
-        return z3.Product(parts * int(e.exp))
-    raise ModelError(f"z3: not a polynomial: {e}")
+def _z3(z3: Any, polynomial: Poly, names: list[Any]) -> Any:
+    """A polynomial of the checker as a z3 term."""
+    terms = [z3.Q(0, 1)]
+    for powers, x in polynomial.items():
+        factors = [n for n, k in zip(names, powers, strict=True) for _ in range(k)]
+        terms.append(z3.Product([z3.Q(x.numerator, x.denominator), *factors]))
+    return z3.Sum(terms)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import sympy as sp
 
 from .certificate import Certificate, Term, storage_certificate
-from .dahl_certificates import F, abs_v, dahl_rate, f_C, f_D, p, sigma_p, sign_v, v
+from .dahl_certificates import F, Values, abs_v, dahl_rate, f_C, f_D, p, sigma_p, sign_v, v
 
 a, B = sp.symbols("a B", real=True)
 _HELP = f_D * v**2 / (a + abs_v)
@@ -16,6 +16,8 @@ _HELP = f_D * v**2 / (a + abs_v)
 
 def ideal_contact(*, f_c: sp.Expr, f_d: sp.Expr, smoothing: sp.Expr, b: sp.Expr) -> Certificate:
     """(f_C + B abs(v)) (a + abs(v)) >= f_D abs(v): power is lost at every speed."""
+    if smoothing == 0:  # then c = f_D sgn v, and f_D <= f_C
+        return _ideal_contact_unsmoothed({"f_C": f_c, "f_D": f_d, "B": b})
     gap = f_D - f_C - a * B
     values = {"f_C": f_c, "f_D": f_d, "a": smoothing, "B": b}
     nonnegative = {"f_C": f_C, "a": a, "B": B}
@@ -42,6 +44,18 @@ def ideal_contact(*, f_c: sp.Expr, f_d: sp.Expr, smoothing: sp.Expr, b: sp.Expr)
         supply=(f_C * sign_v + B * v) * v - _HELP,
         positive=positive,
         nonnegative=nonnegative,
+        signs=["v"],
+        proofs={"supply": {"": lost}, "storage": {"": ()}},
+        example={**values, "v": 1},
+    )
+
+
+def _ideal_contact_unsmoothed(values: Values) -> Certificate:
+    lost: list[Term] = [(1, {"abs_v": 1, "enough": 1}, 1), (1, {"B": 1}, v)]
+    return storage_certificate(
+        "Coulomb friction f_C and damping B cover f_D sgn(v) at every speed where f_D <= f_C",
+        supply=(f_C * sign_v + B * v - f_D * sign_v) * v,
+        nonnegative={"enough": f_C - f_D, "B": B},
         signs=["v"],
         proofs={"supply": {"": lost}, "storage": {"": ()}},
         example={**values, "v": 1},
