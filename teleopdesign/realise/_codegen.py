@@ -26,46 +26,8 @@ from .equations import (
     travel_rate,
     velocity,
 )
-
-_HEAD = '''"""Generated from the laws of the blocks of a diagram; do not edit."""
-from math import *
-
-{jit}
-
-@jitted
-def phi(z):
-    """exp, phi_1, phi_2, phi_3 of z, accurate through zero."""
-    if abs(z) < 1.0:
-        p3 = {series}
-        p2 = z * p3 + 0.5
-        p1 = z * p2 + 1.0
-        return z * p1 + 1.0, p1, p2, p3
-    e = exp(z)
-    p1 = (e - 1.0) / z
-    p2 = (p1 - 1.0) / z
-    return e, p1, p2, (p2 - 0.5) / z
-
-
-@jitted
-def weights(z):
-    """exp and phi_1 of z/2, exp of z, and the three weights of a step."""
-    e, p1, p2, p3 = phi(z / 2)
-    q1 = 0.5 * (e + 1.0) * p1
-    q2 = 0.25 * (p1 * p1 + 2 * p2)
-    q3 = 0.125 * (p1 * p2 + p2 + 2 * p3)
-    return e, p1, e * e, q1 - 3 * q2 + 4 * q3, 2 * q2 - 4 * q3, 4 * q3 - q2
-
-'''
-_JIT = """from numba import njit
-
-jitted = njit(cache=True, error_model="numpy")
-"""
-_NO_JIT = """
-
-def jitted(function):
-    return function
-"""
-
+from .exponentials import PHI, WEIGHTS, head
+from .laws import Names, assignments, indented
 
 #: arguments of the generated `run`; arrays: inputs (n, 2 N + 1) on half steps, sampled (n, samples
 #: + 1), held (samples + 1, commands), history (N + 1, late), out (rows, columns)
@@ -105,10 +67,6 @@ def slopes(equations: Equations) -> dict[sp.Symbol, sp.Expr]:
     return found
 
 
-def _code(expression: sp.Expr) -> str:
-    return str(sp.pycode(expression, fully_qualified_modules=False))
-
-
 def needed_steps(
     results: Iterable[sp.Expr], joined: Mapping[sp.Symbol, sp.Expr]
 ) -> dict[sp.Symbol, sp.Expr]:
@@ -126,22 +84,18 @@ def _function(
     name: str,
     arguments: Iterable[sp.Symbol],
     results: list[sp.Expr],
-    renamed: Mapping[sp.Symbol, sp.Symbol],
+    names: Names,
     joined: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
 ) -> str:
     """Source of a function that returns the results, common parts computed once."""
     if not results:
         return ""
-    shared, out = sp.cse(
-        [sp.sympify(r, strict=True).xreplace(renamed) for r in results],
-        symbols=sp.numbered_symbols("k"),
-    )
-    needed = needed_steps(results, joined)
-    lines = [f"    {s} = {_code(e.xreplace(renamed))}" for s, e in needed.items()]
-    lines += [f"    {s} = {_code(e)}" for s, e in shared]
-    value = ", ".join(_code(e) for e in out)
-    given = ", ".join(str(renamed.get(a, a)) for a in arguments)
-    return f"@jitted\ndef {name}({given}):\n" + "\n".join([*lines, f"    return ({value},)\n\n\n"])
+    needed = {names[s]: e for s, e in needed_steps(results, joined).items()}
+    out = {f"out{i}": sp.sympify(r, strict=True) for i, r in enumerate(results)}
+    lines = [*assignments(needed, names), *assignments(out, names, shared="k")]
+    given = ", ".join(names[a] for a in arguments)
+    body = indented([*lines, f"return ({', '.join(out)},)"], 4)
+    return f"@jitted\ndef {name}({given}):\n{body}\n\n\n"
 
 
 class Generator:
@@ -183,8 +137,31 @@ class Generator:
             *self.parameters,
             *({PERIOD} & used),
         ]
-        self.renamed = {p: sp.Symbol(f"p{i}", real=True) for i, p in enumerate(self.parameters)}
         self.motion_signals = [f(m) for m in self.motions for f in (signal, velocity, acceleration)]
+        self.variables = self._variables()
+        self.names = self._names()
+
+    def _variables(self) -> dict[str, str]:
+        """Variable of the source for each quantity by its name; no such name begins another one."""
+        e = self.equations
+        symbols = [*self.states, *self.computer_states, *e.inputs, *self.late, *self.sensors]
+        symbols += [f(m) for m in self.motions for f in (travel_rate, estimate)]
+        symbols += [*self.sampled_inputs, *self.motion_signals]
+        names = [*map(str, symbols), *self.commands, *e.signals, *e.computer.signals]
+        return {name: f"v{i}_" for i, name in enumerate(dict.fromkeys(names))}
+
+    def _names(self) -> dict[sp.Symbol, str]:
+        """Private name of every symbol that the equations hold."""
+        e = self.equations
+        own = {p: f"p{i}" for i, p in enumerate(self.parameters)}
+        own |= {s: f"j{i}_" for i, s in enumerate(e.joined)} | {TIME: "time", PERIOD: "period"}
+        used = set().union(*(x.free_symbols for x in self._expressions()))
+        used |= {*self.analog, *self.reads}
+        return own | {s: self.variables[s.name] for s in used if s not in own}
+
+    def variable(self, quantity: sp.Symbol | str) -> str:
+        """The variable of the source that holds a quantity."""
+        return self.variables[str(quantity)]
 
     def _computer_expressions(self) -> list[sp.Expr]:
         computer = self.equations.computer
@@ -218,20 +195,17 @@ class Generator:
     def source(self, *, jit: bool) -> str:
         """The module's functions of the equations; the loop over them is `loop_source`."""
         e = self.equations
-        series = "p3"
-        for k in range(12, -1, -1):
-            series = (
-                f"1 / {_factorial(k + 3)} + z * ({series})" if k < 12 else f"1 / {_factorial(15)}"
-            )
-        head = _HEAD.format(jit=_JIT if jit else _NO_JIT, series=series)
         rates = [e.rates[s] for s in self.states]
         accelerations = [e.rates[velocity(m)] for m in e.motions]
 
         def analog(name: str, results: list[sp.Expr]) -> str:
-            return _function(name, self.analog, results, self.renamed, e.joined)
+            return _function(name, self.analog, results, self.names, e.joined)
 
         parts = [
-            head,
+            head("Generated from the laws of the blocks of a diagram; do not edit.", jit=jit),
+            PHI,
+            WEIGHTS,
+            "\n\n",
             analog("rates", rates),
             analog("slopes", list(self.slopes.values())),
             analog("signals", [*accelerations, *e.signals.values()]),
@@ -248,12 +222,8 @@ class Generator:
             chosen = [s for s in here if s in computer.rates]
             a = [sp.diff(computer.rates[s], s) for s in chosen]
             b = [computer.rates[s].xreplace({s: sp.S(0)}) for s in chosen]
-            out.append(_function(f"{name}_rates", self.reads, [*a, *b], self.renamed))
+            out.append(_function(f"{name}_rates", self.reads, [*a, *b], self.names))
             steps = [computer.steps[s] for s in here if s in computer.steps]
-            out.append(_function(f"{name}_steps", self.reads, steps, self.renamed))
-        out.append(_function("computer", self.reads, list(computer.signals.values()), self.renamed))
+            out.append(_function(f"{name}_steps", self.reads, steps, self.names))
+        out.append(_function("computer", self.reads, list(computer.signals.values()), self.names))
         return "".join(out)
-
-
-def _factorial(n: int) -> str:
-    return f"{float(sp.factorial(n)):.1f}"

@@ -15,9 +15,11 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import sympy as sp
 
 from ..blocks import Body, MatrixImpedance
 from ..controllers import CONTROLLERS, SIGNALS, ControlLaw, Controller
@@ -26,6 +28,7 @@ from ..effects import Effect
 from ..errors import ModelError
 from ._codegen import Generator, Layout
 from ._codegen_loop import loop_source
+from .compiled import compiled
 from .equations import Equations, equations
 from .private_names import PrivateNames, private_names
 
@@ -103,7 +106,7 @@ def program(
         loop = loop_source(generator)
         source = generator.source(jit=jit) + loop
         plain = _executed(generator.source(jit=False) + loop)
-        run = _compiled(source) if jit else plain["run"]
+        run = compiled(source, "run") if jit else plain["run"]
         _programs[key] = Program(generator.equations, generator.layout(), run, plain)
     return _in_public(_programs[key], names)
 
@@ -121,12 +124,6 @@ def _in_public(private: Program, names: PrivateNames) -> Program:
     told = {symbol: names.public_name(name) for symbol, name in parameters.items()}
     equations = replace(private.equations, parameters=told)
     return replace(private, equations=equations, layout=Layout(**public))
-
-
-def _compiled(source: str) -> Callable[..., float]:
-    from .compiled import compiled
-
-    return compiled(source, "run")
 
 
 @lru_cache(maxsize=64)
@@ -169,10 +166,6 @@ def velocity_smoothing(bandwidth: float, period: float) -> float:
     """
     if math.isinf(bandwidth):
         return 0.0
-    from types import SimpleNamespace
-
-    import sympy as sp
-
     state = sp.Symbol("state")
     now = SimpleNamespace(input=SIGNALS["input"], output=state)
     rate = CONTROLLERS["low_pass"].states["output"].rate(now, SimpleNamespace(bandwidth=bandwidth))

@@ -53,7 +53,7 @@ def assignments(results: Mapping[str, sp.Expr], names: Names, *, shared: str = "
     """
     if not shared:
         return [f"{name} = {source_of(e, names)}" for name, e in results.items()]
-    common, out = sp.cse(list(results.values()), symbols=sp.numbered_symbols("k", cls=sp.Dummy))
+    common, out = sp.cse(list(results.values()), symbols=sp.numbered_symbols("k"))
     known = {**names, **{symbol: f"{shared}{i}" for i, (symbol, _) in enumerate(common)}}
     lines = [f"{known[symbol]} = {source_of(e, known)}" for symbol, e in common]
     pairs = zip(results, out, strict=True)

@@ -24,7 +24,8 @@ import sympy as sp
 from ..effects import SIGNALS, UNEXPLAINED, Effect
 from ..measurement.filtering import Array
 from .compiled import compiled
-from .scan import code_of, indented
+from .exponentials import head
+from .laws import Names, assignments, indented, source_of
 from .traced import Traced
 
 #: part of a radian of the fastest mode that one sub-step may cover (at half a radian it swings
@@ -53,7 +54,11 @@ def _parameters(effect: Effect) -> tuple[sp.Symbol, ...]:
 
 
 def _slopes(
-    name: str, law: sp.Expr, states: Sequence[sp.Symbol], parameters: Sequence[sp.Symbol]
+    name: str,
+    law: sp.Expr,
+    states: Sequence[sp.Symbol],
+    parameters: Sequence[sp.Symbol],
+    names: Names,
 ) -> tuple[list[str], str, dict[int, str]]:
     """Code of a law's tangents: slopes once for all columns, then what each column makes of them.
 
@@ -66,7 +71,7 @@ def _slopes(
         slope = sp.diff(law, symbol)
         if slope == 0:
             continue
-        lines.append(f"{name}_{j} = {code_of(slope)}")
+        lines += assignments({f"{name}_{j}": slope}, names)
         if j < len(states):
             terms.append(f"{name}_{j} * d[{j}, c]")
         else:
@@ -74,33 +79,46 @@ def _slopes(
     return lines, " + ".join(terms) or "0.0", own
 
 
+#: private name of the force that is left unexplained
+_LEFT = "left"
+
+
+def _names(effect: Effect) -> dict[sp.Symbol, str]:
+    """States, parameters and signals as the entries of the arrays that hold them."""
+    states = {s: f"z[{i}]" for i, s in enumerate(effect.state_symbols().values())}
+    parameters = {s: f"p[{i}]" for i, s in enumerate(_parameters(effect))}
+    signals = {SIGNALS[d]: f"u[{i}]" for i, d in enumerate(_drivers(effect))}
+    return states | parameters | signals | {UNEXPLAINED: _LEFT}
+
+
 def _rate_lines(effect: Effect) -> list[str]:
     """Code of f, the rates of the states z, and of g, their tangents."""
     states = list(effect.state_symbols().values())
     parameters = _parameters(effect)
     corrections = effect.corrections()
-    left, lines = UNEXPLAINED.name, []
+    names, left = _names(effect), _LEFT
+    lines: list[str] = []
     each: list[str] = []
     ends: list[str] = []
     if corrections:
         law = effect.expression()
         lines += [
-            f"{left} = u[-3] - ({code_of(law)})",
+            f"{left} = u[-3] - ({source_of(law, names)})",
             f"bound = -2 if {left} < u[-2] else -1 if {left} > u[-1] else 0",
             f"{left} = {left} - u[bound] if bound else 0.0",
         ]
-        before, moved, law_own = _slopes("by_law", law, states, parameters)
+        before, moved, law_own = _slopes("by_law", law, states, parameters, names)
         lines += before
         each.append(f"d{left} = v[-3, c] - v[bound, c] - ({moved}) if bound else 0.0")
     for i, (name, rate) in enumerate(effect.rates().items()):
         whole = rate + corrections.get(name, sp.S(0))
-        lines.append(f"f[{i}] = {code_of(whole)}")
-        before, moved, own = _slopes(f"by_{i}", whole, states, parameters)
+        lines += assignments({f"f[{i}]": whole}, names)
+        before, moved, own = _slopes(f"by_{i}", whole, states, parameters, names)
         lines += before
         by_left = sp.diff(whole, UNEXPLAINED)
         ends += [f"if columns[{j}] >= 0:\n    g[{i}, columns[{j}]] += {k}" for j, k in own.items()]
         if by_left != 0:
-            lines.append(f"by_{i}_left = {code_of(by_left)}")
+            lines += assignments({f"by_{i}_left": by_left}, names)
             moved += f" + by_{i}_left * d{left}"
             ends += [
                 f"if bound and columns[{j}] >= 0:\n    g[{i}, columns[{j}]] -= by_{i}_left * {k}"
@@ -114,23 +132,14 @@ def _rate_lines(effect: Effect) -> list[str]:
 
 @lru_cache(maxsize=32)
 def _source(effect: Effect) -> str:
-    unpack = [f"{s} = z[{i}]" for i, s in enumerate(effect.state_symbols().values())]
-    unpack += [f"{s} = p[{i}]" for i, s in enumerate(_parameters(effect))]
-    unpack += [f"{d} = u[{i}]" for i, d in enumerate(_drivers(effect))]
-    return f'''"""Generated from an effect's rates; do not edit."""
-from math import *
+    return f"""{head("Generated from an effect's rates; do not edit.")}
 
-import numpy as np
-from numba import njit
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
+@jitted
 def rate(z, d, u, v, p, columns, f, g):
-{indented(unpack, 4)}
 {indented(_rate_lines(effect), 4)}
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jitted
 def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout):
     m, n = drive.shape
     s, q, t = len(z), dout.shape[1], len(ddrive)
@@ -180,7 +189,7 @@ def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout)
                     d[i, c] += w / 6 * (
                         g[0, i, c] + 2 * g[1, i, c] + 2 * g[2, i, c] + g[3, i, c]
                     )
-'''
+"""
 
 
 @lru_cache(maxsize=32)

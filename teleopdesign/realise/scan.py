@@ -19,31 +19,13 @@ from ..errors import ModelError
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from .compiled import compiled
+from .exponentials import PHI, head
+from .laws import Names, assignments, indented
 from .traced import Traced
 
-_HEAD = '''"""Generated from an effect's law; do not edit."""
-from math import *
-
-import numpy as np
-from numba import njit
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def phi(x):
-    """phi_1, phi_2 and their slopes, accurate through zero."""
-    if abs(x) < 1e-2:
-        p1 = 1 + x / 2 * (1 + x / 3 * (1 + x / 4 * (1 + x / 5)))
-        p2 = 0.5 + x / 6 * (1 + x / 4 * (1 + x / 5 * (1 + x / 6)))
-        s1 = 0.5 + x / 3 * (1 + x * 3 / 8 * (1 + x * 4 / 15 * (1 + x * 5 / 24)))
-        s2 = 1 / 6 + x / 12 * (1 + x * 3 / 10 * (1 + x * 2 / 9))
-        return p1, p2, s1, s2
-    p1 = expm1(x) / x
-    p2 = (p1 - 1) / x
-    s1 = (exp(x) - p1) / x
-    return p1, p2, s1, (s1 - p2) / x
-
-
-'''
+_HEAD = head("Generated from an effect's law; do not edit.") + PHI
+#: private name of the effect's one state
+_STATE = "z_0"
 
 
 def _affine(effect: Effect) -> tuple[sp.Symbol, sp.Expr, sp.Expr]:
@@ -58,18 +40,16 @@ def _affine(effect: Effect) -> tuple[sp.Symbol, sp.Expr, sp.Expr]:
     return z, slope, rate.subs(z, 0)
 
 
-def code_of(expression: sp.Expr) -> str:
-    """The expression as Python source."""
-    return str(sp.pycode(expression, fully_qualified_modules=False))
+def _names(effect: Effect) -> dict[sp.Symbol, str]:
+    """Signals, parameters and the state under private names."""
+    signals = {s: f"u_{n}" for n, s in SIGNALS.items()}
+    parameters = {s: f"p_{i}" for i, s in enumerate(effect.symbols().values())}
+    return signals | parameters | dict.fromkeys(effect.state_symbols().values(), _STATE)
 
 
-def _gradient_lines(what: str, expression: sp.Expr, by: dict[str, sp.Symbol]) -> list[str]:
-    return [f"{what}_{name} = {code_of(sp.diff(expression, s))}" for name, s in by.items()]
-
-
-def indented(lines: list[str], depth: int) -> str:
-    """Lines of source at a depth."""
-    return "\n".join(" " * depth + line for line in lines)
+def _lines(what: str, expression: sp.Expr, by: dict[str, sp.Symbol], names: Names) -> list[str]:
+    """Slopes of an expression by signals and parameters, as what_key."""
+    return assignments({f"{what}_{k}": sp.diff(expression, s) for k, s in by.items()}, names)
 
 
 def _used(effect: Effect) -> list[str]:
@@ -77,50 +57,54 @@ def _used(effect: Effect) -> list[str]:
     return [n for n, s in SIGNALS.items() if any(law.has(s) for law in laws)]
 
 
+def _slopes_by(effect: Effect, signal: str) -> dict[str, sp.Symbol]:
+    """What slopes are taken by: a signal, and the parameters by their number."""
+    own = {str(i): s for i, s in enumerate(effect.symbols().values())}
+    return {signal: SIGNALS[signal], **own}
+
+
+def _own(effect: Effect, what: str) -> str:
+    """Slope by the parameter that column j stands for."""
+    terms = (f"{what}_{i} * (columns[{i}] == j)" for i in range(len(effect.parameters)))
+    return " + ".join(terms) or "0.0"
+
+
 @lru_cache(maxsize=64)
 def _stage_source(effect: Effect) -> str:
-    z, a, b = _affine(effect)
-    used = _used(effect)
-    by = {"command": SIGNALS["command"], **effect.symbols()}
-    columns = list(effect.parameters)
-    sum_of = {
-        what: " + ".join(
-            [f"{what}_command * dcommand[j, k]"]
-            + [f"{what}_{c} * (columns[{i}] == j)" for i, c in enumerate(columns)]
-        )
-        for what in ("a", "b")
-    }
-    names = {**{n: s.name for n, s in effect.symbols().items()}}
+    _, a, b = _affine(effect)
+    used, names = _used(effect), _names(effect)
+    by = _slopes_by(effect, "command")
+    parameters = [names[s] for s in effect.symbols().values()]
     return f"""{_HEAD}
-@njit(cache=True, nogil=True, error_model="numpy")
-def stage(h, columns, {", ".join(names.values())}, {", ".join(f"{n}_" for n in used)}, dcommand,
+
+@jitted
+def stage(h, columns, {", ".join([*parameters, *(f"{n}_" for n in used)])}, dcommand,
           end, dend, mean, dmean):
     p, n = dcommand.shape
     dz = np.zeros(p)
-    {z.name} = 0.0
+    {_STATE} = 0.0
     for k in range(n):
-{indented([f"{n} = {n}_[k]" for n in used], 8)}
-        a = {code_of(a)}
-        b = {code_of(b)}
+{indented([f"u_{n} = {n}_[k]" for n in used], 8)}
+{indented(assignments({"a": a, "b": b}, names), 8)}
         starting = k == 0 and a != 0.0
         if starting:
-            {z.name} = -b / a  # settled
-{indented(_gradient_lines("a", a, by) + _gradient_lines("b", b, by), 8)}
-        x = a * h
-        e = exp(x)
-        p1, p2, s1, s2 = phi(x)
-        z = {z.name}
+            {_STATE} = -b / a  # settled
+{indented(_lines("a", a, by, names) + _lines("b", b, by, names), 8)}
+        e, p1, p2, p3 = phi(a * h)
+        s1 = p1 - p2
+        s2 = p2 - 2.0 * p3
+        z = {_STATE}
         mean[k] = z * p1 + b * h * p2
         end[k] = z
         for j in range(p):
-            da = {sum_of["a"]}
-            db = {sum_of["b"]}
+            da = a_command * dcommand[j, k] + {_own(effect, "a")}
+            db = b_command * dcommand[j, k] + {_own(effect, "b")}
             if starting:
                 dz[j] = (b * da / a - db) / a
             dmean[j, k] = dz[j] * p1 + z * s1 * h * da + h * p2 * db + b * h * s2 * h * da
             dend[j, k] = dz[j]
             dz[j] = dz[j] * e + z * e * h * da + h * p1 * db + b * h * s1 * h * da
-        {z.name} = z * e + b * h * p1
+        {_STATE} = z * e + b * h * p1
 """
 
 
@@ -198,37 +182,33 @@ def _shape_source(effect: Effect) -> str:
     z, a, b = _affine(effect)
     law = effect.expression()
     slope = sp.diff(law, z)
-    used = _used_by_shape(effect)
-    by = {"level": SIGNALS["level"], **effect.symbols()}
-    names = list(effect.parameters)
-    own = " + ".join(f"{{0}}_{c} * (columns[{i}] == j)" for i, c in enumerate(names))
-    arguments = [s.name for s in effect.symbols().values()] + [f"{n}_" for n in used]
+    used, names = _used_by_shape(effect), _names(effect)
+    by = _slopes_by(effect, "level")
+    parameters = [names[s] for s in effect.symbols().values()]
+    arguments = [*parameters, *(f"{n}_" for n in used)]
     return f"""{_HEAD}
-@njit(cache=True, nogil=True, error_model="numpy")
-def shape(h, half_step, columns, position, velocity_, direction, {", ".join(arguments)},
+
+@jitted
+def shape(h, half_step, columns, position, velocity, direction, {", ".join(arguments)},
           forward, dforward, backward, dbackward, low, dlow, high, dhigh):
     p, n = dforward.shape
     dz = np.zeros(p)
     z = 0.0
     for k in range(n):
-        velocity = (position[k] - position[max(k - 1, 0)]) / h
-        ahead = velocity >= 0.0
-        level = max(forward[k] if ahead else backward[k], 1e-12)
-{indented([f"{n} = {n}_[k]" for n in used], 8)}
-        a = {code_of(a)}
-        b = {code_of(b)}
-{indented(_gradient_lines("a", a, by) + _gradient_lines("b", b, by), 8)}
-        x = a * h
-        e = exp(x)
-        p1, p2, s1, s2 = phi(x)
+        u_velocity = (position[k] - position[max(k - 1, 0)]) / h
+        ahead = u_velocity >= 0.0
+        u_level = max(forward[k] if ahead else backward[k], 1e-12)
+{indented([f"u_{n} = {n}_[k]" for n in used], 8)}
+{indented(assignments({"a": a, "b": b}, names), 8)}
+{indented(_lines("a", a, by, names) + _lines("b", b, by, names), 8)}
+        e, p1, p2, p3 = phi(a * h)
+        s1 = p1 - p2
         before = z
         z = before * e + b * h * p1
-        {z.name} = z
-        velocity = velocity_[k]
-        force = {code_of(law)}
-        slope = {code_of(slope)}
-{indented(_gradient_lines("f", law, by), 8)}
-{indented(_gradient_lines("g", slope, by), 8)}
+        {_STATE} = z
+        u_velocity = velocity[k]
+{indented(assignments({"force": law, "slope": slope}, names), 8)}
+{indented(_lines("f", law, by, names) + _lines("g", slope, by, names), 8)}
         # where the reading cannot tell a motion, the position is open by half a step
         free = half_step if direction[k] == 0 else 0.0
         below = force - free * abs(slope)
@@ -237,11 +217,11 @@ def shape(h, half_step, columns, position, velocity_, direction, {", ".join(argu
         high[k] = above if direction[k] != 0 else min(above, forward[k])
         for j in range(p):
             dlevel = dforward[j, k] if ahead else dbackward[j, k]
-            da = a_level * dlevel + {own.format("a")}
-            db = b_level * dlevel + {own.format("b")}
+            da = a_level * dlevel + {_own(effect, "a")}
+            db = b_level * dlevel + {_own(effect, "b")}
             dz[j] = dz[j] * e + before * e * h * da + h * p1 * db + b * h * s1 * h * da
-            df = slope * dz[j] + f_level * dlevel + {own.format("f")}
-            dg = free * copysign(1.0, slope) * (g_level * dlevel + {own.format("g")})
+            df = slope * dz[j] + f_level * dlevel + {_own(effect, "f")}
+            dg = free * copysign(1.0, slope) * (g_level * dlevel + {_own(effect, "g")})
             dlow[j, k] = df - dg if low[k] == below else -dbackward[j, k]
             dhigh[j, k] = df + dg if high[k] == above else dforward[j, k]
 """

@@ -1,5 +1,10 @@
 """Names are the user's: numbers do not depend on them, and no word is taken."""
 
+import ast
+import builtins
+import keyword
+import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -23,7 +28,12 @@ from teleopdesign.diagrams import (
 )
 from teleopdesign.errors import ModelError
 from teleopdesign.names import check_name
+from teleopdesign.realise._codegen import ARGUMENTS, Generator
+from teleopdesign.realise._codegen_loop import loop_source
+from teleopdesign.realise.equations import equations
 from teleopdesign.realise.iosystem import to_iosystem
+from teleopdesign.realise.private_names import private_names
+from teleopdesign.realise.simulated import in_computer, simulated
 from teleopdesign.simulate import prepare, simulate
 
 #: words that generated code, Python, sympy or the package might want for itself
@@ -232,3 +242,32 @@ def test_errors_speak_of_the_users_names():
         run(unseen)
     with pytest.raises(ModelError, match='haptic interface: "M" is no motion, has L$'):
         prepare(diagram, duration=0.1, motion={"M": None})
+
+
+#: what the templates of the source hold themselves, and the beginnings of private names
+OWN = {*dir(math), *keyword.kwlist, *dir(builtins), *ARGUMENTS, "math", "jitted", "function"}
+OWN |= set(
+    "phi weights rates slopes signals computer late_values made now values worst row".split()
+)
+OWN |= {f"{when}_{what}" for when in ("before", "after") for what in ("rates", "steps")}
+OWN |= {f"{made}_{when}" for made in ("made", "next") for when in ("before", "after")}
+OWN |= {"time", "time_middle", "time_end", "position_gain", "velocity_gain", "bend_gain"}
+PRIVATE = re.compile(r"(slope_)?v\d+_\w*|(p|q|r|k|out)\d+|j\d*_?|[cefmnqyz_]")
+
+
+@pytest.mark.parametrize("name", DIAGRAMS)
+@pytest.mark.parametrize("sampled", [False, True], ids=["continuous", "sampled"])
+def test_generated_source_holds_private_words_alone(name, sampled):
+    """No name of an effect, a law or a parameter either: users write those too."""
+    inner = simulated(DIAGRAMS[name], 1e-5)
+    inner = in_computer(inner, 1e-3) if sampled else inner
+    generator = Generator(equations(private_names(inner).diagram, sampled=sampled))
+    tree = ast.parse(generator.source(jit=False) + loop_source(generator))
+    words = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name)}
+    words |= {n.arg for n in ast.walk(tree) if isinstance(n, ast.arg)}
+    assert not [w for w in words - OWN if not PRIVATE.fullmatch(w)]
+    ends = {w.split("_", 1)[1].strip("_") for w in words if re.match(r"v\d+_\w", w)}
+    assert ends <= {"1", "2", "3", "e", "g", "h", "n0", "n1", "n2", "n3", *MORE}
+
+
+MORE = {"seen", "before", "made", "middle", "end", "observed", "bend"}

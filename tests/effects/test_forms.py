@@ -21,8 +21,8 @@ from effects.along import (
 from excitation import fit_record
 from truth_effects import PUBLIC
 
-from teleopdesign.blocks import Value
-from teleopdesign.effects import EFFECTS, SIGNALS
+from teleopdesign.blocks import Body, Value
+from teleopdesign.effects import EFFECTS, SIGNALS, load_effect
 from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.ode_scan import ode_scan
 from teleopdesign.realise.traced import Traced
@@ -237,3 +237,27 @@ def test_tangents_of_friction_pass_through_presliding_and_actuation_together(nam
         ]
         slope = (sides[0] - sides[1]) / (2e-6 * value)
         assert np.linalg.norm(tangent - slope) < 1e-3 * np.linalg.norm(slope), full
+
+
+@pytest.mark.parametrize("name", ["half", "a", "p", "z", "u", "free", "f"])
+def test_an_effect_of_a_users_own_may_be_called_as_it_likes(tmp_path, name):
+    """Parameters `step` and `level`: with some names of the effect, words of the generated scan."""
+    path = tmp_path / f"{name}.py"
+    path.write_text(
+        '"""A lag of a user\'s own."""\n'
+        "from teleopdesign.effects import Effect, Parameter, State\n"
+        "EFFECT = Effect(\n"
+        '    role="actuation", law=lambda now, p: now.output,\n'
+        '    parameters={"step": Parameter("time", "time constant"),\n'
+        '                "level": Parameter("dimensionless", "gain")},\n'
+        '    states={"output": State("force", lambda now, p: (p.level * now.command\n'
+        "                                                        - now.output) / p.step)},\n"
+        '    absent={"step": 0.0, "level": 1.0})\n'
+    )
+    own = load_effect(path)
+    motion = motion_along(*signals(3, 600))
+    values = {f"{name}.step": Value(2e-3), f"{name}.level": Value(1.0)}
+    lag = body_of("actuator_lag", values={"actuator_lag.time_constant": 2e-3})
+    made = Body(lag.axis, {"inertia": lag.parameters["inertia"], **values}, (own,))
+    found, expected = (residual_along(b, motion).residual.value for b in (made, lag))
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
