@@ -13,6 +13,7 @@ from ..errors import ModelError
 from ..realise.lti import S
 from .check_certificate import _read
 from .claim import Record
+from .growing_mode import CLAMPED, GrowingMode, Termination
 from .growing_wave import GrowingWave
 from .lugre import Jumps
 from .quantised_spring import Flip
@@ -53,6 +54,8 @@ def _made(c: dict[str, Any]) -> Record:
         z = sp.ImmutableMatrix([[_read(e, names) for e in row] for row in c["impedance"]])
         velocity = tuple(complex(*v) for v in c["velocity"])
         return GrowingWave(z, Fraction(c["rate"]), Fraction(c["frequency"]), velocity)
+    if kind == "growing mode":
+        return _growing_mode(c)
     if kind == "sampled wave":
         law = _read(c["law"], {"z": Z})
         b, late, k = (_read(c[n], {}) for n in ("damping", "sample_time", "stiffness"))
@@ -72,6 +75,24 @@ def _made(c: dict[str, Any]) -> Record:
     if kind == "flip":
         return Flip(**fields)
     raise ModelError(f'record: no kind "{kind}"')
+
+
+def _growing_mode(c: dict[str, Any]) -> GrowingMode:
+    z = sp.ImmutableMatrix([[_read(e, {"s": S}) for e in row] for row in c["impedance"]])
+    first, second = (
+        CLAMPED if held == "clamped" else _held(*(Fraction(x) for x in held))
+        for held in c["terminations"]
+    )
+    one, other = (complex(*v) for v in c["velocity"])
+    at = Fraction(c["rate"]), Fraction(c["frequency"])
+    mode = GrowingMode(z, (first, second), *at, (one, other))
+    if not mode.is_confirmed():
+        raise ValueError("the two-port does not grow between these terminations")
+    return mode
+
+
+def _held(damping: Fraction, inertia: Fraction, stiffness: Fraction) -> Termination:
+    return Termination(damping, inertia, stiffness)
 
 
 def _tuples(value: Any) -> Any:
