@@ -21,6 +21,8 @@ ENVIRONMENT = 0.15 * STIFFNESS  # k_e, N/m
 
 P, T, omega, r, w = sp.symbols("P T_d omega r w", positive=True)
 x_m, x_s = sp.symbols("x_m x_s", real=True)
+k_11, k_22 = sp.symbols("k_11 k_22", positive=True)
+crossed = sp.Symbol("k_12_k_21", nonnegative=True)
 
 
 @shows(
@@ -76,13 +78,58 @@ def coupling_stiffness() -> Proof:
     )
 
 
+def why_the_criterion_suffices() -> tuple[Step, ...]:
+    """z_in = z_11 - L/n, L = z_12 z_21, n = z_22 + Z_2: its real part and its residues.
+
+    L = size e^(2 j half), n = rho (1 + j tau) on the axis, rho >= Re z_22 > 0
+    """
+    size, more, enough = sp.symbols("size more enough", nonnegative=True)
+    half, tau = sp.symbols("half tau", real=True)
+    rho, x = sp.symbols("rho x", positive=True)
+    seen = size * (sp.cos(2 * half) + tau * sp.sin(2 * half)) / (rho * (1 + tau**2))
+    largest = size * (1 + sp.cos(2 * half)) / (2 * rho)
+    form = size * (tau * sp.cos(half) - sp.sin(half)) ** 2 / (rho * (1 + tau**2))
+    grown = sp.Matrix([[1, 1 / x], [1 / x, 1]]).det()
+    return (
+        NotNegative(
+            "Re(L/n) <= (abs L + Re L)/(2 rho), whatever holds port 2", largest - seen, form
+        ),
+        NotNegative(
+            "at a pole where n has the residue k_22 + more, z_in has one >= 0",
+            k_11 - crossed / (k_22 + more),
+            (enough + k_11 * more) / (k_22 + more),
+            {enough: k_11 * k_22 - crossed},
+        ),
+        Equal("z_11 = z_22 = 1, z_12 = z_21 = 1/s: singular at s = 1", grown.subs(x, 1), 0),
+    )
+
+
+def residues_of_the_coupling(z_11: sp.Expr, z_12: sp.Expr) -> tuple[Step, ...]:
+    """At s = 0 those of a spring, equality; at infinity the masses, and nothing between the ports.
+
+    z_11, z_12: on the axis, s = j omega;  z_22 is z_11 with the slave's mass and damping
+    """
+    s = sp.I * omega
+    return (
+        Limit("residue of z_11 at 0, that of z_22 alike", s * z_11, omega, sp.S(0), P),
+        Limit("residue of z_12 = z_21 at 0", s * z_12, omega, sp.S(0), -P),
+        Equal("so k_11 k_22 = k_12 k_21 there", P * P - (-P) ** 2, 0),
+        Equal("abs(z_12/s)^2", z_12 * sp.conjugate(z_12) / omega**2, P**2 / omega**4),
+        Limit("nothing grows like s between the ports", P**2 / omega**4, omega, sp.oo, sp.S(0)),
+    )
+
+
 @shows(
     61,
     paper=LLEWELLYN,
     place="applied to the coupling of Mahvash 2006",
     formula="spring coupling: always; one-way delay T_d: iff b_m b_s >= (P T_d)^2",
-    assumes="Llewellyn's criterion: Re z_11, Re z_22 >= 0, 2 Re z_11 Re z_22 >= abs(z_12 z_21) "
-    "+ Re(z_12 z_21)",
+    assumes="absolutely stable iff z_11, z_22 are positive real; z_12, z_21 have no pole in the "
+    "open right half plane, and simple ones on the axis; on it 2 Re z_11 Re z_22 >= abs(z_12 z_21) "
+    "+ Re(z_12 z_21); and at its poles, infinity included, the residues have 2 k_11 k_22 >= "
+    "abs(k_12 k_21) + Re(k_12 k_21). Of that theorem the two inequalities are proved here, the "
+    "minimum principle for positive-real functions is quoted. The axis alone, as Llewellyn's "
+    "criterion is often cited, does not do: z_11 = z_22 = 1, z_12 = z_21 = 1/s",
 )
 def delayed_coupling() -> Proof:
     """Absolute stability of the linear two-port of masses, dampers and a coupling spring; not a
@@ -100,6 +147,8 @@ def delayed_coupling() -> Proof:
     gap = P**2 * T**2 - P**2 * sp.sin(angle) ** 2 / omega**2
     y = sp.Symbol("y", positive=True)
     return proof(
+        *why_the_criterion_suffices(),
+        *residues_of_the_coupling(z_11, z_12),
         Equal("real part of z_11", (z_11 + sp.conjugate(z_11)) / 2, b_m),
         Equal("abs(z_12 z_21) + Re", right, 2 * P**2 * sp.sin(angle) ** 2 / omega**2),
         Limit("without delay it is 0: always", right, T, sp.S(0), sp.S(0)),
@@ -111,6 +160,7 @@ def delayed_coupling() -> Proof:
             P**2 / omega**2 * (angle - sp.sin(angle)) * (angle + sp.sin(angle)),
         ),
         Limit("the bound is reached in slow motion", sp.sin(y) / y, y, sp.S(0), sp.S(1)),
+        assuming=(k_11 * k_22 - crossed,),
     )
 
 

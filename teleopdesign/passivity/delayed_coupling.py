@@ -2,6 +2,9 @@
 
 With dampings b_m, b_s of master and slave, stiffness P and one-way delay T the criterion of
 Llewellyn reads b_m b_s >= (P T)^2 q(w), q = (sin(w T)/(w T))^2 <= 1, with equality for w -> 0.
+The other conditions (`absolute_stability.py`) hold for every coupling: the entries have no pole but
+s = 0, with residues P, P and -P, for e^(-s T) is 1 there, so k11 k22 = k12 k21; at infinity the
+masses grow like s and nothing between the ports does; z12 z21 is bounded far out.
 """
 
 from __future__ import annotations
@@ -44,7 +47,10 @@ def delayed_spring(
         f"{decimal(k)} N/m and delay {decimal(late)} s each way is absolutely stable"
     )
     if min(b_m, b_s) >= 0 and b_m * b_s >= (k * late) ** 2:
-        method = "Llewellyn's criterion with the exact delay, b_m b_s >= (P T)^2"
+        method = (
+            "Llewellyn's criterion with the exact delay, b_m b_s >= (P T)^2, and residues at s = 0 "
+            "that meet it with equality"
+        )
         margin = float(b_m * b_s - (k * late) ** 2)
         equality = "for w -> 0" if margin == 0 else ""
         certificate = _certificate({"b_m": b_m, "b_s": b_s, "P": k, "T": late})

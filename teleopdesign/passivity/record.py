@@ -17,6 +17,7 @@ from ..errors import ExperimentError, ModelError
 from ..plain_data import write_json
 from ..realise.lti import S
 from .claim import Record
+from .growing_mode import CLAMPED, GrowingMode, Termination
 from .growing_wave import GrowingWave
 from .lugre import Jumps
 from .quantised_spring import Flip
@@ -63,6 +64,8 @@ def _made(c: dict[str, Any]) -> Record:
         z = sp.ImmutableMatrix([[_read(e, S) for e in row] for row in c["impedance"]])
         velocity = tuple(complex(*v) for v in c["velocity"])
         return GrowingWave(z, _fraction(c["rate"]), _fraction(c["frequency"]), velocity)
+    if kind == "growing mode":
+        return _growing_mode(c)
     if kind == "sampled wave":
         law = _read(c["law"], Z)
         b, late, k = (_read(c[n]) for n in ("damping", "sample_time", "stiffness"))
@@ -101,6 +104,24 @@ def _read(text: str, *names: sp.Symbol) -> sp.Expr:
     if e.free_symbols - {*names}:
         raise ValueError(f"record: unknown names in {text[:60]}")
     return e
+
+
+def _growing_mode(c: dict[str, Any]) -> GrowingMode:
+    z = sp.ImmutableMatrix([[_read(e, S) for e in row] for row in c["impedance"]])
+    first, second = (
+        CLAMPED if held == "clamped" else _held(*(_fraction(x) for x in held))
+        for held in c["terminations"]
+    )
+    one, other = (complex(*v) for v in c["velocity"])
+    at = _fraction(c["rate"]), _fraction(c["frequency"])
+    mode = GrowingMode(z, (first, second), *at, (one, other))
+    if not mode.is_confirmed():
+        raise ValueError("the two-port does not grow between these terminations")
+    return mode
+
+
+def _held(damping: Fraction, inertia: Fraction, stiffness: Fraction) -> Termination:
+    return Termination(damping, inertia, stiffness)
 
 
 def _tuples(value: Any) -> Any:

@@ -4,10 +4,11 @@
 
 Forces act from outside on the device and velocities point the same way, so that power flows in at
 both ports. Passive (Raisbeck): no motion of the ports takes energy out. Absolutely stable
-(Llewellyn): no two passive terminations, one at each port, make it unstable. Passive implies
+(Llewellyn): no two passive terminations, one at each port, make it grow. Passive implies
 absolutely stable. Dead times are exact: e^(-s T) is evaluated, not approximated.
 
-Llewellyn, Proc. IRE 40 (1952) 271.
+Llewellyn, Proc. IRE 40 (1952) 271; his inequality on the axis is one of the conditions: all of them
+stand in `absolute_stability.py`.
 """
 
 from __future__ import annotations
@@ -42,11 +43,16 @@ class TwoPort:
 
     def over(self, frequency: np.ndarray) -> np.ndarray:
         """Values at frequency (Hz), (n, 2, 2)."""
-        s = 2j * np.pi * np.asarray(frequency, dtype=float)
+        return self.at(2j * np.pi * np.asarray(frequency, dtype=float))
+
+    def at(self, s: np.ndarray) -> np.ndarray:
+        """Values at complex s (1/s), (n, 2, 2)."""
+        s = np.asarray(s, dtype=complex)
         out = np.empty((len(s), 2, 2), dtype=complex)
         for i in range(2):
             for j in range(2):
-                out[:, i, j] = sp.lambdify(S, self.z[i, j], "numpy")(s)
+                with np.errstate(all="ignore"):  # a pole is infinite, a late term far out is 0
+                    out[:, i, j] = sp.lambdify(S, self.z[i, j], "numpy")(s)
         return out
 
 
@@ -91,25 +97,28 @@ def teleoperator(
 
 @dataclass(frozen=True)
 class FrequencyMargins:
-    """Margins over frequency (Hz), (n,) each; numerical.
+    """Margins on the axis over frequency (Hz), (n,) each; numerical.
+
+    Needed, not enough: poles in the right half plane and residues at poles on the axis do not show.
+    `passive` and `absolutely_stable` settle the whole.
 
     passive: smallest eigenvalue of the Hermitian part (N s/m): < 0 where a motion takes energy out
-    absolutely_stable: (2 Re z11 Re z22 - Re z12 z21)/abs(z12 z21) - 1, dimensionless; -inf where
+    llewellyn: (2 Re z11 Re z22 - Re z12 z21)/abs(z12 z21) - 1, dimensionless; -inf where
         Re z11 or Re z22 < 0; < 0 where some pair of terminations makes it unstable
     """
 
     frequency: np.ndarray
     passive: np.ndarray
-    absolutely_stable: np.ndarray
+    llewellyn: np.ndarray
 
     def graph(self) -> Graph:
-        """Margin of absolute stability over frequency."""
+        """Llewellyn's margin over frequency: below the limit unstable, above it not yet stable."""
         f = self.frequency
         series = (
-            Series("absolute stability", f, self.absolutely_stable, "model"),
-            Series("limit", f[[0, -1]], np.zeros(2), "limit"),
+            Series("Llewellyn's margin", f, self.llewellyn, "model"),
+            Series("needed, not enough", f[[0, -1]], np.zeros(2), "limit"),
         )
-        return Graph("frequency (Hz)", "margin of absolute stability (1)", series)
+        return Graph("frequency (Hz)", "Llewellyn's margin on the axis (1)", series)
 
 
 def over_frequency(system: TwoPort, frequency: np.ndarray | None = None) -> FrequencyMargins:
@@ -125,7 +134,7 @@ def passive_margin(z: np.ndarray) -> np.ndarray:
 
 
 def stable_margin(z: np.ndarray) -> np.ndarray:
-    """Llewellyn's stability parameter minus 1; z: (n, 2, 2)."""
+    """Llewellyn's stability parameter minus 1; z: (n, 2, 2), on the axis."""
     r1, r2, loop = z[:, 0, 0].real, z[:, 1, 1].real, z[:, 0, 1] * z[:, 1, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
         margin = (2 * r1 * r2 - loop.real) / np.abs(loop) - 1

@@ -1,5 +1,7 @@
 """Two-ports: Raisbeck's and Llewellyn's criteria, exact, over frequency and with exact delay."""
 
+import json
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -10,10 +12,13 @@ from teleopdesign.passivity import (
     delayed_spring,
     over_frequency,
     passive,
+    read_record,
     region,
     teleoperator,
     two_port,
+    write_record,
 )
+from teleopdesign.passivity.delayed_two_port import obstacles
 from teleopdesign.realise.lti import S
 
 MASTER, SLAVE = 0.2 * S + 1, 0.5 * S + 1
@@ -116,7 +121,7 @@ def test_a_reciprocal_two_port_is_passive_where_it_is_absolutely_stable():
     """With z12 = z21 both criteria are r11 r22 >= (Re z12)^2, also with equal delays each way."""
     f = np.geomspace(0.1, 1000, 200)
     margins = over_frequency(coupled(stiffness=1250, delay=1e-3), f)
-    assert np.array_equal(margins.passive >= 0, margins.absolutely_stable >= 0)
+    assert np.array_equal(margins.passive >= 0, margins.llewellyn >= 0)
     assert passive(coupled(stiffness=900, delay=1e-3)).holds
     assert passive(coupled(stiffness=1100, delay=1e-3)).status == "refuted"
 
@@ -125,7 +130,7 @@ def test_margins_over_frequency_change_sign_where_the_criterion_says():
     """b_m b_s against (P T sinc(w T))^2: with P T = 1.25 the margin crosses where sinc = 0.8."""
     f = np.linspace(1.0, 400.0, 3991)
     margins = over_frequency(coupled(stiffness=1250, delay=1e-3), f)
-    crossing = f[np.flatnonzero(margins.absolutely_stable >= 0)[0]]
+    crossing = f[np.flatnonzero(margins.llewellyn >= 0)[0]]
     y = 2 * np.pi * crossing * 1e-3
     assert np.sin(y) / y == pytest.approx(0.8, abs=2e-4)  # steps of 0.1 Hz
     assert margins.graph().x_label == "frequency (Hz)"
@@ -152,7 +157,7 @@ def test_passivity_by_the_sweep_agrees_with_the_exact_verdict(number):
         margins = over_frequency(system)
         for claim, margin in (
             (passive(system), margins.passive),
-            (absolutely_stable(system), margins.absolutely_stable),
+            (absolutely_stable(system), margins.llewellyn),
         ):
             if abs(np.min(margin)) > 1e-9:
                 assert claim.status == ("proved" if np.min(margin) > 0 else "refuted"), z
@@ -161,6 +166,165 @@ def test_passivity_by_the_sweep_agrees_with_the_exact_verdict(number):
 def test_a_double_integrator_between_the_ports_is_not_called_stable():
     """z12 = 0, so Llewellyn's inequality holds; yet what passes through 1/s^2 grows."""
     assert absolutely_stable(two_port([[1, 0], [1 / S**2, 1]])).holds is not True
+
+
+AT_INFINITY = [[S + 1, S], [S, 1 + S / 2]]
+AT_ZERO = [[1, 1 / S], [1 / S, 1]]
+LOOSE = [[S + 1 + 1 / S, 2 / S], [2 / S, S + 1 + 1 / S]]
+TANK = S / (S**2 + 2)
+
+
+@pytest.mark.parametrize(
+    ("z", "where"),
+    [
+        (LOOSE, "at s = 0"),
+        (AT_ZERO, "at s = 0"),
+        (AT_INFINITY, "at infinity"),
+        ([[0, TANK], [TANK, 1]], "at 1.414 rad/s"),
+        ([[TANK, TANK], [TANK, sp.Rational(999999, 1000000) * TANK]], "at 1.414 rad/s"),
+        ([[1 + TANK, 2 * TANK], [2 * TANK, 1 + TANK]], "at 1.414 rad/s"),
+    ],
+)
+def test_residues_that_the_axis_does_not_show_refute(z, where):
+    """Llewellyn's inequality holds at every frequency, but the two-port grows between its ports."""
+    system = two_port(z)
+    assert np.min(over_frequency(system).llewellyn) > -1e-9
+    claim = absolutely_stable(system)
+    assert claim.status == "refuted"
+    assert where in claim.verdict.method
+    assert claim.record.is_confirmed()
+    assert claim.record.replay() == pytest.approx(claim.record.energy, rel=1e-6)
+
+
+def test_a_slave_that_falls_over_is_refuted():
+    """-k/s at the slave, weaker than the coupling: port 2 alone is passive, the pair is not."""
+    falls = coupled(master=S + 1, slave=S + 1 - 1 / S, stiffness=10)
+    assert absolutely_stable(falls).status == "refuted"
+    assert passive(falls).status == "refuted"
+    assert "k11 k22" in absolutely_stable(falls).verdict.method
+
+
+@pytest.mark.parametrize(
+    "z",
+    [
+        [[1, 1 / (S - 1)], [0, 1]],  # port 2 does not see it
+        [[1, 1 / (S - 1)], [S - 1, 1]],  # cancelled in the product
+        [[1, (S - 1) / (S + 1)], [(S + 1) / (S - 1) / 9, 1]],
+        [[1, 1 / (S**2 - S + 3)], [1 / (S + 1), 1]],
+        [[1 / (S**2 - S + 3), 0], [0, 1]],
+    ],
+)
+def test_a_mode_that_grows_by_itself_is_refuted(z):
+    claim = absolutely_stable(two_port(z))
+    assert claim.status == "refuted"
+    assert "open right half plane" in claim.verdict.method
+    assert claim.record.is_confirmed()
+    assert claim.record.energy > 0
+
+
+@pytest.mark.parametrize(
+    "z",
+    [
+        [[0, 1], [-1, 0]],  # ideal gyrator: no port has an impedance of its own
+        [[1, 1], [1, 1]],  # equality at every frequency
+        [[1 + 1 / S, 1 / S], [1 / S, 1 + 1 / S]],  # equality of residues
+        [[TANK + 1, TANK], [TANK, TANK]],
+        [[S, -S], [-S, S]],
+        [[1, 1 / S], [S, 1]],  # the product is a number
+        [[1, 1 / S], [0, 1]],
+        [[1 + 2 * TANK, 3 * TANK], [TANK / 2, 1 + TANK]],  # not reciprocal: 2 >= 3/2
+    ],
+)
+def test_equality_and_degenerate_two_ports_are_proved(z):
+    assert absolutely_stable(two_port(z)).status == "proved"
+
+
+def test_a_multiple_pole_on_the_axis_is_left_unknown_and_named():
+    for z in ([[1, 0], [1 / S**2, 1]], [[1, S**2], [0, 1]], [[1, 1 / (S**2 + 1) ** 2], [0, 1]]):
+        claim = absolutely_stable(two_port(z))
+        assert claim.status == "unknown"
+        assert "simple" in claim.verdict.why
+
+
+def test_a_proof_says_that_residues_are_no_part_of_its_certificates():
+    assert "residues" in absolutely_stable(coupled()).verdict.method
+
+
+def test_a_growing_mode_is_written_and_read_back(tmp_path):
+    for z in (AT_ZERO, [[S + 1, 3], [1, S + 1]], [[1, 0], [0, -1]], [[1, 1 / (S - 1)], [0, 1]]):
+        record = absolutely_stable(two_port(z)).record
+        write_record(record, tmp_path / "motion.json")
+        assert read_record(tmp_path / "motion.json") == record
+
+
+@pytest.mark.parametrize("held", [["9", "0", "0"], ["-1", "0", "0"]])
+def test_a_growing_mode_with_other_terminations_is_refused(tmp_path, held):
+    """Damped enough it does not grow; a negative damper is not passive."""
+    record = absolutely_stable(two_port([[1, 1], [2, 1]])).record
+    content = record.as_dict() | {"terminations": [held, ["9", "0", "0"]]}
+    (tmp_path / "motion.json").write_text(json.dumps(content))
+    with pytest.raises(ModelError, match="no record of a motion"):
+        read_record(tmp_path / "motion.json")
+
+
+def test_coefficients_too_long_for_a_certificate_leave_evidence():
+    """Microseconds and hundred-thousandths of a newton second per metre: 4300 digits and more."""
+    tank = S / (S**2 / 10**12 + sp.Rational(7, 9))
+    z11, z22 = (sp.Rational(1517, 103680 * 10**9) * S, sp.Rational(1481, 196 * 10**11) * S)
+    z12 = sp.Rational(151, 63 * 10**11) * S + 37 * tank / (35 * 10**11)
+    z11 += 29 * tank / (245 * 10**10) + sp.Rational(1, 800000)
+    z22 += 349 * tank / (225 * 10**11) + sp.Rational(3, 10**5)
+    claim = absolutely_stable(two_port([[z11, z12], [z12, z22]]))
+    assert claim.status in ("proved", "evidence")
+    assert claim.holds
+
+
+LATE = sp.exp(-S / 1000)
+
+
+@pytest.mark.parametrize(
+    "z",
+    [
+        [[1, LATE / S], [LATE / S, 1]],  # residues at 0
+        [[S + 1 + 1 / S, 2 * LATE / S], [2 * LATE / S, S + 1 + 1 / S]],
+        [[S + 1, S], [S, 1 + S / 2 + LATE / (S + 1)]],  # at infinity
+        [[1 + TANK, 2 * TANK * LATE], [2 * TANK * LATE, 1 + TANK]],  # at a pole on the axis
+        [[1, LATE / (S - 1)], [0, 1]],  # grows by itself
+        [[1, LATE / (S - 1)], [sp.Rational(1, 10), 1]],
+        [[1, S * LATE / 10**9], [S * LATE / 10**9, 1]],  # fails far beyond the sweep
+        [[1, 0], [LATE / S**2, 1]],
+        [[1, 0], [0, 1 / (S + 1 - LATE)]],  # poles that nobody counted
+    ],
+)
+def test_with_delay_no_evidence_is_given_for_what_the_axis_does_not_show(z):
+    for claim in (absolutely_stable(two_port(z)), passive(two_port(z))):
+        assert claim.holds is not True
+
+
+def test_with_delay_the_limit_of_low_frequency_counts():
+    """b_m b_s against (P T)^2 within a millionth: it is in slow motion that they meet."""
+    late = sp.exp(-S)
+    for product, evidence in (
+        (1 + sp.Rational(1, 10**6), True),
+        (1 - sp.Rational(1, 10**6), False),
+    ):
+        z = [[1 + 1 / S, late / S], [late / S, product + 1 / S]]
+        found = obstacles(two_port(z), "absolutely stable")
+        assert bool(found) is not evidence
+
+
+def test_with_delay_a_residue_that_refutes_is_found():
+    claim = absolutely_stable(two_port([[1, LATE / S], [LATE / S, 1]]))
+    assert claim.status == "refuted"
+    assert claim.record.replay() > 0
+
+
+def test_residues_that_are_not_semidefinite_are_not_passive():
+    """At 0, at infinity and on the axis, with lossy ports whose real part shows nothing."""
+    for z in (LOOSE, AT_ZERO, AT_INFINITY, [[1 + TANK, 2 * TANK], [2 * TANK, 1 + TANK]]):
+        claim = passive(two_port(z))
+        assert claim.status == "refuted"
+        assert claim.record.energy > 0
 
 
 def test_negative_inertia_or_delay_is_one_clear_line():

@@ -1,0 +1,273 @@
+"""Absolute stability of a rational two-port: Llewellyn's criterion with what it leaves out, exact.
+
+Z(s) is a 2x2 matrix of rational functions with real coefficients, k_ij the residue of z_ij at a
+pole on the axis (at infinity: the coefficient of s), L = z12 z21. The claim: no pair of
+positive-real terminations (Z1, Z2) for which (Z + diag(Z1, Z2))^-1 exists gives it a pole in the
+open right half plane. It holds if, and but for the second line of 2 only if,
+
+    1. z11 and z22 are positive real;
+    2. z12 and z21 have no pole in the open right half plane,
+       and their poles on the axis, infinity included, are simple;
+    3. A = 2 Re z11 Re z22 - Re L >= |L| at every w that is no pole;
+    4. 2 k11 k22 - Re(k12 k21) >= |k12 k21| at every pole on the axis, 0 and infinity included
+       (given 3, k12 k21 is real and >= 0 there, so that this is k11 k22 >= k12 k21).
+
+Llewellyn's inequality is 3. Without 4 it calls [[1, 1/s], [1/s, 1]] stable, whose pole with both
+ports free lies at s = 1: at a lossless pole the axis shows nothing.
+
+Enough. Given 3, L has no simple pole on the axis: L ~ l/(j u) near it, u = w - w0, and one sign of
+u makes A < |L|. At a double one, L ~ -k12 k21/u^2 while Re z_ii stay bounded, so k12 k21 > 0. Let n
+= z22 + Z2 be not identically 0: positive real, so without zero in the open half plane, and z_in =
+z11 - L/n has no pole there by 1 and 2. On the axis Re n >= Re z22, and Re(L/n) <= (|L| + Re L)/(2
+Re n), so Re z_in >= 0 by 3; where Re n = 0, 3 makes L real and <= 0, and Re(L/n) = 0. Poles of z_in
+on the axis are simple with residue >= 0: where n has a pole with residue K >= k22 > 0 it is k11 -
+k12 k21/K >= 0 by 4; where k22 = 0, L has no pole by 4, and the residue is k11, or k11 - L/n' where
+n has a zero, with n' > 0 and L <= 0 by 3 (in the limit, if z11 has a pole there). Infinity is the
+same with 1/s for s. So z_in is positive real; det = n (z_in + Z1) is zero nowhere in the open half
+plane or everywhere, and adj/det has no pole there.
+The rest: n = 0 identically makes z22 and -z22 positive real, so z22 = Z2 = 0. Then L has no pole in
+the closed half plane and is real and <= 0 on the axis, so L(s) = L(-s) = -c: a gyrator's product.
+If c > 0, z12 = -c/z21 and z21 have neither pole nor zero in the open half plane, and the inverse,
+[[0, 1/z21], [1/z12, (z11 + Z1)/c]], has no pole there. If c = 0, or z_in + Z1 = 0 identically, no
+inverse exists: velocities are not determined (a free port without mass), and nothing is claimed.
+With port 2 clamped, z11 + Z1 is left, positive real by 1.
+
+Needed. 1: a port whose z_ii is not positive real oscillates with the other one clamped. 2: a pole
+s0 of L in the open half plane is a pole of z_in, which takes every value near it; if z12 has a pole
+there and L has none, the inverse has it. 3: where it fails at w, a reactance and a damper at port 2
+give Re z_in < 0 beside j w. 4: where it fails at j w0, s = j w0 + d and Z2 of the size c/d, c
+small, give z_in ~ (k11 - k12 k21/(k22 + c))/d < 0. Then Z1 = -z_in(s), which a damper with a mass
+or a spring can be wherever abs(arg) <= arg s, so near the axis. `growing_mode.py` finds them.
+Where 2 fails by a multiple pole on the axis alone, what passes through grows like time or faster,
+but no pole need lie in the open half plane: then nothing is claimed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import isnan
+
+from .fraction_polynomials import (
+    Polynomial,
+    add,
+    derivative,
+    divide,
+    first_root,
+    greatest_common_divisor,
+    halves,
+    is_free_of_growth,
+    is_non_negative,
+    is_positive_real,
+    multiply,
+    odd_part,
+    real_part,
+    signs_at_roots,
+    value,
+    without_zero,
+)
+
+#: numerator and denominator, coprime
+Ratio = tuple[Polynomial, Polynomial]
+#: z11, z12, z21, z22
+Entries = tuple[Ratio, Ratio, Ratio, Ratio]
+_NAMES = ("z11", "z12", "z21", "z22")
+_ONE = [Fraction(1)]
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One of the conditions: what it asks for, whether it holds, where it fails ("": not told)."""
+
+    name: str
+    holds: bool
+    where: str = ""
+
+    def __str__(self) -> str:
+        return self.name if self.holds else f"not so: {self.name}{self.where and ', ' + self.where}"
+
+
+def conditions(z: Entries) -> tuple[Condition, ...]:
+    """All conditions of the claim, each decided in rational arithmetic.
+
+    z: coprime numerators and denominators of z11, z12, z21, z22
+    """
+    return (
+        *(_positive_real(_NAMES[k], z[k]) for k in (0, 3)),
+        *(_without_growth(_NAMES[k], z[k]) for k in (1, 2)),
+        *(_simple_poles(_NAMES[k], z[k]) for k in (1, 2)),
+        *_inequality(z),
+        *_residues(z),
+    )
+
+
+def coprime(p: Polynomial, q: Polynomial) -> Ratio:
+    """p/q without common factors; q monic, not zero."""
+    common = greatest_common_divisor(p, q)
+    above, below = divide(p, common)[0], divide(q, common)[0]
+    return [c / below[-1] for c in above], [c / below[-1] for c in below]
+
+
+def _positive_real(name: str, z: Ratio) -> Condition:
+    where = "a pole on the axis or at infinity has no residue > 0, or is multiple"
+    if not is_free_of_growth(z[1]):
+        where = "a pole in the open right half plane"
+    elif not is_non_negative(real := real_part(*z)):
+        where = f"its real part is negative {_beside(real)}"
+    holds = is_positive_real(*z)
+    return Condition(f"{name} is positive real", holds, "" if holds else where)
+
+
+def _without_growth(name: str, z: Ratio) -> Condition:
+    name = f"{name} has no pole in the open right half plane"
+    return Condition(name, is_free_of_growth(z[1]))
+
+
+def _simple_poles(name: str, z: Ratio) -> Condition:
+    """On the axis and at infinity."""
+    p, q = z
+    multiple = greatest_common_divisor(q, derivative(q))
+    even, odd = halves(multiple)
+    on_axis = greatest_common_divisor(even, odd)
+    finite = value(multiple, 0) != 0 and sum(signs_at_roots(_ONE, on_axis)) == 0
+    infinite = len(p) <= len(q) + 1
+    where = "" if finite else "on the axis"
+    return Condition(
+        f"every pole of {name} on the axis and at infinity is simple",
+        finite and infinite,
+        where if infinite else "at infinity",
+    )
+
+
+def _inequality(z: Entries) -> Iterator[Condition]:
+    """Condition 3 as two polynomials in x = w^2, times denominators that are never negative."""
+    difference, twice = llewellyn(z)
+    for name, p in (
+        ("2 Re z11 Re z22 - Re z12 z21 >= 0 on the axis", difference),
+        ("(2 Re z11 Re z22 - Re z12 z21)^2 >= abs(z12 z21)^2 on the axis", twice),
+    ):
+        holds = is_non_negative(p)
+        yield Condition(name, holds, "" if holds else _beside(p))
+
+
+def llewellyn(z: Entries) -> tuple[Polynomial, Polynomial]:
+    """A and A^2 - abs(z12 z21)^2 in x = w^2, times squares that are never negative."""
+    loop = coprime(multiply(z[1][0], z[2][0]), multiply(z[1][1], z[2][1]))
+    (r1, d1), (r2, d2) = (_real_ratio(one) for one in (z[0], z[3]))
+    re, d = real_part(*loop), real_part(loop[1], loop[1])
+    a = add(multiply([Fraction(2)], r1, r2, d), multiply(re, d1, d2), -1)
+    size = multiply(real_part(loop[0], loop[0]), d, d1, d1, d2, d2)
+    return a, add(multiply(a, a), size, -1)
+
+
+def _real_ratio(z: Ratio) -> tuple[Polynomial, Polynomial]:
+    """Re z = r/d in x, without common factors if d is then still nowhere negative."""
+    r, d = real_part(*z), real_part(z[1], z[1])
+    common = greatest_common_divisor(r, d)
+    short = divide(d, common)[0]
+    return (divide(r, common)[0], short) if is_non_negative(short) else (r, d)
+
+
+def _beside(p: Polynomial) -> str:
+    """About where p < 0 begins, in rad/s."""
+    odd = odd_part(p)
+    x = first_root([Fraction(-1)], odd)
+    return "at every frequency" if isnan(x) else f"beside {x**0.5:.4g} rad/s"
+
+
+def _residues(z: Entries) -> Iterator[Condition]:
+    """Condition 4: at 0, at infinity, and at the poles j w that z12 and z21 share."""
+    name = "the residues have 2 k11 k22 - Re k12 k21 >= abs(k12 k21)"
+    yield Condition(f"{name} at s = 0", _balanced([_at_zero(one) for one in z]))
+    yield Condition(f"{name} at infinity", _balanced([_at_infinity(one) for one in z]))
+    shared = both = greatest_common_divisor(axis_poles(z[1][1]), axis_poles(z[2][1]))
+    for one in (z[0], z[3]):
+        both = greatest_common_divisor(both, axis_poles(one[1]))
+    alone = divide(shared, both)[0]
+    name = f"{name} at s = j w"
+    for poles, own in ((both, True), (alone, False)):
+        tests = residue_tests(z, own=own)
+        wrong = [f for f in tests if signs_at_roots(f, poles)[0]]
+        if wrong:
+            where = f"at {first_root(wrong[0], poles) ** 0.5:.4g} rad/s"
+            yield Condition(name, False, where)
+            return
+    yield Condition(name, True)
+
+
+def residue_tests(z: Entries, *, own: bool) -> tuple[Polynomial, Polynomial]:
+    """B and B^2 - C^2 in x = w^2, >= 0 at the poles that meet condition 4.
+
+    B = 2 k11 k22 - Re k12 k21 and C = abs(k12 k21), both times the same positive number, with
+    k = p/q' at the simple zeros j w of q. own: whether z11 and z22 have that pole as well
+    """
+    (p11, q11), (p12, q12), (p21, q21), (p22, q22) = ((p, derivative(q)) for p, q in z)
+    above, below = multiply(p12, p21), multiply(q12, q21)
+    size, cross = real_part(below, below), real_part(above, below)
+    passed = multiply(real_part(above, above), size)
+    if not own:
+        return [-c for c in cross], add(multiply(cross, cross), passed, -1)
+    kept = real_part(multiply(p11, p22), multiply(q11, q22))
+    weight = real_part(multiply(q11, q22), multiply(q11, q22))
+    b = add(multiply([Fraction(2)], kept, size), multiply(cross, weight), -1)
+    return b, add(multiply(b, b), multiply(passed, weight, weight), -1)
+
+
+def axis_poles(q: Polynomial) -> Polynomial:
+    """Polynomial in x whose roots x > 0 are w^2 of the zeros j w of q."""
+    return without_zero(greatest_common_divisor(*halves(q)))
+
+
+def _at_zero(z: Ratio) -> Fraction:
+    """Residue at s = 0; 0 where no simple pole is."""
+    p, q = z
+    return value(p, 0) / q[1] if q[0] == 0 and q[1] != 0 else Fraction(0)
+
+
+def _at_infinity(z: Ratio) -> Fraction:
+    """Coefficient of s; 0 where z does not grow like s."""
+    p, q = z
+    return p[-1] / q[-1] if len(p) == len(q) + 1 else Fraction(0)
+
+
+def _balanced(k: Sequence[Fraction]) -> bool:
+    return 2 * k[0] * k[3] - k[1] * k[2] >= abs(k[1] * k[2])
+
+
+def grows_between(z: Entries, held: tuple[Ratio, Ratio]) -> bool:
+    """Whether (Z + diag(held))^-1 has a pole in the open right half plane, by Routh's scheme.
+
+    False also where the inverse does not exist.
+    """
+    det, (z11, z22) = _closed(z, held)
+    if not det[0]:
+        return False
+    closed = (_product(one, (det[1], det[0])) for one in (z11, z[1], z[2], z22))
+    return not all(is_free_of_growth(q) for _, q in closed)
+
+
+def hidden_poles(z: Entries, held: tuple[Ratio, Ratio], k: int) -> Polynomial:
+    """Polynomial whose zeros are poles of z[k] (k = 1 or 2) and of that entry of the closed loop.
+
+    Those at which the loop's determinant is finite: the other port rests. Without a determinant: 1
+    """
+    det, _ = _closed(z, held)
+    if not det[0] or len(greatest_common_divisor(det[1], z[k][1])) > 1:
+        return _ONE
+    return greatest_common_divisor(_product(z[k], (det[1], det[0]))[1], z[k][1])
+
+
+def _closed(z: Entries, held: tuple[Ratio, Ratio]) -> tuple[Ratio, tuple[Ratio, Ratio]]:
+    """Determinant and diagonal of Z + diag(held)."""
+    z11, z22 = (_sum(one, end) for one, end in zip((z[0], z[3]), held, strict=True))
+    loop = _product(z[1], z[2])
+    return _sum(_product(z11, z22), ([-c for c in loop[0]], loop[1])), (z11, z22)
+
+
+def _sum(a: Ratio, b: Ratio) -> Ratio:
+    return coprime(add(multiply(a[0], b[1]), multiply(b[0], a[1])), multiply(a[1], b[1]))
+
+
+def _product(a: Ratio, b: Ratio) -> Ratio:
+    return coprime(multiply(a[0], b[0]), multiply(a[1], b[1]))

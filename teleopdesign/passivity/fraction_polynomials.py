@@ -1,0 +1,223 @@
+"""Polynomials as lists of Fractions, lowest power first: exact answers without any library.
+
+Each function stands on the Fractions of Python alone, so that a checker may carry this file. The
+zero polynomial is []. On the axis s = j w polynomials in s become polynomials in x = w^2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from math import gcd, lcm
+
+Polynomial = list[Fraction]
+#: relative error of a root that is written down for people; no decision rests on it
+_SHOWN = Fraction(1, 10**4)
+
+
+def polynomial(coefficients: Iterable[Fraction | int]) -> Polynomial:
+    """From coefficients, lowest power first; zeros at the top are dropped."""
+    p = [Fraction(c) for c in coefficients]
+    while p and p[-1] == 0:
+        p.pop()
+    return p
+
+
+def add(p: Polynomial, q: Polynomial, factor: Fraction | int = 1) -> Polynomial:
+    """p + factor q."""
+    n = max(len(p), len(q))
+    padded = (r + [Fraction(0)] * (n - len(r)) for r in (p, q))
+    return polynomial(a + factor * b for a, b in zip(*padded, strict=True))
+
+
+def multiply(*factors: Polynomial) -> Polynomial:
+    """The product of all factors."""
+    product = [Fraction(1)]
+    for q in factors:
+        found = [Fraction(0)] * max(len(product) + len(q) - 1, 0)
+        for i, a in enumerate(product):
+            for j, b in enumerate(q):
+                found[i + j] += a * b
+        product = polynomial(found)
+    return product
+
+
+def divide(p: Polynomial, q: Polynomial) -> tuple[Polynomial, Polynomial]:
+    """(quotient, remainder); q is not zero."""
+    rest, quotient = list(p), [Fraction(0)] * max(len(p) - len(q) + 1, 0)
+    for k in range(len(p) - len(q), -1, -1):
+        ratio = quotient[k] = rest[k + len(q) - 1] / q[-1]
+        if ratio:
+            for i, b in enumerate(q):
+                rest[k + i] -= ratio * b
+    return polynomial(quotient), polynomial(rest[: len(q) - 1])
+
+
+def small(p: Polynomial) -> Polynomial:
+    """p times a positive number that makes its coefficients coprime integers: same signs."""
+    if not p:
+        return p
+    below = lcm(*(c.denominator for c in p))
+    whole = [(c * below).numerator for c in p]
+    common = gcd(*whole)
+    return [Fraction(c // common) for c in whole]
+
+
+def greatest_common_divisor(p: Polynomial, q: Polynomial) -> Polynomial:
+    """Monic, by Euclid's scheme; [] where both are zero."""
+    while q:
+        p, q = q, small(divide(p, q)[1])
+    return [c / p[-1] for c in p]
+
+
+def derivative(p: Polynomial) -> Polynomial:
+    """dp/ds."""
+    return polynomial(k * c for k, c in enumerate(p) if k)
+
+
+def value(p: Polynomial, at: Fraction | int) -> Fraction:
+    """p at a rational point."""
+    total = Fraction(0)
+    for c in reversed(p):
+        total = total * at + c
+    return total
+
+
+def halves(p: Polynomial) -> tuple[Polynomial, Polynomial]:
+    """(a, b) with p(j w) = a(w^2) + j w b(w^2)."""
+    even, odd = (polynomial((-1) ** k * c for k, c in enumerate(p[start::2])) for start in (0, 1))
+    return even, odd
+
+
+def real_part(p: Polynomial, q: Polynomial) -> Polynomial:
+    """Re p(j w) conj q(j w), in x = w^2."""
+    (a, b), (c, d) = halves(p), halves(q)
+    return add(multiply(a, c), [Fraction(0), *multiply(b, d)] if b and d else [])
+
+
+def is_hurwitz(p: Polynomial) -> bool:
+    """Whether every root has a negative real part (Routh); False for the zero polynomial."""
+    if not p:
+        return False
+    falling = [c / p[-1] for c in reversed(p)]
+    upper, lower = falling[::2], falling[1::2]
+    for _ in falling[1:]:
+        if not lower or lower[0] <= 0:
+            return False
+        ratio = upper[0] / lower[0]
+        below = lower + [Fraction(0)] * (len(upper) - len(lower))
+        upper, lower = lower, [u - ratio * v for u, v in zip(upper[1:], below[1:], strict=True)]
+    return True
+
+
+def is_positive_real(p: Polynomial, q: Polynomial) -> bool:
+    """Whether p/q, coprime, is positive real: p + q is Hurwitz, and Re p conj q >= 0 on the axis.
+
+    For then (p - q)/(p + q) is bounded by 1 in the right half plane; improper p/q too.
+    """
+    return is_hurwitz(add(p, q)) and is_non_negative(real_part(p, q))
+
+
+def is_free_of_growth(q: Polynomial) -> bool:
+    """Whether no root of q lies in the open right half plane: iff q'/q is positive real.
+
+    q'/q is the sum of 1/(s - root), so that its real part on the axis is that of decaying roots.
+    """
+    plain = square_free(q)
+    return len(plain) < 2 or is_positive_real(derivative(plain), plain)
+
+
+def square_free(p: Polynomial) -> Polynomial:
+    """The polynomial with the same roots, each once."""
+    if len(p) < 2:
+        return p
+    return divide(p, greatest_common_divisor(p, derivative(p)))[0]
+
+
+def odd_part(p: Polynomial) -> Polynomial:
+    """The product of (x - root) over roots of odd multiplicity (Yun); p not zero."""
+    product = [Fraction(1)]
+    common = greatest_common_divisor(p, derivative(p)) if len(p) > 1 else [Fraction(1)]
+    rest, slope = divide(p, common)[0], divide(derivative(p), common)[0]
+    slope, multiplicity = add(slope, derivative(rest), -1), 1
+    while len(rest) > 1:
+        factor = greatest_common_divisor(rest, slope)
+        if multiplicity % 2:
+            product = multiply(product, factor)
+        rest, slope = divide(rest, factor)[0], divide(slope, factor)[0]
+        slope, multiplicity = add(slope, derivative(rest), -1), multiplicity + 1
+    return product
+
+
+def is_non_negative(p: Polynomial) -> bool:
+    """Whether p(x) >= 0 for all x >= 0: no root of odd multiplicity at x > 0, and p > 0 far out."""
+    if not p:
+        return True
+    g = without_zero(odd_part(p))
+    return p[-1] > 0 and (len(g) < 2 or _surplus(_chain([Fraction(1)], g), None) == 0)
+
+
+def without_zero(p: Polynomial) -> Polynomial:
+    """p without its roots at 0."""
+    start = next((k for k, c in enumerate(p) if c), len(p))
+    return p[start:]
+
+
+def signs_at_roots(f: Polynomial, g: Polynomial) -> tuple[int, int, int]:
+    """How many roots x > 0 of g (each once) have f < 0, f = 0, f > 0.
+
+    By the theorem of Sturm and Tarski: the variations of the signed remainders of (g, g' f) at the
+    two ends differ by the number of roots with f > 0 less that with f < 0.
+    """
+    surplus, nonzero, total = (_surplus(chain, None) for chain in _chains(f, g))
+    return (nonzero - surplus) // 2, total - nonzero, (nonzero + surplus) // 2
+
+
+def _chains(f: Polynomial, g: Polynomial) -> list[list[Polynomial]]:
+    """The chains that count f, f^2 and 1 at the positive roots of g."""
+    g = square_free(without_zero(g))
+    if len(g) < 2:
+        return [[], [], []]
+    f = divide(f, g)[1]
+    return [_chain(h, g) for h in (f, divide(multiply(f, f), g)[1], [Fraction(1)])]
+
+
+def _chain(f: Polynomial, g: Polynomial) -> list[Polynomial]:
+    """Signed remainders of (g, g' f); g(0) != 0, g free of squares and not constant."""
+    chain = [small(g), small(divide(multiply(derivative(g), f), g)[1])]
+    while chain[-1]:
+        chain.append(small([-c for c in divide(chain[-2], chain[-1])[1]]))
+    return chain[:-1]
+
+
+def _surplus(chain: list[Polynomial], below: Fraction | None) -> int:
+    """Sum of the signs of f at the roots 0 < x < below of g, or x > 0 where `below` is None."""
+    at_end = [p[-1] if below is None else value(p, below) for p in chain]
+    return _variations([p[0] for p in chain]) - _variations(at_end)
+
+
+def _variations(values: Sequence[Fraction]) -> int:
+    signs = [v > 0 for v in values if v]
+    return sum(a != b for a, b in zip(signs, signs[1:], strict=False))
+
+
+def first_root(f: Polynomial, g: Polynomial) -> float:
+    """About the least root x > 0 of g at which f < 0, to be shown to people; NaN where none is."""
+    chains = _chains(f, g)[:2]
+
+    def lies_below(x: Fraction | None) -> bool:
+        surplus, nonzero = (_surplus(chain, x) for chain in chains)
+        return nonzero > surplus
+
+    if not lies_below(None):
+        return float("nan")
+    low = Fraction(1)
+    while not lies_below(2 * low):
+        low *= 2
+    while lies_below(low):
+        low /= 2
+    high = 2 * low
+    while high - low > _SHOWN * high:
+        middle = (low + high) / 2
+        low, high = (low, middle) if lies_below(middle) else (middle, high)
+    return float(high)

@@ -1,0 +1,101 @@
+"""Absolute stability against an attacker that knows no criterion: no proof falls, no motion fails.
+
+Most systems are made so that the axis alone shows nothing, or next to nothing: see KINDS.
+"""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+import sympy as sp
+from passivity.random_two_ports import KINDS, attack, is_free_motion, random_two_port
+
+from teleopdesign.passivity import absolutely_stable, passive, two_port
+from teleopdesign.passivity.absolute_stability import conditions
+from teleopdesign.passivity.growing_mode import entries_of, growing_mode
+
+TRIES = 60  # pairs of terminations, and half as many steps from the worst of them
+
+
+def judged(rng, kind, *, whole):
+    """Status of a random two-port, once it was held against the attacker or replayed.
+
+    whole: the claim with its certificates, else what decides it
+    """
+    z = random_two_port(rng, kind)
+    system = two_port(z.tolist())
+    failed = [c for c in conditions(entries_of(system.z)) if not c.holds]
+    if whole:
+        claim = absolutely_stable(system)
+        mode = claim.record if claim.status == "refuted" else None
+        # evidence: decided by Sturm's theorem, but too large for a certificate
+        assert (claim.status in ("proved", "evidence")) is not bool(failed), (claim, z)
+    else:
+        mode = growing_mode(system.z) if failed else None
+    if mode is not None:
+        assert failed, z
+        assert is_free_motion(mode), z
+        assert mode.is_confirmed(), z
+        # what came before the last 500 periods, or twelve time constants, is left off
+        assert 0 < mode.replay() <= mode.energy * (1 + 1e-5), z
+        return "refuted"
+    held = attack(rng, z, TRIES)
+    assert held is None, (failed, z, held)
+    if not failed:
+        return "proved"
+    # a failed condition that is needed has a motion; a multiple pole on the axis need not
+    assert all(c.name.startswith("every pole of") for c in failed), (failed, z)
+    return "unknown"
+
+
+@pytest.mark.parametrize(
+    ("seed", "number"),
+    [(1, 105), *(pytest.param(k, 210, marks=pytest.mark.slow) for k in range(2, 12))],
+)
+def test_no_termination_contradicts_what_is_claimed(seed, number):
+    rng = np.random.default_rng(seed)
+    counts = Counter(judged(rng, KINDS[i % len(KINDS)], whole=seed > 1) for i in range(number))
+    print(dict(counts))
+    # a test in which nearly all are refuted, or left open, would show nothing
+    assert counts["proved"] >= 0.25 * number, counts
+    assert counts["refuted"] >= 0.25 * number, counts
+    assert counts["unknown"] <= 0.1 * number, counts
+
+
+@pytest.mark.parametrize("number", [15, pytest.param(300, marks=pytest.mark.slow)])
+def test_what_is_passive_has_no_wave_that_gives_out_energy(number):
+    """Hermitian part over a grid of the right half plane, against the test of the matrix."""
+    rng = np.random.default_rng(4)
+    size, angle = np.geomspace(1e-7, 1e7, 113), np.linspace(0, 0.499 * np.pi, 9)
+    s = (size[:, None] * np.exp(1j * angle)).ravel()
+    counts = Counter()
+    for i in range(number):
+        z = random_two_port(rng, KINDS[i % len(KINDS)])
+        system = two_port(z.tolist())
+        claim = passive(system)
+        counts[claim.status] += 1
+        value = system.at(s)
+        value = value[np.isfinite(value).all(axis=(1, 2))]
+        hermitian = (value + value.conj().swapaxes(1, 2)) / 2
+        lowest = np.linalg.eigvalsh(hermitian)[:, 0] / np.abs(value).max(axis=(1, 2))
+        if claim.status == "proved":
+            assert np.min(lowest) > -1e-9, z  # rounding of badly scaled entries
+            assert absolutely_stable(system).status in ("proved", "evidence"), z
+        elif claim.status == "refuted":
+            assert claim.record.energy > 0, z
+        else:
+            assert np.min(lowest) > -1e-6, (claim, z)
+    assert min(counts["proved"], counts["refuted"]) >= 0.2 * number, counts
+    assert counts["unknown"] <= 0.1 * number, counts
+
+
+def test_the_attacker_finds_what_the_axis_does_not_show():
+    """The three that were once called proved fall within so few tries; the attacker has teeth."""
+    s = sp.Symbol("s")
+    for rows in (
+        [[s + 1 + 1 / s, 2 / s], [2 / s, s + 1 + 1 / s]],
+        [[1, 1 / s], [1 / s, 1]],
+        [[s + 1, s], [s, 1 + s / 2]],
+    ):
+        z = sp.Matrix([[two_port(rows).z[i, j] for j in range(2)] for i in range(2)])
+        assert attack(np.random.default_rng(1), z, TRIES) is not None
