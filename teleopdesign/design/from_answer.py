@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..blocks import Value
+from ..by_value import ByValue
 from ..diagnose import Diagnosis
 from ..effects import EFFECTS, Effect
 from ..errors import ExperimentError, ModelError
@@ -16,8 +17,8 @@ from ..measurement.experiment import Experiment
 from ..model import Model
 
 
-@dataclass(frozen=True)
-class Diagnosed:
+@dataclass(frozen=True, eq=False)
+class Diagnosed(ByValue):
     """A model, and how well it stands: verdict and what is left, in noise floors."""
 
     experiment: Experiment

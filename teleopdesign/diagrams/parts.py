@@ -8,19 +8,24 @@ from typing import TypeAlias
 
 import sympy as sp
 
+from ..arguments import checked
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..errors import ModelError
+from ..frozen import Frozen
 
 
 @dataclass(frozen=True)
 class AnyBlock:
     """A block known by its name only: enough to derive transfer functions, not to simulate."""
 
+    def __repr__(self) -> str:
+        return "ANY"
+
 
 ANY = AnyBlock()
 #: a sign, a factor, or an expression of positions (on `position_symbol`), such as a lever arm
-Weight: TypeAlias = "float | sp.Expr"
+Weight: TypeAlias = float | sp.Expr
 
 
 def position_symbol(name: str) -> sp.Symbol:
@@ -28,6 +33,7 @@ def position_symbol(name: str) -> sp.Symbol:
     return sp.Symbol(name, real=True)
 
 
+@checked
 @dataclass(frozen=True)
 class Moving:
     """A body that forces move:  Z motion = command + loads.
@@ -41,8 +47,11 @@ class Moving:
     body: Body | AnyBlock
     motion: str
     command: str
-    loads: Mapping[str, int]
+    loads: Mapping[str, float]
     driver: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "loads", Frozen(self.loads))
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -53,6 +62,7 @@ class Moving:
         return (self.command, *self.loads)
 
 
+@checked
 @dataclass(frozen=True)
 class Attached:
     """A body that follows a motion and resists it:  force = sign Z motion."""
@@ -72,6 +82,7 @@ class Attached:
         return (self.motion,)
 
 
+@checked
 @dataclass(frozen=True)
 class Linked:
     """Bodies joined by a linear impedance:  forces = sign Z motions, Z a matrix."""
@@ -108,6 +119,7 @@ class Linked:
         return self.motions
 
 
+@checked
 @dataclass(frozen=True)
 class Control:
     """A controller:  output = controller(input), along the velocity of `motion`.
@@ -132,6 +144,7 @@ class Control:
         return (self.input, self.motion)
 
 
+@checked
 @dataclass(frozen=True)
 class Junction:
     """A summing junction:  output = sum of weight * signal.
@@ -141,6 +154,9 @@ class Junction:
 
     output: str
     terms: Mapping[str, Weight]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "terms", Frozen(self.terms))
 
     @property
     def name(self) -> str:
@@ -160,6 +176,7 @@ class Junction:
         return (*self.terms, *(x for x in self.arms if x not in self.terms))
 
 
+@checked
 @dataclass(frozen=True)
 class Kinematics:
     """A position that others determine:  output = expression of positions (`position_symbol`).

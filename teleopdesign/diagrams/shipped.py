@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from types import MappingProxyType
 
-from ..errors import ModelError, did_you_mean
+from ..frozen import Catalogue
 from .haptic_interface import haptic_interface
 from .parts import ANY
 from .teleoperator import teleoperator
@@ -26,19 +25,16 @@ def _teleoperator() -> Diagram:
 
 
 #: name -> what makes the diagram
-SHIPPED: Mapping[str, Callable[[], Diagram]] = MappingProxyType(
+SHIPPED: Mapping[str, Callable[[], Diagram]] = Catalogue(
     {
         "haptic-interface": _haptic_interface,
         "teleoperator": _teleoperator,
         "world-haptics-2005": _world_haptics_2005,
-    }
+    },
+    "diagram",
 )
 
 
 def shipped(name: str) -> Diagram:
     """The shipped diagram of that name; ModelError with the nearest one."""
-    if name not in SHIPPED:
-        raise ModelError(
-            f'no diagram "{name}", has {", ".join(SHIPPED)}{did_you_mean(name, SHIPPED)}'
-        )
     return SHIPPED[name]()

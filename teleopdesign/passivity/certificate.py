@@ -14,6 +14,7 @@ from typing import Any
 
 import sympy as sp
 
+from ..arguments import checked
 from ..errors import ModelError
 from .check_certificate import check
 
@@ -21,7 +22,8 @@ from .check_certificate import check
 Term = tuple[sp.Expr | int, Mapping[str, int], sp.Expr | int]
 
 
-@dataclass(frozen=True)
+@checked
+@dataclass(frozen=True, repr=False)
 class Certificate:
     """What the checker reads; `content` is plain JSON data with a digest."""
 
@@ -30,7 +32,7 @@ class Certificate:
     @property
     def kind(self) -> str:
         """ "storage" or "positive real"."""
-        return str(self.content["kind"])
+        return str(self.content.get("kind", "no kind"))
 
     def check(self) -> str:
         """Verify with `check_certificate.py`; returns the claim, ModelError where it is refused."""
@@ -38,6 +40,9 @@ class Certificate:
             return str(check(dict(self.content)))
         except Exception as problem:  # whatever a tampered file trips over, it proves nothing
             raise ModelError(f"certificate: {problem}") from problem
+
+    def __repr__(self) -> str:
+        return f"Certificate ({self.kind}): {self.content.get('claim', '')}"
 
     def write(self, path: str | Path) -> None:
         """Write the JSON file that `python check_certificate.py PATH` verifies."""

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from ..by_value import ByValue
 from ..errors import ModelError
 from ..finding import Graph, Series
 from ..realise.lti import S
@@ -89,8 +90,8 @@ def teleoperator(
     return two_port([[z1, -link * late], [-link * late, z2]])
 
 
-@dataclass(frozen=True)
-class FrequencyMargins:
+@dataclass(frozen=True, eq=False)
+class FrequencyMargins(ByValue):
     """Margins over frequency (Hz), (n,) each; numerical.
 
     passive: smallest eigenvalue of the Hermitian part (N s/m): < 0 where a motion takes energy out
