@@ -8,10 +8,35 @@
     td.rank(model, experiment)                          # which effect would explain it
     better = td.fit(model.with_effect("stribeck", at="device"), experiment)
     td.compare(better, experiment)                      # see the error fall
-    td.find_missing(experiment)                         # all of that, step by step: the ladder
+    diagnosis = td.find_missing(experiment)             # all of that, step by step: the ladder
+
+    design = td.design_compensation(diagnosis)          # cancellation, force feedback, predictions
+    td.derive_transfers(design.diagram)                 # its transfer functions
+    td.simulate_diagram(design.diagram, duration=1.0)   # signals over time
+
+The names that a user types:
+
+    experiments   Experiment, Record, load_experiment, check_experiment, example, fetch
+    models        Model, Body, Value
+    effects       EFFECTS, Effect, Parameter, State, load_effect
+    diagnosis     fit, compare, rank, find_missing, describe, propose_experiment, Comparison,
+                  Ranking, Diagnosis
+    diagrams      Diagram, ANY, haptic_interface, teleoperator, hand, read_diagram,
+                  write_diagram
+    controllers   CONTROLLERS, Controller, controller, from_control
+    responses     derive_transfers, transfer_functions, bode, measured_impedance,
+                  simulate_diagram, Simulation, Sampling, sine, to_iosystem
+    design        design_compensation, Design, Assumptions
+    passivity     diagram_claims, positive_real, Claim, Certificate
+    errors        TeleopDesignError, ExperimentError, ModelError
+
+Every folder is there as well: `td.passivity`, `td.diagrams`, `td.frequency` ... A function is never
+named as a folder: the folder is `td.simulate`, the function `td.simulate_diagram`.
 
 The folders, each importing only from those before it:
 
+    arguments     what is given, held against the types declared (`expectations` beside it)
+    frozen        mappings that nobody changes (by_value, recipes, notebook: see there)
     quantity      force, velocity ... -> unit on a prismatic or a revolute axis
     finding       a sentence, its numbers, and a graph that shows it
     effects       what physics does: one effect = one file
@@ -40,29 +65,65 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .blocks import Body, Value
+    from . import blocks as blocks
+    from . import controllers as controllers
+    from . import derive as derive
+    from . import design as design
+    from . import diagnose as diagnose
+    from . import diagrams as diagrams
+    from . import effects as effects
+    from . import frequency as frequency
+    from . import identify as identify
+    from . import measurement as measurement
+    from . import passivity as passivity
+    from . import plot as plot
+    from . import realise as realise
+    from . import report as report
+    from . import simulate as simulate
+    from .blocks import Body, Value, hand
+    from .controllers import CONTROLLERS, Controller, controller, from_control
+    from .derive import all_transfers as derive_transfers
+    from .derive import transfer_functions
+    from .design import Assumptions, Design
+    from .design import design as design_compensation
     from .diagnose import (
         Comparison,
         Diagnosis,
         Ranking,
         check_experiment,
         compare,
+        describe,
         find_missing,
         fit,
         rank,
     )
+    from .diagnose.next_experiment import propose as propose_experiment
+    from .diagrams import ANY, Diagram, haptic_interface, read_diagram, teleoperator, write_diagram
     from .effects import EFFECTS, Effect, Parameter, State, load_effect
     from .errors import ExperimentError, ModelError, TeleopDesignError
     from .examples import example
+    from .frequency import bode, measured_impedance
     from .measurement import Experiment, Record, load_experiment
     from .measurement.recordings import fetch
     from .model import Model
+    from .passivity import Certificate, Claim, diagram_claims, positive_real
+    from .realise.iosystem import to_iosystem
+    from .simulate import Sampling, Simulation, sine
+    from .simulate import simulate as simulate_diagram
 
 __all__ = [
-    "EFFECTS",
+    "ANY",
+    "Assumptions",
     "Body",
+    "CONTROLLERS",
+    "Certificate",
+    "Claim",
     "Comparison",
+    "Controller",
+    "Design",
     "Diagnosis",
+    "Diagram",
+    "EFFECTS",
     "Effect",
     "Experiment",
     "ExperimentError",
@@ -71,42 +132,156 @@ __all__ = [
     "Parameter",
     "Ranking",
     "Record",
+    "Sampling",
+    "Simulation",
     "State",
     "TeleopDesignError",
     "Value",
+    "bode",
     "check_experiment",
     "compare",
+    "controller",
+    "derive_transfers",
+    "describe",
+    "design_compensation",
+    "diagram_claims",
     "example",
     "fetch",
     "find_missing",
     "fit",
+    "from_control",
+    "hand",
+    "haptic_interface",
     "load_effect",
     "load_experiment",
+    "measured_impedance",
+    "positive_real",
+    "propose_experiment",
     "rank",
+    "read_diagram",
+    "simulate_diagram",
+    "sine",
+    "teleoperator",
+    "to_iosystem",
+    "transfer_functions",
+    "write_diagram",
 ]
 
-#: where a public name is looked up when it is first used, so that `import teleopdesign` is instant
-_HOMES = (
-    "examples",
-    "errors",
-    "effects",
+#: group -> public name -> where it is: a folder, and its name there where that is another one.
+#: Looked up when a name is first used, so that `import teleopdesign` is instant
+GROUPS: dict[str, dict[str, str]] = {
+    "experiments": {
+        "Experiment": "measurement",
+        "Record": "measurement",
+        "load_experiment": "measurement",
+        "check_experiment": "diagnose",
+        "example": "examples",
+        "fetch": "measurement.recordings",
+    },
+    "models": {
+        "Model": "model",
+        "Body": "blocks",
+        "Value": "blocks",
+    },
+    "effects": {
+        "EFFECTS": "effects",
+        "Effect": "effects",
+        "Parameter": "effects",
+        "State": "effects",
+        "load_effect": "effects",
+    },
+    "diagnosis": {
+        "fit": "diagnose",
+        "compare": "diagnose",
+        "rank": "diagnose",
+        "find_missing": "diagnose",
+        "describe": "diagnose",
+        "propose_experiment": "diagnose.next_experiment:propose",
+        "Comparison": "diagnose",
+        "Ranking": "diagnose",
+        "Diagnosis": "diagnose",
+    },
+    "diagrams": {
+        "Diagram": "diagrams",
+        "ANY": "diagrams",
+        "haptic_interface": "diagrams",
+        "teleoperator": "diagrams",
+        "hand": "blocks",
+        "read_diagram": "diagrams",
+        "write_diagram": "diagrams",
+    },
+    "controllers": {
+        "CONTROLLERS": "controllers",
+        "Controller": "controllers",
+        "controller": "controllers",
+        "from_control": "controllers",
+    },
+    "responses": {
+        "derive_transfers": "derive:all_transfers",
+        "transfer_functions": "derive",
+        "bode": "frequency",
+        "measured_impedance": "frequency",
+        "simulate_diagram": "simulate:simulate",
+        "Simulation": "simulate",
+        "Sampling": "simulate",
+        "sine": "simulate",
+        "to_iosystem": "realise.iosystem",
+    },
+    "design": {
+        "design_compensation": "design:design",
+        "Design": "design",
+        "Assumptions": "design",
+    },
+    "passivity": {
+        "diagram_claims": "passivity",
+        "positive_real": "passivity",
+        "Claim": "passivity",
+        "Certificate": "passivity",
+    },
+    "errors": {
+        "TeleopDesignError": "errors",
+        "ExperimentError": "errors",
+        "ModelError": "errors",
+    },
+}
+_HOMES = {name: home for group in GROUPS.values() for name, home in group.items()}
+#: folders that are there as `td.NAME`, imported when first used
+_FOLDERS = (
     "blocks",
-    "model",
-    "measurement",
-    "measurement.recordings",
+    "controllers",
+    "derive",
+    "design",
     "diagnose",
+    "diagrams",
+    "effects",
+    "frequency",
+    "identify",
+    "measurement",
+    "passivity",
+    "plot",
+    "realise",
+    "report",
+    "simulate",
 )
 __version__ = "0.1.0.dev0"
 
 
 def __getattr__(name: str) -> Any:
-    if name in __all__:
-        for home in _HOMES:
-            module = import_module(f"{__name__}.{home}")
-            if hasattr(module, name):
-                return getattr(module, name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name in _HOMES:
+        home, _, own = _HOMES[name].partition(":")
+        found = getattr(import_module(f"{__name__}.{home}"), own or name)
+        globals()[name] = found
+        return found
+    if name in _FOLDERS:
+        return import_module(f"{__name__}.{name}")
+    hint = ""
+    if not name.startswith("_"):
+        from .errors import did_you_mean
+
+        hint = did_you_mean(name, (*_HOMES, *_FOLDERS))
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    """The names that a user types, and the folders."""
+    return sorted({*__all__, *_FOLDERS, *(n for n in globals() if n.startswith("__"))})

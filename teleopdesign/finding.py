@@ -9,11 +9,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from .by_value import ByValue
+
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Series:
+@dataclass(frozen=True, eq=False, repr=False)
+class Series(ByValue):
     """One set of points or one line of a graph.
 
     x, y: (n,);  low, high: a band around y, (n,)
@@ -27,9 +29,12 @@ class Series:
     low: Array | None = None
     high: Array | None = None
 
+    def __repr__(self) -> str:
+        return f"Series({self.name!r}, {len(self.x)} points, {self.kind})"
 
-@dataclass(frozen=True)
-class Graph:
+
+@dataclass(frozen=True, eq=False)
+class Graph(ByValue):
     """What a graph shows; labels carry quantity and unit: "velocity (mm/s)"."""
 
     x_label: str
@@ -38,8 +43,8 @@ class Graph:
     logarithmic: bool = False
 
 
-@dataclass(frozen=True)
-class Finding:
+@dataclass(frozen=True, eq=False)
+class Finding(ByValue):
     """What was found about a recording, or about what a model leaves unexplained.
 
     topic: what was looked at ("sample clock", "dependence on velocity")

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 
+from .arguments import checked, described, instance
 from .blocks import CONTACT, Body, Value
 from .blocks.described import body_of, effects_of, value_of
 from .effects import CONTACT_ROLES, EFFECTS, Effect, Parameter, find_effect
 from .errors import ExperimentError, ModelError, did_you_mean
+from .frozen import Frozen
 from .measurement.description import BodyDescription, EnvironmentDescription
 from .measurement.experiment import Experiment
+from .notebook import html_table
 
 
 @dataclass(frozen=True)
@@ -24,7 +26,20 @@ class Model:
     bodies: Mapping[str, Body]
     known: Mapping[str, Effect] = field(default_factory=lambda: EFFECTS, repr=False)
 
+    def __post_init__(self) -> None:
+        expected = 'bodies by their place, such as {"device": Body(...)}'
+        instance(self.bodies, Mapping, "Model: bodies", expected=expected)
+        if not self.bodies:
+            raise ModelError(f"Model: bodies: found none, expected {expected}")
+        for place, body in self.bodies.items():
+            instance(place, str, "Model: bodies", expected=expected)
+            instance(body, Body, f"Model: bodies[{place!r}]")
+        instance(self.known, Mapping, "Model: known", expected="effects by name, such as EFFECTS")
+        if not isinstance(self.bodies, Frozen):
+            object.__setattr__(self, "bodies", Frozen(self.bodies))
+
     @classmethod
+    @checked
     def from_experiment(
         cls, experiment: Experiment, known: Mapping[str, Effect] = EFFECTS
     ) -> Model:
@@ -38,8 +53,9 @@ class Model:
         measured = f"{touching}.interaction_force" in experiment.channels
         if experiment.environment is not None and not measured:
             bodies[touching] = _touching(bodies[touching], experiment.environment, known)
-        return cls(MappingProxyType(bodies), known)
+        return cls(Frozen(bodies), known)
 
+    @checked
     def body(self, at: str) -> Body:
         """The body at that place; ModelError with the nearest place where there is none.
 
@@ -47,6 +63,7 @@ class Model:
         """
         return self.bodies[self.holder(at)]
 
+    @checked
     def with_effect(
         self,
         effect: str | Effect,
@@ -68,8 +85,14 @@ class Model:
         if (place == CONTACT.name) != (found.role in CONTACT_ROLES):
             words = "the environment" if found.role in CONTACT_ROLES else "a body"
             raise ModelError(f'with_effect: "{found.name}" acts at {words}, found at = "{place}"')
+        if self.body(place).has(found.name):
+            raise ModelError(
+                f'with_effect: effect "{found.name}" is there already at {place}: with_values '
+                "changes its values"
+            )
         return self._with_body(place, self.body(place).with_effect(found, values))
 
+    @checked
     def without_effect(self, effect: str, *, at: str | None = None) -> Model:
         """The model without that effect."""
         found = self.known.get(effect)
@@ -78,9 +101,11 @@ class Model:
 
     def with_values(self, values: Mapping[str, float | Value]) -> Model:
         """The model with other parameter values, by full names such as "device.coulomb.level"."""
-        if unknown := set(values) - set(self.parameters):
-            name = min(unknown)
-            raise ModelError(f'model: no parameter "{name}"{did_you_mean(name, self.parameters)}')
+        instance(values, Mapping, "with_values", expected='such as {"device.inertia": 0.15}')
+        known = self.parameters
+        for name in values:
+            if name not in known:
+                self._refuse_parameter(name)
         model = self
         for place, body in self.bodies.items():
             located = {self.locate(name): v for name, v in values.items()}
@@ -108,11 +133,18 @@ class Model:
             return self.holder(place), own if "." in own else name
         return place, own
 
+    def _refuse_parameter(self, name: object) -> None:
+        said = f'"{name}"' if isinstance(name, str) else described(name)
+        near = did_you_mean(name, self.parameters) if isinstance(name, str) else ""
+        raise ModelError(f"model: no parameter {said}{near}")
+
+    @checked
     def declared(self, name: str) -> Parameter:
         """Declaration of the parameter of that full name."""
         place, own = self.locate(name)
         return self.body(place).parameter(own)
 
+    @checked
     def unit(self, name: str) -> str:
         """Unit of the parameter of that full name."""
         place, own = self.locate(name)
@@ -196,7 +228,7 @@ class Model:
         return next(iter(self.bodies))
 
     def _with_body(self, place: str, body: Body) -> Model:
-        return replace(self, bodies=MappingProxyType({**self.bodies, self.holder(place): body}))
+        return replace(self, bodies=Frozen({**self.bodies, self.holder(place): body}))
 
     def __repr__(self) -> str:
         lines = []
@@ -205,6 +237,14 @@ class Model:
             error = f" +- {value.stderr:.2g}" if value.stderr == value.stderr else ""
             lines.append(f"  {name} = {value.value:.5g}{error} {self.unit(name)}{mark}")
         return "Model\n" + "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        rows = []
+        for name, v in self.parameters.items():
+            error = f"{v.stderr:.2g}" if v.stderr == v.stderr else ""
+            rows.append((name, f"{v.value:.5g}", error, self.unit(name), "yes" if v.fixed else ""))
+        head = ("parameter", "value", "standard error", "unit", "fixed")
+        return html_table("Model", head, rows)
 
 
 def _touching(body: Body, description: EnvironmentDescription, known: Mapping[str, Effect]) -> Body:

@@ -96,7 +96,10 @@ MISTAKES = {
         lambda m: m.with_effect("stribeck", values={"static_level": 1.0}),
         'stribeck: no parameter "static_level"',
     ),
-    "there already": (lambda m: m.with_effect("coulomb"), 'effect "coulomb" is there twice'),
+    "there already": (
+        lambda m: m.with_effect("coulomb"),
+        'effect "coulomb" is there already at device',
+    ),
     "needs another": (
         lambda m: m.without_effect("coulomb").with_effect("stribeck"),
         '"stribeck" needs "coulomb" beside it',

@@ -277,10 +277,15 @@ def api(module: str) -> str:
     full = "teleopdesign" if module == "." else f"teleopdesign.{module}"
     root, found = import_module("teleopdesign"), import_module(full)
     lines = []
-    for name in sorted(found.__all__, key=str.lower):
+    top = {} if module == "." else {id(getattr(root, n)): n for n in root.__all__}
+    groups = root.GROUPS if module == "." else {"": sorted(found.__all__, key=str.lower)}
+    begins = {next(iter(names)): group for group, names in groups.items() if group}
+    for name in (n for names in groups.values() for n in names):
         thing = getattr(found, name)
-        if module != "." and name in root.__all__ and getattr(root, name) is thing:
-            lines += [f"``{full}.{name}``", f"   the same as :py:obj:`teleopdesign.{name}`", ""]
+        if name in begins:
+            lines += [f".. rubric:: {begins[name].capitalize()}", ""]
+        if (own := top.get(id(thing))) is not None:
+            lines += [f"``{full}.{name}``", f"   the same as :py:obj:`teleopdesign.{own}`", ""]
         elif inspect.isclass(thing):
             lines += [f".. autoclass:: {full}::{name}", "   :members:", ""]
         elif callable(thing):
@@ -288,7 +293,7 @@ def api(module: str) -> str:
         else:
             lines += [
                 f"``{full}.{name}``",
-                f"   {type(thing).__name__.replace('mappingproxy', 'mapping')}",
+                f"   {'mapping' if isinstance(thing, Mapping) else type(thing).__name__}",
                 "",
             ]
     return "\n".join(["```{eval-rst}", *lines, "```"])

@@ -1,5 +1,6 @@
 """Blocks of a diagram: equations only."""
 
+from ..arguments import check_arguments
 from .arm import ARM
 from .body import NINETY_FIVE, Body, BodyEquation, Value
 from .contact_hysteresis import CONTACT_HYSTERESIS
@@ -29,3 +30,5 @@ __all__ = [
     "spring_damper",
     "with_block_effects",
 ]
+
+check_arguments(globals(), __all__)

@@ -8,15 +8,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 
 import sympy as sp
 
+from ..arguments import checked, instance, number
+from ..by_value import ByValue
 from ..effects import SIGNALS, Effect, Parameter, ordered
-from ..errors import ModelError, did_you_mean
-from ..quantity import unit_of
+from ..errors import ModelError, did_you_mean, quoted
+from ..frozen import Frozen
+from ..notebook import html_table
+from ..quantity import AXES, unit_of
 from .environment import contact_force
 
 #: roles that one effect of a body can have, in the words of messages
@@ -33,13 +36,22 @@ INERTIA = Parameter("inertia", "inertia of the body", lower=0.0)
 NINETY_FIVE = 1.96
 
 
-@dataclass(frozen=True)
-class Value:
+@dataclass(frozen=True, eq=False)
+class Value(ByValue):
     """A parameter's value (SI); fixed: known, not to be re-estimated; stderr: NaN where unknown."""
 
     value: float
     fixed: bool = False
     stderr: float = float("nan")
+
+    def __post_init__(self) -> None:
+        if type(self.value) is not float:
+            object.__setattr__(self, "value", number(self.value, "Value: value"))
+        if type(self.fixed) is not bool:
+            instance(self.fixed, bool, "Value: fixed", expected="True or False")
+
+    def __hash__(self) -> int:
+        return hash((self.value, self.fixed))
 
 
 @dataclass(frozen=True)
@@ -61,11 +73,12 @@ class BodyEquation:
     stages: tuple[sp.Symbol, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Body:
     """A body on one axis: its inertia, its effects, and a value for every parameter.
 
-    axis: "prismatic" or "revolute";  parameters: "inertia", "coulomb.level", ... -> Value (SI)
+    axis: "prismatic" or "revolute";  parameters: "inertia", "coulomb.level", ... -> Value, or a
+    plain number (SI)
     """
 
     axis: str
@@ -73,6 +86,10 @@ class Body:
     effects: tuple[Effect, ...] = field(default=())
 
     def __post_init__(self) -> None:
+        if not (isinstance(self.axis, str) and self.axis in AXES):
+            _refuse_axis(self.axis)
+        instance(self.parameters, Mapping, "Body: parameters", expected='such as {"inertia": 0.15}')
+        object.__setattr__(self, "effects", _effects(self.effects))
         names = [e.name for e in self.effects]
         if doubled := {n for n in names if names.count(n) > 1}:
             raise ModelError(f'body: effect "{min(doubled)}" is there twice')
@@ -86,22 +103,21 @@ class Body:
         expected = [name for name, _ in self.declared()]
         for name in self.parameters:
             if name not in expected:
-                raise ModelError(
-                    f'body: no parameter "{name}", has {", ".join(expected)}'
-                    f"{did_you_mean(name, expected)}"
-                )
+                raise _no_parameter(name, expected)
         optional = {name: Value(0.0) for name, p in self.declared() if p.optional}
-        parameters = {**optional, **self.parameters}
+        parameters = {**optional, **{n: _value(v, n) for n, v in self.parameters.items()}}
         for name, parameter in self.declared():
             if name not in parameters:
                 raise ModelError(f'body: parameter "{name}" has no value')
             value = parameters[name].value
+            if value != value:
+                raise ModelError(f"body: {name} is NaN, expected a number ({self.unit(name)})")
             if not parameter.lower <= value <= parameter.upper:
                 raise ModelError(
                     f"body: {name} = {value:g} {self.unit(name)} is outside "
                     f"{parameter.lower:g} .. {parameter.upper:g}"
                 )
-        object.__setattr__(self, "parameters", MappingProxyType(parameters))
+        object.__setattr__(self, "parameters", Frozen(parameters))
 
     def declared(self) -> list[tuple[str, Parameter]]:
         """Every parameter of the body by its name in answers, with its declaration."""
@@ -109,9 +125,13 @@ class Body:
         return [("inertia", INERTIA), *own]
 
     def parameter(self, name: str) -> Parameter:
-        """Declaration of the parameter of that name."""
-        return dict(self.declared())[name]
+        """Declaration of the parameter of that name; ModelError with the nearest one."""
+        declared = dict(self.declared())
+        if name not in declared:
+            raise _no_parameter(name, declared)
+        return declared[name]
 
+    @checked
     def unit(self, name: str) -> str:
         """Unit of the parameter of that name on this axis."""
         return unit_of(self.parameter(name).quantity, self.axis)
@@ -120,18 +140,26 @@ class Body:
         """Whether the effect of that name is in the body."""
         return any(e.name == effect for e in self.effects)
 
+    @checked
     def effect(self, name: str) -> Effect:
         """The effect of that name; ModelError where the body has none."""
         for effect in self.effects:
             if effect.name == name:
                 return effect
-        raise ModelError(f'body: has no effect "{name}"')
+        near = did_you_mean(name, [e.name for e in self.effects])
+        raise ModelError(f'body: has no effect "{name}"{near}')
 
+    @checked
     def with_effect(self, effect: Effect, values: Mapping[str, float] | None = None) -> Body:
         """The body with one effect more, at the given values (default: where it is absent).
 
-        A shape of friction, or a structure, replaces the one that was there.
+        A shape of friction, or a structure, replaces another one that was there.
+        raises ModelError: the effect is there already, or has no such parameter
         """
+        if self.has(effect.name):
+            raise ModelError(
+                f'body: effect "{effect.name}" is there already: with_values changes its values'
+            )
         given = dict(values or {})
         unknown = set(given) - set(effect.parameters)
         if unknown:
@@ -153,6 +181,7 @@ class Body:
             kept, effects=(*kept.effects, effect), parameters={**kept.parameters, **added}
         )
 
+    @checked
     def without_effect(self, name: str) -> Body:
         """The body without that effect."""
         self.effect(name)
@@ -170,10 +199,15 @@ class Body:
 
     def with_values(self, values: Mapping[str, float | Value]) -> Body:
         """The body with other parameter values; `fixed` is kept where a plain number is given."""
-        new = {
-            k: v if isinstance(v, Value) else replace(self.parameters[k], value=float(v))
-            for k, v in values.items()
-        }
+        instance(values, Mapping, "with_values", expected='such as {"inertia": 0.15}')
+        new = {}
+        for name, given in values.items():
+            if name not in self.parameters:
+                raise _no_parameter(name, self.parameters)
+            value = _value(given, name)
+            new[name] = (
+                value if value is given else replace(self.parameters[name], value=value.value)
+            )
         return replace(self, parameters={**self.parameters, **new})
 
     def symbols(self) -> dict[str, sp.Symbol]:
@@ -233,7 +267,7 @@ class Body:
             level=level,
             friction=friction,
             acting=acting,
-            rates=MappingProxyType(rates),
+            rates=Frozen(rates),
             stages=tuple(stages),
         )
 
@@ -265,6 +299,48 @@ class Body:
             else:
                 transfer *= part
         return transfer, tuple(left_out)
+
+    def __repr__(self) -> str:
+        rows = [f"  {n} = {v:.5g} {self.unit(n)}" for n, v in self._plain().items()]
+        return "\n".join([f"Body, {self.axis}", *rows])
+
+    def _repr_html_(self) -> str:
+        rows = [(n, f"{v:.5g}", self.unit(n)) for n, v in self._plain().items()]
+        return html_table(f"Body, {self.axis}", ("parameter", "value", "unit"), rows)
+
+    def _plain(self) -> dict[str, float]:
+        return {name: self.parameters[name].value for name, _ in self.declared()}
+
+
+def _value(given: object, name: object) -> Value:
+    if isinstance(given, Value):
+        return given
+    return Value(number(given, f"body: {name}"))
+
+
+def _no_parameter(name: object, known: Iterable[str]) -> ModelError:
+    near = did_you_mean(name, known) if isinstance(name, str) else ""
+    said = quoted(name) if isinstance(name, str) else repr(name)
+    return ModelError(f"body: no parameter {said}, has {', '.join(known)}{near}")
+
+
+def _refuse_axis(axis: object) -> None:
+    instance(axis, str, "Body: axis", expected=" or ".join(map(quoted, AXES)))
+    raise ModelError(
+        f"Body: axis: found {quoted(str(axis))}, expected {' or '.join(map(quoted, AXES))}"
+        f"{did_you_mean(str(axis), AXES)}"
+    )
+
+
+def _effects(given: object) -> tuple[Effect, ...]:
+    """A tuple of effects; a list will do, a name will not."""
+    expected = 'a tuple of effects, such as (EFFECTS["coulomb"],)'
+    if not isinstance(given, tuple):
+        instance(given, list, "Body: effects", expected=expected)
+    assert isinstance(given, tuple | list)
+    for i, effect in enumerate(given):
+        instance(effect, Effect, f"Body: effects[{i}]", expected="an Effect, of EFFECTS or a file")
+    return tuple(given)
 
 
 __all__ = ["INERTIA", "Body", "BodyEquation", "Value"]

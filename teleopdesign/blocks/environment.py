@@ -18,6 +18,7 @@ from typing import Any
 import sympy as sp
 
 from ..effects import CONTACT_ROLES, SIGNALS, Effect, Parameter
+from ..recipes import remember
 
 NAME = "environment"
 
@@ -70,4 +71,4 @@ def touching(structure: Effect, contact: sp.Expr) -> Effect:
         return touched
 
     states = {n: replace(state, rate=at_tip(state.rate)) for n, state in structure.states.items()}
-    return replace(structure, states=states)
+    return remember(replace(structure, states=states), touching, structure, contact)

@@ -12,11 +12,13 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from ..arguments import checked, described
 from ..errors import ModelError, did_you_mean
 
 Rows = tuple[tuple[float, ...], ...]
 
 
+@checked
 @dataclass(frozen=True)
 class MatrixImpedance:
     """Z = mass s^2 + damping s + stiffness, square matrices of one size (SI).
@@ -107,6 +109,8 @@ def matrix_impedance(
     raises ModelError: no matrix is given, or sizes differ
     """
     given = {"mass": mass, "damping": damping, "stiffness": stiffness}
+    for name, matrix in given.items():
+        _refuse_other(matrix, name)
     sizes = {len(np.atleast_2d(m)) for m in given.values() if np.ndim(m) == 2}
     if len(sizes) != 1:
         found = ", ".join(f"{n} {np.shape(m)}" for n, m in given.items())
@@ -114,6 +118,20 @@ def matrix_impedance(
     size = sizes.pop()
     full = {n: m if np.ndim(m) == 2 else float(m) * np.eye(size) for n, m in given.items()}
     return MatrixImpedance(**{n: _rows(np.asarray(m, dtype=float)) for n, m in full.items()})
+
+
+def _refuse_other(matrix: Any, name: str) -> None:
+    """Neither a number nor a matrix of numbers."""
+    try:
+        found = np.asarray(matrix)
+        right = found.dtype.kind in "iuf" and found.ndim in (0, 2) and bool(np.all(found == found))
+    except (ValueError, TypeError):  # rows of different lengths
+        right = False
+    if not right:
+        raise ModelError(
+            f"impedance: {name}: found {described(matrix)}, expected a square matrix, or a number "
+            "for its diagonal"
+        )
 
 
 def _rows(matrix: np.ndarray) -> Rows:

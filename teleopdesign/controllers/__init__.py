@@ -8,10 +8,12 @@ from __future__ import annotations
 import importlib
 from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import Literal
 
+from ..arguments import check_arguments
 from ..errors import ModelError, did_you_mean
+from ..frozen import Catalogue
+from ..recipes import remember
 from ._controller import (
     SIGNALS,
     ControlLaw,
@@ -42,7 +44,12 @@ __all__ = [
 def _laws() -> Mapping[str, ControlLaw]:
     files = sorted(p for p in Path(__file__).parent.glob("*.py") if not p.name.startswith("_"))
     found = {p.stem: importlib.import_module(f"{__name__}.{p.stem}") for p in files}
-    return MappingProxyType({n: m.CONTROLLER.named(n, m.__doc__ or "") for n, m in found.items()})
+    laws = {n: m.CONTROLLER.named(n, m.__doc__ or "") for n, m in found.items()}
+    return Catalogue({n: remember(law, _law, n) for n, law in laws.items()}, "control law")
+
+
+def _law(name: str) -> ControlLaw:
+    return CONTROLLERS[name]
 
 
 CONTROLLERS: Mapping[str, ControlLaw] = _laws()
@@ -77,3 +84,6 @@ def scheduled_force_feedback(
     scheduled = controller("velocity_schedule", values)
     low_pass = controller("low_pass", {"bandwidth": bandwidth})
     return scheduled.then(low_pass) if schedule == "before" else low_pass.then(scheduled)
+
+
+check_arguments(globals(), __all__)

@@ -12,13 +12,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType, SimpleNamespace
+from types import SimpleNamespace
 from typing import Any, Literal
 
 import sympy as sp
 
+from ..arguments import checked
 from ..effects import Parameter
 from ..errors import ModelError, did_you_mean
+from ..frozen import Frozen
+from ..notebook import html_table
+from ..recipes import recipe
+
+_MOST_SHOWN = 8  # parameters of a law that one line shows
 
 SIGNALS = {
     name: sp.Symbol(name, real=True)
@@ -31,6 +37,7 @@ def only_sampled(now: Any, p: Any) -> sp.Expr:
     return sp.nan
 
 
+@checked
 @dataclass(frozen=True)
 class State:
     """A hidden state of a control law, whose `now` also carries the states of the law.
@@ -45,7 +52,8 @@ class State:
     step: Callable[[Any, Any], sp.Expr] | None = None
 
 
-@dataclass(frozen=True)
+@checked
+@dataclass(frozen=True, repr=False)
 class ControlLaw:
     """A control law: law(now, p) is its output; see the package's folder for examples.
 
@@ -72,19 +80,46 @@ class ControlLaw:
     name: str = ""
     text: str = ""
 
+    def __hash__(self) -> int:
+        return hash((self.name, self.law))  # what is equal has these in common
+
+    def __copy__(self) -> ControlLaw:
+        return self  # frozen: a copy could never differ
+
+    def __deepcopy__(self, memo: object) -> ControlLaw:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        if self.system is not None:
+            raise ModelError(
+                f"{self.name}: a nonlinear system of python-control is code, which cannot be "
+                "written to a file or sent to another process"
+            )
+        return recipe(self)
+
+    def __repr__(self) -> str:
+        return f"ControlLaw {self.name or '(no name)'}: {', '.join(self.parameters)}"
+
     def named(self, name: str, text: str) -> ControlLaw:
         """The law under the name of its file, with the file's docstring as its text."""
         return replace(self, name=name, text=text)
 
 
+@checked
 @dataclass(frozen=True)
 class Stage:
-    """A control law with a value (SI) for every parameter."""
+    """A control law with a value (SI) for every parameter.
+
+    name: in the names of its parameters; that of its law, numbered where a controller has it twice
+    """
 
     law: ControlLaw
     values: Mapping[str, float]
+    name: str = ""
 
     def __post_init__(self) -> None:
+        if not self.name:
+            object.__setattr__(self, "name", self.law.name)
         law, declared = self.law, self.law.parameters
         for name in self.values:
             if name not in declared:
@@ -100,7 +135,7 @@ class Stage:
                     f"{law.name}: {name} = {self.values[name]:g} is outside "
                     f"{parameter.lower:g} .. {parameter.upper:g}"
                 )
-        object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
+        object.__setattr__(self, "values", Frozen(self.values))
 
 
 @dataclass(frozen=True)
@@ -117,25 +152,35 @@ class ControllerEquation:
     before: frozenset[sp.Symbol]
 
 
-@dataclass(frozen=True)
+@checked
+@dataclass(frozen=True, repr=False)
 class Controller:
-    """One or more control laws in series, the first one next to the input."""
+    """One or more control laws in series, the first one next to the input.
+
+    A law that is there twice is numbered: "low_pass.bandwidth" and "low_pass_2.bandwidth".
+    """
 
     stages: tuple[Stage, ...]
 
     def __post_init__(self) -> None:
-        names = [stage.law.name for stage in self.stages]
-        if doubled := {n for n in names if names.count(n) > 1}:
-            raise ModelError(f'controller: law "{min(doubled)}" is there twice')
+        numbered: dict[str, Stage] = {}
+        for stage in self.stages:
+            name, number = stage.name, 2
+            while name in numbered:
+                name, number = f"{stage.law.name}_{number}", number + 1
+            numbered[name] = stage if name == stage.name else replace(stage, name=name)
+        object.__setattr__(self, "stages", tuple(numbered.values()))
 
+    @checked
     def then(self, other: Controller) -> Controller:
         """This controller with another one behind it."""
         return Controller((*self.stages, *other.stages))
 
     def names(self) -> dict[str, float]:
         """Every parameter as "law.parameter" -> value (SI)."""
-        return {f"{g.law.name}.{n}": float(v) for g in self.stages for n, v in g.values.items()}
+        return {f"{g.name}.{n}": float(v) for g in self.stages for n, v in g.values.items()}
 
+    @checked
     def with_values(self, values: Mapping[str, float]) -> Controller:
         """The controller with other parameter values, by "law.parameter"."""
         known = self.names()
@@ -145,7 +190,7 @@ class Controller:
         known |= values
         return Controller(
             tuple(
-                replace(g, values={n: known[f"{g.law.name}.{n}"] for n in g.values})
+                replace(g, values={n: known[f"{g.name}.{n}"] for n in g.values})
                 for g in self.stages
             )
         )
@@ -153,7 +198,8 @@ class Controller:
     def sampled(self, period: float) -> Controller:
         """The controller as a computer of that period (s) realises it."""
         stages = (
-            g if g.law.sampled is None else g.law.sampled(g.values, period) for g in self.stages
+            g if g.law.sampled is None else replace(g.law.sampled(g.values, period), name=g.name)
+            for g in self.stages
         )
         return Controller(tuple(stages))
 
@@ -174,7 +220,7 @@ class Controller:
                     f"{prefix}: {law.name} is a nonlinear python-control system, known as code "
                     "only: it takes part in `to_iosystem`, not in simulations of its own kernel"
                 )
-            now, p = _placed(law, prefix, {**signals, "input": value})
+            now, p = _placed(stage, prefix, {**signals, "input": value})
             probe = SimpleNamespace(**{**vars(now), "travel_rate": SIGNALS["travel_rate"]})
             for name, state in law.states.items():
                 symbol, in_computer = getattr(now, name), signals["period"] != 0
@@ -191,9 +237,7 @@ class Controller:
                 if sp.sympify(change(probe, p), strict=True).has(SIGNALS["travel_rate"]):
                     before.add(symbol)
             value = sp.sympify(law.law(now, p), strict=True)
-        return ControllerEquation(
-            value, MappingProxyType(rates), MappingProxyType(steps), frozenset(before)
-        )
+        return ControllerEquation(value, Frozen(rates), Frozen(steps), frozenset(before))
 
     def linear_form(self, prefix: str, s: sp.Symbol, speed: sp.Expr) -> sp.Expr | None:
         """Transfer function at frozen speed; None where a law declares no linear form."""
@@ -212,13 +256,31 @@ class Controller:
             value = equation.output.subs(settled) if equation.rates else equation.output
         return sp.simplify(value / drive)
 
+    def __repr__(self) -> str:
+        laws = (
+            f"{g.name}({', '.join(f'{n} = {v:.5g}' for n, v in g.values.items())})"
+            if len(g.values) < _MOST_SHOWN
+            else f"{g.name}({len(g.values)} parameters)"
+            for g in self.stages
+        )
+        return f"Controller {', then '.join(laws) or 'without a law'}"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (f"{g.name}.{n}", f"{v:.5g}", g.law.parameters[n].meaning)
+            for g in self.stages
+            for n, v in g.values.items()
+        ]
+        return html_table("Controller", ("parameter", "value (SI)", "meaning"), rows)
+
 
 def _placed(
-    law: ControlLaw, prefix: str, signals: Mapping[str, sp.Expr]
+    stage: Stage, prefix: str, signals: Mapping[str, sp.Expr]
 ) -> tuple[SimpleNamespace, SimpleNamespace]:
     """What the law sees, its states among it, and its parameters, as symbols of that block."""
-    own = {s: state_symbol(prefix, law.name, s) for s in law.states}
-    values = {n: parameter_symbol(prefix, f"{law.name}.{n}") for n in law.parameters}
+    law = stage.law
+    own = {s: state_symbol(prefix, stage.name, s) for s in law.states}
+    values = {n: parameter_symbol(prefix, f"{stage.name}.{n}") for n in law.parameters}
     return SimpleNamespace(**{**signals, **own}), SimpleNamespace(**values)
 
 

@@ -11,6 +11,7 @@ import sympy as sp
 
 from ..effects import Parameter
 from ..errors import ModelError
+from ..recipes import remember
 from ._controller import ControlLaw, Stage, State, only_sampled
 
 Array = np.ndarray
@@ -69,7 +70,8 @@ def _law(name: str, n: int, discrete: bool) -> ControlLaw:
         sampled=_same_period(name) if discrete else lambda v, period: _held(name, v, n, period),
         source="python-control",
     )
-    return made.named(name, f"A linear system of order {n} from python-control.")
+    made = made.named(name, f"A linear system of order {n} from python-control.")
+    return remember(made, _law, name, n, discrete)
 
 
 def _meaning(entry: str) -> str:

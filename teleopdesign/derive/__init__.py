@@ -1,5 +1,6 @@
 """Transfer functions and impedances from the wiring, symbolic."""
 
+from ..arguments import check_arguments
 from .all_transfers import Transfer, Transfers, all_transfers
 from .elimination import has_actuation, transfer
 from .noncommutative import counterexample, on_matrices, proved_equal
@@ -31,3 +32,5 @@ __all__ = [
     "two_port_functions",
     "with_values",
 ]
+
+check_arguments(globals(), __all__)

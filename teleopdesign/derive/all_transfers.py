@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -12,6 +11,7 @@ import sympy as sp
 from ..diagrams import AnyBlock, Attached, Control, Diagram, Moving
 from ..diagrams.short_form import kind_of
 from ..errors import ModelError, did_you_mean
+from ..frozen import Frozen
 from .printing import as_latex, as_text, block_symbol, name_as_latex, with_gamma
 from .transfer_functions import Case, named_cases
 from .two_port import two_port_cases
@@ -159,7 +159,7 @@ def all_transfers(diagram: Diagram, *, seconds: float = SECONDS) -> Transfers:
             text = f"impedance that {block.driver} works against, all else zero"
             case = Case(diagram, block.driver, block.motion, block.motion, text)
             _derive(f"{block.driver}/{block.motion}", case, found, undone, seconds)
-    return Transfers(diagram, MappingProxyType(found), MappingProxyType(undone))
+    return Transfers(diagram, Frozen(found), Frozen(undone))
 
 
 def _from_outside(diagram: Diagram, output: str) -> dict[str, Case]:

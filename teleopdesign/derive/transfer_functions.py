@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import sympy as sp
 
 from ..diagrams import Control, Diagram
 from ..errors import ModelError
+from ..frozen import Frozen
 from .elimination import product, transfer
 from .printing import as_latex, as_text, block_symbol, with_gamma
 
@@ -66,7 +66,7 @@ def transfer_functions(diagram: Diagram) -> TransferFunctions:
     cases = named_cases(diagram)
     found = {name: case.derived() for name, case in cases.items()}
     texts = {name: case.text for name, case in cases.items()}
-    return TransferFunctions(diagram, MappingProxyType(found), MappingProxyType(texts))
+    return TransferFunctions(diagram, Frozen(found), Frozen(texts))
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,9 @@ the place of velocities and the force on the slave in the place of its reaction.
 
 from __future__ import annotations
 
-from types import MappingProxyType
-
 from ..diagrams import Diagram
 from ..errors import ModelError
+from ..frozen import Frozen
 from .printing import block_symbol
 from .transfer_functions import Case, TransferFunctions
 
@@ -62,4 +61,4 @@ def two_port_functions(diagram: Diagram) -> TransferFunctions:
     if "Z_t" in found:
         found["Z_t - Z_E"] = found["Z_t"] - block_symbol("Z_E")
     texts = {name: _TEXTS[name] for name in found}
-    return TransferFunctions(diagram, MappingProxyType(found), MappingProxyType(texts))
+    return TransferFunctions(diagram, Frozen(found), Frozen(texts))

@@ -5,6 +5,7 @@ from teleopdesign.design import design, diagnosed
 design(diagnosed(find_missing(experiment)))     # C, H, what they do, whether that is passive
 """
 
+from ..arguments import check_arguments
 from .assumptions import Assumptions
 from .chosen import Chosen, Reason
 from .force_feedback import Loop
@@ -35,3 +36,5 @@ __all__ = [
     "residual_friction",
     "tune",
 ]
+
+check_arguments(globals(), __all__)

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..arguments import checked
 from ..blocks import NINETY_FIVE
 from ..errors import ModelError
 
 
+@checked
 @dataclass(frozen=True)
 class Assumptions:
     """Assumptions of a design, SI. None: taken from the record, as `design` says.

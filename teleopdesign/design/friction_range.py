@@ -13,6 +13,7 @@ import numpy as np
 import sympy as sp
 
 from ..blocks import Body
+from ..by_value import ByValue
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..realise.law_along import law_along
@@ -23,8 +24,8 @@ from .reach import Reach
 FASTER, LONGER = 10.0, 100.0
 
 
-@dataclass(frozen=True)
-class FrictionRange:
+@dataclass(frozen=True, eq=False)
+class FrictionRange(ByValue):
     """Levels of friction while sliding, N or N m, and the stiffness before it slides.
 
     identified: `coulomb.level`, and its standard error;  lowest, highest: over the shape

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..by_value import ByValue
 from ..diagnose import Diagnosis
 from ..diagnose.answers import load_answer
 from ..effects import EFFECTS, Effect
@@ -13,8 +14,8 @@ from ..measurement.experiment import Experiment
 from ..model import Model
 
 
-@dataclass(frozen=True)
-class Diagnosed:
+@dataclass(frozen=True, eq=False)
+class Diagnosed(ByValue):
     """A model, and how well it stands: verdict and what is left, in noise floors."""
 
     experiment: Experiment

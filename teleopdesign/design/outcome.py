@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..blocks import Body
+from ..by_value import ByValue
 from ..diagrams import ANY, Attached, Block, Diagram, Moving, haptic_interface
 from ..diagrams.toml_writing import diagram_text
 from ..errors import ModelError
@@ -29,8 +30,8 @@ if TYPE_CHECKING:
     import matplotlib.figure
 
 
-@dataclass(frozen=True)
-class Design:
+@dataclass(frozen=True, eq=False)
+class Design(ByValue):
     """A compensation for the body at `place` of an experiment.
 
     body: as the diagnosis identified it;  friction: range of its level, None: no friction level

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..blocks import Body
+from ..by_value import ByValue
 from ..diagrams import Diagram, four_cases
 from ..errors import ModelError
 from ..realise.tips import led
@@ -28,8 +29,8 @@ GIVE = 1e-6
 REVERSAL = 0.3
 
 
-@dataclass(frozen=True)
-class CasePrediction:
+@dataclass(frozen=True, eq=False)
+class CasePrediction(ByValue):
     """One case; forces in N or N m, rms about their mean over a cycle of the motion.
 
     linear, quasi_static, simulated: the force error;  at_peak_speed: simulated
@@ -50,8 +51,8 @@ class CasePrediction:
     failed: str = ""
 
 
-@dataclass(frozen=True)
-class Prediction:
+@dataclass(frozen=True, eq=False)
+class Prediction(ByValue):
     """Predicted force errors by case; curves: simulated, over velocity; left_out: of linear.
 
     hybrid: the diagram as simulated

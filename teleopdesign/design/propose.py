@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from ..blocks import Body
+from ..diagnose import Diagnosis
 from ..diagrams import Diagram, four_cases, haptic_interface
 from ..errors import ModelError
 from ..model import Model
@@ -17,7 +18,7 @@ from .energy import energy_claim
 from .felt_impedance import felt_impedance
 from .force_feedback import Loop, force_feedback, identified_delay, whole_inertia
 from .friction_range import FrictionRange, friction_range
-from .from_answer import Diagnosed
+from .from_answer import Diagnosed, diagnosed
 from .linear import transparency
 from .notes import notes_on
 from .outcome import Design
@@ -58,14 +59,20 @@ class Trial:
 
 
 def design(
-    found: Diagnosed, *, place: str | None = None, assumptions: Assumptions | None = None
+    found: Diagnosed | Diagnosis,
+    *,
+    place: str | None = None,
+    assumptions: Assumptions | None = None,
 ) -> Design:
     """Propose C and H for a body that a diagnosis identified, and predict what they do.
 
+    found: a diagnosis, or what one ended with, as `read_answer` gives it
     place: which body; may be left out where there is one
     Of the laws of C that are sure to be passive, the one that leaves the smaller force error.
     raises ModelError: no such body, an assumption that cannot hold, a motion beyond the records
     """
+    if isinstance(found, Diagnosis):
+        found = diagnosed(found)
     at = _place(found.model, place)
     reach = reach_of(found.experiment, at)
     body = free_body(found.model.body(at))

@@ -9,6 +9,7 @@ import numpy as np
 import sympy as sp
 
 from ..blocks import Body
+from ..by_value import ByValue
 from ..controllers import Controller
 from ..diagrams import four_cases, haptic_interface
 from ..effects import SIGNALS
@@ -20,8 +21,8 @@ from .quasi_static import left_over, slow_body
 SHARES = np.geomspace(0.01, 1.0, 41)
 
 
-@dataclass(frozen=True)
-class ResidualFriction:
+@dataclass(frozen=True, eq=False)
+class ResidualFriction(ByValue):
     """speeds: (n,), m/s or rad/s;  rows: case -> friction left, (n,), N or N m."""
 
     speeds: Array

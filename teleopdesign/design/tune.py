@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..by_value import ByValue
 from ..controllers import Controller
 from ..errors import ModelError
 from .outcome import Design
@@ -25,8 +26,8 @@ FARTHEST = 30.0
 AT_BOUND = 0.01
 
 
-@dataclass(frozen=True)
-class Tuned:
+@dataclass(frozen=True, eq=False)
+class Tuned(ByValue):
     """C and H after the search.
 
     before, after: force error of the hybrid as proposed and as tuned, N or N m, rms

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+from ..arguments import check_arguments
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .comparison import Comparison, compare
@@ -13,6 +16,9 @@ from .rank import Ranked, Ranking, rank_candidates
 from .search import estimate_from_starts
 from .soundness_check import check_experiment
 
+if TYPE_CHECKING:
+    from .unexplained import Unexplained
+
 __all__ = [
     "Comparison",
     "Diagnosis",
@@ -22,6 +28,7 @@ __all__ = [
     "Rung",
     "check_experiment",
     "compare",
+    "describe",
     "find_missing",
     "fit",
     "rank",
@@ -37,7 +44,21 @@ def fit(model: Model, experiment: Experiment) -> Model:
     return estimate_from_starts(model, prepare(experiment)).model
 
 
+def describe(model: Model, experiment: Experiment, *, seed: int = 0) -> Unexplained:
+    """Where the model fails, re-estimated, and what that depends on: sentences with their numbers.
+
+    seed: of the draws for the noise floor
+    """
+    from .unexplained import unexplained
+
+    prepared = prepare(experiment)
+    return unexplained(estimate_from_starts(model, prepared), prepared, seed=seed)
+
+
 def rank(model: Model, experiment: Experiment) -> Ranking:
     """Effects that may be missing, best first; each is added and everything is re-estimated."""
     prepared = prepare(experiment)
     return rank_candidates(estimate_from_starts(model, prepared), prepared)
+
+
+check_arguments(globals(), __all__)

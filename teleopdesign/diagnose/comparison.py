@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..by_value import ByValue
 from ..measurement.experiment import Experiment
 from ..model import Model
+from ..notebook import html_table
 from ..quantity import unit_of
 from ..realise.along_motion import residual_along
 from .force_error import Prepared, force_error, prepare
@@ -20,8 +22,8 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 
-@dataclass(frozen=True)
-class Comparison:
+@dataclass(frozen=True, eq=False)
+class Comparison(ByValue):
     """A model held against an experiment, as it stands.
 
     fit_error, check_error: relative force errors (NaN where there is no such record)
@@ -46,6 +48,13 @@ class Comparison:
     def to_netcdf(self, path: str | Path) -> None:
         """Write the data with its units."""
         self.data.to_netcdf(path)
+
+    def _repr_html_(self) -> str:
+        rows = [("fit error", self.fit_error), ("check error", self.check_error)]
+        rows += [("noise floor", self.floor.value)]
+        shown = [(name, f"{100 * error:.2f} %") for name, error in rows if error == error]
+        title = f"Comparison below {self.prepared.bandwidth:.3g} Hz"
+        return html_table(title, ("", "relative force error"), shown, note=self.floor.source)
 
     def __repr__(self) -> str:
         lines = [f"Comparison below {self.prepared.bandwidth:.3g} Hz"]

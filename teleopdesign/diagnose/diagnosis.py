@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..by_value import ByValue
 from ..measurement.experiment import Experiment
 from ..model import Model
+from ..notebook import html_table
 from .candidates import Candidate
 from .fit import Fit
 from .force_error import Prepared
@@ -24,8 +26,8 @@ ADEQUATE = 1.8
 MOSTLY = 0.5
 
 
-@dataclass(frozen=True)
-class Rung:
+@dataclass(frozen=True, eq=False, repr=False)
+class Rung(ByValue):
     """One step of the ladder: what was added (None: the user's model), the fit, and the ranking.
 
     ranking: the candidates that were compared on this step; equals: those as good as the added one
@@ -36,9 +38,12 @@ class Rung:
     ranking: Ranking | None = None
     equals: tuple[Candidate, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"Rung {self.added or 'of the model'}: {self.fit!r}"
 
-@dataclass(frozen=True)
-class OpenQuestion:
+
+@dataclass(frozen=True, eq=False)
+class OpenQuestion(ByValue):
     """An accepted effect and what may stand in its place as well; None: nothing was accepted.
 
     others: each with the fit that it was compared by
@@ -48,8 +53,8 @@ class OpenQuestion:
     others: tuple[tuple[Candidate, Fit], ...]
 
 
-@dataclass(frozen=True)
-class Diagnosis:
+@dataclass(frozen=True, eq=False)
+class Diagnosis(ByValue):
     """What a recording says about a model.
 
     verdict: "effects_missing", "model_adequate" or "undecided"
@@ -114,6 +119,21 @@ class Diagnosis:
         from ..plot.diagnosis import plot_diagnosis
 
         return plot_diagnosis(self)
+
+    def _repr_html_(self) -> str:
+        from .answer import sentence
+
+        rows = [
+            (
+                "(your model, re-estimated)" if r.added is None else f"+ {r.added}",
+                f"{100 * r.fit.fit_error:.2f} %",
+                f"{100 * r.fit.check_error:.2f} %",
+            )
+            for r in self.rungs
+        ]
+        rows.append(("noise floor", "", f"{100 * self.floor.value:.2f} %"))
+        head = ("added", "fit error", "check error")
+        return html_table("Diagnosis", head, rows, note=sentence(self))
 
     def __repr__(self) -> str:
         from .answer import ladder_text

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import Value
+from ..by_value import ByValue
 from ..measurement.filtering import Array
 from ..model import Model
 from .force_error import Prepared, Stretch, folds, force_error, referred
@@ -19,8 +20,8 @@ from .scales import scales
 BLOCK = 0.25
 
 
-@dataclass(frozen=True)
-class Fit:
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit(ByValue):
     """A fitted model: parameters with standard errors, and its errors on both uses.
 
     fit_error, check_error: relative force errors; NaN where there is no such record
@@ -42,6 +43,12 @@ class Fit:
     check_blocks: NDArray[np.intp]
     jacobian: Array
     scale: Array
+
+    def __repr__(self) -> str:
+        return (
+            f"Fit of {len(self.free)} parameters: fit error {100 * self.fit_error:.2f} %, check "
+            f"error {100 * self.check_error:.2f} %"
+        )
 
 
 def fit_squares(found: Fit) -> float:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import Body
+from ..by_value import ByValue
 from ..effects import SIGNALS
 from ..errors import ExperimentError
 from ..measurement.experiment import Experiment
@@ -34,8 +35,8 @@ OVERSAMPLING = 5.0
 FOLDS = 4
 
 
-@dataclass(frozen=True)
-class Stretch:
+@dataclass(frozen=True, eq=False)
+class Stretch(ByValue):
     """One body along one segment with its use, and the rows that count.
 
     keep: the rows that count, thinned to what the low-pass leaves
@@ -57,8 +58,8 @@ class Stretch:
         return "position_zero" in self.own
 
 
-@dataclass(frozen=True)
-class Prepared:
+@dataclass(frozen=True, eq=False)
+class Prepared(ByValue):
     """An experiment made ready for comparison at one bandwidth (Hz)."""
 
     experiment: Experiment

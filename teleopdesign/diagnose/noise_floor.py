@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..by_value import ByValue
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motion_of
 from ..model import Model
@@ -23,8 +24,8 @@ from .sensors import sensor_of
 DRAWS = 3
 
 
-@dataclass(frozen=True)
-class NoiseFloor:
+@dataclass(frozen=True, eq=False)
+class NoiseFloor(ByValue):
     """The floor as a relative force error, and where its numbers come from.
 
     drawn: what the readings drawn anew left;  value: what counts of it

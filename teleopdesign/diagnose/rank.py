@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..by_value import ByValue
 from ..model import Model
+from ..notebook import html_table
 from .candidates import Candidate, candidates
 from .evidence import gain_score
 from .fit import ROUGH, Fit, estimate, fit_squares
@@ -16,8 +18,8 @@ from .search import WORTH, at_stated, estimate_from_starts
 from .threads import in_threads
 
 
-@dataclass(frozen=True)
-class Ranked:
+@dataclass(frozen=True, eq=False, repr=False)
+class Ranked(ByValue):
     """A candidate with the model fitted with it.
 
     score: how surely it lowers the error on the check records (standard deviations)
@@ -31,9 +33,19 @@ class Ranked:
     behind: float
     told: bool
 
+    @property
+    def note(self) -> str:
+        """What is to be said beside the numbers; "" where nothing is."""
+        if self.candidate.key in self.fit.model.absent:
+            return "gains nothing"
+        return "" if self.told else "not determined"
 
-@dataclass(frozen=True)
-class Ranking:
+    def __repr__(self) -> str:
+        return f"Ranked {self.candidate}: score {self.score:.1f}, behind {self.behind:.1f}"
+
+
+@dataclass(frozen=True, eq=False)
+class Ranking(ByValue):
     """Candidates, best first, and the fit that they are compared with."""
 
     base: Fit
@@ -44,14 +56,22 @@ class Ranking:
         """The candidate with the smallest error."""
         return self.ranked[0]
 
+    def _repr_html_(self) -> str:
+        base = (f"{self.base.fit_error:.4f}", f"{self.base.check_error:.4f}")
+        rows: list[tuple[str, ...]] = [("(the model)", *base, "", "", "")]
+        for r in self.ranked:
+            errors = (f"{r.fit.fit_error:.4f}", f"{r.fit.check_error:.4f}")
+            rows.append((str(r.candidate), *errors, f"{r.score:.1f}", f"{r.behind:.1f}", r.note))
+        head = ("candidate", "fit error", "check error", "score", "behind", "")
+        return html_table("Candidates, best first", head, rows)
+
     def __repr__(self) -> str:
         lines = [f"{'candidate':<40}{'fit error':>10}{'check error':>13}{'score':>8}{'behind':>8}"]
         lines.append(
             f"{'(the model)':<40}{self.base.fit_error:>10.4f}{self.base.check_error:>13.4f}"
         )
         for r in self.ranked:
-            absent = r.candidate.key in r.fit.model.absent
-            note = "  gains nothing" if absent else "" if r.told else "  not determined"
+            note = f"  {r.note}" if r.note else ""
             lines.append(
                 f"{r.candidate!s:<40}{r.fit.fit_error:>10.4f}{r.fit.check_error:>13.4f}{r.score:>8.1f}{r.behind:>8.1f}{note}"
             )

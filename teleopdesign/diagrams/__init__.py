@@ -1,5 +1,6 @@
 """Which blocks, wired by signal names."""
 
+from ..arguments import check_arguments
 from .arms import Arm, by_jacobian, joint, teleoperator_of_arms
 from .felt_friction import FeltFriction, felt_friction
 from .haptic_interface import four_cases, haptic_interface
@@ -56,3 +57,5 @@ __all__ = [
     "world_haptics_2005",
     "write_diagram",
 ]
+
+check_arguments(globals(), __all__)

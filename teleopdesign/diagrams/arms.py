@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from ..arguments import checked, matrix_of
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller, controller
 from ..errors import ModelError
@@ -38,6 +39,7 @@ def joint(number: int) -> sp.Symbol:
     return sp.Symbol(f"q_{number}", real=True)
 
 
+@checked
 @dataclass(frozen=True)
 class Arm:
     """Joints and where they bring the tip.
@@ -69,7 +71,7 @@ class Arm:
 
 def by_jacobian(jacobian: Any) -> tuple[sp.Expr, ...]:
     """Coordinates of a tip whose Jacobian does not change: X = J q, J (coordinates, joints)."""
-    matrix = np.asarray(jacobian, dtype=float)
+    matrix = matrix_of(jacobian, "by_jacobian: jacobian")
     symbols = [joint(n + 1) for n in range(matrix.shape[1])]
     return tuple(
         sp.Add(*(float(w) * q for w, q in zip(row, symbols, strict=True) if w)) for row in matrix
@@ -97,6 +99,7 @@ def teleoperator_of_arms(
     size = len(master.coordinates)
     none = np.zeros((size, size))
     given = {"stiffness": stiffness, "damping": none if damping is None else damping}
+    given = {n: matrix_of(m, f"teleoperator_of_arms: {n}") for n, m in given.items()}
     gains = {name: np.asarray(g, dtype=float) for name, g in given.items()}
     if len(slave.coordinates) != size or any(g.shape != (size, size) for g in gains.values()):
         sizes = ", ".join(f"{name} {g.shape}" for name, g in gains.items())

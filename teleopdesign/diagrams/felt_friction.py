@@ -17,13 +17,14 @@ from itertools import product
 
 import numpy as np
 
+from ..by_value import ByValue
 from ..errors import ModelError
 
 _MOST_RODS = 16  # 2^15 corners
 
 
-@dataclass(frozen=True)
-class FeltFriction:
+@dataclass(frozen=True, eq=False)
+class FeltFriction(ByValue):
     """Friction of n rods in the n coordinates of a hand; see `felt_friction`.
 
     geometry: G (n, n);  levels: F_C (n,), N

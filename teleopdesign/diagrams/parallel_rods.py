@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import matrix_of
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..errors import ModelError
@@ -46,7 +47,7 @@ def parallel_rods(
     raises ModelError: G is no regular n x n matrix, or another block has another size
     """
     size = len(rods)
-    g = np.asarray(geometry, dtype=float)
+    g = matrix_of(geometry, "parallel_rods: geometry")
     if g.shape != (size, size):
         raise ModelError(f"parallel rods: geometry is {g.shape}, expected ({size}, {size})")
     if np.linalg.matrix_rank(g) < size:

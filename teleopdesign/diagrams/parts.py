@@ -8,9 +8,11 @@ from typing import TypeAlias
 
 import sympy as sp
 
+from ..arguments import checked
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..errors import ModelError, quoted
+from ..frozen import Frozen
 from ..names import check_name
 
 
@@ -18,10 +20,13 @@ from ..names import check_name
 class AnyBlock:
     """A block known by its name only: enough to derive transfer functions, not to simulate."""
 
+    def __repr__(self) -> str:
+        return "ANY"
+
 
 ANY = AnyBlock()
 #: a sign, a factor, or an expression of positions (on `position_symbol`), such as a lever arm
-Weight: TypeAlias = "float | sp.Expr"
+Weight: TypeAlias = float | sp.Expr
 
 
 def position_symbol(name: str) -> sp.Symbol:
@@ -49,6 +54,7 @@ def _check_names(where: str, *names: str) -> None:
         check_name(name, where=where)
 
 
+@checked
 @dataclass(frozen=True)
 class Moving:
     """A body that forces move:  Z motion = command + loads.
@@ -62,7 +68,7 @@ class Moving:
     body: Body | AnyBlock
     motion: str
     command: str
-    loads: Mapping[str, int]
+    loads: Mapping[str, float]
     driver: str
 
     def __post_init__(self) -> None:
@@ -72,6 +78,7 @@ class Moving:
             check_name(self.driver, where=f"block {self.name}: driver")
         for signal, sign in self.loads.items():
             as_expression(sign, where=f"block {self.name}: {signal}")
+        object.__setattr__(self, "loads", Frozen(self.loads))
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -82,6 +89,7 @@ class Moving:
         return (self.command, *self.loads)
 
 
+@checked
 @dataclass(frozen=True)
 class Attached:
     """A body that follows a motion and resists it:  force = sign Z motion."""
@@ -105,6 +113,7 @@ class Attached:
         return (self.motion,)
 
 
+@checked
 @dataclass(frozen=True)
 class Linked:
     """Bodies joined by a linear impedance:  forces = sign Z motions, Z a matrix."""
@@ -143,6 +152,7 @@ class Linked:
         return self.motions
 
 
+@checked
 @dataclass(frozen=True)
 class Control:
     """A controller:  output = controller(input), along the velocity of `motion`.
@@ -171,6 +181,7 @@ class Control:
         return (self.input, self.motion)
 
 
+@checked
 @dataclass(frozen=True)
 class Junction:
     """A summing junction:  output = sum of weight * signal.
@@ -187,6 +198,7 @@ class Junction:
         for signal, weight in self.terms.items():
             as_expression(weight, where=f"{self.name}: {signal}")
         _check_names(self.name, *self.arms)
+        object.__setattr__(self, "terms", Frozen(self.terms))
 
     @property
     def name(self) -> str:
@@ -206,6 +218,7 @@ class Junction:
         return (*self.terms, *(x for x in self.arms if x not in self.terms))
 
 
+@checked
 @dataclass(frozen=True)
 class Kinematics:
     """A position that others determine:  output = expression of positions (`position_symbol`).

@@ -8,14 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 
 import sympy as sp
 
+from ..arguments import checked
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..errors import ModelError, did_you_mean
+from ..frozen import Frozen
 from ..names import check_name
+from ..notebook import html_table
+from ..quantity import QUANTITIES
 from .parts import (
     AnyBlock,
     Attached,
@@ -31,7 +34,8 @@ from .parts import (
 )
 
 
-@dataclass(frozen=True)
+@checked
+@dataclass(frozen=True, repr=False)
 class Diagram:
     """Blocks and junctions wired by signal names.
 
@@ -55,6 +59,12 @@ class Diagram:
         for where in ("outside", "measured", "texts", "pose"):
             for name in getattr(self, where):
                 check_name(name, where=f"{self.name}: {where}")
+        for signal, quantity in self.outside.items():
+            if quantity not in QUANTITIES:
+                raise ModelError(
+                    f'{self.name}: outside["{signal}"]: no quantity "{quantity}"'
+                    f"{did_you_mean(quantity, QUANTITIES)}"
+                )
         made: dict[str, str] = dict.fromkeys(self.outside, "outside")
         names = [b.name for b in self.blocks]
         if doubled := {n for n in names if names.count(n) > 1}:
@@ -68,6 +78,7 @@ class Diagram:
                 made[signal] = part.name
         needed = [(p.name, s) for p in self.parts for s in p.inputs]
         needed += [("measured", s) for s in self.measured]
+        needed += [(f"{b.name}: driver", b.driver) for b in self.blocks if isinstance(b, Moving)]
         for where, signal in needed:
             if signal not in made:
                 raise ModelError(
@@ -75,13 +86,14 @@ class Diagram:
                     f"{did_you_mean(signal, made)}"
                 )
         for name in ("outside", "texts", "pose"):
-            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
+            object.__setattr__(self, name, Frozen(getattr(self, name)))
 
     @property
     def parts(self) -> tuple[Part, ...]:
         """Blocks, kinematics and junctions."""
         return (*self.blocks, *self.kinematics, *self.junctions)
 
+    @checked
     def position(self, name: str) -> sp.Expr:
         """A motion, or a junction or kinematics of motions, on the positions of moving bodies.
 
@@ -139,6 +151,7 @@ class Diagram:
     def controls(self) -> tuple[Control, ...]:
         return tuple(b for b in self.blocks if isinstance(b, Control))
 
+    @checked
     def block(self, name: str) -> Block:
         """The block of that name; ModelError with the nearest one."""
         for block in self.blocks:
@@ -153,6 +166,7 @@ class Diagram:
         """Whether the diagram has a block of that name."""
         return any(b.name == name for b in self.blocks)
 
+    @checked
     def signal(self, name: str) -> str:
         """The name itself; ModelError with the nearest signal where there is none of that name."""
         if name not in self.signals:
@@ -189,6 +203,7 @@ class Diagram:
         kept = tuple(b for b in self.blocks if b.name not in names)
         return _pruned(replace(self, blocks=kept, outside={**self.outside, **free}))
 
+    @checked
     def with_block(self, name: str, block: Body | MatrixImpedance | Controller) -> Diagram:
         """The diagram with another body or controller in the place of that name."""
         old = self.block(name)
@@ -220,6 +235,7 @@ class Diagram:
                 found |= {f"{block.name}.{n}": v for n, v in block.body.parameters.items()}
         return found
 
+    @checked
     def with_values(self, values: Mapping[str, float]) -> Diagram:
         """The diagram with other parameter values, by the names in `values`."""
         known, diagram = self.values, self
@@ -233,6 +249,11 @@ class Diagram:
             if own and not isinstance(part, AnyBlock):
                 diagram = diagram.with_block(block.name, part.with_values(own))
         return diagram
+
+    def _repr_html_(self) -> str:
+        rows = [(part.name, _line(part), _content(part)) for part in self.parts]
+        note = f"from outside: {', '.join(self.outside)}"
+        return html_table(f"Diagram {self.name}", ("part", "equation", "content"), rows, note=note)
 
     def __repr__(self) -> str:
         lines = [f"Diagram {self.name}"]
@@ -268,6 +289,16 @@ def _line(part: Part) -> str:
     if isinstance(part, Kinematics):
         return f"{part.output} = {part.expression}"
     return f"{part.output} = {_sum(part.terms.items())}"
+
+
+def _content(part: Part) -> str:
+    """What a block holds, in a few words; nothing for sums and kinematics."""
+    if isinstance(part, Control):
+        stages = part.controller.stages if isinstance(part.controller, Controller) else ()
+        return ", ".join(stage.name for stage in stages)
+    if isinstance(part, Moving | Attached):
+        return ", ".join(e.name for e in part.body.effects) if isinstance(part.body, Body) else ""
+    return ""
 
 
 def _pruned(diagram: Diagram) -> Diagram:

@@ -7,12 +7,14 @@ of low confidence.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
 
 from ..blocks import Body, Value
 from ..controllers import controller, scheduled_force_feedback
 from ..effects import EFFECTS
+from ..frozen import Catalogue
 from .haptic_interface import haptic_interface
 from .wiring import Diagram
 
@@ -28,35 +30,42 @@ class Reading:
     why: str
 
 
-READINGS = {
-    "coulomb_level": Reading(
-        0.5, "N", (0.05, 0.15, 0.5, 1.5), 0.85, "fits the force axis beside the inertial force"
-    ),
-    "smoothing_velocity": Reading(
-        0.015, "m/s", (0.005, 0.015, 0.05, 0.15), 0.45, "removes most of the step at 94 mm/s"
-    ),
-    "gain": Reading(5.0, "1", (5.0, 15.0, 50.0), 0.6, "leaves a margin for delay"),
-    "scheduling_velocity": Reading(
-        0.08, "m/s", (0.008, 0.08, 0.018, 0.18, 0.8), 0.6, "residual friction falls with speed"
-    ),
-    "bandwidth": Reading(
-        20.0, "Hz", (2.0, 12.0, 20.0, 120.0, 200.0), 0.8, "the four cases merge above 20 Hz"
-    ),
-    "load": Reading(0.5, "kg", (0.005, 0.015, 0.05, 0.15, 0.5, 0.51), 0.6, "stands for a hand"),
-    "mass": Reading(0.15, "kg", (0.15,), 0.3, "not printed; fits a corner near 20 Hz"),
-    "frequency": Reading(1.5, "Hz", (0.5, 1.5), 0.95, "with 10 mm fills the velocity axis"),
-    "amplitude": Reading(0.01, "m", (0.001, 0.01, 0.1), 0.95, "with 1.5 Hz fills the axis"),
-    "sample_period": Reading(1e-3, "s", (1e-3,), 0.3, "not printed; usual"),
-    "position_gain": Reading(
-        2e4, "N/m", (2.0, 20.0, 200.0, 2e3, 1.2e4, 2e4), 0.3, "stable loop, simplest digits"
-    ),
-    "position_zero": Reading(
-        2 * pi, "rad/s", (2 * pi, 12 * pi, 20 * pi), 0.3, "stable loop, simplest digits"
-    ),
-    "position_pole": Reading(
-        100 * pi, "rad/s", (pi, 10 * pi, 100 * pi, 1000 * pi), 0.3, "stable loop, simplest digits"
-    ),
-}
+READINGS: Mapping[str, Reading] = Catalogue(
+    {
+        "coulomb_level": Reading(
+            0.5, "N", (0.05, 0.15, 0.5, 1.5), 0.85, "fits the force axis beside the inertial force"
+        ),
+        "smoothing_velocity": Reading(
+            0.015, "m/s", (0.005, 0.015, 0.05, 0.15), 0.45, "removes most of the step at 94 mm/s"
+        ),
+        "gain": Reading(5.0, "1", (5.0, 15.0, 50.0), 0.6, "leaves a margin for delay"),
+        "scheduling_velocity": Reading(
+            0.08, "m/s", (0.008, 0.08, 0.018, 0.18, 0.8), 0.6, "residual friction falls with speed"
+        ),
+        "bandwidth": Reading(
+            20.0, "Hz", (2.0, 12.0, 20.0, 120.0, 200.0), 0.8, "the four cases merge above 20 Hz"
+        ),
+        "load": Reading(0.5, "kg", (0.005, 0.015, 0.05, 0.15, 0.5, 0.51), 0.6, "stands for a hand"),
+        "mass": Reading(0.15, "kg", (0.15,), 0.3, "not printed; fits a corner near 20 Hz"),
+        "frequency": Reading(1.5, "Hz", (0.5, 1.5), 0.95, "with 10 mm fills the velocity axis"),
+        "amplitude": Reading(0.01, "m", (0.001, 0.01, 0.1), 0.95, "with 1.5 Hz fills the axis"),
+        "sample_period": Reading(1e-3, "s", (1e-3,), 0.3, "not printed; usual"),
+        "position_gain": Reading(
+            2e4, "N/m", (2.0, 20.0, 200.0, 2e3, 1.2e4, 2e4), 0.3, "stable loop, simplest digits"
+        ),
+        "position_zero": Reading(
+            2 * pi, "rad/s", (2 * pi, 12 * pi, 20 * pi), 0.3, "stable loop, simplest digits"
+        ),
+        "position_pole": Reading(
+            100 * pi,
+            "rad/s",
+            (pi, 10 * pi, 100 * pi, 1000 * pi),
+            0.3,
+            "stable loop, simplest digits",
+        ),
+    },
+    "reading",
+)
 
 
 def reading(name: str) -> float:

@@ -6,19 +6,23 @@ The file name is the effect's name, its docstring the effect's page. A user's ow
 
 from __future__ import annotations
 
+import hashlib
 import importlib.util
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from types import MappingProxyType, ModuleType
+from types import ModuleType
+from weakref import WeakValueDictionary
 
 from sympy import SympifyError
 
-from ..errors import ModelError, did_you_mean
+from ..arguments import check_arguments
+from ..errors import ModelError, TeleopDesignError, did_you_mean
+from ..frozen import Catalogue
 from ..names import check_name
+from ..recipes import remember
 from ._effect import (
     CONTACT_ROLES,
     INERTIA,
-    ROLES,
     SIGNALS,
     UNEXPLAINED,
     Effect,
@@ -50,6 +54,7 @@ __all__ = [
 def load_effect(path: str | Path) -> Effect:
     """Read one effect file; the name of the file becomes the name of the effect.
 
+    A file that has not changed since gives the same effect again.
     raises ModelError: the file cannot be read or run, defines no EFFECT, or an unsound one
     """
     path = Path(path)
@@ -57,11 +62,34 @@ def load_effect(path: str | Path) -> Effect:
         raise ModelError(f"{path}: no such effect file")
     if not path.stem.isidentifier():
         raise ModelError(f'{path}: the file name "{path.stem}" must be a name such as my_effect.py')
+    return _of_file(path.resolve(), path)
+
+
+_LOADED: WeakValueDictionary[tuple[Path, str], Effect] = WeakValueDictionary()
+
+
+def _of_file(path: Path, said: Path, expected: str = "") -> Effect:
+    """The effect of a file; said: as the user wrote its path;  expected: digest it must have."""
+    try:
+        digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as problem:
+        raise ModelError(f"{said}: cannot be read: {problem.strerror or problem}") from None
+    if expected and digest != expected:
+        raise ModelError(f"{said}: the effect file has changed since it was used")
+    found = _LOADED.get((path, digest))
+    if found is None:
+        found = _LOADED[path, digest] = remember(_read(said), _of_file, path, said, digest)
+    return found
+
+
+def _read(path: Path) -> Effect:
     spec = importlib.util.spec_from_file_location(f"{__name__}.{path.stem}", path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
+    except TeleopDesignError as error:
+        raise ModelError(f"{path}: {error}") from error
     except Exception as error:  # any failure of a user's file is reported, with its kind
         raise ModelError(f"{path}: {type(error).__name__}: {error}") from error
     return _checked(module, path)
@@ -71,11 +99,6 @@ def _checked(module: ModuleType, path: Path) -> Effect:
     effect = getattr(module, "EFFECT", None)
     if not isinstance(effect, Effect):
         raise ModelError(f"{path}: found no EFFECT = Effect(...)")
-    if effect.role not in ROLES:
-        raise ModelError(
-            f'{path}: role "{effect.role}" is none of {", ".join(ROLES)}'
-            f"{did_you_mean(effect.role, ROLES)}"
-        )
     for name in (*effect.parameters, *effect.states):
         check_name(name, where=f"{path}")
     if both := set(effect.parameters) & set(effect.states):
@@ -99,7 +122,15 @@ def _checked(module: ModuleType, path: Path) -> Effect:
 
 def _own_effects() -> Mapping[str, Effect]:
     files = sorted(p for p in Path(__file__).parent.glob("*.py") if not p.name.startswith("_"))
-    return MappingProxyType({p.stem: load_effect(p) for p in files})
+    return Catalogue(
+        {p.stem: remember(_read(p), _own_effect, p.stem) for p in files},
+        "effect",
+        see=" (see `teleopdesign effects`)",
+    )
+
+
+def _own_effect(name: str) -> Effect:
+    return EFFECTS[name]
 
 
 EFFECTS: Mapping[str, Effect] = _own_effects()
@@ -108,7 +139,7 @@ EFFECTS: Mapping[str, Effect] = _own_effects()
 def catalogue(extra: Iterable[str | Path | Effect] = ()) -> Mapping[str, Effect]:
     """The package's effects and the given files' (or effects), by name; a user's name wins."""
     own = (e if isinstance(e, Effect) else load_effect(e) for e in extra)
-    return MappingProxyType({**EFFECTS, **{e.name: e for e in own}})
+    return Catalogue({**EFFECTS, **{e.name: e for e in own}}, "effect")
 
 
 def find_effect(name: str, known: Mapping[str, Effect] = EFFECTS, where: str = "effect") -> Effect:
@@ -118,3 +149,6 @@ def find_effect(name: str, known: Mapping[str, Effect] = EFFECTS, where: str = "
             f'{where}: no effect "{name}"{did_you_mean(name, known)} (see `teleopdesign effects`)'
         )
     return known[name]
+
+
+check_arguments(globals(), __all__)

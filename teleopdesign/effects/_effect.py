@@ -27,6 +27,12 @@ from typing import Any, Literal, get_args
 
 import sympy as sp
 
+from ..arguments import checked
+from ..errors import ModelError, did_you_mean
+from ..notebook import html_table
+from ..quantity import QUANTITIES, unit_of
+from ..recipes import recipe, remember
+
 Role = Literal[
     "actuation",
     "structure",
@@ -79,6 +85,7 @@ INERTIA, UNEXPLAINED = sp.symbols("inertia unexplained", real=True)
 delayed = sp.Function("delayed", real=True)
 
 
+@checked
 @dataclass(frozen=True)
 class Parameter:
     """One parameter of an effect: its quantity (a key of `quantity`), meaning and bounds (SI).
@@ -103,6 +110,13 @@ class Parameter:
     optional: bool = False
     essential: bool = False
 
+    def __post_init__(self) -> None:
+        if self.quantity not in QUANTITIES:
+            raise ModelError(
+                f'Parameter: no quantity "{self.quantity}", has {", ".join(QUANTITIES)}'
+                f"{did_you_mean(self.quantity, QUANTITIES)}"
+            )
+
 
 #: period of something that repeats along the travel. Searches start evenly in 1/period, three
 #: quarters of a cycle over the whole travel from one to the next: where two are a cycle apart, what
@@ -117,6 +131,7 @@ PERIOD = Parameter(
 )
 
 
+@checked
 @dataclass(frozen=True)
 class State:
     """A hidden state: its quantity and rate law(now, p), where `now` also carries the states.
@@ -132,7 +147,8 @@ class State:
     correction: Callable[[Any, Any], sp.Expr] | None = None
 
 
-@dataclass(frozen=True, eq=False)
+@checked
+@dataclass(frozen=True, repr=False)
 class Effect:
     """A physical effect: one law in one role; see the package's folder for examples.
 
@@ -165,6 +181,29 @@ class Effect:
     source: str = ""
     name: str = ""
     text: str = ""
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.role, self.law))  # what is equal has these in common
+
+    def __copy__(self) -> Effect:
+        return self  # frozen: a copy could never differ
+
+    def __deepcopy__(self, memo: object) -> Effect:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return recipe(self)
+
+    def __repr__(self) -> str:
+        return f"Effect {self.name or '(no name)'}, {self.role}: {', '.join(self.parameters)}"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (n, p.meaning, unit_of(p.quantity, "prismatic"), unit_of(p.quantity, "revolute"))
+            for n, p in self.parameters.items()
+        ]
+        head = ("parameter", "meaning", "prismatic", "revolute")
+        return html_table(f"{self.name}: {self.title}", head, rows, note=self.source)
 
     def named(self, name: str, text: str) -> Effect:
         """The effect under the name of its file, with the file's docstring as its text."""
@@ -315,7 +354,7 @@ def _without(effect: Effect, parameter: str) -> Effect:
     def corrected(state: State) -> Callable[[Any, Any], sp.Expr] | None:
         return None if state.correction is None else given(state.correction)
 
-    return replace(
+    less = replace(
         effect,
         law=given(effect.law),
         states={
@@ -324,6 +363,7 @@ def _without(effect: Effect, parameter: str) -> Effect:
         },
         parameters={n: p for n, p in effect.parameters.items() if n != parameter},
     )
+    return remember(less, _without, effect, parameter)
 
 
 def ordered(effects: tuple[Effect, ...], role: Role) -> list[Effect]:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..arguments import checked
 from ..errors import ExperimentError, did_you_mean
 
 
+@checked
 def example(name: str = "rod") -> Path:
     """Folder of the shipped experiment of that name; raises ExperimentError with the nearest."""
     folders = {p.parent.name: p.parent for p in Path(__file__).parent.glob("*/experiment.toml")}

@@ -1,5 +1,6 @@
 """Frequency responses of a diagram."""
 
+from ..arguments import check_arguments
 from ..derive import transfer_function
 from .describing_function import describing_function
 from .grid import falling
@@ -27,3 +28,5 @@ __all__ = [
     "simulated_response",
     "transfer_function",
 ]
+
+check_arguments(globals(), __all__)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from ..by_value import ByValue
 from ..errors import ModelError
 from ..plain_data import write_json
 
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
     import xarray
 
 
-@dataclass(frozen=True)
-class ImpedanceMap:
+@dataclass(frozen=True, eq=False)
+class ImpedanceMap(ByValue):
     """Impedance relative to position over `case`, `frequency` (Hz) and, on a grid, `amplitude`.
 
     data: `impedance`, complex, force per position; spring 0, damper and friction 90, mass 180 deg

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
+from ..by_value import ByValue
 from ..derive.elimination import rows
 from ..derive.printing import block_symbol
 from ..diagrams import Diagram, Moving
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
     import xarray
 
 
-@dataclass(frozen=True)
-class MatrixResponse:
+@dataclass(frozen=True, eq=False)
+class MatrixResponse(ByValue):
     """Complex response over frequency (Hz), output and input; what has no linear form is named."""
 
     data: xarray.DataArray

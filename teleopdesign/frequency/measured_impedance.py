@@ -18,6 +18,7 @@ from ..quantity import unit_of
 from ..realise.parted import simulated_parted
 from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
+from .cases import cases_of
 from .grid import Amplitude, Grid
 from .impedance_map import ImpedanceMap
 from .sinusoid import GIVE, Sinusoid, settled_harmonics
@@ -48,7 +49,7 @@ def measured_impedance(
     raises ModelError: a frequency or amplitude that is not positive, a signal that is not there, or
         a loop that is unstable
     """
-    cases = {diagrams.name: diagrams} if isinstance(diagrams, Diagram) else dict(diagrams)
+    cases = cases_of(diagrams)
     grid = Grid.of(amplitude, frequency)
     shape = (len(cases), *(len(getattr(grid, name)) for name in grid.dims))
     z = np.empty(shape, dtype=complex)

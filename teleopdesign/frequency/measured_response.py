@@ -11,6 +11,7 @@ from ..diagrams import Diagram
 from ..errors import ModelError
 from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
+from .cases import cases_of
 from .response import FrequencyResponse, labelled, ratio_unit
 from .sinusoid import GIVE, Sinusoid, settled_harmonics
 
@@ -69,7 +70,7 @@ def simulated_response(
     amplitude: of `input`, its unit: a nonlinear system answers each amplitude otherwise
     Where an effect has a linear form, `bode` finds the same; arguments as in `measured_impedance`.
     """
-    cases = {diagrams.name: diagrams} if isinstance(diagrams, Diagram) else dict(diagrams)
+    cases = cases_of(diagrams)
     f = np.asarray(frequency, dtype=float)
     rows = np.empty((len(cases), len(f)), dtype=complex)
     for i, diagram in enumerate(cases.values()):

@@ -20,6 +20,7 @@ from ..diagrams import Control, Diagram
 from ..errors import ModelError
 from ..quantity import unit_of
 from ..realise.lti import S, linear_blocks
+from .cases import cases_of
 from .describing_function import describing_function, driven_gain
 from .grid import Amplitude, Grid
 from .impedance_map import ImpedanceMap
@@ -42,7 +43,7 @@ def quasi_linear_impedance(
     Arguments as in `measured_impedance`, the motion prescribed; controllers count as continuous.
     raises ModelError: a block without laws or without describing function
     """
-    cases = {diagrams.name: diagrams} if isinstance(diagrams, Diagram) else dict(diagrams)
+    cases = cases_of(diagrams)
     grid = Grid.of(amplitude, frequency)
     z = np.empty((len(cases), *(len(getattr(grid, n)) for n in grid.dims)), dtype=complex)
     for i, diagram in enumerate(cases.values()):

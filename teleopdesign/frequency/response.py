@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import sympy as sp
 
+from ..by_value import ByValue
 from ..derive import with_values
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
 from ..realise.lti import S
 from ..realise.tips import linear_tips
+from .cases import cases_of
 
 if TYPE_CHECKING:
     import control
@@ -22,8 +24,8 @@ if TYPE_CHECKING:
     import xarray
 
 
-@dataclass(frozen=True)
-class FrequencyResponse:
+@dataclass(frozen=True, eq=False)
+class FrequencyResponse(ByValue):
     """Magnitude and phase (degrees, unwrapped) over `case` and `frequency` (Hz).
 
     left_out: what has no linear form, by case;  output, input: signals
@@ -112,7 +114,7 @@ def bode(
         impedance Zhat_M. Of a body with a compliant transmission it is the tip's that is given
     frequency: Hz, default 0.1 to 1000;  speed: where smoothed friction and schedules are frozen
     """
-    cases = {diagrams.name: diagrams} if isinstance(diagrams, Diagram) else dict(diagrams)
+    cases = cases_of(diagrams)
     f = np.geomspace(0.1, 1000.0, 2001) if frequency is None else np.asarray(frequency, dtype=float)
     rows, left_out = [], {}
     for name, diagram in cases.items():

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..by_value import ByValue
 from ..errors import ExperimentError
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
@@ -34,8 +35,8 @@ OVERLAP = 0.3
 SAME_SPEED = 0.1
 
 
-@dataclass(frozen=True)
-class LevelAtSpeed:
+@dataclass(frozen=True, eq=False)
+class LevelAtSpeed(ByValue):
     """Friction at one speed, from so many pairs of runs; SI, with standard errors.
 
     friction: half the difference of forward and backward force;  middle: half their sum
@@ -49,8 +50,8 @@ class LevelAtSpeed:
     pairs: int
 
 
-@dataclass(frozen=True)
-class Line:
+@dataclass(frozen=True, eq=False)
+class Line(ByValue):
     """force = level + damping speed, with standard errors; SI.
 
     chi_squared: per degree of freedom; NaN where there is none
@@ -63,8 +64,8 @@ class Line:
     chi_squared: float
 
 
-@dataclass(frozen=True)
-class CoulombLevel:
+@dataclass(frozen=True, eq=False)
+class CoulombLevel(ByValue):
     """What constant-speed runs say of friction.
 
     runs: all that were found;  speeds: friction at each speed that was run both ways

@@ -15,14 +15,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..blocks import Body
+from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError
 from ..quantity import unit_of
 from ..simulate import Sampling, Simulation, simulate
 
 
-@dataclass(frozen=True)
-class LargestStiffness:
+@dataclass(frozen=True, eq=False)
+class LargestStiffness(ByValue):
     """The largest stiffness without oscillation, N/m.
 
     stiffness: inf where the largest one tried does not oscillate, 0 where the smallest does

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..by_value import ByValue
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motions
@@ -22,8 +23,8 @@ BANDWIDTH = 20.0
 STEPS = 20
 
 
-@dataclass(frozen=True)
-class SteadyRun:
+@dataclass(frozen=True, eq=False)
+class SteadyRun(ByValue):
     """One run; SI.
 
     velocity: mean, signed;  start: s, in its record;  position, force: along the run, (n,) each,

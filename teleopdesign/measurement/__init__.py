@@ -7,6 +7,7 @@
 `fetch` (in `recordings`) obtains public recordings of real devices in the same form.
 """
 
+from ..arguments import check_arguments
 from .channel import Channel
 from .description import BodyDescription, EnvironmentDescription, ModelValue
 from .experiment import Experiment, load_experiment
@@ -21,3 +22,5 @@ __all__ = [
     "Record",
     "load_experiment",
 ]
+
+check_arguments(globals(), __all__)

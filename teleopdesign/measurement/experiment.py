@@ -5,7 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import final
 
+from ..by_value import ByValue
 from ..errors import ExperimentError, did_you_mean, quoted
+from ..notebook import html_table
 from ..quantity import unit_of
 from .channel import BODY_QUANTITIES, Channel, channels_from, frequency_from, sample_rate_from
 from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from
@@ -17,7 +19,7 @@ _FILE = "experiment.toml"
 
 @final
 @dataclass(frozen=True, eq=False)
-class Experiment:
+class Experiment(ByValue):
     """What was measured, and what the user believes so far. All signals in SI units.
 
     bodies: "device", or "master" and "slave"
@@ -51,6 +53,18 @@ class Experiment:
                 f"found {', '.join(self.bodies)}"
             )
         return self.bodies[body].axis
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (name, body.axis, ", ".join(body.effects) or "no effects", _measured(self, name))
+            for name, body in self.bodies.items()
+        ]
+        rows += [
+            (r.file, r.use, f"{r.duration:.6g} s", f"{1 / r.sample_time:.6g} Hz")
+            for r in self.records
+        ]
+        title = f"Experiment {quoted(self.title)} ({self.folder.name})"
+        return html_table(title, ("body or record", "axis or use", "", ""), rows)
 
     def __repr__(self) -> str:
         lines = [f"Experiment {quoted(self.title)} ({self.folder.name})"]
@@ -186,6 +200,11 @@ def _check_bandwidth(
                 f"{comparison.where('bandwidth')}: found {bandwidth:g} Hz, expected less than "
                 f"{highest:g} Hz, half the sample rate of {record.file}"
             )
+
+
+def _measured(experiment: Experiment, body: str) -> str:
+    """Names of what is measured of a body."""
+    return ", ".join(q for q in BODY_QUANTITIES if f"{body}.{q}" in experiment.channels)
 
 
 def _exactness(channel: Channel, unit: str) -> str:

@@ -29,6 +29,9 @@ class Spectrum:
         self.length = fft.next_fast_len(n + 4 * self.margin, real=True)
         self.frequency = np.arange(self.length // 2 + 1) / (self.length * sample_time)
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return spectrum, (self.n, self.sample_time)
+
     def transform(self, y: Array) -> NDArray[np.complex128]:
         """Transform of (..., n) signals, continued at both ends."""
         m, n = self.margin, self.n

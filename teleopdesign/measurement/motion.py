@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..by_value import ByValue
 from .filtering import Array, Spectrum, spectrum
 from .record import Record
 
@@ -23,8 +24,8 @@ SLOW = 4.0
 SHORTEST = 0.6
 
 
-@dataclass(frozen=True)
-class Motion:
+@dataclass(frozen=True, eq=False)
+class Motion(ByValue):
     """One body along one segment (n samples, uniform); all SI, position positive like the forces.
 
     position, velocity, acceleration: smoothed to `SMOOTHING` times the bandwidth, zero phase

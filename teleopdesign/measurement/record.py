@@ -8,6 +8,7 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
+from ..by_value import ByValue
 from ..errors import ExperimentError
 from .channel import Channel, factor_of
 from .description import BodyDescription
@@ -20,7 +21,7 @@ OWN = ("position_zero", "bias", "friction_level")
 
 @final
 @dataclass(frozen=True, eq=False)
-class Record:
+class Record(ByValue):
     """n samples; "fit": parameters are estimated on them, "check": never fitted.
 
     own: of "position_zero", "bias" and "friction_level", those in which this record may differ from

@@ -9,6 +9,7 @@
 A refuted claim holds a motion that gives out energy: `claim.record.replay()`.
 """
 
+from ..arguments import check_arguments
 from .available_storage import AvailableStorage, available_storage
 from .certificate import Certificate, read_certificate
 from .claim import Claim, Evidence, Proof, Refutation, Unknown
@@ -146,3 +147,5 @@ __all__ = [
     "write_record",
     "z_width",
 ]
+
+check_arguments(globals(), __all__)

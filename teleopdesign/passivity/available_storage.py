@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..by_value import ByValue
 from ..errors import ModelError
 from .claim import Evidence
 from .rate_independent import Coulomb, Dahl, Element
@@ -29,8 +30,8 @@ Array = NDArray[np.float64]
 _BLUR = 1e-3
 
 
-@dataclass(frozen=True)
-class AvailableStorage:
+@dataclass(frozen=True, eq=False)
+class AvailableStorage(ByValue):
     """What the iteration came to.
 
     storage: J, an axis for each force with a state, compensator first, from -level to level

@@ -15,6 +15,7 @@ from typing import Any
 
 import sympy as sp
 
+from ..arguments import checked
 from ..errors import ModelError
 from .check_certificate import Refused, check, load
 
@@ -22,7 +23,8 @@ from .check_certificate import Refused, check, load
 Term = tuple[sp.Expr | int, Mapping[str, int], sp.Expr | int]
 
 
-@dataclass(frozen=True)
+@checked
+@dataclass(frozen=True, repr=False)
 class Certificate:
     """What the checker reads; `content` is plain JSON data with a digest."""
 
@@ -31,7 +33,7 @@ class Certificate:
     @property
     def kind(self) -> str:
         """ "storage" or "positive real"."""
-        return str(self.content["kind"])
+        return str(self.content.get("kind", "no kind"))
 
     def check(self) -> str:
         """Verify with `check_certificate.py`.
@@ -43,6 +45,9 @@ class Certificate:
             return check(dict(self.content))
         except Refused as problem:
             raise ModelError(f"certificate: {problem}") from None
+
+    def __repr__(self) -> str:
+        return f"Certificate ({self.kind}): {self.content.get('claim', '')}"
 
     def write(self, path: str | Path) -> None:
         """Write the JSON file that `python check_certificate.py PATH` verifies."""

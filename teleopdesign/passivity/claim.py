@@ -11,7 +11,9 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
+from ..by_value import ByValue
 from ..errors import ModelError
+from ..notebook import html_table
 from .certificate import Certificate
 
 
@@ -32,8 +34,8 @@ class Record(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class Proof:
+@dataclass(frozen=True, eq=False)
+class Proof(ByValue):
     """An exact proof.
 
     method: in words;  certificates: what it rests on, each verified by `check_certificate.py`
@@ -60,8 +62,8 @@ class Proof:
         return "; ".join(lines)
 
 
-@dataclass(frozen=True)
-class Refutation:
+@dataclass(frozen=True, eq=False)
+class Refutation(ByValue):
     """A motion that gives out `record.energy` > 0 J; `record.replay()` computes it anew."""
 
     method: str
@@ -74,8 +76,8 @@ class Refutation:
         return f"{self.method}: gives out {self.record.energy:.6g} J"
 
 
-@dataclass(frozen=True)
-class Evidence:
+@dataclass(frozen=True, eq=False)
+class Evidence(ByValue):
     """A numerical result, for or against.
 
     holds: what the numbers say;  searched: what was computed, and over which range
@@ -111,8 +113,8 @@ class Unknown:
 Verdict = Proof | Refutation | Evidence | Unknown
 
 
-@dataclass(frozen=True)
-class Claim:
+@dataclass(frozen=True, eq=False)
+class Claim(ByValue):
     """A statement about passivity at a port, with what settles it."""
 
     statement: str
@@ -139,6 +141,10 @@ class Claim:
         if not isinstance(self.verdict, Refutation):
             raise ModelError(f"claim: {self.status}, so no motion refutes it: {self.statement}")
         return self.verdict.record
+
+    def _repr_html_(self) -> str:
+        rows = [("statement", self.statement), ("status", self.status), ("by", self.verdict)]
+        return html_table("Claim", ("", ""), rows)
 
     def __repr__(self) -> str:
         return f"{self.status}: {self.statement}\n    {self.verdict}"

@@ -13,8 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..arguments import checked
 from ..diagrams import Diagram
 from ..errors import ModelError
+from ..notebook import html_table
 from .claim import Claim, Proof, Refutation, Unknown
 from .counterexample import Computer, SimulatedMotion, search_counterexample
 from .device_claims import Settled, device_claims, replay_cycle
@@ -38,6 +40,7 @@ from .two_port_claims import absolutely_stable, passive
 WHOLE = ("all ports, any motion", "the port, any motion", "both ports, any motion")
 
 
+@checked
 @dataclass(frozen=True)
 class Search:
     """How motions are sought; SI.
@@ -59,6 +62,15 @@ class DiagramClaims:
     ports: tuple[Port, ...]
     nonlinear: tuple[str, ...]
     settled: tuple[Settled, ...]
+
+    def __repr__(self) -> str:
+        lines = [f"{s.claim.status:<9} {s.topic}: {s.claim.statement}" for s in self.settled]
+        return "\n".join([f"Claims on the {self.diagram.name}", *lines])
+
+    def _repr_html_(self) -> str:
+        rows = [(s.claim.status, s.topic, s.claim.statement, s.claim.verdict) for s in self.settled]
+        head = ("status", "on", "statement", "by")
+        return html_table(f"Claims on the {self.diagram.name}", head, rows)
 
 
 def diagram_claims(

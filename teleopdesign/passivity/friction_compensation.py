@@ -102,6 +102,12 @@ def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: 
     """
     from scipy.optimize import brentq
 
+    if min(coulomb_level, stiffness, amplitude) <= 0:
+        raise ModelError(
+            "largest_passive_level: expected levels, stiffness and amplitude > 0, found "
+            f"{coulomb_level:g}, {stiffness:g}, {amplitude:g}"
+        )
+
     def out(level: float) -> float:
         return dahl_loss(level, stiffness, amplitude) / (4 * amplitude) - coulomb_level
 

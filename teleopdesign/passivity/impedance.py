@@ -15,6 +15,7 @@ from typing import Any, Literal
 import numpy as np
 import sympy as sp
 
+from ..arguments import described
 from ..errors import ModelError
 from ..realise.lti import S
 from .polynomials import fraction
@@ -94,25 +95,34 @@ def impedance(system: Any, *, motion: Motion = "velocity") -> Impedance:
 
 
 def exact(number: Any) -> sp.Rational:
-    """A number as the rational that it is written as; floats as their shortest decimal."""
+    """A number, or a text of one, as the rational that it is written as; floats as their shortest.
+
+    raises ModelError: no finite real number; True is none
+    """
     if isinstance(number, sp.Expr) and number.is_Rational:
         return number
     try:
+        if isinstance(number, bool | bytes):
+            raise TypeError("no number")
         if isinstance(number, int | Fraction | np.integer):
             return sp.Rational(number)
         value = float(number)
         return sp.Rational(repr(value))
     except (TypeError, ValueError, OverflowError):
-        raise ModelError(f"passivity: expected a finite real number, found {number}") from None
+        raise ModelError(
+            f"passivity: expected a finite real number, found {described(number)}"
+        ) from None
 
 
 def _from_sympy(system: Any) -> Impedance:
     try:
         e = sp.sympify(system)
     except (sp.SympifyError, TypeError, AttributeError):
-        raise ModelError(f"impedance: expected an expression in s, found {system!r}") from None
+        raise ModelError(
+            f"impedance: expected an expression in s, found {described(system)}"
+        ) from None
     if not isinstance(e, sp.Expr) or e.is_Matrix:
-        raise ModelError(f"impedance: expected an expression in s, found {type(system).__name__}")
+        raise ModelError(f"impedance: expected an expression in s, found {described(system)}")
     e = e.xreplace({x: S for x in e.free_symbols if x.name == "s"})
     if others := {x.name for x in e.free_symbols - {S}}:
         raise ModelError(f"impedance: values are needed for {', '.join(sorted(others))}")

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from ..by_value import ByValue
 from ..errors import ModelError
 from .certificate import Term, storage_certificate
 from .claim import Claim, Proof, Unknown
@@ -47,8 +48,8 @@ class Realisation:
         return len(self.a)
 
 
-@dataclass(frozen=True)
-class Kyp:
+@dataclass(frozen=True, eq=False)
+class Kyp(ByValue):
     """Numerical solution of the inequality for Z - c with the largest c.
 
     damping_excess: that c, N s/m; -inf where the inequality has no solution for any

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import NINETY_FIVE
+from ..by_value import ByValue
 from ..errors import ExperimentError, ModelError
 from ..measurement import Experiment, Record
 from ..simulate import Simulation
@@ -31,8 +32,8 @@ Array = NDArray[np.float64]
 _ROUNDED = 12**-0.5
 
 
-@dataclass(frozen=True)
-class PortEnergy:
+@dataclass(frozen=True, eq=False)
+class PortEnergy(ByValue):
     """Energy into a port.
 
     data: `energy` (J, from the start), `stderr` (J, of the sensors' noise, 0 where none was given)
@@ -200,8 +201,8 @@ def observe_record(
     )
 
 
-@dataclass(frozen=True)
-class PassivityControlled:
+@dataclass(frozen=True, eq=False)
+class PassivityControlled(ByValue):
     """What the passivity controller made of a force.
 
     force: with the damper, (n,), N;  damping: that it added at each sample, N s/m, (n,)

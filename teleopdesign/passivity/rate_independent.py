@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+from ..arguments import checked
+
 
 class Element(Protocol):
     """A rate-independent force against the motion, within `level` (N)."""
@@ -25,6 +27,7 @@ class Element(Protocol):
         ...
 
 
+@checked
 @dataclass(frozen=True)
 class Coulomb:
     """level sgn(v)."""
@@ -36,6 +39,7 @@ class Coulomb:
         return math.copysign(self.level, travel) if travel else force, self.level * abs(travel)
 
 
+@checked
 @dataclass(frozen=True)
 class Dahl:
     """df/dx = stiffness (1 - f/level sgn v): exact over any travel."""
@@ -54,6 +58,7 @@ class Dahl:
         return force * (1 - gone) + s * self.level * gone, work
 
 
+@checked
 @dataclass(frozen=True)
 class Spring:
     """A spring that slides at its level: a body stuck by Coulomb friction behind a compliance."""
@@ -71,6 +76,7 @@ class Spring:
         return end, s * (force + end) / 2 * give + self.level * (abs(travel) - give)
 
 
+@checked
 @dataclass(frozen=True)
 class DahlBehindSpring:
     """A contact of Dahl friction (level, stiffness) that is pulled through a spring.

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..by_value import ByValue
 from .claim import Claim
 
 
-@dataclass(frozen=True)
-class Region:
+@dataclass(frozen=True, eq=False)
+class Region(ByValue):
     """Status of a claim over two parameters.
 
     x, y: (n,), (m,);  status: (m, n) of "proved", "refuted", "evidence" or "unknown"

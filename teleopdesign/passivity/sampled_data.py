@@ -23,6 +23,8 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from ..arguments import described
+from ..by_value import ByValue
 from ..errors import ModelError
 from ..realise.lti import S
 from .certificate import positive_real_certificate
@@ -108,6 +110,9 @@ def _positive(sample_time: Any) -> sp.Expr:
 
 
 def _law(controller: Any) -> sp.Expr:
+    if isinstance(controller, bool | str) or controller is None:
+        found = described(controller)
+        raise ModelError(f"controller: found {found}, expected an expression of z, or a number")
     e = sp.sympify(controller)
     e = e.xreplace({x: Z for x in e.free_symbols if x.name == "z"})
     if e.free_symbols - {Z}:
@@ -124,8 +129,8 @@ def _law(controller: Any) -> sp.Expr:
     return e
 
 
-@dataclass(frozen=True)
-class SampledWave:
+@dataclass(frozen=True, eq=False)
+class SampledWave(ByValue):
     """Positions at the samples that take energy out: the travel grows as Re(V z^k), k <= 0.
 
     law: H(z);  damping, sample_time, stiffness: as in `sampled_passivity`

@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import checked
 from ..simulate import Motion
 
 Array = NDArray[np.float64]
 
 
+@checked
 @dataclass(frozen=True)
 class Strokes:
     """From rest at 0 through turning points, round after round, back to rest at 0.
@@ -53,21 +55,28 @@ class Strokes:
 
     def motion(self) -> Motion:
         """Position, velocity and acceleration as functions of time; at rest before and after."""
+        return Motion(*(_Along(self, order) for order in range(3)))
 
-        def value(t: Array, order: int) -> Array:
-            times, path = self.times, self.path
-            k = np.clip(np.searchsorted(times, t, side="right") - 1, 0, len(path) - 2)
-            travel = np.diff(path)[k]
-            lasting = np.maximum(np.diff(times)[k] - self.pause, 1e-300)
-            angle = np.pi * np.clip((t - times[k]) / lasting, 0.0, 1.0)
-            moving = (angle < np.pi) & (t >= 0)
-            if order == 0:
-                return np.asarray(path[k] + travel * (1 - np.cos(angle)) / 2)
-            rate = np.pi / lasting
-            shape = np.sin(angle) * rate if order == 1 else np.cos(angle) * rate**2
-            return np.where(moving, travel / 2 * shape, 0.0)
 
-        return Motion(lambda t: value(t, 0), lambda t: value(t, 1), lambda t: value(t, 2))
+@dataclass(frozen=True)
+class _Along:
+    """Position along strokes, or its first or second derivative, as a function of time."""
+
+    strokes: Strokes
+    order: int
+
+    def __call__(self, t: Array) -> Array:
+        times, path = self.strokes.times, self.strokes.path
+        k = np.clip(np.searchsorted(times, t, side="right") - 1, 0, len(path) - 2)
+        travel = np.diff(path)[k]
+        lasting = np.maximum(np.diff(times)[k] - self.strokes.pause, 1e-300)
+        angle = np.pi * np.clip((t - times[k]) / lasting, 0.0, 1.0)
+        moving = (angle < np.pi) & (t >= 0)
+        if self.order == 0:
+            return np.asarray(path[k] + travel * (1 - np.cos(angle)) / 2)
+        rate = np.pi / lasting
+        shape = np.sin(angle) * rate if self.order == 1 else np.cos(angle) * rate**2
+        return np.where(moving, travel / 2 * shape, 0.0)
 
 
 def families(

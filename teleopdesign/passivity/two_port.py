@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from ..by_value import ByValue
 from ..errors import ModelError
 from ..finding import Graph, Series
 from ..realise.lti import S
@@ -95,8 +96,8 @@ def teleoperator(
     return two_port([[z1, -link * late], [-link * late, z2]])
 
 
-@dataclass(frozen=True)
-class FrequencyMargins:
+@dataclass(frozen=True, eq=False)
+class FrequencyMargins(ByValue):
     """Margins on the axis over frequency (Hz), (n,) each; numerical.
 
     Needed, not enough: poles in the right half plane and residues at poles on the axis do not show.

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from ..by_value import ByValue
 from ..errors import ModelError
 from ..finding import Graph, Series
 from .impedance import exact
@@ -29,8 +30,8 @@ _ANGLES = 20001  # from 0 to pi; the limit is then verified by the exact test
 _AGREE = 1e-6
 
 
-@dataclass(frozen=True)
-class ZWidth:
+@dataclass(frozen=True, eq=False)
+class ZWidth(ByValue):
     """Largest passive wall stiffness for each wall damping.
 
     wall_damping: B, N s/m, (n,);  stiffness: largest K >= 0, N/m, (n,); NaN where none is passive

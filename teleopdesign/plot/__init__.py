@@ -1,5 +1,6 @@
 """Draw result objects; compute nothing."""
 
+from ..arguments import check_arguments
 from .block_diagram import Drawing, draw_diagram
 from .design import plot_force_velocity, plot_simulation, save_figure
 from .frequency import plot_bode, plot_nyquist
@@ -16,3 +17,5 @@ __all__ = [
     "plot_spread",
     "save_figure",
 ]
+
+check_arguments(globals(), __all__)

@@ -18,7 +18,7 @@ from ..controllers import Controller, ControllerEquation, parameter_symbol
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ..diagrams.parts import Weight
 from ..effects import SIGNALS, delayed
-from ..errors import ModelError
+from ..errors import ModelError, did_you_mean
 from ._linear import Steps, solve_linear
 
 #: signal's name -> symbol that stands for it
@@ -131,6 +131,7 @@ class _Builder:
             if motion not in motions:
                 raise ModelError(
                     f'{diagram.name}: "{motion}" is no motion, has {", ".join(motions)}'
+                    f"{did_you_mean(motion, motions)}"
                 )
         self.motions = tuple(m for m in motions if m not in prescribed)
         _check_inputs(diagram, motions)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
+from ..arguments import checked
 from ..controllers import Controller
 from ..diagrams import Control, Diagram, Junction, Kinematics
 from ..errors import ModelError
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 MECHANICS = "mechanics"
 
 
+@checked
 def to_iosystem(
     diagram: Diagram, *, prescribed: tuple[str, ...] = (), give: float = 1e-5
 ) -> control.InterconnectedSystem:

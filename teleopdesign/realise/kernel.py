@@ -142,7 +142,7 @@ def _structure(diagram: Diagram) -> tuple[Any, ...]:
         block = getattr(part, "controller", getattr(part, "body", None))
         laws: tuple[Any, ...] = ()
         if isinstance(block, Controller):
-            laws = tuple((g.law.name, g.law.law, _states(g.law)) for g in block.stages)
+            laws = tuple((g.name, g.law.law, _states(g.law)) for g in block.stages)
         elif isinstance(block, Body):
             laws = tuple((e.name, e.role, e.law, _states(e)) for e in block.effects)
         elif isinstance(block, MatrixImpedance):

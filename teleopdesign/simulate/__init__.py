@@ -1,5 +1,6 @@
 """Simulate a diagram: prescribed motion or closed loop, sampled or continuous controllers."""
 
+from ..arguments import check_arguments
 from .force_displacement import ForceDisplacement, Loop, force_displacement, loop_of
 from .force_velocity import ForceVelocity, force_velocity
 from .motion import Motion, sampled_motion, sine
@@ -23,3 +24,5 @@ __all__ = [
     "simulate",
     "sine",
 ]
+
+check_arguments(globals(), __all__)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..by_value import ByValue
 from ..errors import ModelError
 from ..plain_data import write_json
 from .simulation import Simulation
@@ -26,8 +27,8 @@ class Loop:
     width: float
 
 
-@dataclass(frozen=True)
-class ForceDisplacement:
+@dataclass(frozen=True, eq=False)
+class ForceDisplacement(ByValue):
     """What a user feels of an environment.
 
     data: `force` and `displacement` at the hand, `environment_force` and `environment_displacement`
@@ -90,6 +91,8 @@ def force_displacement(
     """
     import xarray
 
+    if not simulations:
+        raise ModelError("force_displacement: found no simulation, expected at least one, by case")
     rows: dict[str, list[np.ndarray]] = {name: [] for name in _SIGNALS}
     loops, environment, rms = {}, {}, {}
     for case, simulation in simulations.items():

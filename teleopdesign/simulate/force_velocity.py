@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..by_value import ByValue
+from ..errors import ModelError
 from ..plain_data import write_json
 from .simulation import Simulation
 
@@ -17,8 +19,8 @@ if TYPE_CHECKING:
     import xarray
 
 
-@dataclass(frozen=True)
-class ForceVelocity:
+@dataclass(frozen=True, eq=False)
+class ForceVelocity(ByValue):
     """A force over a velocity.
 
     data: `force` and `velocity` over `case` and `time`
@@ -72,6 +74,8 @@ def force_velocity(
     """
     import xarray
 
+    if not simulations:
+        raise ModelError("force_velocity: found no simulation, expected at least one, by case")
     forces, speeds = [], []
     for simulation in simulations.values():
         kept = simulation.data["time"].values >= after - 1e-9

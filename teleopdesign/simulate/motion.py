@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import Any
 
 import numpy as np
+
+from ..arguments import checked
+from ..by_value import ByValue
+from ..errors import ModelError
+
+_FEWEST = 6  # samples that a quintic spline needs
 
 Function = Callable[[np.ndarray], np.ndarray]
 
 
+@checked
 @dataclass(frozen=True)
 class Motion:
     """A motion as functions of time (s): position (m or rad) and its two derivatives."""
@@ -23,29 +32,72 @@ class Motion:
         return self.position, self.velocity, self.acceleration
 
 
+@dataclass(frozen=True)
+class _Sinusoid:
+    """size * sin(rate t + phase)"""
+
+    size: float
+    rate: float
+    phase: float
+
+    def __call__(self, t: np.ndarray) -> np.ndarray:
+        return np.asarray(self.size * np.sin(self.rate * t + self.phase))
+
+
+@dataclass(frozen=True)
+class _Cosinusoid(_Sinusoid):
+    """size * cos(rate t + phase)"""
+
+    def __call__(self, t: np.ndarray) -> np.ndarray:
+        return np.asarray(self.size * np.cos(self.rate * t + self.phase))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class _Sampled(ByValue):
+    """A derivative of the quintic spline through samples (n,), at rest beyond its ends."""
+
+    time: np.ndarray
+    position: np.ndarray
+    order: int
+
+    @cached_property
+    def _spline(self) -> Function:
+        from scipy.interpolate import make_interp_spline
+
+        spline = make_interp_spline(self.time, self.position, k=5)
+        found: Function = spline.derivative(self.order) if self.order else spline
+        return found
+
+    def __call__(self, t: np.ndarray) -> np.ndarray:
+        first, last = self.time[0], self.time[-1]
+        inside = self._spline(np.clip(t, first, last))
+        return inside if self.order == 0 else np.where((t < first) | (t > last), 0.0, inside)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {f.name: getattr(self, f.name) for f in fields(self)}  # the spline is made anew
+
+    def __repr__(self) -> str:
+        return f"spline of {len(self.time)} samples, derivative {self.order}"
+
+
 def sine(*, amplitude: float, frequency: float, phase: float = 0.0) -> Motion:
     """amplitude * sin(2 pi frequency t + phase); frequency in Hz, phase in rad."""
     omega = 2 * np.pi * frequency
     return Motion(
-        lambda t: amplitude * np.sin(omega * t + phase),
-        lambda t: omega * amplitude * np.cos(omega * t + phase),
-        lambda t: -(omega**2) * amplitude * np.sin(omega * t + phase),
+        _Sinusoid(amplitude, omega, phase),
+        _Cosinusoid(omega * amplitude, omega, phase),
+        _Sinusoid(-(omega**2) * amplitude, omega, phase),
     )
 
 
 def sampled_motion(time: np.ndarray, position: np.ndarray) -> Motion:
     """A measured motion: quintic spline through the samples (n,), constant beyond the ends."""
-    from scipy.interpolate import make_interp_spline
-
-    spline = make_interp_spline(time, position, k=5)
-    first, second = spline.derivative(1), spline.derivative(2)
-
-    def inside(f: Function, outside: float) -> Function:
-        def value(t: np.ndarray) -> np.ndarray:
-            found = f(np.clip(t, time[0], time[-1]))
-            out = (t < time[0]) | (t > time[-1])
-            return found if np.isnan(outside) else np.where(out, outside, found)
-
-        return value
-
-    return Motion(inside(spline, np.nan), inside(first, 0.0), inside(second, 0.0))
+    time, position = np.asarray(time, dtype=float), np.asarray(position, dtype=float)
+    if time.ndim != 1 or time.shape != position.shape or len(time) < _FEWEST:
+        raise ModelError(
+            f"sampled_motion: expected time and position (n,) with n >= {_FEWEST}, found shapes "
+            f"{time.shape} and {position.shape}"
+        )
+    if not (np.all(np.diff(time) > 0) and np.all(np.isfinite(position))):
+        raise ModelError("sampled_motion: expected times that grow and positions without NaN")
+    return Motion(*(_Sampled(time, position, order) for order in range(3)))

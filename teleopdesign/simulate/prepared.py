@@ -39,6 +39,16 @@ def prepare(
     from ..realise.kernel import program
 
     motion, inputs, initial = dict(motion or {}), dict(inputs or {}), dict(initial or {})
+    for name in inputs:
+        if name not in diagram.outside:
+            raise ModelError(
+                f'{diagram.name}: "{name}" is not from outside, inputs are '
+                f"{', '.join(diagram.outside)}{did_you_mean(name, diagram.outside)}"
+            )
+    positive = {"duration": duration, "step": step, "give": give}
+    for name, value in positive.items():
+        if not 0 < value < float("inf"):
+            raise ModelError(f"simulate: {name}: found {value:g}, expected more than 0")
     body = simulated(diagram, give, motion)
     sampled = not isinstance(computer, str)
     setting = Sampling() if isinstance(computer, str) else computer
@@ -51,12 +61,6 @@ def prepare(
         observer=setting.observer if sampled else 0,
         jit=jit,
     )
-    for name in inputs:
-        if name not in diagram.outside:
-            raise ModelError(
-                f'{diagram.name}: "{name}" is not from outside, inputs are '
-                f"{', '.join(diagram.outside)}{did_you_mean(name, diagram.outside)}"
-            )
     states = (*made.layout.states, *made.layout.computer_states)
     for name in initial:
         if name not in states:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from ..arguments import checked
 from ..errors import ModelError, did_you_mean
 
 
+@checked
 @dataclass(frozen=True)
 class Sampling:
     """How the computer sees and acts.
@@ -34,6 +36,11 @@ class Sampling:
             raise ModelError(
                 f'sampling: no velocity "{self.velocity}", has {", ".join(names)}'
                 f"{did_you_mean(self.velocity, names)}"
+            )
+        if not 0 < self.period < float("inf") or min(self.delay, self.encoder_step) < 0:
+            raise ModelError(
+                "sampling: expected a period > 0 s, delay and encoder_step >= 0, found "
+                f"{self.period:g}, {self.delay:g}, {self.encoder_step:g}"
             )
         bounded = self.velocity_bandwidth < float("inf")
         if self.velocity == "difference" and bounded:

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
+from ..notebook import html_table
 from .motion import Motion
 from .prepared import Input, Prepared, prepare
 from .sampling import SAMPLED, Sampling
@@ -23,8 +25,8 @@ if TYPE_CHECKING:
     from ..realise.kernel import Timing
 
 
-@dataclass(frozen=True)
-class Simulation:
+@dataclass(frozen=True, eq=False)
+class Simulation(ByValue):
     """Signals over time.
 
     data: one variable for each signal and hidden state over `time` (s), units in the attributes; at
@@ -51,6 +53,17 @@ class Simulation:
     def to_netcdf(self, path: str | Path) -> None:
         """Write the signals with their units to a netCDF file."""
         self.data.to_netcdf(path)
+
+    def _repr_html_(self) -> str:
+        t = self.data["time"].values
+        rows = [
+            (n, f"{np.sqrt(np.mean(x.values**2)):.4g}", x.attrs["units"], x.attrs["text"])
+            for n, x in self.data.items()
+        ]
+        title = f"Simulation of the {self.diagram.name}: {t[-1]:g} s, {len(t)} rows"
+        return html_table(
+            title, ("signal", "rms", "unit", ""), rows, note=self.data.attrs["scheme"]
+        )
 
     def __repr__(self) -> str:
         t, a = self.data["time"].values, self.data.attrs

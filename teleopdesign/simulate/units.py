@@ -33,11 +33,11 @@ def _states(diagram: Diagram) -> dict[str, tuple[str, str]]:
     """Hidden state -> its quantity and a signal of its block."""
     found = {}
     for block in diagram.blocks:
-        laws = list(getattr(getattr(block, "body", None), "effects", ()))
-        laws += [g.law for g in getattr(getattr(block, "controller", None), "stages", ())]
-        for law in laws:
-            for state, declared in law.states.items():
-                name = f"{block.name}_{law.name}_{state}"
+        laws = [(e.name, e.states) for e in getattr(getattr(block, "body", None), "effects", ())]
+        stages = getattr(getattr(block, "controller", None), "stages", ())
+        for law, states in (*laws, *((g.name, g.law.states) for g in stages)):
+            for state, declared in states.items():
+                name = f"{block.name}_{law}_{state}"
                 found[name] = (declared.quantity, block.outputs[0])
     return found
 

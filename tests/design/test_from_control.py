@@ -110,7 +110,7 @@ def test_systems_of_one_order_share_one_kernel():
             control.ss(-np.eye(2), np.ones((2, 1)), np.eye(2), np.zeros((2, 1))),
             "expected one input and one output, found 1 and 2",
         ),
-        ([1, 2], "expected a python-control system, found list"),
+        ([1, 2], "expected an InputOutputSystem of python-control"),
         (
             control.nlsys(None, lambda t, x, u, p: u**3, inputs=1, outputs=1, dt=1e-3),
             "continuous time only",

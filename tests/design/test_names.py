@@ -34,7 +34,7 @@ from teleopdesign.realise.equations import equations
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.private_names import private_names
 from teleopdesign.realise.simulated import in_computer, simulated
-from teleopdesign.simulate import prepare, simulate
+from teleopdesign.simulate import prepare, simulate, sine
 
 #: words that generated code, Python, sympy or the package might want for itself
 WORDS = (
@@ -241,7 +241,7 @@ def test_errors_speak_of_the_users_names():
     with pytest.raises(ModelError, match='haptic interface: the computer uses "L" of Z_M'):
         run(unseen)
     with pytest.raises(ModelError, match='haptic interface: "M" is no motion, has L$'):
-        prepare(diagram, duration=0.1, motion={"M": None})
+        prepare(diagram, duration=0.1, motion={"M": sine(amplitude=0.01, frequency=1.0)})
 
 
 #: what the templates of the source hold themselves, and the beginnings of private names

@@ -103,7 +103,10 @@ def test_an_observer_of_order_three_is_quieter_and_earlier_than_a_filtered_diffe
         ({"velocity": "filterd"}, 'did you mean "filtered"'),
         ({"velocity": "difference", "velocity_bandwidth": 30.0}, "has no bandwidth"),
         ({"velocity": "observer"}, "an observer needs a velocity_bandwidth"),
-        ({"velocity": "observer", "velocity_bandwidth": 9.0, "observer_order": 4}, "is 2 or 3"),
+        (
+            {"velocity": "observer", "velocity_bandwidth": 9.0, "observer_order": 4},
+            "expected 2 or 3",
+        ),
     ],
 )
 def test_a_sampling_that_means_nothing_is_refused(arguments, words):

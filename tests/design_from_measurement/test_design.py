@@ -156,7 +156,7 @@ def test_a_motion_beyond_the_records_is_refused(rod):
     ("name", "value"), [("fraction", 1.1), ("load", -1.0), ("bandwidth", float("nan"))]
 )
 def test_an_assumption_without_sense_is_refused(name, value):
-    with pytest.raises(ModelError, match=f"design: {name}: found"):
+    with pytest.raises(ModelError, match=f": {name}: found"):
         Assumptions(**{name: value})
 
 

@@ -433,7 +433,11 @@ def test_a_users_effect_takes_the_place_of_one_of_the_same_name(tmp_path):
 
 BAD = {
     "no EFFECT": ("EFFECT = Effect(", "OTHER = Effect(", "found no EFFECT"),
-    "wrong role": ('role="force"', 'role="forse"', 'role "forse" is none of .*mean "force"'),
+    "wrong role": (
+        'role="force"',
+        'role="forse"',
+        'role: found the text "forse", expected one of .*mean "force"',
+    ),
     "unknown signal": ("now.velocity *", "now.velocty *", "velocty"),
     "unknown parameter": ("p.drag", "p.dragg", "dragg"),
     "a symbol of its own": (

@@ -6,6 +6,7 @@ write_reference(proposal.reference, experiment, "next.csv")
 show_in_simulation(proposal)                # each rival is made the truth, and diagnosed
 """
 
+from ...arguments import check_arguments
 from .in_simulation import Shown, show_in_simulation
 from .limits import Limits, shown_limits
 from .prediction import Determined, Separation
@@ -31,3 +32,5 @@ __all__ = [
     "shown_limits",
     "write_reference",
 ]
+
+check_arguments(globals(), __all__)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from ...by_value import ByValue
 from ...finding import Finding
 from ...measurement.filtering import Array
 from ..diagnosis import Diagnosis
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True)
-class Reference:
+@dataclass(frozen=True, eq=False)
+class Reference(ByValue):
     """Positions for the servos of the bodies (SI).
 
     time: s, (n,), uniform with the record's own sample time;  position: body -> (n,)
@@ -39,8 +40,8 @@ class Reference:
         return float(self.time[-1])
 
 
-@dataclass(frozen=True)
-class Proposal:
+@dataclass(frozen=True, eq=False)
+class Proposal(ByValue):
     """What to measure next, so that rivals can be told apart.
 
     rivals: models that the present records leave open; empty where these decide

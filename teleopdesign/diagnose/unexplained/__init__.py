@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ...by_value import ByValue
 from ...finding import Finding
 from ...model import Model
 from ..fit import Fit
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
 __all__ = ["BodyUnexplained", "Described", "Unexplained", "unexplained", "where_it_fails"]
 
 
-@dataclass(frozen=True)
-class Unexplained:
+@dataclass(frozen=True, eq=False)
+class Unexplained(ByValue):
     """What a fitted model leaves of every body, and what that depends on.
 
     parts: one a body

@@ -9,16 +9,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from pkgutil import iter_modules
-from types import MappingProxyType
 
-from ...errors import ModelError, did_you_mean
+from ...frozen import Catalogue
 from ..wiring import Diagram
 
 
 def _shipped() -> Mapping[str, Callable[[], Diagram]]:
     files = sorted(m.name for m in iter_modules(__path__) if not m.name.startswith("_"))
     makers = {n: import_module(f"{__name__}.{n}").diagram for n in files}
-    return MappingProxyType({n.replace("_", "-"): maker for n, maker in makers.items()})
+    return Catalogue({n.replace("_", "-"): maker for n, maker in makers.items()}, "diagram")
 
 
 #: name -> what makes the diagram
@@ -27,8 +26,4 @@ SHIPPED: Mapping[str, Callable[[], Diagram]] = _shipped()
 
 def shipped(name: str) -> Diagram:
     """The shipped diagram of that name; ModelError with the nearest one."""
-    if name not in SHIPPED:
-        raise ModelError(
-            f'no diagram "{name}", has {", ".join(SHIPPED)}{did_you_mean(name, SHIPPED)}'
-        )
     return SHIPPED[name]()

@@ -13,6 +13,7 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
+from ...arguments import checked
 from ...errors import ExperimentError, did_you_mean, quoted
 from . import emps, hsm150, mtm_wrist, psm_insertion
 from ._recording import RawFile, Recording
@@ -27,6 +28,7 @@ RECORDINGS: Mapping[str, Recording] = {
 }
 
 
+@checked
 def fetch(name: str, folder: str | Path | None = None, *, source: str | Path = _PUBLIC) -> Path:
     """The experiment's folder of a public recording; downloaded and converted if not there yet.
 

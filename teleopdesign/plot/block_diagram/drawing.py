@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Drawing:
     """Shapes on a sheet of that size (points);  title: alternative text."""
 
@@ -23,6 +23,13 @@ class Drawing:
     width: float
     height: float
     title: str
+
+    def __repr__(self) -> str:
+        size = f"{self.width:.0f} x {self.height:.0f} points"
+        return f"Drawing of {self.title}: {len(self.shapes)} shapes, {size}"
+
+    def _repr_svg_(self) -> str:
+        return self.svg()
 
     def svg(self) -> str:
         """The drawing as a text of SVG; the same drawing gives the same text."""

@@ -1,0 +1,187 @@
+"""What is given is held against the types that a function declares, before it computes anything.
+
+    @checked
+    def sine(*, amplitude: float) -> Motion     # sine(amplitude="2 mm") is refused in one line
+
+A wrong type is refused where it is given, with what was found, what was expected, and the nearest
+match where names are expected. Numbers are finite or infinite, never NaN, True or a text. What is
+no argument of the function stays a TypeError, as in any Python.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import sys
+import types
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache, wraps
+from importlib import import_module
+from itertools import repeat
+from typing import Any, TypeVar
+
+from .errors import ExperimentError, ModelError
+from .expectations import Check, Refused, check_of, described, number_check, with_article
+
+__all__ = [
+    "check_arguments",
+    "checked",
+    "described",
+    "instance",
+    "matrix_of",
+    "number",
+]
+
+Target = TypeVar("Target", bound=Callable[..., Any])
+
+#: folders whose mistakes are those of an experiment
+_OF_EXPERIMENTS = ("measurement", "examples")
+
+
+def checked(target: Target) -> Target:
+    """The function with its arguments checked; of a dataclass, what it is made from.
+
+    Annotations that only type checkers can resolve, and `Any`, are not checked.
+    """
+    whole: Any = target
+    function: Callable[..., Any] = whole.__init__ if isinstance(target, type) else target
+    if hasattr(function, "_is_checked"):
+        return target
+    name = target.__name__
+    if not isinstance(target, type) and "." in (qualified := target.__qualname__):
+        name = qualified.rpartition("<locals>.")[2]
+
+    @cache  # at the first call: what annotations name may be defined later than the function
+    def declared() -> tuple[tuple[str, ...], str, dict[str, Check]]:
+        """Names by position, the name of what follows them, and the checks by name."""
+        names = vars(sys.modules[target.__module__])
+        parameters = inspect.signature(function).parameters.values()
+        found = {p.name: check_of(_resolved(p.annotation, names)) for p in parameters}
+        checks = {
+            p.name: _or_default(check, p.default)
+            for p in parameters
+            if (check := found[p.name]) is not None
+        }
+        in_order = (p for p in parameters if p.kind not in (p.KEYWORD_ONLY, p.VAR_POSITIONAL))
+        more = next((p.name for p in parameters if p.kind is p.VAR_POSITIONAL), "")
+        return tuple(p.name for p in in_order), more, checks
+
+    @wraps(function)
+    def call(*arguments: Any, **named: Any) -> Any:
+        in_order, more, checks = declared()
+        listed = (*in_order, *repeat(more, max(len(arguments) - len(in_order), 0)))
+        for key, value in (*zip(listed, arguments, strict=False), *named.items()):
+            if key in checks and (wrong := checks[key](value)) is not None:
+                raise _error(target.__module__, name, key, wrong)
+        return function(*arguments, **named)
+
+    call._is_checked = True  # type: ignore[attr-defined]
+    if isinstance(target, type):
+        target.__init__ = call  # type: ignore[misc]
+        return target
+    return call  # type: ignore[return-value]
+
+
+def check_arguments(names: dict[str, Any], public: Iterable[str]) -> None:
+    """In the names of a folder (`globals()`), every public function with its arguments checked."""
+    for name in public:
+        function = names[name]
+        if isinstance(function, types.FunctionType) and not hasattr(function, "_is_checked"):
+            names[name] = checked(function)
+            # also where it is defined: a function pickles as what its module has under its name
+            setattr(sys.modules[function.__module__], function.__name__, names[name])
+
+
+def number(value: Any, where: str) -> float:
+    """A number as float; ModelError where it is a text, True, None, NaN or the like."""
+    if (wrong := number_check(value)) is not None:
+        raise _error("", "", where, wrong)
+    return float(value)
+
+
+def instance(value: Any, kind: type[Any], where: str, *, expected: str = "") -> None:
+    """Refuse with ModelError what is not of that class; expected: in words."""
+    if not isinstance(value, kind):
+        raise _error("", "", where, Refused("", value, expected or with_article(kind.__name__)))
+
+
+def matrix_of(value: Any, where: str) -> Any:
+    """A matrix of numbers as an array (n, m) of floats; ModelError where it is none."""
+    import numpy as np
+
+    expected = "a matrix of numbers, such as [[1, 0], [0, 1]]"
+    try:
+        found = np.asarray(value)
+    except ValueError:  # rows of different lengths
+        found = np.empty(0, dtype=object)
+    if found.dtype.kind not in "iuf" or found.ndim != 2 or bool(np.any(found != found)):
+        raise _error("", "", where, Refused("", value, expected))
+    return found.astype(float)
+
+
+def _error(module: str, function: str, argument: str, wrong: Refused) -> Exception:
+    of_experiment = any(module.startswith(f"{__package__}.{f}") for f in _OF_EXPERIMENTS)
+    kind = ExperimentError if of_experiment else ModelError
+    where = f"{function}: {argument}" if function else argument
+    return kind(
+        f"{where}{wrong.place}: found {described(wrong.given)}, expected {wrong.expected}"
+        f"{wrong.hint}"
+    )
+
+
+def _resolved(annotation: Any, names: Mapping[str, Any]) -> Any:
+    if annotation is inspect.Parameter.empty:
+        return Any
+    if not isinstance(annotation, str):
+        return annotation
+    known = dict(names)
+    for _ in range(_MOST_NAMES):
+        try:
+            return eval(annotation, known)  # the package's own annotation, not a user's text
+        except NameError as missing:
+            name = missing.name or ""
+            known[name] = _for_type_checkers(names["__name__"], name)
+    return Any
+
+
+_MOST_NAMES = 9  # names in one annotation
+
+
+def _for_type_checkers(module: str, name: str) -> Any:
+    """What a module imports under that name in `if TYPE_CHECKING`.
+
+    A class of the package itself, or what stands for one that takes long to import.
+    """
+    tree = ast.parse(inspect.getsource(sys.modules[module]))
+    for node in (n for block in tree.body if isinstance(block, ast.If) for n in block.body):
+        if isinstance(node, ast.ImportFrom):
+            own = next((a.name for a in node.names if (a.asname or a.name) == name), None)
+            if own is not None and node.level:
+                package = getattr(sys.modules[module], "__package__", "")
+                return getattr(import_module("." * node.level + (node.module or ""), package), own)
+            if own is not None:
+                return getattr(_Outside(node.module or ""), own)
+        elif isinstance(node, ast.Import):
+            if name in (a.name.partition(".")[0] for a in node.names):
+                return _Outside(name)
+    return Any
+
+
+class _Outside:
+    """A package that is not imported: its classes, by their names."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, name: str) -> Any:
+        if not name[:1].isupper():
+            return _Outside(f"{self._name}.{name}")
+        package = self._name.partition(".")[0]
+        return type(name, (), {"__module__": package, "_is_outside": True})
+
+
+def _or_default(check: Check, default: Any) -> Check:
+    """A default is right, whatever its type."""
+    if default is inspect.Parameter.empty:
+        return check
+    return lambda value: None if value is default else check(value)

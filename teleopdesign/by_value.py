@@ -1,0 +1,62 @@
+"""Results compare by value, also where they hold arrays, labelled data or numbers that are NaN."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+
+class ByValue:
+    """Base of frozen dataclasses (with eq=False) whose fields `same` compares."""
+
+    def __eq__(self, other: object) -> bool:
+        return same(self, other) if type(self) is type(other) else NotImplemented
+
+    def __hash__(self) -> int:
+        # of fields that are names and counts: arrays and NaN have no hash that equality keeps
+        plain = (getattr(self, f.name) for f in fields(self))  # type: ignore[arg-type]
+        return hash((type(self), *(v for v in plain if isinstance(v, str | int))))
+
+
+def same(one: Any, other: Any) -> bool:
+    """Whether two things have the same content; NaN is the same as NaN, arrays go by entry.
+
+    Dataclasses are compared field by field, whatever their own `==` says.
+    """
+    if one is other:
+        return True
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        if hasattr(one, "identical"):  # a Dataset of xarray
+            return bool(hasattr(other, "identical") and one.identical(other))
+        return one.keys() == other.keys() and all(same(v, other[k]) for k, v in one.items())
+    if type(one) is not type(other):
+        return bool(one == other) if _is_plain(one) and _is_plain(other) else False
+    if is_dataclass(one) and not isinstance(one, type):
+        pairs = ((getattr(one, f.name), getattr(other, f.name)) for f in fields(one) if f.compare)
+        return all(same(a, b) for a, b in pairs)
+    if isinstance(one, list | tuple):
+        return len(one) == len(other) and all(map(same, one, other))
+    if hasattr(one, "identical"):  # a DataArray of xarray
+        return bool(one.identical(other))
+    if hasattr(one, "dtype") and hasattr(one, "shape"):
+        return _same_arrays(one, other)
+    if isinstance(one, float):
+        return one == other or (one != one and other != other)
+    return bool(one == other)
+
+
+def _is_plain(value: Any) -> bool:
+    return isinstance(value, bool | int | float | complex | str) or value is None
+
+
+def _same_arrays(one: Any, other: Any) -> bool:
+    import numpy as np
+
+    if one.shape != other.shape or one.dtype != other.dtype:
+        return False
+    if one.dtype.kind in "fc":
+        return bool(np.array_equal(one, other, equal_nan=True))
+    if one.dtype.kind == "O":
+        return all(map(same, one.ravel().tolist(), other.ravel().tolist()))
+    return bool(np.array_equal(one, other))

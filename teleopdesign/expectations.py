@@ -1,0 +1,258 @@
+"""What an annotation expects of a value: a check that says what is wrong, in words."""
+
+from __future__ import annotations
+
+import math
+import types
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin
+
+from .errors import did_you_mean, quoted
+
+_LONGEST = 60  # characters of a value that a message repeats
+
+
+@dataclass(frozen=True)
+class Refused:
+    """What is wrong with a value.
+
+    place: where within it, such as '["x"]';  expected: in words;  hint: the nearest match
+    """
+
+    place: str
+    given: Any
+    expected: str
+    hint: str = ""
+
+
+#: a value -> what is wrong with it, None if nothing
+Check = Callable[[Any], Refused | None]
+
+
+def described(value: Any) -> str:
+    """What was given, in words: 'the number 0.15', 'the text "C"', 'a Body'."""
+    if value is None or isinstance(value, bool):
+        return str(value)
+    if isinstance(value, str):
+        return f"the text {quoted(value)}"
+    if isinstance(value, type):
+        return f"the class {value.__name__}"
+    if isinstance(value, int | float | complex):
+        return f"the number {value!r}"
+    if isinstance(value, types.FunctionType | types.BuiltinFunctionType | types.MethodType):
+        return f"the function {value.__name__}"
+    if hasattr(value, "dtype") and hasattr(value, "shape"):
+        return f"an array of shape {tuple(value.shape)}" if value.shape else f"the number {value}"
+    if isinstance(value, dict | list | tuple | set):
+        text = repr(value) if len(value) < 9 else ""
+        plain = text and len(text) <= _LONGEST and "\n" not in text
+        return f"the {type(value).__name__} {text}" if plain else with_article(type(value).__name__)
+    return with_article(type(value).__name__)
+
+
+def with_article(name: str) -> str:
+    return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"
+
+
+def check_of(annotation: Any) -> Check | None:
+    """The check of a resolved annotation; None where anything goes."""
+    origin, inner = get_origin(annotation), get_args(annotation)
+    if annotation is Any or annotation is object or isinstance(annotation, TypeVar | str):
+        return None
+    if annotation is None or annotation is type(None):
+        return _plain("None", lambda v: v is None)
+    if annotation in _SIMPLE:
+        return _SIMPLE[annotation]
+    if origin is Literal:
+        return _one_of(inner)
+    if origin in (Union, types.UnionType):
+        return _any_of(inner)
+    if origin in (Mapping, dict):
+        return _mapping(*inner)
+    if origin is tuple and not (len(inner) == 2 and inner[1] is Ellipsis):
+        return _fixed(inner)
+    if origin in (tuple, list, set, frozenset, Sequence, Collection, Iterable):
+        return _several(origin, inner[0])
+    if annotation is Callable or origin is Callable:
+        return _plain("a function", callable)
+    kind = origin or annotation
+    if not isinstance(kind, type) or getattr(kind, "_is_protocol", False):
+        return None
+    return _of_class(kind)
+
+
+def _plain(expected: str, accepts: Callable[[Any], bool]) -> Check:
+    return lambda value: None if accepts(value) else Refused("", value, expected)
+
+
+def _isnumber_check(value: Any) -> bool:
+    """A real number: of Python, numpy or sympy; no text, no truth value."""
+    if isinstance(value, bool | str | bytes) or value is None:
+        return False
+    if isinstance(value, int | float):
+        return True
+    if hasattr(value, "dtype"):
+        return getattr(value, "shape", None) == () and value.dtype.kind in "iuf"
+    if hasattr(value, "is_number"):  # of sympy
+        return bool(value.is_number and value.is_extended_real)
+    return hasattr(value, "__float__") and not hasattr(value, "__len__")
+
+
+def number_check(value: Any) -> Refused | None:
+    """A finite or infinite number; quick for floats, which most are."""
+    if type(value) is float and value == value:
+        return None
+    if not _isnumber_check(value):
+        return Refused("", value, "a number (SI)")
+    return Refused("", value, "a number (SI), not NaN") if math.isnan(float(value)) else None
+
+
+def _whole(value: Any) -> Refused | None:
+    whole = _isnumber_check(value) and hasattr(value, "__index__")
+    return None if whole else Refused("", value, "a whole number")
+
+
+def _truth(value: Any) -> Refused | None:
+    is_truth = isinstance(value, bool) or getattr(getattr(value, "dtype", None), "kind", "") == "b"
+    return None if is_truth else Refused("", value, "True or False")
+
+
+def _complex(value: Any) -> Refused | None:
+    is_complex = (
+        isinstance(value, complex) or getattr(getattr(value, "dtype", None), "kind", "") == "c"
+    )
+    return None if is_complex or _isnumber_check(value) else Refused("", value, "a number")
+
+
+_SIMPLE: dict[Any, Check] = {
+    float: number_check,
+    int: _whole,
+    bool: _truth,
+    complex: _complex,
+    str: _plain("a text", lambda v: isinstance(v, str)),
+}
+
+
+def _one_of(values: tuple[Any, ...]) -> Check:
+    names = [v for v in values if isinstance(v, str)]
+    words = [f'"{v}"' if isinstance(v, str) else str(v) for v in values]
+    listed = " or ".join(words) if len(words) < 4 else f"one of {', '.join(words)}"
+
+    def check(value: Any) -> Refused | None:
+        if any(value is v or (type(value) is type(v) and value == v) for v in values):
+            return None
+        hint = did_you_mean(value, names) if isinstance(value, str) else ""
+        return Refused("", value, listed, hint)
+
+    return check
+
+
+def _any_of(parts: tuple[Any, ...]) -> Check | None:
+    checks = [check_of(part) for part in parts]
+    if any(c is None for c in checks):
+        return None
+    whole = [c for c in checks if c is not None]
+
+    def check(value: Any) -> Refused | None:
+        wrong = []
+        for one in whole:
+            found = one(value)
+            if found is None:
+                return None
+            wrong.append(found)
+        # a mistake within a mapping or sequence says more than that the whole is of no kind
+        deeper = [w for w in wrong if w.place]
+        if deeper:
+            return deeper[0]
+        words = [w for w in dict.fromkeys(w.expected for w in wrong) if w != "None"]
+        hints = [w.hint for w in wrong if w.hint]
+        listed = ", ".join(words[:-1])
+        return Refused("", value, f"{listed} or {words[-1]}" if listed else words[-1], *hints[:1])
+
+    return check
+
+
+def _mapping(key: Any, content: Any) -> Check:
+    of_key, of_content = check_of(key), check_of(content)
+
+    def check(value: Any) -> Refused | None:
+        if not isinstance(value, Mapping):
+            return Refused("", value, 'a mapping, such as {"name": ...}')
+        for name, inner in value.items():
+            if of_key is not None and (wrong := of_key(name)) is not None:
+                return Refused(": key", wrong.given, wrong.expected, wrong.hint)
+            if of_content is not None and (wrong := of_content(inner)) is not None:
+                place = f'["{name}"]{wrong.place}'
+                return Refused(place, wrong.given, wrong.expected, wrong.hint)
+        return None
+
+    return check
+
+
+def _several(kind: Any, content: Any) -> Check:
+    of_content = check_of(content)
+    container: Any = tuple if kind is tuple else kind
+    words = {tuple: "a tuple", list: "a list", frozenset: "a frozenset", set: "a set"}
+    expected = words.get(kind, "several, as a tuple or list")
+
+    def check(value: Any) -> Refused | None:
+        if isinstance(value, str | bytes) or not _is_container(value, container):
+            return Refused("", value, expected)
+        if of_content is None or not isinstance(value, Collection):
+            return None
+        for i, inner in enumerate(value):
+            if (wrong := of_content(inner)) is not None:
+                return Refused(f"[{i}]{wrong.place}", wrong.given, wrong.expected, wrong.hint)
+        return None
+
+    return check
+
+
+def _is_container(value: Any, kind: Any) -> bool:
+    if kind is Sequence and hasattr(value, "dtype"):  # an array is one, whatever its class says
+        return bool(getattr(value, "shape", ()))
+    return isinstance(value, kind)
+
+
+def _fixed(parts: tuple[Any, ...]) -> Check:
+    checks = [check_of(part) for part in parts]
+
+    def check(value: Any) -> Refused | None:
+        if not isinstance(value, tuple | list) or len(value) != len(parts):
+            return Refused("", value, f"a tuple of {len(parts)}")
+        for i, (one, inner) in enumerate(zip(checks, value, strict=True)):
+            if one is not None and (wrong := one(inner)) is not None:
+                return Refused(f"[{i}]{wrong.place}", wrong.given, wrong.expected, wrong.hint)
+        return None
+
+    return check
+
+
+def _of_class(kind: type[Any]) -> Check:
+    name = kind.__name__
+    if name == "ndarray":
+        return _plain("an array of numbers", _is_array)
+    if name == "Expr":
+        return _plain("an expression of sympy", lambda v: isinstance(v, kind))
+    if hasattr(kind, "_is_outside"):
+        package = {"control": "python-control"}.get(kind.__module__, kind.__module__)
+        expected = f"{with_article(name)} of {package}"
+        return _plain(expected, lambda v: _is_from_outside(v, kind))
+    expected = "a path" if name in ("Path", "PurePath") else with_article(name)
+    expected = "ANY" if name == "AnyBlock" else expected
+    return _plain(expected, lambda v: isinstance(v, kind))
+
+
+def _is_from_outside(value: Any, kind: type[Any]) -> bool:
+    own = ((c.__module__.partition(".")[0], c.__name__) for c in type(value).__mro__)
+    return (kind.__module__, kind.__name__) in own
+
+
+def _is_array(value: Any) -> bool:
+    return (
+        hasattr(value, "__array__")
+        and hasattr(value, "shape")
+        and (value.dtype.kind in "iufc")
+        and bool(value.shape)
+    )

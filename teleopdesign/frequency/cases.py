@@ -1,0 +1,17 @@
+"""One diagram, or several by case."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..diagrams import Diagram
+from ..errors import ModelError
+
+
+def cases_of(diagrams: Diagram | Mapping[str, Diagram]) -> dict[str, Diagram]:
+    """Case -> diagram; of one diagram its name. ModelError: there is none."""
+    if isinstance(diagrams, Diagram):
+        return {diagrams.name: diagrams}
+    if not diagrams:
+        raise ModelError("diagrams: found none, expected a diagram, or several by case")
+    return dict(diagrams)

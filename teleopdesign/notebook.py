@@ -1,0 +1,29 @@
+"""Small HTML tables, by which results show themselves in a notebook. Every text is escaped."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from html import escape
+
+#: rows that a table shows at most: a notebook is no place for more
+MOST_ROWS = 40
+
+
+def html_table(
+    title: str, head: Sequence[str], rows: Iterable[Sequence[object]], *, note: str = ""
+) -> str:
+    """A table with a title above, and a note below where one is given."""
+    listed = [tuple(map(str, row)) for row in rows]
+    more = len(listed) - MOST_ROWS
+    if more > 0:
+        listed = [*listed[:MOST_ROWS], (f"... and {more} more", *[""] * (len(head) - 1))]
+    body = "".join(f"<tr>{_cells(row, 'td')}</tr>" for row in listed)
+    top = f"<thead><tr>{_cells(head, 'th')}</tr></thead>" if any(head) else ""
+    below = f"<p>{escape(note)}</p>" if note else ""
+    return (
+        f"<div><p><b>{escape(title)}</b></p><table>{top}<tbody>{body}</tbody></table>{below}</div>"
+    )
+
+
+def _cells(row: Sequence[str], tag: str) -> str:
+    return "".join(f"<{tag} style='text-align:left'>{escape(cell)}</{tag}>" for cell in row)

@@ -1,0 +1,128 @@
+"""One object of each kind that a user holds, made once: for tests that go through all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+import teleopdesign as td
+from teleopdesign import blocks, derive, diagrams, frequency, passivity, simulate
+
+BODY = td.Body(
+    "prismatic",
+    {"inertia": 0.15, "coulomb.level": 0.5, "viscous.damping": 2.0},
+    (td.EFFECTS["coulomb"], td.EFFECTS["viscous"]),
+)
+LAW = td.controller("smoothed_coulomb", {"level": 0.4, "smoothing_velocity": 0.02})
+LOW = td.controller("low_pass", {"bandwidth": 20.0})
+HAND = td.hand(mass=0.2, damping=4.0, stiffness=300.0)
+
+
+@lru_cache(maxsize=1)
+def experiment() -> td.Experiment:
+    return td.load_experiment(td.example("rod"))
+
+
+@lru_cache(maxsize=1)
+def model() -> td.Model:
+    return td.fit(td.Model.from_experiment(experiment()), experiment())
+
+
+@lru_cache(maxsize=1)
+def diagnosis() -> td.Diagnosis:
+    return td.find_missing(experiment())
+
+
+@lru_cache(maxsize=1)
+def diagram() -> td.Diagram:
+    return td.haptic_interface(BODY, hand=HAND, cancellation=LAW, force_feedback=LOW.then(LOW))
+
+
+@lru_cache(maxsize=1)
+def simulation() -> td.Simulation:
+    motion = {"L": td.sine(amplitude=0.01, frequency=2.0)}
+    return td.simulate_diagram(diagram().without("Z_H"), duration=0.05, motion=motion, jit=False)
+
+
+def _refuted() -> td.Claim:
+    return passivity.dahl_compensation(
+        coulomb_level=1, compensator_level=2, compensator_stiffness=1000
+    )
+
+
+def _response() -> frequency.FrequencyResponse:
+    return td.bode(diagram(), frequency=np.array([1.0, 10.0]))
+
+
+#: name -> what makes the object; those of a diagnosis take seconds
+QUICK: Mapping[str, Callable[[], Any]] = {
+    "experiment": experiment,
+    "record": lambda: experiment().records[0],
+    "model from an experiment": lambda: td.Model.from_experiment(experiment()),
+    "body": lambda: BODY,
+    "body with a wall": lambda: blocks.soft_rubber(
+        HAND, stiffness=800.0, damping=2.0, level=0.3, give=5e-4
+    ),
+    "effect": lambda: td.EFFECTS["stribeck"],
+    "effect of a block": lambda: blocks.CONTACT,
+    "effect without a parameter": lambda: td.EFFECTS["presliding"].without("bristle_damping"),
+    "catalogue": lambda: td.EFFECTS,
+    "parameter": lambda: td.EFFECTS["stribeck"].parameters["stribeck_velocity"],
+    "value": lambda: td.Value(2.0),
+    "matrix impedance": lambda: blocks.matrix_impedance(mass=np.eye(2), damping=0.1),
+    "controller": lambda: LAW.then(LOW).then(LOW),
+    "controller of python-control": lambda: _from_control(),
+    "diagram": diagram,
+    "diagram without values": lambda: diagrams.shipped("teleoperator"),
+    "diagram of parallel rods": lambda: diagrams.parallel_rods((BODY, BODY), np.eye(2)),
+    "transfer functions": lambda: td.transfer_functions(diagrams.shipped("haptic-interface")),
+    "all transfers": lambda: td.derive_transfers(diagrams.shipped("haptic-interface")),
+    "simulation": simulation,
+    "sampling": lambda: td.Sampling(delay=1e-3),
+    "sine": lambda: td.sine(amplitude=0.01, frequency=1.5),
+    "sampled motion": lambda: simulate.sampled_motion(np.linspace(0, 1, 20), np.zeros(20)),
+    "strokes": lambda: passivity.Strokes((0.01, -0.01), 0.1),
+    "force over velocity": lambda: simulate.force_velocity({"one": simulation()}),
+    "frequency response": _response,
+    "two-port functions": lambda: derive.two_port_functions(diagrams.shipped("teleoperator")),
+    "proved claim": lambda: td.positive_real(0.15 * sp.Symbol("s") + 4),
+    "refuted claim": _refuted,
+    "certificate": lambda: td.positive_real(0.15 * sp.Symbol("s") + 4).certificates[0],
+    "evidence": lambda: passivity.Evidence(True, "nothing", float("nan")),
+    "two-port": lambda: passivity.teleoperator(master=1, slave=1, stiffness=100.0),
+    "port energy": lambda: passivity.observe(
+        np.linspace(0, 1, 50), np.linspace(0, 1, 50), np.ones(50)
+    ),
+    "drawing": lambda: _drawing(),
+}
+SLOW: Mapping[str, Callable[[], Any]] = {
+    "model": model,
+    "comparison": lambda: td.compare(model(), experiment()),
+    "ranking": lambda: diagnosis().rungs[1].ranking,
+    "fit": lambda: diagnosis().after,
+    "diagnosis": diagnosis,
+    "finding": lambda: td.check_experiment(experiment())[0],
+    "description": lambda: td.describe(model(), experiment()),
+    "design": lambda: _design(),
+}
+
+
+def _drawing() -> Any:
+    from teleopdesign.plot import draw_diagram
+
+    return draw_diagram(diagram())
+
+
+@lru_cache(maxsize=1)
+def _design() -> td.Design:
+    return td.design_compensation(diagnosis())
+
+
+def _from_control() -> td.Controller:
+    import control
+
+    return td.from_control(control.tf([1.0], [0.01, 1.0]), name="lag")

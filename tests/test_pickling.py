@@ -1,0 +1,201 @@
+"""What a user holds pickles, copies, compares by value, and prints in a few lines."""
+
+import copy
+import pickle
+import subprocess
+import sys
+
+import pytest
+from example_objects import BODY, LAW, QUICK, SLOW
+
+import teleopdesign as td
+from teleopdesign.by_value import same
+from teleopdesign.frozen import Catalogue, Frozen
+
+EVERY = [
+    *(pytest.param(make, id=name) for name, make in QUICK.items()),
+    *(pytest.param(make, id=name, marks=pytest.mark.slow) for name, make in SLOW.items()),
+]
+
+
+@pytest.mark.parametrize("make", EVERY)
+def test_what_was_pickled_is_the_same_again(make):
+    thing = make()
+    assert pickle.loads(pickle.dumps(thing)) == thing
+
+
+@pytest.mark.parametrize("make", EVERY)
+def test_a_deep_copy_is_equal_and_prints_alike(make):
+    thing = make()
+    copied = copy.deepcopy(thing)
+    assert copied == thing and repr(copied) == repr(thing)
+
+
+@pytest.mark.parametrize("make", EVERY)
+def test_what_is_equal_has_the_same_hash(make):
+    thing = make()
+    try:
+        own = hash(thing)
+    except TypeError:
+        pytest.skip("holds a mapping that can be changed: no hash")
+    assert hash(pickle.loads(pickle.dumps(thing))) == own
+
+
+@pytest.mark.parametrize("make", EVERY)
+def test_it_prints_in_a_few_lines(make):
+    thing = make()
+    text = repr(thing)
+    # a design says its reasons and predictions: a page of sentences, everything else is a table
+    most = 6000 if isinstance(thing, td.Design) else 2500
+    assert 0 < len(text) < most and len(text.splitlines()) < most / 50
+    assert "array(" not in text and " object at 0x" not in text
+
+
+def test_what_differs_in_one_number_is_not_equal():
+    body = BODY.with_values({"viscous.damping": 2.1})
+    assert body != BODY and td.Value(1.0) != td.Value(1.1) and td.Value(1.0) != 1.0
+    assert td.Value(1.0, stderr=0.1) != td.Value(1.0) and td.Value(1.0) == td.Value(1.0)
+    first, second = (td.sine(amplitude=a, frequency=1.0) for a in (0.01, 0.02))
+    assert first != second and first == td.sine(amplitude=0.01, frequency=1.0)
+    experiment = QUICK["experiment"]()
+    other = copy.deepcopy(experiment)
+    other.records[0].time[3] += 1e-9
+    assert other != experiment and same(other.records[1], experiment.records[1])
+
+
+def test_catalogued_things_stay_themselves():
+    for name, effect in td.EFFECTS.items():
+        assert pickle.loads(pickle.dumps(effect)) is td.EFFECTS[name]
+        assert copy.deepcopy(effect) is effect
+    for name, law in td.CONTROLLERS.items():
+        assert pickle.loads(pickle.dumps(law)) is td.CONTROLLERS[name]
+
+
+OWN = '''"""Own drag."""
+
+from teleopdesign import Effect, Parameter
+
+
+def law(now, p):
+    return p.drag * now.velocity
+
+
+EFFECT = Effect(
+    role="force",
+    law=law,
+    parameters={"drag": Parameter("damping", "any")},
+    absent={"drag": 0.0},
+)
+'''
+
+
+def test_an_effect_file_pickles_by_its_path_and_is_refused_when_it_has_changed(tmp_path):
+    file = tmp_path / "own.py"
+    file.write_text(OWN)
+    effect = td.load_effect(file)
+    assert td.load_effect(file) is effect
+    data = pickle.dumps(BODY.with_effect(effect, {"drag": 1.0}))
+    assert pickle.loads(data).effect("own") is effect
+    code = "import pickle, sys; print(pickle.load(sys.stdin.buffer).parameters['own.drag'].value)"
+    run = subprocess.run([sys.executable, "-c", code], input=data, capture_output=True, check=True)
+    assert run.stdout.split() == [b"1.0"]
+    file.write_text(OWN.replace("now.velocity", "now.position"))
+    changed = td.load_effect(file)
+    assert changed is not effect and changed != effect
+    with pytest.raises(td.ModelError, match="own.py: the effect file has changed"):
+        pickle.loads(data)
+
+
+def a_law(now, p):
+    return p.drag * now.velocity
+
+
+def test_an_effect_without_a_file_says_why_it_does_not_pickle():
+    def made(law):
+        parameters = {"drag": td.Parameter("damping", "any")}
+        own = td.Effect(role="force", law=law, parameters=parameters, absent={"drag": 0.0})
+        return own.named("own", "Own.")
+
+    with pytest.raises(td.ModelError, match='Effect "own": cannot be written .* law is a function'):
+        pickle.dumps(made(lambda now, p: p.drag * now.velocity))
+    lambda_effect = made(lambda now, p: p.drag * now.velocity)
+    assert copy.deepcopy(BODY.with_effect(lambda_effect)) == BODY.with_effect(lambda_effect)
+    importable = sys.modules.get(a_law.__module__) is not None
+    if importable:
+        assert pickle.loads(pickle.dumps(made(a_law))) == made(a_law)
+
+
+def test_a_frozen_mapping_cannot_be_changed_and_equals_a_dictionary():
+    frozen = Frozen({"a": 1})
+    assert frozen == {"a": 1} and {"a": 1} == frozen and hash(frozen) == hash(Frozen({"a": 1}))
+    assert frozen | {"b": 2} == {"a": 1, "b": 2} == {"b": 2} | frozen
+    with pytest.raises(TypeError):
+        frozen["a"] = 2
+    with pytest.raises(TypeError):
+        frozen.other = 2
+    with pytest.raises(KeyError):
+        frozen["b"]
+
+
+def test_a_catalogue_says_the_nearest_name():
+    catalogue = Catalogue({"alpha": 1}, "letter")
+    for error in (KeyError, td.ModelError):
+        with pytest.raises(error) as caught:
+            catalogue["alhpa"]
+        assert str(caught.value) == 'letters: no letter "alhpa", has alpha; did you mean "alpha"?'
+    assert catalogue.get("beta") is None and catalogue.get([]) is None and "beta" not in catalogue
+    assert pickle.loads(pickle.dumps(caught.value)).args == caught.value.args
+
+
+SHOWN = [e for e in EVERY if "record" != e.id]
+
+
+@pytest.mark.parametrize("make", EVERY)
+def test_what_a_notebook_shows_is_small_and_well_formed(make):
+    import xml.etree.ElementTree as ElementTree
+
+    show = getattr(make(), "_repr_html_", None)
+    if show is None:
+        pytest.skip("shows its repr")
+    text = show()
+    ElementTree.fromstring(text.replace("<br>", "<br/>"))
+    assert len(text) < 15_000
+
+
+NEEDED = ("experiment", "model", "comparison", "ranking", "diagnosis", "diagram", "body", "effect")
+
+
+@pytest.mark.parametrize("name", [*NEEDED, "simulation", "proved claim", "controller"])
+def test_these_have_a_table_in_notebooks(name):
+    make = {**QUICK, "model": QUICK["model from an experiment"]}.get(name)
+    kinds = {"comparison": td.Comparison, "ranking": td.Ranking, "diagnosis": td.Diagnosis}
+    assert hasattr(kinds[name] if name in kinds else make(), "_repr_html_")
+
+
+@pytest.mark.parametrize("name", ["transfer functions", "all transfers", "two-port functions"])
+def test_transfer_functions_are_formulas_in_notebooks(name):
+    assert QUICK[name]()._repr_latex_().startswith("$$")
+
+
+def test_names_are_escaped_in_notebooks():
+    bad = "<script>alert('x')</script> & co"
+    effect = td.Effect(
+        role="force",
+        law=a_law,
+        parameters={"drag": td.Parameter("damping", bad)},
+        absent={"drag": 0.0},
+        source=bad,
+    ).named(bad, bad)
+    diagram = td.haptic_interface(BODY, cancellation=LAW)
+    simulation = QUICK["simulation"]()
+    named = simulation.data.assign_attrs(scheme=bad).rename({"R_A": bad})
+    shown = [
+        effect,
+        td.Model({bad: BODY}),
+        BODY.with_effect(effect),
+        td.Diagram(bad, diagram.blocks, diagram.junctions, diagram.outside, diagram.measured),
+        td.Simulation(simulation.diagram, named),
+        td.Claim(bad, td.passivity.Unknown(bad)),
+    ]
+    for thing in shown:
+        assert "<script>" not in thing._repr_html_() and "&lt;script&gt;" in thing._repr_html_()

@@ -1,0 +1,137 @@
+"""The names that a user types: one word each for both halves of the package, and their folders."""
+
+import inspect
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import teleopdesign as td
+
+ROOT = Path(td.__file__).parent
+TOP = {p.stem for p in ROOT.glob("*.py")} | {p.parent.name for p in ROOT.glob("*/__init__.py")}
+
+
+def test_no_public_name_is_that_of_a_folder():
+    """Python gives `td.NAME` to the folder once it is imported: a function there would be lost."""
+    assert not set(td.__all__) & TOP
+
+
+def test_every_public_name_has_one_group_and_the_docstring_shows_the_groups():
+    grouped = [n for group in td.GROUPS.values() for n in group]
+    assert sorted(grouped) == sorted(td.__all__)
+    shown = td.__doc__.split("The names that a user types:\n\n")[1].split("\n\n")[0]
+    words = shown.replace(",", " ").split()
+    assert words == [w for group, names in td.GROUPS.items() for w in (group, *names)]
+
+
+@pytest.mark.parametrize("folder", sorted(n for n in dir(td) if n in TOP))
+def test_a_folder_is_there_without_an_import_of_its_own(folder):
+    code = f"import teleopdesign as td; print(td.{folder}.__name__)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == f"teleopdesign.{folder}"
+
+
+def test_functions_and_folders_keep_apart_in_any_order():
+    code = (
+        "import teleopdesign as td\n"
+        "td.simulate_diagram, td.derive_transfers, td.design_compensation\n"
+        "from teleopdesign.simulate import simulate\n"
+        "from teleopdesign.design import design\n"
+        "assert td.simulate_diagram is simulate is td.simulate.simulate\n"
+        "assert td.design_compensation is design is td.design.design\n"
+        "assert callable(td.teleoperator) and td.passivity.teleoperator is not td.teleoperator\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_both_halves_are_there():
+    both = {"load_experiment", "find_missing", "Model", "EFFECTS", "describe"}
+    both |= {"haptic_interface", "controller", "bode", "simulate_diagram", "positive_real"}
+    assert both <= set(dir(td))
+    assert not {"import_module", "TYPE_CHECKING", "annotations"} & set(dir(td))
+
+
+def test_a_misspelt_name_is_told_the_nearest():
+    with pytest.raises(AttributeError, match='did you mean "haptic_interface"'):
+        td.haptic_interfac  # noqa: B018
+
+
+@pytest.mark.parametrize("name", sorted(n for n in td.__all__ if n not in ("ANY",)))
+def test_a_public_function_pickles_as_itself(name):
+    thing = getattr(td, name)
+    if inspect.isfunction(thing) or inspect.isclass(thing):
+        assert pickle.loads(pickle.dumps(thing)) is thing
+
+
+def test_numbers_stand_wherever_values_do():
+    body = td.Body("prismatic", {"inertia": 0.15})
+    assert body == td.Body("prismatic", {"inertia": td.Value(0.15)})
+    assert body.with_values({"inertia": 0.2}).parameters["inertia"] == td.Value(0.2)
+    model = td.Model({"device": body}).with_effect("viscous", values={"damping": 2})
+    assert model.parameters["device.viscous.damping"] == td.Value(2.0)
+    diagram = td.haptic_interface(body).with_values({"Z_M.inertia": 1})
+    assert diagram.values["Z_M.inertia"] == 1.0
+
+
+def test_a_law_may_be_there_twice_under_numbered_names():
+    low = td.controller("low_pass", {"bandwidth": 20.0})
+    twice = low.then(low)
+    assert twice.names() == {"low_pass.bandwidth": 20.0, "low_pass_2.bandwidth": 20.0}
+    changed = twice.with_values({"low_pass_2.bandwidth": 30.0})
+    assert changed.names() == {"low_pass.bandwidth": 20.0, "low_pass_2.bandwidth": 30.0}
+    thrice = changed.then(low)
+    assert list(thrice.names()) == [f"low_pass{n}.bandwidth" for n in ("", "_2", "_3")]
+
+
+def test_two_low_passes_in_series_are_the_product_of_their_transfer_functions():
+    import numpy as np
+
+    first, second = (td.controller("low_pass", {"bandwidth": b}) for b in (5.0, 20.0))
+    body = td.Body("prismatic", {"inertia": 0.15})
+    diagram = td.haptic_interface(body, force_feedback=first.then(second))
+    frequency = np.array([1.0, 7.0, 60.0])
+    s = 2j * np.pi * frequency
+    found = td.frequency.loop_gain(diagram, controller="H")
+    product = 1 / ((1 + s / (2 * np.pi * 5)) * (1 + s / (2 * np.pi * 20)))
+    ratio = found(s) / product
+    # the rest of the loop does not depend on the low-passes: the ratio is the loop with H = 1
+    one = td.haptic_interface(body, force_feedback=td.from_control(_unit(), name="one"))
+    np.testing.assert_allclose(ratio, td.frequency.loop_gain(one, controller="H")(s), rtol=1e-9)
+
+
+def test_two_low_passes_in_series_are_simulated_and_written(tmp_path):
+    import control
+    import numpy as np
+
+    low = td.controller("low_pass", {"bandwidth": 20.0})
+    body = td.Body("prismatic", {"inertia": 0.15})
+    diagram = td.haptic_interface(body, force_feedback=low.then(low), analog=("H",))
+    time_constant = 1 / (2 * np.pi * 20.0)
+    square = control.tf([1.0], [time_constant**2, 2 * time_constant, 1.0])
+    oracle = td.haptic_interface(body, force_feedback=td.from_control(square), analog=("H",))
+    forces = [
+        td.simulate_diagram(
+            one,
+            duration=0.1,
+            inputs={"R_D": 1.0},
+            motion={"L": td.sine(amplitude=0.01, frequency=5.0)},
+            jit=False,
+            step=1e-3,
+        )["R_FF"].values
+        for one in (diagram, oracle)
+    ]
+    assert np.abs(forces[0]).max() > 0.01
+    # order 4 with a step of 1/8 of the time constant
+    np.testing.assert_allclose(forces[0], forces[1], atol=1e-4 * np.abs(forces[1]).max())
+    path = tmp_path / "loop.toml"
+    td.write_diagram(diagram, path)
+    assert td.read_diagram(path) == diagram
+
+
+def _unit():
+    import control
+
+    return control.tf([1.0], [1.0])

@@ -1,0 +1,313 @@
+"""A wrong type is refused where it is given, in one line, by an error of the package's own.
+
+Every public function and constructor is called with every kind of wrong value for each of its
+parameters, the others as they should be. What a function does take (a list of numbers for an array)
+it may take; what it does not take must never end in an AttributeError from inside.
+"""
+
+import inspect
+import typing
+from importlib import import_module
+
+import example_objects as objects
+import numpy as np
+import pytest
+import sympy as sp
+
+import teleopdesign as td
+from teleopdesign import arguments, passivity
+from teleopdesign.errors import TeleopDesignError
+
+
+class Stranger:
+    """A class that the package has never seen."""
+
+
+WRONG = {
+    "nothing": None,
+    "a truth value": True,
+    "a text": "text",
+    "not a number": float("nan"),
+    "a number": 3.5,
+    "a whole number": -2,
+    "an object": object(),
+    "a class": Stranger,
+    "an empty list": [],
+    "an empty mapping": {},
+    "a list of texts": ["x"],
+    "a mapping of texts": {"x": "y"},
+    "a tuple of numbers": (1, 2, 3),
+    "an array": np.zeros(3),
+    "bytes": b"x",
+    "a function": len,
+}
+FOLDERS = (
+    "effects blocks controllers diagrams simulate frequency derive passivity design identify "
+    "diagnose diagnose.next_experiment measurement plot report"
+).split()
+#: these write files, reach for the network, or are told where they look for it
+LEFT_OUT = {"fetch", "save_figure", "write_record", "write_diagram", "write_reference"}
+CONSTRUCTORS = [
+    td.Body, td.Value, td.Parameter, td.Effect, td.State, td.Model, td.Diagram, td.Controller,
+    td.Sampling, td.Assumptions, td.Certificate, td.diagrams.Moving, td.diagrams.Attached,
+    td.diagrams.Linked, td.diagrams.Control, td.diagrams.Junction, td.diagrams.Kinematics,
+    td.diagrams.Arm, td.controllers.Stage, td.controllers.ControlLaw, td.controllers.State,
+    td.blocks.MatrixImpedance, td.simulate.Motion, passivity.Strokes, passivity.Dahl,
+    passivity.Coulomb, passivity.Spring, passivity.DahlBehindSpring, passivity.Search,
+]  # fmt: skip
+METHODS = [
+    (lambda: td.Model.from_experiment(objects.experiment()), "with_effect"),
+    (lambda: td.Model.from_experiment(objects.experiment()), "without_effect"),
+    (lambda: td.Model.from_experiment(objects.experiment()), "with_values"),
+    (lambda: td.Model.from_experiment(objects.experiment()), "body"),
+    (lambda: td.Model.from_experiment(objects.experiment()), "unit"),
+    (lambda: td.Model.from_experiment(objects.experiment()), "declared"),
+    (lambda: objects.BODY, "with_effect"),
+    (lambda: objects.BODY, "without_effect"),
+    (lambda: objects.BODY, "with_values"),
+    (lambda: objects.BODY, "effect"),
+    (lambda: objects.BODY, "unit"),
+    (lambda: objects.LAW, "then"),
+    (lambda: objects.LAW, "with_values"),
+    (objects.diagram, "with_block"),
+    (objects.diagram, "with_values"),
+    (objects.diagram, "block"),
+    (objects.diagram, "signal"),
+    (objects.diagram, "position"),
+]
+
+
+def functions():
+    """Every public function, its folder in front."""
+    for name in td.__all__:
+        thing = getattr(td, name)
+        if inspect.isfunction(thing) and name not in LEFT_OUT:
+            yield pytest.param(thing, id=name)
+    for folder in FOLDERS:
+        module = import_module(f"teleopdesign.{folder}")
+        for name in module.__all__:
+            thing = getattr(module, name)
+            if inspect.isfunction(thing) and name not in LEFT_OUT:
+                yield pytest.param(thing, id=f"{folder}.{name}")
+
+
+#: a right value for what an annotation names, first match wins
+RIGHT = (
+    ("Mapping[str, Simulation]", lambda: {"one": objects.simulation()}),
+    ("Mapping[str, Motion]", lambda: {"L": td.sine(amplitude=0.01, frequency=1.0)}),
+    ("Mapping[str, float]", dict),
+    ("Sequence[Body]", lambda: (objects.BODY, objects.BODY)),
+    ("np.random.Generator", lambda: np.random.default_rng(0)),
+    ("Diagnosis", lambda: pytest.skip("a diagnosis takes long, and is checked by its class")),
+    ("Simulation", objects.simulation),
+    ("Experiment", objects.experiment),
+    ("Record", lambda: objects.experiment().records[0]),
+    ("Model", lambda: td.Model.from_experiment(objects.experiment())),
+    ("Diagram", objects.diagram),
+    ("Body", lambda: objects.BODY),
+    ("Controller", lambda: objects.LAW),
+    ("MatrixImpedance", lambda: td.blocks.matrix_impedance(mass=np.eye(2))),
+    ("Strokes", lambda: passivity.Strokes((0.01, -0.01), 0.1)),
+    ("Certificate", lambda: objects.QUICK["certificate"]()),
+    ("Effect", lambda: td.EFFECTS["spring"]),
+    ("sp.Expr", lambda: sp.Symbol("x")),
+    ("ndarray", lambda: np.linspace(0.1, 1.0, 20)),
+    ("Array", lambda: np.linspace(0.1, 1.0, 20)),
+    ("Path", lambda: "no such file"),
+    ("tuple[str", lambda: ("L", "R_V")),
+    ("Sequence[str]", lambda: ("L",)),
+    ("bool", lambda: False),
+    ("str", lambda: "L"),
+    ("int", lambda: 1),
+    ("float", lambda: 1.0),
+)
+
+
+def right(parameter, wrong):
+    """A right value for that parameter; the wrong one where nothing says what is right."""
+    text = str(parameter.annotation)
+    for words, make in RIGHT:
+        if words in text:
+            return make()
+    return wrong
+
+
+def refused_or_taken(call, given):
+    """Call it; any error that is not one of the package's own fails the test."""
+    try:
+        call(**given)
+    except TeleopDesignError as error:
+        message = str(error)
+        assert message and len(message.splitlines()) == 1
+        assert " object at 0x" not in message and "<class" not in message, message
+
+
+def checked_parameters(call):
+    return [
+        p
+        for p in inspect.signature(call).parameters.values()
+        if p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)
+    ]
+
+
+def try_all(call):
+    """The call with each wrong value for each parameter that is not free to be anything."""
+    parameters = checked_parameters(call)
+    for one in parameters:
+        for wrong in WRONG.values():
+            given = {p.name: right(p, wrong) for p in parameters if p.default is p.empty}
+            refused = refusal(call, one, wrong)
+            if refused or str(one.annotation) in ("Any", "typing.Any"):
+                refused_or_taken(call, {**given, one.name: wrong})
+
+
+def refusal(call, parameter, wrong):
+    """Whether the annotation refuses that value: what it takes may start a long computation."""
+    found = inspect.unwrap(call if inspect.isfunction(call) else getattr(call, "__init__", call))
+    names = vars(inspect.getmodule(found) or inspect.getmodule(call))
+    annotation = arguments._resolved(parameter.annotation, {**names, "__name__": names["__name__"]})
+    check = arguments.check_of(annotation)
+    return check is not None and check(wrong) is not None
+
+
+@pytest.mark.parametrize("function", [*functions()])
+def test_a_public_function_refuses_what_it_cannot_take(function):
+    try_all(function)
+
+
+@pytest.mark.parametrize("constructor", CONSTRUCTORS, ids=lambda c: c.__name__)
+def test_a_constructor_refuses_what_it_cannot_take(constructor):
+    for one in checked_parameters(constructor):
+        for wrong in WRONG.values():
+            parameters = checked_parameters(constructor)
+            given = {p.name: right(p, wrong) for p in parameters if p.default is p.empty}
+            refused_or_taken(constructor, {**given, one.name: wrong})
+
+
+@pytest.mark.parametrize(("make", "name"), METHODS, ids=lambda x: x if isinstance(x, str) else "")
+def test_a_method_refuses_what_it_cannot_take(make, name):
+    method = getattr(make(), name)
+    for one in checked_parameters(method):
+        for wrong in WRONG.values():
+            parameters = checked_parameters(method)
+            given = {p.name: right(p, wrong) for p in parameters if p.default is p.empty}
+            refused_or_taken(method, {**given, one.name: wrong})
+
+
+@pytest.mark.parametrize("function", [*functions()])
+def test_every_public_function_is_checked(function):
+    assert hasattr(function, "_is_checked")
+    parameters = inspect.signature(function).parameters.values()
+    assert all(p.annotation is not p.empty for p in parameters)
+
+
+def test_a_wrong_call_stays_a_type_error():
+    with pytest.raises(TypeError, match="unexpected keyword"):
+        td.sine(amplitude=1.0, frequency=1.0, phas=0.0)
+    with pytest.raises(TypeError, match="missing"):
+        td.haptic_interface.__wrapped__ and td.sine()
+
+
+BODY = objects.BODY
+SAYS = {
+    "a number for a body": (
+        lambda: td.haptic_interface(0.15),
+        "haptic_interface: device: found the number 0.15, expected a Body or ANY",
+    ),
+    "a misspelt effect": (
+        lambda: td.EFFECTS["viscouss"],
+        'effects: no effect "viscouss"; did you mean "viscous"? (see `teleopdesign effects`)',
+    ),
+    "an effect that is there": (
+        lambda: BODY.with_effect(td.EFFECTS["viscous"]),
+        'body: effect "viscous" is there already: with_values changes its values',
+    ),
+    "an effect that the model has": (
+        lambda: td.Model({"device": BODY}).with_effect("viscous"),
+        'with_effect: effect "viscous" is there already at device: with_values changes its values',
+    ),
+    "an effect by its name": (
+        lambda: BODY.with_effect("spring"),
+        'Body.with_effect: effect: found the text "spring", expected an Effect',
+    ),
+    "a misspelt axis": (
+        lambda: td.Body("prismatik", {"inertia": 1.0}),
+        'Body: axis: found "prismatik", expected "prismatic" or "revolute"; did you mean '
+        '"prismatic"?',
+    ),
+    "a text for a number": (
+        lambda: td.Body("prismatic", {"inertia": "heavy"}),
+        'body: inertia: found the text "heavy", expected a number (SI)',
+    ),
+    "True for a number": (
+        lambda: td.Value(True),
+        "Value: value: found True, expected a number (SI)",
+    ),
+    "no number": (
+        lambda: td.sine(amplitude=float("nan"), frequency=1.0),
+        "sine: amplitude: found the number nan, expected a number (SI), not NaN",
+    ),
+    "a misspelt input": (
+        lambda: td.simulate_diagram(
+            td.haptic_interface(BODY), duration=0.1, inputs={"R_DD": 1.0}, jit=False
+        ),
+        'haptic interface: "R_DD" is not from outside, inputs are R_V, R_D; did you mean "R_D"?',
+    ),
+    "a misspelt choice": (
+        lambda: td.Sampling(velocity="filterd"),
+        'Sampling: velocity: found the text "filterd", expected "difference" or "filtered" or '
+        '"observer"; did you mean "filtered"?',
+    ),
+    "a value deep inside": (
+        lambda: td.controller("low_pass", {"bandwidth": "20 Hz"}),
+        'controller: values["bandwidth"]: found the text "20 Hz", expected a number (SI)',
+    ),
+    "a text for several": (
+        lambda: td.haptic_interface(BODY, analog="C"),
+        'haptic_interface: analog: found the text "C", expected several, as a tuple or list',
+    ),
+    "a class of a package that is not imported": (
+        lambda: td.from_control("1/s"),
+        'from_control: system: found the text "1/s", expected an InputOutputSystem of '
+        "python-control",
+    ),
+    "a law that is not there": (
+        lambda: td.CONTROLLERS["low_pas"],
+        f'control laws: no control law "low_pas", has {", ".join(td.CONTROLLERS)}; did you mean '
+        '"low_pass"?',
+    ),
+}
+
+
+@pytest.mark.parametrize("case", SAYS)
+def test_what_was_found_and_expected_is_said(case):
+    call, message = SAYS[case]
+    with pytest.raises(td.ModelError) as caught:
+        call()
+    assert str(caught.value) == message
+
+
+def test_a_mistake_about_an_experiment_is_an_experiment_error():
+    with pytest.raises(td.ExperimentError, match="load_experiment: folder: found the number 5"):
+        td.load_experiment(5)
+
+
+@pytest.mark.parametrize(
+    ("annotation", "taken", "refused"),
+    [
+        (float, [1, 2.5, np.float32(1), np.int64(3), sp.Rational(1, 2), float("inf")],
+         [True, np.True_, "1", None, float("nan"), 1j, [1.0], np.zeros(1), sp.Symbol("x")]),
+        (int, [1, np.int64(3)], [True, 1.0, "1", None]),
+        (bool, [True, np.False_], [1, 0, None, "yes"]),
+        (typing.Literal["a", 2], ["a", 2], ["b", 2.0, True, None]),
+        (tuple[str, ...], [(), ("a",)], ["a", ["a"], (1,)]),
+        (tuple[str, float], [("a", 1.0)], [("a",), ("a", "b"), "ab"]),
+        (dict[str, float], [{}, {"a": 1}], [{"a": "b"}, {1: 1.0}, [("a", 1)]]),
+        (np.ndarray, [np.zeros(3), np.zeros((2, 2))], [[0.0], np.array(["a"]), np.float64(1)]),
+        (float | None, [None, 1.0], ["a", True]),
+    ],
+)  # fmt: skip
+def test_an_annotation_takes_and_refuses(annotation, taken, refused):
+    check = arguments.check_of(annotation)
+    assert [v for v in taken if check(v) is not None] == []
+    assert all(check(v) is not None for v in refused)
