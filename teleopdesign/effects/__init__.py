@@ -14,6 +14,7 @@ from types import MappingProxyType, ModuleType
 from ..errors import ModelError, did_you_mean
 from ._effect import (
     CONTACT_ROLES,
+    ENERGIES,
     INERTIA,
     ROLES,
     SIGNALS,
@@ -72,6 +73,11 @@ def _checked(module: ModuleType, path: Path) -> Effect:
         raise ModelError(
             f'{path}: role "{effect.role}" is none of {", ".join(ROLES)}'
             f"{did_you_mean(effect.role, ROLES)}"
+        )
+    if effect.energy not in ENERGIES:
+        raise ModelError(
+            f'{path}: energy "{effect.energy}" is none of {", ".join(ENERGIES)}'
+            f"{did_you_mean(effect.energy, ENERGIES)}"
         )
     for name in effect.absent:
         if name not in effect.parameters:
