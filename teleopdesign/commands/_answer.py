@@ -54,6 +54,11 @@ def body_of_answer(path: Path, at: str | None) -> Body:
     return Body(axis, values, tuple(EFFECTS[name] for name in sorted(effects)))
 
 
+def place_of_answer(path: Path) -> str:
+    """The first body of an answer; raises ExperimentError: no answer."""
+    return str(next(iter(_content(path)["model_parameters"]))).partition(".")[0]
+
+
 def _content(path: Path) -> dict[str, Any]:
     try:
         content = json.loads(path.read_text(encoding="utf-8"))

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError
-from ._answer import body_of_answer
+from ._answer import body_of_answer, place_of_answer
 from ._claims import WIDTH, claim_lines, plain
 from ._diagram_passivity import BESIDE_A_DIAGRAM, is_diagram, settle_diagram
 from ._options import add_effect_files, check_output, say
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ..blocks import Body
     from ..passivity.device_claims import Compensator, Margin, Settled
     from ..passivity.identified import IdentifiedDevice
+    from ..realise.reach import Reach
     from ..simulate import Sampling
 
 
@@ -31,6 +32,13 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="folder with experiment.toml, which is diagnosed, a diagnosis's answer (.json), or a "
         "diagram: a file NAME.toml or a shipped one",
+    )
+    parser.add_argument(
+        "--records",
+        type=Path,
+        metavar="FOLDER",
+        help="beside an answer: the experiment, over whose reach levels are bounded (else over "
+        "every motion)",
     )
     parser.add_argument("--body", help="which body of the answer: device, master or slave")
     law = parser.add_mutually_exclusive_group()
@@ -85,7 +93,7 @@ def run(options: argparse.Namespace) -> int:
     from ..passivity.device_claims import margins
     from ..passivity.identified import identified
 
-    device = identified(_body(options))
+    device = identified(*_body(options))
     compensator = _compensator(options)
     settled = _settled(options, device, compensator)
     found = margins(device, compensator)
@@ -99,6 +107,8 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _sound(options: argparse.Namespace) -> None:
+    if options.records is not None and getattr(options.source, "suffix", "") != ".json":
+        raise ExperimentError("--records: expected beside an answer (.json) only")
     if options.source is None:
         raise ExperimentError(
             "passivity: expected a folder, an answer (.json), a diagram (.toml), or --check F"
@@ -137,14 +147,20 @@ def _given(options: argparse.Namespace, name: str) -> bool:
     return getattr(options, name.replace("-", "_")) is not None
 
 
-def _body(options: argparse.Namespace) -> Body:
-    """The diagnosed body: read from an answer, or from a diagnosis that is made now."""
+def _body(options: argparse.Namespace) -> tuple[Body, Reach | None]:
+    """The diagnosed body and its reach: of an answer, or of a diagnosis that is made now."""
+    from ..design.reach import reach_of
+    from ..measurement import load_experiment
+
     source: Path = options.source
     if source.suffix == ".json":
-        return body_of_answer(source, options.body)
+        body = body_of_answer(source, options.body)
+        if options.records is None:
+            return body, None
+        experiment = load_experiment(options.records)
+        return body, reach_of(experiment, options.body or place_of_answer(source))
     from ..diagnose import find_missing
     from ..effects import catalogue
-    from ..measurement import load_experiment
     from ..model import Model
 
     experiment = load_experiment(source)
@@ -156,7 +172,8 @@ def _body(options: argparse.Namespace) -> Body:
     say("")
     print(diagnosis)
     print()
-    return diagnosis.after.model.body(options.body or bodies[0])
+    place = options.body or bodies[0]
+    return diagnosis.after.model.body(place), reach_of(experiment, place)
 
 
 def _compensator(options: argparse.Namespace) -> Compensator | None:
@@ -202,7 +219,8 @@ def _text(device: IdentifiedDevice, settled: Sequence[Settled], found: Sequence[
 
     force, stiff = device.force_unit, device.stiffness_unit
     lines = [
-        f"friction level {device.lowest} {force} at its lowest, {device.highest} at its highest"
+        f"friction level {device.lowest} {force} at its lowest, {device.highest} at its highest, "
+        f"over {device.friction.over}"
     ]
     if device.presliding is None:
         lines.append(
@@ -210,9 +228,14 @@ def _text(device: IdentifiedDevice, settled: Sequence[Settled], found: Sequence[
         )
     else:
         lines.append(f"presliding stiffness {device.presliding} {stiff}")
-    lines.append(f"damping {device.damping} {unit_of('damping', device.body.axis)}")
+    unit = unit_of("damping", device.body.axis)
+    lines.append(f"damping at every speed {device.damping} {unit}")
+    if device.bristle_damping.high > 0:
+        lines.append(f"damping of the bristle {device.bristle_damping} {unit}")
     if device.set_aside:
-        lines.append(f"not spoken of by the claims: {', '.join(device.set_aside)}")
+        lines.append(
+            f"may supply energy, or of a kind no theorem is about: {', '.join(device.set_aside)}"
+        )
     if device.unknown:
         lines.append(f"no standard error, taken as exact: {', '.join(device.unknown)}")
     return "\n".join([*lines, *claim_lines(settled), "", *map(str, found)])

@@ -8,7 +8,6 @@ design(diagnosed(find_missing(experiment)))     # C, H, what they do, whether th
 from .assumptions import Assumptions
 from .chosen import Chosen, Reason
 from .force_feedback import Loop
-from .friction_range import FrictionRange, friction_range
 from .from_answer import Diagnosed, diagnosed, read_answer
 from .outcome import Design
 from .prediction import CasePrediction, Prediction
@@ -22,7 +21,6 @@ __all__ = [
     "Chosen",
     "Design",
     "Diagnosed",
-    "FrictionRange",
     "Loop",
     "Prediction",
     "Reason",
@@ -30,7 +28,6 @@ __all__ = [
     "Tuned",
     "design",
     "diagnosed",
-    "friction_range",
     "read_answer",
     "residual_friction",
     "tune",

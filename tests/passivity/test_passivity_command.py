@@ -152,8 +152,8 @@ def test_damping_covers_what_the_lowest_level_does_not():
     found = identified(body)
     v = np.linspace(0, 1, 100001)
     least = np.min(0.5 + 0.2 * np.exp(-((v / 0.05) ** 2)) + 2.0 * v)
-    # 4000 draws over seven decades of speed: 0.4 % apart, at a minimum that is flat
-    assert found.least_resistance.estimate == pytest.approx(least, rel=1e-4)
+    # a bound, met within 1e-4
+    assert least * (1 - 1e-4) <= found.least_resistance.estimate <= least
     claims = compensation_claims(
         found, Compensator("dahl", 0.6, 1e4), rng=np.random.default_rng(1), tries=3
     )
