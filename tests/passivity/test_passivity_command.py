@@ -172,3 +172,18 @@ def test_in_a_computer_the_pair_is_held_against_what_readings_do_not_show(answer
     assert claims["estimate, continuous time"]["status"] == "proved"
     assert claims["small motion, sampled"]["status"] == "proved"
     assert claims["any motion, sampled"]["status"] == "refuted"
+
+
+def test_levels_of_an_answer_are_bounded_over_every_motion_or_over_its_records(answer, capsys):
+    content = json.loads(answer.read_text())
+    content["model_parameters"] |= {
+        "device.stribeck.extra_static_level": number(0.2, 0.01, "N"),
+        "device.stribeck.stribeck_velocity": number(0.01, 0.001, "m/s"),
+    }
+    answer.write_text(json.dumps(content))
+    assert main(["passivity", str(answer)]) == 0
+    assert "over any speed" in capsys.readouterr().out
+    assert main(["passivity", str(answer), "--records", str(td.example("rod"))]) == 0
+    assert "over speed 0 to " in capsys.readouterr().out
+    assert main(["passivity", str(td.example("rod")), "--records", "rod"]) == 2
+    assert "--records: expected beside an answer" in capsys.readouterr().err
