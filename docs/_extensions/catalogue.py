@@ -190,6 +190,7 @@ def _effect(effect: Effect) -> str:
         facts.append(f"Absent at {gone}.")
     if effect.needs:
         facts.append(f"Needs {plain(', '.join(f'`{n}`' for n in sorted(effect.needs)))} beside it.")
+    facts.append(f"Energy: {effect.energy}.")
     if effect.always:
         facts.append(f"Always: {', '.join(sorted(effect.always))}.")
     facts.append(f"Source: {plain(effect.source)}.")

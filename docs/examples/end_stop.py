@@ -16,6 +16,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="force",
+    energy="stores",
     law=law,
     parameters={
         "stiffness": Parameter("stiffness", "K: of the buffer"),

@@ -40,6 +40,7 @@ def _arm_velocity(now: Any, p: Any) -> sp.Expr:
 
 ARM = Effect(
     role="force",
+    energy="dissipates",
     law=_grip,
     linear=True,
     states={
@@ -54,6 +55,5 @@ ARM = Effect(
         "grip_stiffness": Parameter("stiffness", "K_g: of the grip"),
     },
     absent={"grip_stiffness": 0.0, "grip_damping": 0.0},
-    always=frozenset({"dissipates"}),
     source="two masses on springs and dampers",
 ).named("arm", __doc__ or "")

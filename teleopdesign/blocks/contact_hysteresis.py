@@ -36,6 +36,7 @@ def _bristle(now: Any, p: Any) -> sp.Expr:
 
 CONTACT_HYSTERESIS = Effect(
     role="contact",
+    energy="dissipates",
     law=_law,
     states={"bristle": State("position", _bristle)},
     parameters={

@@ -29,6 +29,7 @@ def _law(now: Any, p: Any) -> sp.Expr:
 
 CONTACT = Effect(
     role="contact",
+    energy="dissipates",
     law=_law,
     parameters={
         "stiffness": Parameter("stiffness", "K: contact stiffness"),

@@ -24,6 +24,7 @@ def _law(now: Any, p: Any) -> sp.Expr:
 
 IMPACT_DAMPING = Effect(
     role="contact",
+    energy="dissipates",
     law=_law,
     parameters={
         "reference_velocity": Parameter(

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ..effects import Effect
     from ..measurement import Experiment
     from ..model import Model
+    from ..realise.reach import Reach
 
 
 def add_experiment(parser: argparse.ArgumentParser, *, answer: bool = True) -> None:
@@ -80,29 +81,34 @@ def diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> Diagnos
     return diagnosis
 
 
-def body_of_source(source: Path, options: argparse.Namespace) -> Body:
+def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Reach | None]:
     """The diagnosed body: of an answer (.json), or of a folder that is diagnosed now and printed.
 
     An answer holds its model, so it needs no folder; with a folder it is held against the records.
+    returns: the body, and what its records reached; None where there are no records
     """
+    from ..design.reach import reach_of
     from ..diagnose.answers import load_answer
 
     if source.suffix == ".json" and not source.is_dir():
         if options.answer is not None:
             raise ExperimentError(f"--answer: found beside {source}, which is an answer itself")
-        return _chosen(load_answer(source).model(known_of(options)), source, options.body)
+        model = load_answer(source).model(known_of(options))
+        return model.bodies[_place(model, source, options.body)], None
     experiment = experiment_of(source)
+    place = _place(stated_model(experiment, options), source, options.body)
     if options.answer is not None:
-        saved = load_answer(options.answer)
-        return _chosen(saved.model(known_of(options), experiment), source, options.body)
-    _chosen(stated_model(experiment, options), source, options.body)
-    diagnosis = diagnosis_of(experiment, options)
-    print(diagnosis)
-    print()
-    return _chosen(diagnosis.model, source, options.body)
+        model = load_answer(options.answer).model(known_of(options), experiment)
+    else:
+        diagnosis = diagnosis_of(experiment, options)
+        print(diagnosis)
+        print()
+        model = diagnosis.model
+    return model.bodies[place], reach_of(experiment, place)
 
 
-def _chosen(model: Model, source: Path, body: str | None) -> Body:
+def _place(model: Model, source: Path, body: str | None) -> str:
+    """The place of the body that is meant; the only one where none is asked for."""
     bodies = list(model.bodies)
     if body is None and len(bodies) > 1:
         raise ExperimentError(f"{source}: bodies {', '.join(bodies)}: choose one with --body")
@@ -110,4 +116,4 @@ def _chosen(model: Model, source: Path, body: str | None) -> Body:
         raise ExperimentError(
             f'--body: no body "{body}", has {", ".join(bodies)}{did_you_mean(body, bodies)}'
         )
-    return model.bodies[body or bodies[0]]
+    return body or bodies[0]

@@ -26,5 +26,6 @@ def run(options: argparse.Namespace) -> int:
     print(f"{effect.name}  ({effect.role})\n\n{effect.text.strip()}\n")
     for name, parameter in effect.parameters.items():
         print(f"  {name:<22} {parameter.quantity:<14} {parameter.meaning}")
-    print(f"\nSource: {effect.source}")
+    print(f"\nEnergy: {effect.energy}")
+    print(f"Source: {effect.source}")
     return 0

@@ -86,7 +86,7 @@ def run(options: argparse.Namespace) -> int:
     from ..passivity.device_claims import margins
     from ..passivity.identified import identified
 
-    device = identified(body_of_source(options.source, options))
+    device = identified(*body_of_source(options.source, options))
     compensator = _compensator(options)
     settled = _settled(options, device, compensator)
     found = margins(device, compensator)
@@ -181,7 +181,8 @@ def _text(device: IdentifiedDevice, settled: Sequence[Settled], found: Sequence[
 
     force, stiff = device.force_unit, device.stiffness_unit
     lines = [
-        f"friction level {device.lowest} {force} at its lowest, {device.highest} at its highest"
+        f"friction level {device.lowest} {force} at its lowest, {device.highest} at its highest, "
+        f"over {device.friction.over}"
     ]
     if device.presliding is None:
         lines.append(
@@ -189,9 +190,14 @@ def _text(device: IdentifiedDevice, settled: Sequence[Settled], found: Sequence[
         )
     else:
         lines.append(f"presliding stiffness {device.presliding} {stiff}")
-    lines.append(f"damping {device.damping} {unit_of('damping', device.body.axis)}")
+    unit = unit_of("damping", device.body.axis)
+    lines.append(f"damping at every speed {device.damping} {unit}")
+    if device.bristle_damping.high > 0:
+        lines.append(f"damping of the bristle {device.bristle_damping} {unit}")
     if device.set_aside:
-        lines.append(f"not spoken of by the claims: {', '.join(device.set_aside)}")
+        lines.append(
+            f"may supply energy, or of a kind no theorem is about: {', '.join(device.set_aside)}"
+        )
     if device.unknown:
         lines.append(f"no standard error, taken as exact: {', '.join(device.unknown)}")
     return "\n".join([*lines, *claim_lines(settled), "", *map(str, found)])

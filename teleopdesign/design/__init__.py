@@ -9,7 +9,6 @@ from ..arguments import check_arguments
 from .assumptions import Assumptions
 from .chosen import Chosen, Reason
 from .force_feedback import Loop
-from .friction_range import FrictionRange, friction_range
 from .from_answer import Diagnosed, diagnosed, read_answer
 from .outcome import Design
 from .prediction import CasePrediction, Prediction
@@ -23,7 +22,6 @@ __all__ = [
     "Chosen",
     "Design",
     "Diagnosed",
-    "FrictionRange",
     "Loop",
     "Prediction",
     "Reason",
@@ -31,7 +29,6 @@ __all__ = [
     "Tuned",
     "design",
     "diagnosed",
-    "friction_range",
     "read_answer",
     "residual_friction",
     "tune",

@@ -9,16 +9,15 @@ from __future__ import annotations
 
 import math
 
-import sympy as sp
-
 from ..blocks import Body
 from ..controllers import controller
-from ..effects import SIGNALS, delayed
+from ..errors import ModelError
 from ..quantity import unit_of
+from ..realise.acting_bound import largest_acting_force
+from ..realise.friction_interval import FrictionInterval
+from ..realise.reach import Reach
 from .assumptions import Assumptions
 from .chosen import Chosen, Reason
-from .friction_range import FrictionRange
-from .reach import Reach
 from .rounding import rounded_down, rounded_up
 
 #: part of the largest passive stiffness that a Dahl cancellation takes on a presliding device
@@ -26,41 +25,37 @@ STIFFNESS_FRACTION = 0.9
 
 
 def acting_gain(body: Body, reach: Reach, *, errors: float) -> float:
-    """Largest steady force that acts per commanded force, within the interval of its gain."""
-    equation = body.equation()
-    acting = equation.acting.replace(delayed, lambda signal, _: signal)
-    settled = sp.solve([equation.rates[x] for x in equation.stages], *equation.stages)
-    acting = acting.subs(settled) if equation.stages else acting
-    symbols, largest = body.symbols(), 0.0
-    for position in (reach.low + reach.travel * k / 100 for k in range(101)):
-        # a small command: saturation only takes from it
-        there = {SIGNALS["command"]: 1e-3 * reach.command, SIGNALS["position"]: position}
-        gain = acting.subs(there) / (1e-3 * reach.command)
-        here = float(gain.subs(body.numbers()))
-        for name, value in body.parameters.items():
-            if gain.has(symbols[name]) and not value.fixed and math.isfinite(value.stderr):
-                slope = abs(float(sp.diff(gain, symbols[name]).subs(body.numbers())))
-                here += errors * slope * value.stderr
-        largest = max(largest, here)
-        if not acting.has(SIGNALS["position"]):
-            break
-    return largest
+    """Bound of the force that acts per commanded force, within the intervals of its parameters.
+
+    raises ModelError: no bound is known of an effect of the actuation
+    """
+    command = 1e-3 * reach.command  # a small one: saturation only takes from it
+    gain = largest_acting_force(body, command, reach, errors=errors) / command
+    if not math.isfinite(gain):
+        raise ModelError("design: no bound is known of the force that the actuation makes")
+    return gain
 
 
 def cancelled_level(
-    friction: FrictionRange, gain: float, assumptions: Assumptions, axis: str
+    friction: FrictionInterval,
+    body: Body,
+    reach: Reach,
+    gain: float,
+    assumptions: Assumptions,
 ) -> Reason | None:
     """The level to cancel, in commanded force; None where no level is sure.
 
     None is where the least one may be zero, or where the records never come near the level.
     """
-    if friction.sure <= 0 or not friction.slides:
+    if friction.lowest.low <= 0 or not friction.slides_within(reach.travel):
         return None
-    unit = unit_of("force", axis)
-    value = rounded_down(assumptions.fraction * friction.sure / gain)
-    least = f"the least level within {assumptions.errors:g} standard errors, {friction.sure:.4g}"
+    unit = unit_of("force", body.axis)
+    sure = friction.lowest.low
+    value = rounded_down(assumptions.fraction * sure / gain)
+    least = f"the least level within {assumptions.errors:g} standard errors, {sure:.4g}"
     why = f"{assumptions.fraction:g} of {least} {unit} (at {friction.where_lowest}"
-    why += f"; the identified Coulomb level is {friction.identified:.4g} {unit})"
+    known = body.parameters.get("coulomb.level")
+    why += ")" if known is None else f"; the identified Coulomb level is {known.value:.4g} {unit})"
     if gain != 1.0:
         why += f", over the {gain:.4g} that acts of a commanded force of 1"
     return Reason("level", value, unit, why + ", so that f_D <= f_C (P37 to P39)")
@@ -68,7 +63,7 @@ def cancelled_level(
 
 def dahl_cancellation(
     level: Reason,
-    friction: FrictionRange,
+    friction: FrictionInterval,
     reach: Reach,
     gain: float,
     assumptions: Assumptions,
@@ -92,13 +87,13 @@ def dahl_cancellation(
     }
     longest = max(lengths, key=lengths.__getitem__)
     limits = {f"a bristle length f_D/sigma_D of {longest}": acting / lengths[longest]}
-    if friction.has_presliding:
-        if friction.sure_stiffness <= 0 or (late > 0 and damping <= 0):
+    if friction.presliding is not None:
+        softest, most = friction.presliding.low, friction.highest.high
+        if softest <= 0 or (late > 0 and damping <= 0) or math.isinf(most):
             return None
-        passive = friction.sure_stiffness * math.sqrt(acting / friction.most)
+        passive = softest * math.sqrt(acting / most)
         why = f"{STIFFNESS_FRACTION:g} of the stiffest with sigma_D^2/f_D <= sigma_p^2/f_C over "
-        why += f"the whole interval, sigma_p >= {friction.sure_stiffness:.4g}, f_C <= "
-        why += f"{friction.most:.4g} (P43, P44)"
+        why += f"the whole interval, sigma_p >= {softest:.4g}, f_C <= {most:.4g} (P43, P44)"
         limits = {why: STIFFNESS_FRACTION * passive}
         from ..passivity.delayed_compensation import SINC_LEAST
 

@@ -29,7 +29,7 @@ def design_data(design: Design) -> dict[str, Any]:
         },
         "assumptions": asdict(design.assumptions),
         "recorded": asdict(design.reach),
-        "friction": asdict(design.friction) if design.friction else None,
+        "friction": _friction(design),
         "cancellation": _chosen(design.cancellation),
         "second_cancellation": _chosen(design.other),
         "force_feedback": _chosen(design.force_feedback),
@@ -50,6 +50,14 @@ def design_data(design: Design) -> dict[str, Any]:
     }
     found: dict[str, Any] = plain(content)
     return found
+
+
+def _friction(design: Design) -> dict[str, Any] | None:
+    """The friction interval, and half of the travel in bristle lengths."""
+    if design.friction is None:
+        return None
+    lengths = design.friction.bristle_lengths(design.reach.travel)
+    return {**asdict(design.friction), "bristle_lengths": lengths}
 
 
 def _impedance(felt: FeltImpedance) -> dict[str, Any]:

@@ -16,10 +16,10 @@ from ..diagrams import Diagram
 from ..errors import ModelError
 from ..passivity import Claim, Evidence
 from ..quantity import unit_of
+from ..realise.reach import Reach
 from ..realise.tips import led
 from ..simulate import Sampling
 from .prediction import settled_cycle
-from .reach import Reach
 from .stated_motion import StatedMotion
 
 #: sizes and frequencies tried, over those of the stated motion

@@ -19,9 +19,9 @@ from ..blocks import Body
 from ..controllers import scheduled_force_feedback
 from ..quantity import unit_of
 from ..realise.lti import S
+from ..realise.reach import Reach
 from .assumptions import Assumptions
 from .chosen import Chosen, Reason
-from .reach import Reach
 from .rounding import rounded_down, rounded_up
 
 #: largest gain proposed: beyond it what is left of friction is a few percent already

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from ..diagnose.diagnosis import ADEQUATE
 from ..quantity import unit_of
-from .friction_range import FrictionRange
+from ..realise.friction_interval import FrictionInterval
 from .from_answer import Diagnosed
 from .outcome import Design
 from .prediction import CasePrediction
@@ -44,27 +44,28 @@ def _friction(design: Design) -> list[str]:
     if friction is None:
         return ["The model has no friction level: there is nothing to cancel."]
     if design.cancellation is None:
-        return [_none_proposed(friction, unit)]
+        return [_none_proposed(friction, design.reach.travel, unit)]
     lines = []
     if not design.reach.both_ways:
         lines.append(
             "The records move it one way only: its friction the other way is taken to be what the "
             "model says, which no record has shown."
         )
-    if friction.highest > 1.001 * friction.lowest:
+    lowest, highest = friction.lowest.estimate, friction.highest.estimate
+    if highest > 1.001 * lowest:
         lines.append(
-            f"Friction lies between {friction.lowest:.4g} and {friction.highest:.4g} {unit} over "
-            "the recorded speeds, directions, positions and loads: the least of it is cancelled, "
-            f"so that up to {friction.highest - friction.lowest:.3g} {unit} more than the margin "
-            "is left."
+            f"Friction lies between {lowest:.4g} and {highest:.4g} {unit} over {friction.over}: "
+            f"the least of it is cancelled, so that up to {highest - lowest:.3g} {unit} more than "
+            "the margin is left."
         )
     bias = design.body.parameters.get("bias.force")
     if bias is not None and abs(bias.value) > 0:
+        lower = max(friction.lowest.low - abs(bias.value), 0.0)
         lines.append(
             f"A constant force of {bias.value:.3g} {unit} is taken for gravity or an offset: it "
             "gives back what it takes. No record tells it from friction of two levels; then the "
-            f"lower one is {max(friction.sure - abs(bias.value), 0.0):.3g} {unit}, and motion that "
-            "only ever goes one way would need a level below that."
+            f"lower one is {lower:.3g} {unit}, and motion that only ever goes one way would need a "
+            "level below that."
         )
     if design.cancellation.law == "smoothed_coulomb":
         lines.append(
@@ -72,7 +73,7 @@ def _friction(design: Design) -> list[str]:
             f"{unit_of('position', design.body.axis)}. Beside one, a smoothed cancellation is a "
             "negative damper in small motion: lower its level where the device hums at rest."
         )
-    if friction.has_presliding:
+    if friction.presliding is not None:
         lines.append(
             "Friction is a spring before it slides: a smoothed Coulomb cancellation is not "
             "proposed, for in small motion it is a negative damper that such a spring does not "
@@ -86,18 +87,18 @@ def _friction(design: Design) -> list[str]:
     return lines
 
 
-def _none_proposed(friction: FrictionRange, unit: str) -> str:
-    if not friction.slides:
+def _none_proposed(friction: FrictionInterval, travel: float, unit: str) -> str:
+    if not friction.slides_within(travel):
         why = (
             f"friction does not come near its level within the recorded travel, half of which is "
-            f"{friction.bristle_lengths:.2g} bristle lengths: the level is a guess"
+            f"{friction.bristle_lengths(travel):.2g} bristle lengths: the level is a guess"
         )
-    elif friction.sure <= 0:
+    elif friction.lowest.low <= 0:
         why = (
-            f"the least level within the interval is {friction.sure:.3g} {unit} (at "
+            f"the least level within the interval is {friction.lowest.low:.3g} {unit} (at "
             f"{friction.where_lowest}), so that no level is sure"
         )
-    elif friction.sure_stiffness <= 0:
+    elif friction.presliding is not None and friction.presliding.low <= 0:
         why = "the presliding stiffness is not told from zero, so no stiffness is sure (P43)"
     else:
         why = (

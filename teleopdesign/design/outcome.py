@@ -15,14 +15,14 @@ from ..errors import ModelError
 from ..frequency import FrequencyResponse
 from ..passivity import Claim
 from ..plain_data import write_json
+from ..realise.friction_interval import FrictionInterval
+from ..realise.reach import Reach
 from ..simulate import Sampling
 from .assumptions import Assumptions
 from .chosen import Chosen
 from .felt_impedance import FeltImpedance
 from .force_feedback import Loop
-from .friction_range import FrictionRange
 from .prediction import Prediction
-from .reach import Reach
 from .residual_friction import ResidualFriction
 from .sampling import sampling_of
 
@@ -49,7 +49,7 @@ class Design(ByValue):
     body: Body
     assumptions: Assumptions
     reach: Reach
-    friction: FrictionRange | None
+    friction: FrictionInterval | None
     cancellation: Chosen | None
     other: Chosen | None
     other_left: float

@@ -11,19 +11,21 @@ from ..diagrams import Diagram, four_cases, haptic_interface
 from ..errors import ModelError
 from ..model import Model
 from ..passivity import Claim
+from ..realise.damping_interval import small_motion_damping
+from ..realise.friction_interval import FrictionInterval, friction_interval
+from ..realise.reach import Reach
 from .assumptions import Assumptions
 from .cancellation import acting_gain, cancelled_level, dahl_cancellation, smoothed_cancellation
 from .chosen import Chosen
 from .energy import energy_claim
 from .felt_impedance import felt_impedance
 from .force_feedback import Loop, force_feedback, identified_delay, whole_inertia
-from .friction_range import FrictionRange, friction_range
 from .from_answer import Diagnosed, diagnosed
 from .linear import transparency
 from .notes import notes_on
 from .outcome import Design
 from .prediction import Prediction, predict
-from .reach import Reach, reach_of
+from .reach import reach_of
 from .residual_friction import SHARES, residual_friction
 from .sampling import sampling_of
 from .stated_motion import StatedMotion, stated_motion
@@ -32,7 +34,6 @@ from .verdict import (
     compliant_claim,
     feedback_claim,
     in_units_of,
-    small_motion_damping,
 )
 
 #: of the load that stands for a hand over the device's inertia, where none is stated
@@ -78,7 +79,7 @@ def design(
     body = free_body(found.model.body(at))
     given = settled(assumptions or Assumptions(), body, reach)
     motion = stated_motion(reach, given, body.axis)
-    friction = friction_range(body, reach, errors=given.errors)
+    friction = friction_interval(body, reach, errors=given.errors)
     options: list[Chosen | None] = [*cancellations(body, friction, reach, given)]
     trials = [_trial(body, one, motion, reach, given) for one in options or [None]]
     best = min(trials, key=lambda t: t.left)
@@ -129,13 +130,13 @@ def settled(given: Assumptions, body: Body, reach: Reach) -> Assumptions:
 
 
 def cancellations(
-    body: Body, friction: FrictionRange | None, reach: Reach, given: Assumptions
+    body: Body, friction: FrictionInterval | None, reach: Reach, given: Assumptions
 ) -> list[Chosen]:
     """The laws of C that are sure to be passive; none where no level is sure."""
     if friction is None:
         return []
     gain = acting_gain(body, reach, errors=given.errors)
-    level = cancelled_level(friction, gain, given, body.axis)
+    level = cancelled_level(friction, body, reach, gain, given)
     if level is None:
         return []
     damping = small_motion_damping(body, errors=given.errors)
@@ -144,7 +145,7 @@ def cancellations(
         level, friction, reach, gain, given, axis=body.axis, late=late, damping=damping
     )
     found = [] if dahl is None else [dahl]
-    if friction.has_presliding:
+    if friction.presliding is not None:
         # in small motion a smoothed cancellation is a negative damper that a bristle cannot stop
         return found
     assert given.sample_period is not None and given.velocity_bandwidth is not None
@@ -201,18 +202,20 @@ def _with_load(best: Trial, body: Body, given: Assumptions) -> Diagram:
 
 
 def _claims(
-    best: Trial, body: Body, friction: FrictionRange | None, reach: Reach, given: Assumptions
+    best: Trial, body: Body, friction: FrictionInterval | None, reach: Reach, given: Assumptions
 ) -> Mapping[str, tuple[Claim, ...]]:
     """Claims by case."""
     found: dict[str, list[Claim]] = {case: [] for case in four_cases(best.diagram)}
     if best.cancellation is not None and friction is not None:
         gain = acting_gain(body, reach, errors=given.errors)
         found["MBC"] = cancellation_claims(
+            body,
             best.cancellation,
             friction,
+            reach,
             gain=gain,
             late=_late(body, given),
-            damping=small_motion_damping(body, errors=given.errors),
+            errors=given.errors,
         )
         compliant = compliant_claim(body, best.cancellation, friction, gain=gain)
         found["MBC"] += [compliant] if compliant else []

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..diagnose.force_error import prepare
@@ -11,36 +9,7 @@ from ..diagnose.motion_facts import RARE
 from ..errors import ExperimentError
 from ..measurement.experiment import Experiment
 from ..measurement.motion import TRAVEL
-
-
-@dataclass(frozen=True)
-class Reach:
-    """The recorded range of one body; SI.
-
-    low, high: of its position;  peak_speed, rms_speed;  command: largest commanded force
-    duration: of the longest record;  sample_period: s;  step: what one reading leaves open
-    unresolved: length below which the give of a contact before it slides cannot be told: within the
-        steps that tell a motion, or half a period of the comparison's bandwidth after a reversal
-    measures_force: whether the force of hand or environment is a channel
-    both_ways: whether it moves forward and backward for at least `RARE` of the time it moves
-    """
-
-    low: float
-    high: float
-    peak_speed: float
-    rms_speed: float
-    command: float
-    duration: float
-    sample_period: float
-    step: float
-    unresolved: float
-    measures_force: bool
-    both_ways: bool = True
-
-    @property
-    def travel(self) -> float:
-        """Length of the travel."""
-        return self.high - self.low
+from ..realise.reach import Reach
 
 
 def reach_of(experiment: Experiment, place: str) -> Reach:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from ..realise.reach import Reach
 from ..simulate import Sampling
 from .assumptions import Assumptions
-from .reach import Reach
 
 
 def sampling_of(given: Assumptions, reach: Reach) -> Sampling:

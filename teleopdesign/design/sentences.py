@@ -42,18 +42,21 @@ def _friction(design: Design) -> list[str]:
     f, unit = design.friction, unit_of("force", design.body.axis)
     if f is None:
         return ["  no friction level in the model"]
-    level = f"{f.identified:.4g}"
-    if math.isfinite(f.identified_error):
-        level += f" +- {f.identified_error:.2g}"
+    known = design.body.parameters.get("coulomb.level")
+    level = "  " if known is None else f"  Coulomb level {known.value:.4g}"
+    if known is not None:
+        level += f" +- {known.stderr:.2g}" if math.isfinite(known.stderr) else ""
+        level += f" {unit}; "
     lines = [
-        f"  Coulomb level {level} {unit}; over the identified shape {f.lowest:.4g} to "
-        f"{f.highest:.4g} {unit}; within {design.assumptions.errors:g} standard errors "
-        f"{f.sure:.4g} to {f.most:.4g} {unit}"
+        f"{level}over the identified shape {f.lowest.estimate:.4g} to {f.highest.estimate:.4g} "
+        f"{unit}; within {design.assumptions.errors:g} standard errors {f.lowest.low:.4g} to "
+        f"{f.highest.high:.4g} {unit}"
     ]
-    if f.has_presliding:
+    if f.presliding is not None:
         stiff = unit_of("stiffness", design.body.axis)
         lines.append(
-            f"  presliding stiffness {f.stiffness:.4g} {stiff}, at least {f.sure_stiffness:.4g}"
+            f"  presliding stiffness {f.presliding.estimate:.4g} {stiff}, at least "
+            f"{f.presliding.low:.4g}"
         )
     return lines
 

@@ -10,9 +10,9 @@ import numpy as np
 from ..errors import ModelError
 from ..measurement.filtering import Array
 from ..quantity import unit_of
+from ..realise.reach import Reach
 from ..simulate import Motion, sine
 from .assumptions import Assumptions
-from .reach import Reach
 from .rounding import rounded_down
 
 #: Hz, slowest motion chosen: slower ones cost time and say nothing else

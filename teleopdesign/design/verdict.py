@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import replace
 
-from ..blocks import Body
+from ..blocks import Body, Value
 from ..controllers import Controller
 from ..diagrams import haptic_interface
 from ..passivity import (
@@ -21,25 +20,18 @@ from ..passivity import (
     hand_port,
     positive_real,
 )
+from ..passivity.identified import effects_left_open, of_whole_device
+from ..passivity.lugre import beside_bristle_damping
+from ..realise.damping_interval import damping_interval, small_motion_damping
+from ..realise.friction_interval import FrictionInterval, value_interval
+from ..realise.reach import Reach
 from .chosen import Chosen
-from .friction_range import FrictionRange
 from .linear import without_friction
 from .rounding import rounded_down, rounded_up
 
 
-def small_motion_damping(body: Body, *, errors: float) -> float:
-    """Lower end of the interval of damping in small motion, viscous and of bristles, N s/m."""
-    damping = 0.0
-    for name in ("viscous.damping", "presliding.bristle_damping"):
-        if name in body.parameters:
-            value = body.parameters[name]
-            error = value.stderr if math.isfinite(value.stderr) else 0.0
-            damping += max(value.value - errors * error, 0.0)
-    return damping
-
-
 def compliant_claim(
-    body: Body, chosen: Chosen, friction: FrictionRange, *, gain: float
+    body: Body, chosen: Chosen, friction: FrictionInterval, *, gain: float
 ) -> Claim | None:
     """Is the cancellation passive through the identified compliance? None where there is none.
 
@@ -53,7 +45,7 @@ def compliant_claim(
         return None
     own = chosen.controller.names()
     return any_environment(
-        motor_level=_decimal(rounded_down(friction.sure, digits=4)),
+        motor_level=_decimal(rounded_down(friction.lowest.low, digits=4)),
         link_level=0,
         transmission_stiffness=_decimal(values["transmission_compliance.stiffness"]),
         transmission_damping=_decimal(values["transmission_compliance.damping"]),
@@ -65,32 +57,69 @@ def compliant_claim(
 
 
 def cancellation_claims(
-    chosen: Chosen, friction: FrictionRange, *, gain: float, late: float, damping: float
+    body: Body,
+    chosen: Chosen,
+    friction: FrictionInterval,
+    reach: Reach,
+    *,
+    gain: float,
+    late: float,
+    errors: float,
 ) -> list[Claim]:
     """Claims on friction and its cancellation, at the worst ends of all intervals.
 
-    gain: that acts of a command;  late: of the cancellation's force, s;  damping: N s/m
+    gain: that acts of a command;  late: of the cancellation's force, s;  errors: standard errors
     """
+    # what actuation makes of a command is in its gain and in how late it is
+    actuation = [e.name for e in body.effects if e.role == "actuation"]
+    open_ones = effects_left_open(body, reach, errors=errors)
+    left = [name for name in open_ones if name not in actuation]
+    claims = _friction_claims(body, chosen, friction, reach, gain=gain, late=late, errors=errors)
+    return [of_whole_device(c, over=friction.over, left=left) for c in claims]
+
+
+def _friction_claims(
+    body: Body,
+    chosen: Chosen,
+    friction: FrictionInterval,
+    reach: Reach,
+    *,
+    gain: float,
+    late: float,
+    errors: float,
+) -> list[Claim]:
+    """Claims on friction and its cancellation alone."""
     level = chosen.controller.names()[f"{chosen.law}.level"] * gain
     level = rounded_up(level, digits=6)
-    least = rounded_down(friction.sure, digits=4)
-    if chosen.law != "dahl" or not friction.has_presliding:
+    least = rounded_down(friction.lowest.low, digits=4)
+    if chosen.law != "dahl" or friction.presliding is None:
         return [bounded_compensation(coulomb_level=_decimal(least), bound=_decimal(level))]
     stiffness = rounded_up(chosen.controller.names()["dahl.stiffness"] * gain, digits=6)
-    presliding = _decimal(rounded_down(friction.sure_stiffness, digits=4))
+    presliding = _decimal(rounded_down(friction.presliding.low, digits=4))
+    most = _decimal(rounded_up(friction.highest.high, digits=4))
+    pair = dahl_compensation(
+        coulomb_level=_decimal(least),
+        highest_level=most,
+        compensator_level=_decimal(level),
+        compensator_stiffness=_decimal(stiffness),
+        presliding_stiffness=presliding,
+    )
+    damped = body.parameters.get("presliding.bristle_damping", Value(0.0, fixed=True))
+    bristle = value_interval(damped, errors=errors)
     claims = [
-        dahl_compensation(
+        beside_bristle_damping(
+            pair,
             coulomb_level=_decimal(least),
-            highest_level=_decimal(rounded_up(friction.most, digits=4)),
-            compensator_level=_decimal(level),
-            compensator_stiffness=_decimal(stiffness),
-            presliding_stiffness=presliding,
+            highest_level=most,
+            stiffness=presliding,
+            bristle_damping=_decimal(bristle.high),
+            viscous_damping=_decimal(damping_interval(body, reach, errors=errors).least.low),
         )
     ]
     if late > 0:
         claims.append(
             delayed_small_motion(
-                damping=_decimal(damping),
+                damping=_decimal(small_motion_damping(body, errors=errors)),
                 compensator_stiffness=_decimal(stiffness),
                 delay=_decimal(late),
                 presliding_stiffness=presliding,

@@ -45,6 +45,8 @@ Role = Literal[
     "contact_shape",
 ]
 ROLES: tuple[Role, ...] = get_args(Role)
+Energy = Literal["stores", "dissipates", "supplies"]
+ENERGIES: tuple[Energy, ...] = get_args(Energy)
 #: the order in which actuation stages act, where an effect of that name is there; others come last
 ACTUATION_ORDER = (
     "actuator_gain",
@@ -158,6 +160,10 @@ class Effect:
     follows (friction_speed), the friction force (friction_shape), the stage's output (actuation), a
     share of the force that a modelled environment takes (contact), or the penetration that its
     spring feels (contact_shape).
+    energy: what it does with energy, beside no more than the effects that it needs, for parameters
+        within their bounds: "stores": gives all of it back on a closed path; "dissipates": never
+        gives back more than it took; "supplies": may, or nothing is known. It is what claims of
+        passivity ask for, and "supplies" where an effect does not say
     linear: declares that the law is linear in the motion (or in the command), so that the LTI form
     is that law at (position, velocity, acceleration) = (1, s, s^2); False: the LTI form leaves the
     effect out, and says so. It is never found by differentiating sgn.
@@ -172,6 +178,7 @@ class Effect:
     law: Callable[[Any, Any], sp.Expr]
     parameters: Mapping[str, Parameter]
     absent: Mapping[str, float]
+    energy: Energy = "supplies"
     states: Mapping[str, State] = field(default_factory=dict)
     linear: bool = False
     needs: frozenset[str] = frozenset()

@@ -15,6 +15,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="actuation",
+    energy="supplies",
     law=law,
     linear=True,
     parameters={

@@ -15,6 +15,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="actuation",
+    energy="supplies",
     law=law,
     linear=True,
     parameters={"gain": Parameter("dimensionless", "g: acting force per command", starts=(1.0,))},

@@ -19,6 +19,7 @@ def output(now, p):
 
 EFFECT = Effect(
     role="actuation",
+    energy="supplies",
     law=law,
     states={"output": State("force", output)},
     linear=True,

@@ -19,6 +19,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="actuation",
+    energy="supplies",
     law=law,
     parameters={"limit": Parameter("force", "F_max: largest acting force", starts=LIMITS)},
     absent={"limit": float("inf")},

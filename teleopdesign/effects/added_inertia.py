@@ -15,6 +15,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="force",
+    energy="stores",
     law=law,
     linear=True,
     parameters={"inertia": Parameter("inertia", "m_+: inertia beyond the model's")},

@@ -30,6 +30,7 @@ FOLLOWING = 3.0
 LAW, TIP = behind(coupling, led_back(FOLLOWING))
 EFFECT = Effect(
     role="structure",
+    energy="dissipates",
     law=LAW,
     states=TIP,
     led=lambda p: p.tip_inertia,

@@ -15,6 +15,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="force",
+    energy="stores",
     law=law,
     parameters={
         "force": Parameter("force", "F_0: constant force, subtracted", lower=-float("inf"))

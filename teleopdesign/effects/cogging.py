@@ -17,6 +17,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="force",
+    energy="stores",
     law=law,
     parameters={
         "amplitude": Parameter("force", "A: amplitude", lower=-float("inf"), starts=(0.03,)),

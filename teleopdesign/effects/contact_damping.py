@@ -15,6 +15,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="contact",
+    energy="dissipates",
     law=law,
     parameters={"damping": Parameter("damping", "D: damping during contact")},
     absent={"damping": 0.0},

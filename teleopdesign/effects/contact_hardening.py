@@ -16,6 +16,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="contact_shape",
+    energy="stores",
     law=law,
     parameters={
         "power": Parameter(

@@ -15,9 +15,10 @@ def law(now, p):
 
 EFFECT = Effect(
     role="friction_level",
+    energy="dissipates",
     law=law,
     parameters={"level": Parameter("force", "F_C: friction force while sliding")},
     absent={"level": 0.0},
-    always=frozenset({"even in velocity", "non-negative", "dissipates"}),
+    always=frozenset({"even in velocity", "non-negative"}),
     source="Bernstein, Lawrence, Pao, World Haptics 2005, eq (1)",
 )

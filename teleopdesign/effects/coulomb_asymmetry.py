@@ -15,6 +15,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="friction_level",
+    energy="stores",
     law=law,
     parameters={
         "half_difference": Parameter(

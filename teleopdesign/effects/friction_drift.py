@@ -17,6 +17,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="friction_factor",
+    energy="dissipates",
     law=law,
     parameters={
         "fraction": Parameter(
@@ -28,6 +29,6 @@ EFFECT = Effect(
     },
     absent={"fraction": 0.0},
     needs=frozenset({"coulomb"}),
-    always=frozenset({"even in velocity", "non-negative", "dissipates"}),
+    always=frozenset({"even in velocity", "non-negative"}),
     source="first-order warm-up of a lubricant",
 )

@@ -18,6 +18,7 @@ def film(now, p):
 
 EFFECT = Effect(
     role="friction_speed",
+    energy="dissipates",
     law=law,
     states={"film": State("velocity", film)},
     parameters={

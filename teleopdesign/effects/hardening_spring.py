@@ -15,6 +15,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="force",
+    energy="stores",
     law=law,
     parameters={"stiffness": Parameter("cubic_stiffness", "K_3: force per travel cubed")},
     absent={"stiffness": 0.0},

@@ -15,12 +15,13 @@ def law(now, p):
 
 EFFECT = Effect(
     role="friction_level",
+    energy="dissipates",
     law=law,
     parameters={
         "coefficient": Parameter("dimensionless", "mu: level per force carried", within=1.0)
     },
     absent={"coefficient": 0.0},
     needs=frozenset({"coulomb"}),
-    always=frozenset({"even in velocity", "non-negative", "dissipates"}),
+    always=frozenset({"even in velocity", "non-negative"}),
     source="Amontons' law on the transmitted force",
 )

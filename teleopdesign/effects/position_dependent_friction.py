@@ -20,6 +20,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="friction_factor",
+    energy="dissipates",
     law=law,
     parameters={
         "amplitude": Parameter(
@@ -36,6 +37,6 @@ EFFECT = Effect(
     absent={"amplitude": 0.0},
     canonical=positive_amplitude,
     needs=frozenset({"coulomb"}),
-    always=frozenset({"even in velocity", "non-negative", "dissipates"}),
+    always=frozenset({"even in velocity", "non-negative"}),
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
 )

@@ -22,6 +22,7 @@ def bristle(now, p):
 
 EFFECT = Effect(
     role="friction_shape",
+    energy="dissipates",
     law=law,
     states={"bristle": State("position", bristle)},
     parameters={
@@ -36,7 +37,6 @@ EFFECT = Effect(
     },
     absent={"stiffness": float("inf")},
     needs=frozenset({"coulomb"}),
-    always=frozenset({"dissipates"}),
     source="Mahvash, Okamura, ICRA 2006, eq (2); Dahl, AIAA J. 14 (1976) 1675; Canudas de Wit, "
     "Olsson, Astrom, Lischinsky, IEEE TAC 40 (1995) 419",
 )

@@ -15,9 +15,9 @@ def law(now, p):
 
 EFFECT = Effect(
     role="force",
+    energy="dissipates",
     law=law,
     parameters={"drag": Parameter("drag", "D: force per velocity squared")},
     absent={"drag": 0.0},
-    always=frozenset({"dissipates"}),
     source="drag equation of fluid mechanics",
 )

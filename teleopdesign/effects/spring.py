@@ -15,6 +15,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="force",
+    energy="stores",
     law=law,
     linear=True,
     parameters={"stiffness": Parameter("stiffness", "K: force per travel")},

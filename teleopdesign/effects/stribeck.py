@@ -17,6 +17,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="friction_level",
+    energy="dissipates",
     law=law,
     parameters={
         "extra_static_level": Parameter("force", "F_S - F_C: extra friction at rest"),
@@ -26,6 +27,6 @@ EFFECT = Effect(
     },
     absent={"extra_static_level": 0.0},
     needs=frozenset({"coulomb"}),
-    always=frozenset({"even in velocity", "non-negative", "dissipates"}),
+    always=frozenset({"even in velocity", "non-negative"}),
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
 )

@@ -17,6 +17,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="actuation",
+    energy="supplies",
     law=law,
     parameters={
         "amplitude": Parameter(

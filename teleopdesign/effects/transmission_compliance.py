@@ -26,6 +26,7 @@ FOLLOWING = 1.0
 LAW, TIP = behind(coupling, led_back(FOLLOWING))
 EFFECT = Effect(
     role="structure",
+    energy="dissipates",
     law=LAW,
     linear=True,
     states=TIP,

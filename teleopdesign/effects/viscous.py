@@ -16,10 +16,10 @@ def law(now, p):
 
 EFFECT = Effect(
     role="force",
+    energy="dissipates",
     law=law,
     linear=True,
     parameters={"damping": Parameter("damping", "B: force per velocity")},
     absent={"damping": 0.0},
-    always=frozenset({"dissipates"}),
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
 )

@@ -14,6 +14,7 @@ def law(now, p):
 
 EFFECT = Effect(
     role="force",
+    energy="supplies",
     law=law,
     parameters={
         "half_difference": Parameter(

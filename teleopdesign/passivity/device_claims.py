@@ -18,8 +18,8 @@ from ..simulate import Sampling
 from .claim import Claim, Evidence, Refutation, Unknown
 from .counterexample import SimulatedMotion, confirmed_motion, search_counterexample
 from .friction_compensation import bounded_compensation, dahl_compensation
-from .identified import IdentifiedDevice
-from .lugre import lugre_passivity
+from .identified import IdentifiedDevice, of_whole_device
+from .lugre import beside_bristle_damping, lugre_passivity
 from .quantised_spring import quantised_spring
 from .rate_independent import Coulomb, Cycle, Dahl
 from .sampled_compensation import sampled_compensation
@@ -81,11 +81,27 @@ def compensation_claims(
 
     computer: period, delay (whole periods) and encoder of the compensator; None: continuous
     """
+    found = [_replayed(s) for s in friction_claims(device, compensator, computer=computer)]
+    return [*found, _searched(device, compensator, computer, rng, tries)]
+
+
+def friction_claims(
+    device: IdentifiedDevice, compensator: Compensator, *, computer: Sampling | None = None
+) -> list[Settled]:
+    """What theorems say of a device's friction with a compensator; nothing is simulated.
+
+    computer: as in `compensation_claims`
+    """
     found: list[Settled] = []
     if device.presliding is None:  # which no bound on the force alone covers
-        bounded = bounded_compensation(coulomb_level=device.lowest.low, bound=compensator.level)
-        found.append(Settled("any law within the level", bounded))
-        found.append(Settled("the same, damping counted", _at_every_speed(device, compensator)))
+        acting = device.acting_force(compensator.level)
+        actuation = () if math.isinf(acting) else device.actuation
+        for topic, claim in (
+            ("any law within the level", _bounded(device, acting)),
+            ("the same, damping counted", _at_every_speed(device, acting)),
+        ):
+            found.append(Settled(topic, about_device(device, claim, besides=actuation)))
+    covered = len(found)
     if compensator.law == "dahl":
         sampled = computer is not None and device.presliding is not None
         when = ", continuous time" if sampled else ""
@@ -101,20 +117,39 @@ def compensation_claims(
             )
             found.append(Settled("small motion, sampled", claim))
             found.append(Settled("any motion, sampled", _sampled(device, compensator, computer)))
-    found = [_replayed(settled) for settled in found]
-    return [*found, _searched(device, compensator, computer, rng, tries)]
+    found[covered:] = [replace(s, claim=about_device(device, s.claim)) for s in found[covered:]]
+    return found
 
 
-def _at_every_speed(device: IdentifiedDevice, compensator: Compensator) -> Claim:
-    """Whether level and damping together cover the compensator, at the speeds looked at."""
+def _bounded(device: IdentifiedDevice, acting: float) -> Claim:
+    """Whether the friction level covers any law that acts with no more than that, N."""
+    if math.isinf(acting):
+        why = "no bound is known of the force that the actuation makes of a command"
+        return Claim("no law within the friction level drives a motion", Unknown(why))
+    return bounded_compensation(coulomb_level=device.lowest.low, bound=acting)
+
+
+def _at_every_speed(device: IdentifiedDevice, acting: float) -> Claim:
+    """Whether level and damping together cover a law that acts with no more than that, N."""
     least, unit = device.least_resistance.low, device.force_unit
-    margin = least - compensator.level
+    margin = least - acting
     statement = (
         f"ideal friction of the device and its viscous damping resist with more than "
-        f"{compensator.level:g} {unit} at every speed, so that no law within it drives a motion"
+        f"{acting:g} {unit} at every speed, so that no law within it drives a motion"
     )
-    searched = f"the least resistance over 4000 speeds is {least:.4g} {unit} in the 95 % interval"
+    searched = (
+        f"interval arithmetic: the resistance is at least {least:.4g} {unit} in the 95 % interval"
+    )
     return Claim(statement, Evidence(margin >= 0, searched, margin, unit))
+
+
+def about_device(device: IdentifiedDevice, claim: Claim, *, besides: Sequence[str] = ()) -> Claim:
+    """A claim about friction as one about the device.
+
+    besides: effects that its theorem is about, though no claim about friction alone is
+    """
+    left = [name for name in device.set_aside if name not in besides]
+    return of_whole_device(claim, over=device.friction.over, left=left)
 
 
 def _searched(
@@ -151,21 +186,39 @@ def _searched(
 
 def _dahl(device: IdentifiedDevice, compensator: Compensator, *, certain: bool) -> Claim:
     """The pair at the estimates, or for all levels within the intervals."""
+    return dahl_claim(device, compensator.level, compensator.second, certain=certain)
+
+
+def dahl_claim(
+    device: IdentifiedDevice, level: float, stiffness: float, *, certain: bool = True
+) -> Claim:
+    """Friction of the device, bristle damping counted, with a Dahl compensator (N, N/m).
+
+    certain: for all levels within the intervals, else at the estimates
+    """
     own = device.presliding
     low = device.lowest.low if certain else device.lowest.estimate
     high = device.highest.high if certain else device.highest.estimate
-    stiffness = None if own is None else own.low if certain else own.estimate
-    return dahl_compensation(
+    given = dict(coulomb_level=low, compensator_level=level, compensator_stiffness=stiffness)
+    if own is None:
+        return dahl_compensation(**given)
+    softest = own.low if certain else own.estimate
+    pair = dahl_compensation(**given, presliding_stiffness=softest, highest_level=high)
+    return beside_bristle_damping(
+        pair,
         coulomb_level=low,
-        compensator_level=compensator.level,
-        compensator_stiffness=compensator.second,
-        presliding_stiffness=stiffness,
-        highest_level=None if own is None else high,
+        highest_level=high,
+        stiffness=softest,
+        bristle_damping=device.bristle_damping.high if certain else device.bristle_damping.estimate,
+        viscous_damping=device.damping.low if certain else device.damping.estimate,
     )
 
 
 def _sampled(device: IdentifiedDevice, compensator: Compensator, computer: Sampling) -> Claim:
     """The pair at the estimates in a computer, whatever the motion."""
+    if device.bristle_damping.high > 0:
+        why = "no theorem here is about bristle damping beside a compensator in a computer"
+        return Claim("the device's friction with its sampled compensator is passive", Unknown(why))
     return sampled_compensation(
         coulomb_level=device.highest.estimate,
         compensator_level=compensator.level,
@@ -208,17 +261,25 @@ def _replayed(settled: Settled) -> Settled:
 def device_claims(device: IdentifiedDevice) -> list[Settled]:
     """Claims about the device itself: LuGre friction, where all of its parts were identified."""
     values = {n: v.value for n, v in device.body.parameters.items()}
-    needed = ("coulomb.level", "stribeck.extra_static_level", "presliding.stiffness")
-    if not all(n in values for n in needed):
+    if "stribeck.extra_static_level" not in values or device.presliding is None:
         return []
-    claim = lugre_passivity(
-        coulomb_level=values["coulomb.level"],
-        static_level=values["coulomb.level"] + values["stribeck.extra_static_level"],
-        stiffness=values["presliding.stiffness"],
-        bristle_damping=values.get("presliding.bristle_damping", 0.0),
-        viscous_damping=values.get("viscous.damping", 0.0),
+    given = dict(
+        stiffness=device.presliding.estimate,
+        bristle_damping=device.bristle_damping.estimate,
+        viscous_damping=device.damping.estimate,
         stribeck_velocity=values["stribeck.stribeck_velocity"],
     )
+    low, high = device.lowest.estimate, device.highest.estimate
+    plain = sum((EFFECTS[n].expression() for n in ("coulomb", "stribeck")), sp.S(0))
+    if device.body.level() == plain:
+        low = values["coulomb.level"]
+        high = low + values["stribeck.extra_static_level"]
+    claim = lugre_passivity(coulomb_level=low, static_level=high, **given)
+    if device.body.level() != plain and not claim.holds:
+        why = "the condition fails, and no motion is sought where the level is not Stribeck's alone"
+        claim = Claim(claim.statement, Unknown(why))
+    # what acts on commands is no part of it
+    claim = about_device(device, claim, besides=device.actuation)
     return [Settled("the device's own friction", claim)]
 
 
@@ -257,30 +318,35 @@ def wall_claims(
                 ),
             )
         )
-    return found
+    return [replace(s, claim=about_device(device, s.claim)) for s in found]
 
 
 def margins(device: IdentifiedDevice, compensator: Compensator | None = None) -> Sequence[Margin]:
     """What may be chosen so that it is passive for every value within the 95 % intervals."""
     force, stiff = device.force_unit, device.stiffness_unit
+    alone = f", for friction without {', '.join(device.set_aside)}" if device.set_aside else ""
     found = [
-        Margin("largest f_D that is passive at the estimates", device.lowest.estimate, force),
-        Margin(
-            "largest f_D that is passive for every level in the interval", device.lowest.low, force
-        ),
+        Margin(text + alone, level, force)
+        for text, level in (
+            ("largest f_D that is passive at the estimates", device.lowest.estimate),
+            ("largest f_D that is passive for every level in the interval", device.lowest.low),
+        )
     ]
     own = device.presliding
     if own is None:
         text = "largest f_D that drives no motion, viscous damping counted"
-        return [*found, Margin(text, device.least_resistance.low, force)]
+        return [*found, Margin(text + alone, device.least_resistance.low, force)]
+    recoil = device.bristle_damping.high * (device.highest.high - device.lowest.low)
+    if device.damping.low * device.lowest.low < recoil:
+        return []  # no limit is known where the bristle's damping may give out energy
     if compensator is not None and compensator.law != "dahl":
         return []  # no limit is known for such a law on a contact that gives
     level = min(compensator.level if compensator else math.inf, device.lowest.low)
     softest = own.low * math.sqrt(level / device.highest.high)
-    found.append(Margin(f"largest sigma_D at f_D = {level:.4g} {force}", softest, stiff))
+    found.append(Margin(f"largest sigma_D at f_D = {level:.4g} {force}{alone}", softest, stiff))
     if compensator is not None:
         least = device.highest.high * (compensator.second / own.low) ** 2
         found.append(
-            Margin(f"least f_D at sigma_D = {compensator.second:.4g} {stiff}", least, force)
+            Margin(f"least f_D at sigma_D = {compensator.second:.4g} {stiff}{alone}", least, force)
         )
     return found

@@ -9,7 +9,8 @@ from ..controllers import Controller, Stage
 from ..diagrams import Control, Diagram, Moving
 from ..errors import ModelError
 from .claim import Claim, Unknown
-from .friction_compensation import bounded_compensation, dahl_compensation
+from .device_claims import about_device, dahl_claim
+from .friction_compensation import bounded_compensation
 from .identified import IdentifiedDevice, identified
 
 #: laws whose force is never more than their `level`, whatever the motion
@@ -108,19 +109,11 @@ def pair_claims(pair: FrictionPair) -> list[Claim]:
     if ideal:
         found.append(bounded_compensation(coulomb_level=device.lowest.low, bound=values["level"]))
     if pair.law == "dahl":
-        found.append(
-            dahl_compensation(
-                coulomb_level=device.lowest.low,
-                compensator_level=values["level"],
-                compensator_stiffness=values["stiffness"],
-                presliding_stiffness=None if device.presliding is None else device.presliding.low,
-                highest_level=None if ideal else device.highest.high,
-            )
-        )
+        found.append(dahl_claim(device, values["level"], values["stiffness"]))
     elif not ideal:
         statement = (
             f"friction of {pair.body.name} with {pair.cancellation.name} ({pair.law}) is passive"
         )
         why = "no limit is known for such a law on a contact that gives before it slides"
         found.append(Claim(statement, Unknown(why)))
-    return found
+    return [about_device(device, claim) for claim in found]

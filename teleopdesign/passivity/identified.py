@@ -1,55 +1,81 @@
-"""What passivity needs of an identified device: levels and stiffness with 95 % intervals."""
+"""What passivity needs of an identified device: levels, stiffness and damping, as bounds."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
-import numpy as np
 import sympy as sp
 
-from ..blocks import NINETY_FIVE, Body, Value
-from ..effects import SIGNALS
+from ..blocks import NINETY_FIVE, Body
+from ..effects import EFFECTS, Effect
 from ..errors import ModelError
 from ..quantity import unit_of
-from ..realise.law_along import law_along
+from ..realise.acting_bound import largest_acting_force
+from ..realise.damping_interval import damping_interval
+from ..realise.friction_interval import (
+    SPEED,
+    FrictionInterval,
+    Interval,
+    friction_interval,
+    lowest_of,
+    value_interval,
+)
+from ..realise.reach import ANY_MOTION, Reach
+from ..realise.simulated import without_absent
+from .claim import Claim, Unknown
 
-_DRAWS = 4000  # of speed, position, time ..., over which the level is looked at
-
-
-@dataclass(frozen=True)
-class Interval:
-    """An estimate with its 95 % interval, SI; both ends are the estimate where it is exact."""
-
-    estimate: float
-    low: float
-    high: float
-
-    def __str__(self) -> str:
-        if self.low == self.high:
-            return f"{self.estimate:.4g}"
-        return f"{self.estimate:.4g} ({self.low:.4g} to {self.high:.4g})"
+_PRESLIDING = EFFECTS["presliding"]
+#: roles of the friction level: their laws are in the interval of the level, whatever they do
+_LEVEL = ("friction_level", "friction_factor", "friction_speed")
 
 
 @dataclass(frozen=True)
 class IdentifiedDevice:
     """Friction of a device as far as passivity asks for it.
 
-    lowest, highest: friction level that can occur, over all speeds, positions and times, N or N m
+    reach: of the motions that claims are about; None: every motion
+    friction: levels and presliding stiffness, bounds over its reach and the 95 % intervals
     least_resistance: the least that level and viscous damping together come to at any speed
-    presliding: stiffness before it slides, N/m; None where friction was identified as ideal
-    damping: viscous, N s/m, 0 where the model has none
-    set_aside: effects that the claims do not speak of;  unknown: parameters without standard error
+    damping: at every speed, N s/m, 0 where the model has none
+    bristle_damping: N s/m, 0 where friction has none before it slides
+    set_aside: effects that may supply energy, or of a kind that no theorem here is about
+    unknown: parameters without standard error
     """
 
     body: Body
-    lowest: Interval
-    highest: Interval
+    reach: Reach | None
+    friction: FrictionInterval
     least_resistance: Interval
-    presliding: Interval | None
     damping: Interval
+    bristle_damping: Interval
     set_aside: tuple[str, ...]
     unknown: tuple[str, ...]
+
+    @property
+    def lowest(self) -> Interval:
+        """The lowest friction level that can occur, N or N m."""
+        return self.friction.lowest
+
+    @property
+    def highest(self) -> Interval:
+        """The highest friction level that can occur, N or N m."""
+        return self.friction.highest
+
+    @property
+    def presliding(self) -> Interval | None:
+        """Stiffness before it slides, N/m; None where friction was identified as ideal."""
+        return self.friction.presliding
+
+    @property
+    def actuation(self) -> tuple[str, ...]:
+        """Effects that stand between a command and the force that acts."""
+        return tuple(e.name for e in self.body.effects if e.role == "actuation")
+
+    def acting_force(self, command: float) -> float:
+        """Largest force that acts under commands up to that, in their 95 % intervals, N; or inf."""
+        return largest_acting_force(self.body, command, self.reach, errors=NINETY_FIVE)
 
     @property
     def force_unit(self) -> str:
@@ -62,38 +88,37 @@ class IdentifiedDevice:
         return unit_of("stiffness", self.body.axis)
 
 
-#: effects that a claim about friction already speaks of, or that only take energy or store it
-_COVERED = {"friction_level", "friction_factor", "friction_speed", "friction_shape"}
-_HARMLESS = {"viscous", "spring", "hardening_spring", "quadratic_drag", "cogging", "bias"}
-_HARMLESS |= {"added_inertia", "viscous_asymmetry", "transmission_compliance"}
-
-
-def identified(body: Body) -> IdentifiedDevice:
+def identified(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
     """Read levels, presliding and damping off a body, with the errors of its parameters.
 
-    The level is the body's own law over 4000 draws of the speed, position, time and other signals
-    it depends on, up to 10 SI units (time: a day); its error at each is bounded whatever the
-    correlation of the parameters. Damping is the `viscous` effect's.
-    raises ModelError: a body without friction, or one whose interval reaches down to no friction
+    reach: of the motions that claims are about; None: every motion
+    raises ModelError: a body without friction, one whose interval reaches down to no friction, or
+        one without a bound over every motion
     """
-    level = body.level()
-    if level == 0:
+    body = without_absent(body, surely=True)
+    friction = friction_interval(body, reach, errors=NINETY_FIVE)
+    if friction is None:
         raise ModelError("passivity: the device has no friction to compensate")
-    lowest, highest = _range(body, level)
-    if lowest.low <= 0:
+    if friction.lowest.low <= 0:
         raise ModelError(
-            f"passivity: the friction level may be as low as {lowest.low:.3g} within its 95 % "
-            "interval: nothing can be compensated for certain"
+            f"passivity: the friction level may be as low as {friction.lowest.low:.3g} within its "
+            f"95 % interval (at {friction.where_lowest}): nothing can be compensated for certain"
         )
-    stiff = body.parameters.get("presliding.stiffness")
+    if friction.presliding is not None and math.isinf(friction.highest.high):
+        raise ModelError(
+            f"passivity: no upper bound of the friction level over {friction.over}: friction that "
+            "gives before it slides needs one; give the experiment whose records say how far"
+        )
+    damping = damping_interval(body, reach, errors=NINETY_FIVE)
+    bristle = body.parameters.get("presliding.bristle_damping")
     return IdentifiedDevice(
         body,
-        lowest,
-        highest,
-        _range(body, _resistance(body, level))[0],
-        _interval(stiff) if stiff is not None else None,
-        _interval(body.parameters.get("viscous.damping", Value(0.0, fixed=True))),
-        tuple(e.name for e in body.effects if e.role not in _COVERED and e.name not in _HARMLESS),
+        reach,
+        friction,
+        _resistance(body, damping.least, reach),
+        damping.least,
+        Interval(0.0, 0.0, 0.0) if bristle is None else value_interval(bristle, errors=NINETY_FIVE),
+        effects_left_open(body, reach, errors=NINETY_FIVE),
         tuple(
             n
             for n, v in body.parameters.items()
@@ -104,41 +129,48 @@ def identified(body: Body) -> IdentifiedDevice:
     )
 
 
-def _stderr(value: Value) -> float:
-    return 0.0 if math.isnan(value.stderr) else value.stderr
-
-
-def _interval(value: Value) -> Interval:
-    half = NINETY_FIVE * _stderr(value)
-    return Interval(value.value, max(value.value - half, 0.0), value.value + half)
-
-
-def _resistance(body: Body, level: sp.Expr) -> sp.Expr:
-    """Level and viscous friction against a motion of that velocity."""
-    if not body.has("viscous"):
-        return level
-    return level + sp.sign(SIGNALS["velocity"]) * body.effect("viscous").expression()
-
-
-def _range(body: Body, level: sp.Expr) -> tuple[Interval, Interval]:
-    """Lowest and highest level over what it depends on."""
-    signals = sorted(level.free_symbols - set(body.numbers()), key=str)
-    rng = np.random.default_rng(0)
-    # every size up to 10 SI units, and zero: laws of speed and position settle or repeat beyond
-    sizes = 10 ** rng.uniform(-6, 1, (_DRAWS, max(len(signals), 1)))
-    draws = sizes * rng.choice((-1.0, 1.0), sizes.shape)
-    draws[0] = 0.0
-    for k, s in enumerate(signals):
-        if s.name == "direction":
-            draws[:, k] = np.where(draws[:, k] < 0, -1.0, 1.0)
-        elif s.name == "time" or s.name.startswith("friction_memory"):
-            draws[:, k] = np.abs(draws[:, k]) * (1e4 if s.name == "time" else 1.0)
-
-    given = {s: draws[:, k] for k, s in enumerate(signals)}
-    estimate, error = law_along(body, level, given)
-    half = NINETY_FIVE * error
-    every = estimate, estimate - half, estimate + half
-    return (
-        Interval(*(float(x.min()) for x in every)),
-        Interval(*(float(x.max()) for x in every)),
+def _resistance(body: Body, damping: Interval, reach: Reach | None) -> Interval:
+    """The least of level and damping together, each damping at its own end of its interval."""
+    at_estimate, at_low = (
+        lowest_of(body, body.level() + sp.Float(b) * SPEED, reach, errors=NINETY_FIVE)[0]
+        for b in (damping.estimate, damping.low)
     )
+    return Interval(at_estimate.estimate, at_low.low, at_estimate.high)
+
+
+def effects_left_open(body: Body, reach: Reach | None = None, *, errors: float) -> tuple[str, ...]:
+    """Effects that may supply energy, or are of a kind that no theorem on friction is about.
+
+    errors: standard errors of the parameters to either side
+    """
+    body = without_absent(body, surely=True)
+    supplying = damping_interval(body, reach, errors=errors).supplying
+    return (*(e.name for e in body.effects if _is_open(e)), *supplying)
+
+
+def of_whole_device(claim: Claim, *, over: str, left: Sequence[str]) -> Claim:
+    """A claim about friction as one about its device: over which reach, and with all its effects.
+
+    over: `FrictionInterval.over`;  left: effects that it leaves open
+    What holds for friction alone is not known of a device with an effect that may supply energy.
+    """
+    if over != ANY_MOTION:
+        claim = replace(claim, statement=f"{claim.statement} (levels over {over})")
+    if not left or not claim.holds:
+        return claim
+    why = f"holds for friction alone, {claim.verdict}; but {', '.join(left)} may supply energy, or "
+    return Claim(claim.statement, Unknown(why + "are of a kind that no theorem here is about"))
+
+
+def _is_open(effect: Effect) -> bool:
+    """Whether nothing here covers an effect: forces are asked for by `damping_interval`."""
+    if effect.role == "friction_shape":
+        dahl = _PRESLIDING.without("bristle_damping")
+        return not any(_is_same(effect, shape) for shape in (_PRESLIDING, dahl))
+    if effect.role in (*_LEVEL, "force"):
+        return False
+    return effect.energy == "supplies"
+
+
+def _is_same(one: Effect, other: Effect) -> bool:
+    return one.expression() == other.expression() and one.rates() == other.rates()

@@ -11,7 +11,7 @@ Barabanov and Ortega, IEEE TAC 45 (2000) 830.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -115,6 +115,43 @@ def lugre_passivity(
     return Claim(statement, Refutation("slow motion, then a jump to high speed, to and fro", found))
 
 
+def beside_bristle_damping(
+    pair: Claim,
+    *,
+    coulomb_level: Any,
+    highest_level: Any,
+    stiffness: Any,
+    bristle_damping: Any,
+    viscous_damping: Any,
+) -> Claim:
+    """A claim about Dahl friction and its compensator, bristle and viscous damping counted.
+
+    Energies add, and both dampings together take some at every instant where s2 F_min >= s1 (F_max
+    - F_min): then what is proved without them holds with them. Without it nothing is known: a jump
+    of speed at a level that fell lets the bristle recoil. A motion that refutes the pair does so as
+    slowly as one likes, so that dampings take nothing; it stays.
+    coulomb_level, highest_level: F_min and F_max, N, as in the pair;  s1, s2: N s/m
+    """
+    low, high, sigma = exact(coulomb_level), exact(highest_level), exact(stiffness)
+    s1, s2 = exact(bristle_damping), exact(viscous_damping)
+    if s1 == 0 or not isinstance(pair.verdict, Proof):
+        return pair
+    statement = (
+        f"{pair.statement}, bristle damping {decimal(s1)} and viscous damping {decimal(s2)} N s/m "
+        "counted"
+    )
+    if s2 * low < s1 * (high - low):
+        why = (
+            f"bristle damping may give out energy where the level falls from {decimal(high)} to "
+            f"{decimal(low)} N, unless viscous damping is {float(s1 * (high / low - 1)):.4g} N s/m "
+            "or more; the pair without both is proved"
+        )
+        return Claim(statement, Unknown(why))
+    values = {"sigma_0": sigma, "s1": s1, "s2": s2, "F_C": low, "F_S": high}
+    certificates = (*pair.verdict.certificates, _damping_certificate(values))
+    return Claim(statement, replace(pair.verdict, certificates=certificates))
+
+
 def _recoil(
     levels: tuple[float, float], stiffness: float, dampings: tuple[float, float], v_s: float
 ) -> Jumps | None:
@@ -138,12 +175,32 @@ def _certificate(values: Values) -> Certificate:
 
     values: sigma_0, s1 (bristle damping), s2 (viscous damping), F_C, F_S
     """
+    return _level_within(
+        "LuGre friction, level within F_C..F_S, is passive where s2 F_C >= s1 (F_S - F_C), from "
+        "any start with abs(y) <= F_S",
+        values,
+        spring=True,
+    )
+
+
+def _damping_certificate(values: Values) -> Certificate:
+    """Bristle and viscous damping of LuGre friction alone: power is lost at every instant."""
+    return _level_within(
+        "bristle and viscous damping of LuGre friction, level within F_C..F_S, take energy at "
+        "every instant where s2 F_C >= s1 (F_S - F_C), from any start with abs(y) <= F_S",
+        values,
+        spring=False,
+    )
+
+
+def _level_within(claim: str, values: Values, *, spring: bool) -> Certificate:
+    """Dampings of LuGre friction, and with `spring` the force y of the bristle as well."""
     y, g, sigma_0, s1, s2 = sp.symbols("y g sigma_0 s1 s2", real=True)
     low, high = sp.symbols("F_C F_S", real=True)
     rate = dahl_rate(y, g, sigma_0)
     decay = sigma_0 * abs_v / g
-    lost: list[Term] = [
-        (1, {"abs_v": 1, "g": -1}, y),
+    lost: list[Term] = [(1, {"abs_v": 1, "g": -1}, y)] if spring else []
+    lost += [
         (1, {"g": -1, "dampings": 1, "above_low": 1}, v),
         (1, {"g": -1, "enough": 1}, v),
     ]
@@ -153,10 +210,9 @@ def _certificate(values: Values) -> Certificate:
         (1, {"abs_v": 1, "sigma_0": 1, "F_S": 1, "g": -1}, 1),
     ]
     return storage_certificate(
-        "LuGre friction, level within F_C..F_S, is passive where s2 F_C >= s1 (F_S - F_C), from "
-        "any start with abs(y) <= F_S",
-        supply=(y + s1 * rate / sigma_0 + s2 * v) * v,
-        storage=y**2 / (2 * sigma_0),
+        claim,
+        supply=((y if spring else 0) + s1 * rate / sigma_0 + s2 * v) * v,
+        storage=y**2 / (2 * sigma_0) if spring else 0,
         rates={"y": rate},
         constants=["sigma_0", "F_S"],
         positive={"g": g, "sigma_0": sigma_0, "F_S": high},
@@ -174,7 +230,7 @@ def _certificate(values: Values) -> Certificate:
                 "1": [*lost, (1, {"g": -1, "s1": 1, "below": 1}, v)],
                 "-1": [*lost, (1, {"g": -1, "s1": 1, "above": 1}, v)],
             },
-            "storage": {"": [(sp.Rational(1, 2), {"sigma_0": -1}, y)]},
+            "storage": {"": [(sp.Rational(1, 2), {"sigma_0": -1}, y)] if spring else ()},
             "below": {"1": towards, "-1": away},
             "above": {"1": away, "-1": towards},
         },

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 from ..blocks import Body, MatrixImpedance
@@ -12,16 +13,24 @@ from ..errors import ModelError
 from .tips import with_tips
 
 
-def without_absent(body: Body) -> Body:
+def without_absent(body: Body, *, surely: bool = False) -> Body:
     """The body without effects that are absent at their values, what needs those, and zeros.
 
     An optional parameter at zero is left out too, for the equations are simpler without it.
+    surely: keep those whose values have a standard error, so that they may be there
     """
     values = body.parameters
+
+    def exact(name: str) -> bool:
+        return not surely or values[name].fixed or not math.isfinite(values[name].stderr)
+
+    def equals(name: str, value: float) -> bool:
+        return values[name].value == value and exact(name)
+
     gone = {
         e.name
         for e in body.effects
-        if e.absent and all(values[f"{e.name}.{n}"].value == v for n, v in e.absent.items())
+        if e.absent and all(equals(f"{e.name}.{n}", v) for n, v in e.absent.items())
     }
     levels = {e.name for e in body.effects if e.role == "friction_level"}
     if levels <= gone:
@@ -31,7 +40,7 @@ def without_absent(body: Body) -> Body:
         body = body.without_effect(name)
     for effect in body.effects:
         for name, parameter in effect.parameters.items():
-            if parameter.optional and body.parameters[f"{effect.name}.{name}"].value == 0.0:
+            if parameter.optional and equals(f"{effect.name}.{name}", 0.0):
                 body = body.without_parameter(effect.name, name)
     return body
 

@@ -117,7 +117,7 @@ def test_an_effect_at_zero_strength_changes_nothing(name):
     np.testing.assert_array_equal(simulated(with_it, duration=0.02)["L"].values, without)
 
 
-@pytest.mark.parametrize("name", [n for n in NAMES if "dissipates" in EFFECTS[n].always])
+@pytest.mark.parametrize("name", [n for n in NAMES if EFFECTS[n].energy == "dissipates"])
 def test_friction_takes_energy_out(name):
     """Over whole cycles of a prescribed motion the hand puts work in."""
     found = simulated(

@@ -1,4 +1,4 @@
-"""The least level that identified friction can take, and rounding to the safe side."""
+"""The level that a cancellation may count on within the reach, and rounding to the safe side."""
 
 import math
 
@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 import teleopdesign as td
 from teleopdesign.blocks import Body, Value
-from teleopdesign.design import friction_range
 from teleopdesign.design.cancellation import acting_gain
-from teleopdesign.design.reach import Reach
 from teleopdesign.design.rounding import rounded_down, rounded_up
+from teleopdesign.realise.friction_interval import friction_interval
+from teleopdesign.realise.reach import Reach
 
 REACH = Reach(
     low=-0.05, high=0.05, peak_speed=0.3, rms_speed=0.1, command=3.0, duration=10.0,
@@ -31,19 +31,19 @@ def body(level=1.0, stderr=0.0, **effects):
 
 
 def least(device, errors=0.0):
-    return friction_range(device, REACH, errors=errors).sure
+    return friction_interval(device, REACH, errors=errors).lowest.low
 
 
 def test_coulomb_friction_is_its_level_less_the_errors():
     assert least(body(1.0, 0.01), errors=2.0) == pytest.approx(0.98)
-    assert friction_range(body(1.0, 0.01), REACH, errors=2.0).most == pytest.approx(1.02)
+    assert friction_interval(body(1.0, 0.01), REACH, errors=2.0).highest.high == pytest.approx(1.02)
 
 
 def test_stribeck_friction_is_least_in_fast_motion():
     device = body(1.0, stribeck={"extra_static_level": 0.4, "stribeck_velocity": 0.02})
-    found = friction_range(device, REACH, errors=0.0)
-    assert found.lowest == pytest.approx(1.0)
-    assert found.highest == pytest.approx(1.4)
+    found = friction_interval(device, REACH, errors=0.0)
+    assert found.lowest.estimate == pytest.approx(1.0)
+    assert found.highest.estimate == pytest.approx(1.4)
 
 
 def test_friction_of_two_levels_is_the_lower_one():
@@ -53,8 +53,7 @@ def test_friction_of_two_levels_is_the_lower_one():
 
 def test_friction_along_the_travel_is_least_within_the_recorded_travel():
     wave = {"amplitude": 0.2, "period": 0.05, "phase": 0.3}
-    # 401 positions on two periods: within 1e-3 of the trough
-    assert least(body(1.0, position_dependent_friction=wave)) == pytest.approx(0.8, abs=1e-3)
+    assert least(body(1.0, position_dependent_friction=wave)) == pytest.approx(0.8, rel=1e-4)
     slope = {"amplitude": 0.2, "period": 10.0, "phase": 0.0}
     assert least(body(1.0, position_dependent_friction=slope)) == pytest.approx(
         1 - 0.2 * math.sin(2 * math.pi * 0.05 / 10), rel=1e-9
@@ -94,14 +93,14 @@ def test_the_bound_holds_however_the_errors_are_correlated(errors, signs):
 
 
 def test_a_body_without_friction_has_no_range():
-    assert friction_range(Body("prismatic", {"inertia": Value(1.0)}), REACH, errors=0.0) is None
+    assert friction_interval(Body("prismatic", {"inertia": Value(1.0)}), REACH, errors=0.0) is None
 
 
 def test_a_strong_actuator_and_its_ripple_count():
     device = body(1.0, actuator_gain={"gain": 1.1})
     assert acting_gain(device, REACH, errors=0.0) == pytest.approx(1.1)
     device = body(1.0, torque_ripple={"amplitude": 0.2, "period": 0.05, "phase": 0.0})
-    assert acting_gain(device, REACH, errors=0.0) == pytest.approx(1.2, abs=1e-3)
+    assert acting_gain(device, REACH, errors=0.0) == pytest.approx(1.2, rel=1e-4)
     device = body(1.0, actuator_lag={"time_constant": 0.01}, actuation_delay={"delay": 2e-3})
     assert acting_gain(device, REACH, errors=0.0) == pytest.approx(1.0)
 

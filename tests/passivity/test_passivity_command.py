@@ -170,8 +170,8 @@ def test_damping_covers_what_the_lowest_level_does_not():
     found = identified(body)
     v = np.linspace(0, 1, 100001)
     least = np.min(0.5 + 0.2 * np.exp(-((v / 0.05) ** 2)) + 2.0 * v)
-    # 4000 draws over seven decades of speed: 0.4 % apart, at a minimum that is flat
-    assert found.least_resistance.estimate == pytest.approx(least, rel=1e-4)
+    # a bound, met within 1e-4
+    assert least * (1 - 1e-4) <= found.least_resistance.estimate <= least
     claims = compensation_claims(
         found, Compensator("dahl", 0.6, 1e4), rng=np.random.default_rng(1), tries=3
     )
@@ -192,12 +192,20 @@ def test_in_a_computer_the_pair_is_held_against_what_readings_do_not_show(answer
     assert claims["any motion, sampled"]["status"] == "refuted"
 
 
-@pytest.mark.parametrize(
-    "text", ["[" * 100_000, '{"claims": 1}', '{"claims": [{"statement": 1, "certificates": 2}]}']
-)
-def test_a_file_that_holds_no_claims_is_one_line(text, tmp_path, capsys):
-    file = tmp_path / "claims.json"
-    file.write_text(text)
-    assert main(["passivity", "--check", str(file)]) == 2
-    error = capsys.readouterr().err
-    assert f"{file}: no file of claims" in error and error.count("\n") == 1
+def test_levels_of_an_answer_alone_are_bounded_over_every_motion(answer, capsys):
+    content = json.loads(answer.read_text())
+    content["model_parameters"] |= {
+        "device.stribeck.extra_static_level": number(0.2, 0.01, "N"),
+        "device.stribeck.stribeck_velocity": number(0.01, 0.001, "m/s"),
+    }
+    answer.write_text(json.dumps(content))
+    assert main(["passivity", str(answer)]) == 0
+    assert "over any speed" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_levels_of_an_answer_with_its_folder_are_bounded_over_the_reach(tmp_path, capsys):
+    answer = tmp_path / "answer.json"
+    assert main(["diagnose", str(td.example("rod")), "--json", str(answer)]) == 0
+    assert main(["passivity", str(td.example("rod")), "--answer", str(answer)]) == 0
+    assert "over speed 0 to " in capsys.readouterr().out

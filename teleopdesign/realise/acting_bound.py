@@ -1,0 +1,40 @@
+"""The largest force that a body's actuation makes of a command, as a bound."""
+
+from __future__ import annotations
+
+import math
+
+from ..blocks import Body
+from ..effects import SIGNALS, delayed, ordered
+from ..errors import ModelError
+from .friction_interval import lowest_of, parameter_box, stays_within
+from .reach import Reach, signal_ranges
+from .simulated import without_absent
+
+
+def largest_acting_force(
+    body: Body, command: float, reach: Reach | None = None, *, errors: float
+) -> float:
+    """Bound of abs(acting force), N, under any command of at most that size (N), late ones too.
+
+    errors: standard errors of the parameters to either side;  inf: where no bound is known
+    """
+    body = without_absent(body, surely=True)
+    given = signal_ranges(reach) | parameter_box(body, errors=errors)
+    largest = command
+    for effect in ordered(body.effects, "actuation"):
+        # what acted a while ago lay in the same range; a state of the stage may be held in it
+        law = effect.expression().replace(delayed, lambda signal, _: signal)
+        states = effect.state_symbols().values()
+        within = dict.fromkeys((SIGNALS["command"], *states), (-largest, largest))
+        try:
+            if not all(stays_within(effect, s, given | within) for s in states):
+                return math.inf
+            ends = [
+                lowest_of(body, way * law, reach, errors=errors, ranges=within)[0].low
+                for way in (1, -1)
+            ]
+        except ModelError:
+            return math.inf
+        largest = max(abs(x) for x in ends)
+    return largest

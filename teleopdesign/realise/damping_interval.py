@@ -1,0 +1,77 @@
+"""The viscous damping that a body has at every speed, as a bound, and what may supply energy.
+
+Forces of velocity count together: a damping that differs with the direction takes from that of the
+other, and drag that grows with speed adds nothing at rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ..blocks import Body
+from ..effects import SIGNALS, Effect
+from ..errors import ModelError
+from .friction_interval import DIRECTION, SPEED, Interval, lowest_of
+from .reach import Reach
+from .simulated import without_absent
+
+
+@dataclass(frozen=True)
+class DampingInterval:
+    """least: force against the motion over speed, the least at any speed, N s/m; not below zero
+    supplying: forces that may give out energy, by name
+    """
+
+    least: Interval
+    supplying: tuple[str, ...]
+
+
+def damping_interval(body: Body, reach: Reach | None = None, *, errors: float) -> DampingInterval:
+    """Forces of a body that depend on no hidden state, and on more than its position.
+
+    One that is not declared to store or dissipate is covered where all of them together take
+    energy, whatever the parameters within so many standard errors.
+    """
+    body = without_absent(body, surely=True)
+    forces = [e for e in body.effects if e.role == "force" and e.energy != "stores"]
+    plain = [e for e in forces if not e.states]
+    open_ones = [e for e in forces if e.energy == "supplies"]
+    for counted in ([e for e in plain if _bound(body, [e], reach, errors)], _taking(plain)):
+        least = _bound(body, counted, reach, errors)
+        if least is not None and least.low >= 0:
+            left = tuple(e.name for e in open_ones if e not in counted)
+            return DampingInterval(least, left)
+    return DampingInterval(Interval(0.0, 0.0, 0.0), tuple(e.name for e in open_ones))
+
+
+def small_motion_damping(body: Body, *, errors: float) -> float:
+    """Least damping in small motion, of forces and of friction before it slides, N s/m."""
+    damping = damping_interval(body, errors=errors).least.low
+    for effect in body.effects:
+        if effect.role == "friction_shape":
+            at_rest = effect.expression().subs(dict.fromkeys(effect.state_symbols().values(), 0))
+            slope = sp.diff(at_rest, SIGNALS["velocity"])
+            damping += max(lowest_of(body, slope, None, errors=errors)[0].low, 0.0)
+    return damping
+
+
+def _taking(effects: Sequence[Effect]) -> list[Effect]:
+    return [e for e in effects if e.energy == "dissipates"]
+
+
+def _bound(
+    body: Body, effects: Sequence[Effect], reach: Reach | None, errors: float
+) -> Interval | None:
+    """The least damping of these together; None where none is known."""
+    try:
+        force = sum((e.expression() for e in effects), sp.S(0))
+        against = DIRECTION * force.subs(SIGNALS["velocity"], DIRECTION * SPEED)
+        law = sp.expand(against / SPEED)
+        found, _ = lowest_of(body, law, reach, errors=errors)
+    except ModelError:
+        return None
+    return found if math.isfinite(found.low) else None

@@ -1,0 +1,244 @@
+"""How low and how high the friction of a body can be, as bounds that hold.
+
+Over the reach of a motion, and with each parameter anywhere within so many standard errors of its
+estimate and within its declared bounds: a box of parameters, so that a bound holds whatever their
+correlation, and a sinusoid of unknown phase never counts for more than its amplitude. The bounds
+are those of interval arithmetic on the body's own law (`extremes`), not of draws or a grid.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ..blocks import Body, Value
+from ..effects import SIGNALS, Effect, ordered
+from ..errors import ModelError
+from .extremes import Least, Ranges, least_value
+from .reach import ANY_MOTION, Reach, largest_speed, signal_ranges, words_of
+from .simulated import without_absent
+
+#: the speed of a motion in either direction; sliding, so that its sign is known
+SPEED = sp.Symbol("speed", positive=True)
+DIRECTION = SIGNALS["direction"]
+
+
+@dataclass(frozen=True)
+class Interval:
+    """An estimate and what it is within, SI; both ends are the estimate where it is exact."""
+
+    estimate: float
+    low: float
+    high: float
+
+    def __str__(self) -> str:
+        if self.low == self.high:
+            return f"{self.estimate:.4g}"
+        return f"{self.estimate:.4g} ({self.low:.4g} to {self.high:.4g})"
+
+
+@dataclass(frozen=True)
+class FrictionInterval:
+    """Levels of friction while sliding, N or N m, and the stiffness before it slides.
+
+    lowest, highest: level over the reach, with the identified parameters (`estimate`: a bound, met
+        within `extremes.TIGHTNESS`), and with any parameters within their intervals
+    where_lowest: in words;  over: the reach, in words
+    presliding: stiffness before it slides, N/m; None where friction is ideal
+    unknown: parameters of the level without a standard error, taken as exact
+    """
+
+    lowest: Interval
+    highest: Interval
+    where_lowest: str
+    over: str
+    presliding: Interval | None = None
+    unknown: tuple[str, ...] = ()
+
+    def bristle_lengths(self, travel: float) -> float:
+        """Half of a travel (m or rad) in bristle lengths, inf without presliding."""
+        if self.presliding is None:
+            return math.inf
+        return travel / 2 * self.presliding.estimate / self.highest.estimate
+
+    def slides_within(self, travel: float) -> bool:
+        """Whether friction comes near its level within a travel: else the level is a guess."""
+        return self.bristle_lengths(travel) > 1.0
+
+
+def friction_interval(
+    body: Body, reach: Reach | None = None, *, errors: float
+) -> FrictionInterval | None:
+    """The levels that a body's friction can take; None where it has no friction level at all.
+
+    reach: of the motions; None: every motion, as far as the law is bounded there
+    errors: standard errors to either side
+    raises ModelError: no bound is known; the message says of what, or which range is needed
+    """
+    present = without_absent(body, surely=True)
+    level = present.level()
+    if level == 0:
+        return None
+    lowest, point = lowest_of(present, level, reach, errors=errors)
+    negative, _ = lowest_of(present, -level, reach, errors=errors)
+    highest = Interval(-negative.estimate, -negative.high, -negative.low)
+    if not math.isfinite(lowest.low):
+        raise ModelError(_unbounded(level, reach))
+    follows = level.has(SIGNALS["velocity"], *_lagging(present))
+    stiffness = present.parameters.get("presliding.stiffness")
+    return FrictionInterval(
+        lowest,
+        highest,
+        _where(point, present),
+        words_of(reach, level, speed=follows, axis=body.axis),
+        None if stiffness is None else value_interval(stiffness, errors=errors),
+        without_error(present, level),
+    )
+
+
+def value_interval(value: Value, *, errors: float) -> Interval:
+    """A parameter that is not negative, within so many standard errors."""
+    half = errors * value.stderr if _uncertain(value) else 0.0
+    return Interval(value.value, max(value.value - half, 0.0), value.value + half)
+
+
+def without_error(body: Body, law: sp.Expr) -> tuple[str, ...]:
+    """Parameters of a law without a standard error, that are not known exactly either."""
+    return tuple(
+        n
+        for n, s in body.symbols().items()
+        if law.has(s) and not body.parameters[n].fixed and math.isnan(body.parameters[n].stderr)
+    )
+
+
+def lowest_of(
+    body: Body,
+    law: sp.Expr,
+    reach: Reach | None,
+    *,
+    errors: float,
+    ranges: Ranges | None = None,
+) -> tuple[Interval, Mapping[sp.Symbol, float]]:
+    """The least of a law over the reach, at the estimates and over all parameters; and where.
+
+    law: on symbols of `effects.SIGNALS`, of the body's parameters, of speeds that lag, and `SPEED`
+    ranges: of more symbols, or others than the reach says
+    """
+    signals = _signals(body, reach, errors) | dict(ranges or {})
+    exact = {s: (x, x) for s, x in body.numbers().items()}
+    estimate, point = _either_way(law, signals | exact)
+    within = {s: r for s, r in parameter_box(body, errors=errors).items() if law.has(s)}
+    if all(low == high for low, high in within.values()):
+        return Interval(estimate.bound, estimate.bound, estimate.bound), point
+    low, worst = _either_way(law, signals | exact | within)
+    # any parameters give at most this where it is least at the estimates
+    there = {s: (x, x) for s, x in point.items() if s in signals}
+    turned = -_one_way(law, point.get(DIRECTION, 1.0))
+    high = -least_value(turned, signals | exact | within | there).bound
+    if math.isinf(estimate.bound):
+        high = estimate.bound
+    return (
+        Interval(estimate.bound, min(low.bound, estimate.bound), max(high, estimate.bound)),
+        worst,
+    )
+
+
+def parameter_box(body: Body, *, errors: float) -> dict[sp.Symbol, tuple[float, float]]:
+    """Symbol -> range within so many standard errors of the estimate and its declared bounds."""
+    return {s: _box(body, n, errors) for n, s in body.symbols().items()}
+
+
+def stays_within(effect: Effect, state: sp.Symbol, ranges: Ranges) -> bool:
+    """Whether a hidden state stays in its range: at either end its rate leads inward, or to rest.
+
+    ranges: of all that the rate depends on
+    """
+    names = {v: n for n, v in effect.state_symbols().items()}
+    rate = effect.rates()[names[state]]
+    for end, inward in zip(ranges[state], (1, -1), strict=True):
+        if math.isinf(end):
+            continue
+        here = {**ranges, state: (end, end)}
+        slowest = _either_way(inward * rate, here)[0].bound
+        fastest = -_either_way(-inward * rate, here)[0].bound
+        if not slowest >= -1e-9 * abs(fastest):  # rounding
+            return False
+    return True
+
+
+def _signals(
+    body: Body, reach: Reach | None, errors: float
+) -> dict[sp.Symbol, tuple[float, float]]:
+    """Ranges of signals, and of speeds that lag, which must stay within those of the motion."""
+    speeds = 0.0, largest_speed(reach)
+    found = signal_ranges(reach) | {SPEED: speeds}
+    lagging = _lagging(body)
+    every = found | dict.fromkeys(lagging, speeds) | parameter_box(body, errors=errors)
+    for state, effect in lagging.items():
+        if not stays_within(effect, state, every):
+            raise ModelError(
+                f"friction level: {effect.name}: its speed can leave those of the motion, 0 to "
+                f"{speeds[1]:.4g}: no guaranteed bound"
+            )
+    return found | dict.fromkeys(lagging, speeds)
+
+
+def _either_way(law: sp.Expr, ranges: Ranges) -> tuple[Least, Mapping[sp.Symbol, float]]:
+    """The least of both directions, and where."""
+    if not law.has(SIGNALS["velocity"], DIRECTION):
+        least = least_value(law, ranges)
+        return least, least.point
+    laws = {way: _one_way(law, way) for way in (-1.0, 1.0)}
+    if laws[-1.0] == laws[1.0]:
+        least = least_value(laws[1.0], ranges)
+        return least, least.point
+    found = {way: least_value(one, ranges) for way, one in laws.items()}
+    way = min(found, key=lambda w: found[w].bound)
+    return found[way], {DIRECTION: way, **found[way].point}
+
+
+def _one_way(law: sp.Expr, way: float) -> sp.Expr:
+    sign = sp.Integer(int(way))
+    return law.subs({SIGNALS["velocity"]: sign * SPEED, DIRECTION: sign})
+
+
+def _box(body: Body, name: str, errors: float) -> tuple[float, float]:
+    """A parameter within so many standard errors of its estimate and its declared bounds."""
+    value, declared = body.parameters[name], body.parameter(name)
+    if not _uncertain(value):
+        return value.value, value.value
+    half = errors * value.stderr
+    return max(value.value - half, declared.lower), min(value.value + half, declared.upper)
+
+
+def _uncertain(value: Value) -> bool:
+    return not value.fixed and math.isfinite(value.stderr)
+
+
+def _lagging(body: Body) -> dict[sp.Symbol, Effect]:
+    """Hidden speeds that the level follows -> their effect."""
+    speeds = ordered(body.effects, "friction_speed")
+    return {s: e for e in speeds for s in e.state_symbols().values()}
+
+
+def _where(point: Mapping[sp.Symbol, float], body: Body) -> str:
+    """The signals of a point, in words; parameters left out."""
+    said = {SPEED: "speed"} | dict.fromkeys(_lagging(body), "speed")
+    said |= {s: n for n, s in SIGNALS.items()}
+    return ", ".join(f"{said[s]} {x:.3g}" for s, x in point.items() if s in said) or ANY_MOTION
+
+
+def _unbounded(level: sp.Expr, reach: Reach | None) -> str:
+    """What to give where a level has no lower bound."""
+    names = sorted(
+        n for n, s in SIGNALS.items() if level.has(s) and n not in ("direction", "position")
+    )
+    names += ["position"] if level.has(SIGNALS["position"]) else []
+    if reach is None:
+        needed = "give the experiment whose records say how far they reach"
+    else:
+        needed = "no bound is known within what the records reach"
+    return f"friction level: no lower bound over any {', '.join(names)}: {needed}"

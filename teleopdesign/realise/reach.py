@@ -1,0 +1,88 @@
+"""How far a motion reaches: travel, speed, command, and the ranges of signals that follow."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import sympy as sp
+
+from ..effects import SIGNALS
+from ..quantity import unit_of
+
+#: friction is asked for at up to this many times the recorded speed, at times up to so many
+#: records: a controller moves a device faster and longer than the experiment that identified it
+FASTER, LONGER = 10.0, 100.0
+#: over what a law is bounded that is one number
+ANY_MOTION = "any motion"
+
+
+@dataclass(frozen=True)
+class Reach:
+    """The recorded range of one body; SI.
+
+    low, high: of its position;  peak_speed, rms_speed;  command: largest commanded force
+    duration: of the longest record;  sample_period: s;  step: what one reading leaves open
+    unresolved: length below which the give of a contact before it slides cannot be told: within the
+        steps that tell a motion, or half a period of the comparison's bandwidth after a reversal
+    measures_force: whether the force of hand or environment is a channel
+    both_ways: whether it moves forward and backward for at least `RARE` of the time it moves
+    """
+
+    low: float
+    high: float
+    peak_speed: float
+    rms_speed: float
+    command: float
+    duration: float
+    sample_period: float
+    step: float
+    unresolved: float
+    measures_force: bool
+    both_ways: bool = True
+
+    @property
+    def travel(self) -> float:
+        """Length of the travel."""
+        return self.high - self.low
+
+
+def largest_speed(reach: Reach | None) -> float:
+    """Speed up to which friction is asked for; inf where no reach is known."""
+    return math.inf if reach is None else FASTER * reach.peak_speed
+
+
+def signal_ranges(reach: Reach | None) -> dict[sp.Symbol, tuple[float, float]]:
+    """Symbol of a signal -> its range, but for velocity and direction, which `largest_speed` says.
+
+    Signals that no reach speaks of, and all where none is known, have no end; time begins at zero.
+    """
+    ends = {name: (-math.inf, math.inf) for name in SIGNALS}
+    ends["time"] = 0.0, math.inf
+    if reach is not None:
+        ends["position"] = reach.low, reach.high
+        ends["time"] = 0.0, LONGER * reach.duration
+        ends["acting_force"] = ends["command"] = -reach.command, reach.command
+    return {SIGNALS[n]: r for n, r in ends.items() if n not in ("velocity", "direction")}
+
+
+def words_of(reach: Reach | None, law: sp.Expr, *, speed: bool, axis: str) -> str:
+    """Over what a law of signals is bounded: "speeds up to 3 m/s, position -0.1 to 0.1 m".
+
+    speed: whether it follows a speed, its own or a lagging one
+    """
+    top = largest_speed(reach)
+    parts = [_range("speed", 0.0, top, unit_of("velocity", axis))] if speed else []
+    parts += ["both directions"] if law.has(SIGNALS["direction"]) else []
+    for symbol, (low, high) in signal_ranges(reach).items():
+        if law.has(symbol):
+            quantity = "force" if symbol.name.endswith(("force", "command")) else symbol.name
+            unit = unit_of("position" if quantity == "penetration" else quantity, axis)
+            parts.append(_range(symbol.name.replace("_", " "), low, high, unit))
+    return ", ".join(parts) or ANY_MOTION
+
+
+def _range(name: str, low: float, high: float, unit: str) -> str:
+    if math.isinf(high):
+        return f"any {name}"
+    return f"{name} {low:.4g} to {high:.4g} {unit}"

@@ -1,0 +1,178 @@
+"""A claim about a device counts every effect that the device has, and says over which reach."""
+
+import pytest
+
+import teleopdesign as td
+from teleopdesign.controllers import controller
+from teleopdesign.diagrams import haptic_interface
+from teleopdesign.effects import EFFECTS, Effect, Parameter
+from teleopdesign.errors import ModelError
+from teleopdesign.passivity.device_claims import (
+    Compensator,
+    device_claims,
+    friction_claims,
+    margins,
+    wall_claims,
+)
+from teleopdesign.passivity.friction_pairs import friction_pairs, pair_claims
+from teleopdesign.passivity.identified import identified
+from teleopdesign.realise.friction_interval import friction_interval
+from teleopdesign.realise.reach import Reach
+from teleopdesign.simulate import Sampling
+
+REACH = Reach(
+    low=-0.05, high=0.05, peak_speed=0.3, rms_speed=0.1, command=3.0, duration=10.0,
+    sample_period=1e-3, step=5e-6, unresolved=2e-5, measures_force=True,
+)  # fmt: skip
+
+
+def body_of(**more):
+    """A body of 0.1 kg with 0.5 N of friction and these effects, name -> parameters."""
+    body = td.Body("prismatic", {"inertia": td.Value(0.1)})
+    for name, values in {"coulomb": {"level": 0.5}, **more}.items():
+        body = body.with_effect(EFFECTS[name], values)
+    return body
+
+
+def claims_on(body, level=0.4, stiffness=1e4, reach=None):
+    """Topic -> claim about a Dahl compensator, by theorems."""
+    found = friction_claims(identified(body, reach), Compensator("dahl", level, stiffness))
+    return {s.topic: s.claim for s in found}
+
+
+def statuses(body, **given):
+    return {topic: claim.status for topic, claim in claims_on(body, **given).items()}
+
+
+SLOPE = {"stribeck": {"extra_static_level": 0.2, "stribeck_velocity": 0.01}}
+GAP = {"tip_inertia": 0.02, "stiffness": 1e4, "damping": 1.0, "gap": 1e-3}
+BRISTLE = {"stiffness": 2e4, "bristle_damping": 30.0}
+
+
+def test_bristle_damping_below_a_falling_level_is_not_dropped():
+    """The device alone gives out energy in jumps of speed: no pair with it can be proved."""
+    body = body_of(**SLOPE, presliding=BRISTLE)
+    (own,) = device_claims(identified(body))
+    assert own.claim.status == "refuted"
+    assert own.claim.record.replay() > 0
+    found = claims_on(body)
+    assert found["estimate"].status == found["95 % interval"].status == "unknown"
+    assert "bristle damping may give out energy" in str(found["estimate"].verdict)
+    assert list(margins(identified(body))) == []
+
+
+def test_viscous_damping_makes_up_for_it():
+    # s1 (F_S/F_C - 1) = 12 N s/m
+    body = body_of(**SLOPE, presliding=BRISTLE, viscous={"damping": 12.01})
+    claim = claims_on(body)["95 % interval"]
+    assert claim.status == "proved"
+    assert "bristle damping 30 and viscous damping 12.01 N s/m counted" in claim.statement
+    assert len(claim.certificates) == 2
+    for certificate in claim.certificates:
+        certificate.check()
+    assert (
+        claims_on(body_of(**SLOPE, presliding=BRISTLE, viscous={"damping": 11.9}))[
+            "95 % interval"
+        ].status
+        == "unknown"
+    )
+
+
+def test_bristle_damping_of_a_constant_level_takes_energy():
+    assert set(statuses(body_of(presliding=BRISTLE)).values()) == {"proved"}
+
+
+def test_in_a_diagram_bristle_damping_counts_too():
+    body = body_of(**SLOPE, presliding=BRISTLE)
+    law = controller("dahl", {"level": 0.4, "stiffness": 1e4})
+    (pair,) = friction_pairs(haptic_interface(body, cancellation=law))
+    assert [c.status for c in pair_claims(pair)] == ["unknown"]
+
+
+@pytest.mark.parametrize(
+    ("effect", "values", "ideal", "gives"),
+    [
+        ("viscous", {"damping": 2.0}, "proved", "proved"),
+        ("cogging", {"amplitude": 0.2, "period": 0.01, "phase": 0.0}, "proved", "proved"),
+        ("backlash", GAP, "proved", "proved"),
+        ("actuation_delay", {"delay": 2e-3}, "proved", "unknown"),
+        ("actuator_lag", {"time_constant": 2e-3}, "proved", "unknown"),
+        ("actuator_gain", {"gain": 1.2}, "proved", "unknown"),
+        ("actuator_gain", {"gain": 1.3}, "refuted", "unknown"),
+        ("torque_ripple", {"amplitude": 0.3, "period": 0.01, "phase": 0.0}, "refuted", "unknown"),
+    ],
+)  # fmt: skip
+def test_an_effect_that_may_supply_energy_leaves_a_claim_open(effect, values, ideal, gives):
+    """Beside ideal friction any law within the level that acts is covered, late or not."""
+    found = statuses(body_of(**{effect: values}))
+    assert found["any law within the level"] == ideal
+    found = statuses(body_of(**{effect: values}, presliding={"stiffness": 2e4}))
+    assert found["estimate"] == found["95 % interval"] == gives
+
+
+def test_damping_of_one_direction_counts_against_that_of_the_other():
+    asymmetric = {"viscous_asymmetry": {"half_difference": -0.5}}
+    found = identified(body_of(viscous={"damping": 2.0}, **asymmetric))
+    assert found.set_aside == ()
+    assert found.damping.low == pytest.approx(1.5)
+    # alone it pushes one way
+    body = body_of(viscous={"damping": 0.2}, **asymmetric)
+    assert identified(body).set_aside == ("viscous_asymmetry",)
+    assert statuses(body)["any law within the level"] == "unknown"
+    law = dict(stiffness=100.0, damping=0.0, computer=Sampling(period=1e-4))
+    (wall,) = wall_claims(identified(body), **law)
+    assert wall.claim.status == "unknown"
+
+
+def own(role, law, **more):
+    parameters = {"size": Parameter("force", "size")}
+    made = Effect(role=role, law=law, parameters=parameters, absent={"size": 0.0}, **more)
+    return made.named("own", "Own.")
+
+
+def test_a_users_force_that_does_not_say_leaves_claims_open():
+    def law(now, p):
+        return -p.size * now.velocity
+
+    body = body_of().with_effect(own("force", law), {"size": 0.1})
+    assert identified(body).set_aside == ("own",)
+    found = claims_on(body)["any law within the level"]
+    assert found.status == "unknown"
+    assert "own may supply energy" in str(found.verdict)
+    declared = body_of().with_effect(own("force", law, energy="dissipates"), {"size": 0.1})
+    assert identified(declared).set_aside == ()
+    damper = own("force", lambda now, p: p.size * now.velocity)
+    assert identified(body_of().with_effect(damper, {"size": 0.1})).set_aside == (), "it is proved"
+
+
+def test_a_users_shape_of_friction_is_none_that_a_theorem_is_about():
+    shape = own("friction_shape", lambda now, p: now.level * now.velocity / p.size)
+    assert identified(body_of().with_effect(shape, {"size": 0.1})).set_aside == ("own",)
+
+
+def test_design_and_passivity_have_one_interval():
+    """Stribeck and a wave along the travel, a period that is not known well."""
+    body = body_of(
+        **SLOPE, position_dependent_friction={"amplitude": 0.2, "period": 0.05, "phase": 0.3}
+    ).with_values({"position_dependent_friction.period": td.Value(0.05, stderr=0.002)})
+    found = identified(body, REACH)
+    assert found.friction == friction_interval(body, REACH, errors=1.96)
+    assert found.lowest.low == pytest.approx(0.4, rel=1e-4)
+    claim = claims_on(body, level=0.3, reach=REACH)["any law within the level"]
+    assert claim.status == "proved"
+    assert "levels over speed 0 to 3 m/s, position -0.05 to 0.05 m" in claim.statement
+    assert (
+        "levels over any speed, any position"
+        in claims_on(body)["any law within the level"].statement
+    )
+
+
+def test_a_level_that_is_one_number_holds_for_any_motion():
+    assert "levels over" not in claims_on(body_of())["any law within the level"].statement
+
+
+def test_a_level_without_an_upper_bound_is_refused_where_one_is_needed():
+    load = {"load_dependent_friction": {"coefficient": 0.1}}
+    assert statuses(body_of(**load))["any law within the level"] == "proved"
+    with pytest.raises(ModelError, match="no upper bound of the friction level over any acting"):
+        identified(body_of(**load, presliding={"stiffness": 1e4}))

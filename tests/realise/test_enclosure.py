@@ -1,0 +1,130 @@
+"""Intervals of laws hold every value, and the least value found is a bound that is met."""
+
+from math import inf
+
+import mpmath
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from teleopdesign.errors import ModelError
+from teleopdesign.realise.enclosure import Singular, enclosure_of, ends, interval
+from teleopdesign.realise.extremes import TIGHTNESS, least_value
+
+X, Y = sp.symbols("x y", real=True)
+S = sp.Symbol("s", positive=True)
+
+numbers = st.sampled_from([sp.Integer(2), sp.Rational(1, 3), sp.Float(0.1), -sp.Float(1.7), sp.pi])
+leaves = st.sampled_from([X, Y]) | numbers
+functions = [
+    sp.Abs, sp.sign, sp.exp, sp.sin, sp.cos, sp.tanh, sp.atan, sp.sinh, sp.cosh,
+    lambda a: a**2, lambda a: a**3, lambda a: sp.sqrt(sp.Abs(a)), lambda a: 1 / (1 + a**2),
+    lambda a: sp.log(1 + a**2), lambda a: (1 + a**2) ** sp.Rational(3, 2),
+]  # fmt: skip
+pairs = [
+    lambda a, b: a + b, lambda a, b: a * b, sp.Min, sp.Max,
+    lambda a, b: sp.Piecewise((a, a > b), (a * b, sp.And(a < 1, b <= 0)), (b, True)),
+]  # fmt: skip
+laws = st.recursive(
+    leaves,
+    lambda inner: (
+        st.builds(lambda f, a: f(a), st.sampled_from(functions), inner)
+        | st.builds(lambda f, a, b: f(a, b), st.sampled_from(pairs), inner, inner)
+    ),
+    max_leaves=6,
+)
+ranges = st.tuples(st.floats(-3, 3), st.floats(-3, 3)).map(sorted)
+shares = st.lists(st.tuples(st.floats(0, 1), st.floats(0, 1)), min_size=5, max_size=5)
+
+
+def exact(law, x, y):
+    """The value at 60 digits."""
+    with mpmath.workdps(60):
+        call = sp.lambdify([X, Y], law, "mpmath")
+        return call(mpmath.mpf(x), mpmath.mpf(y))
+
+
+@settings(max_examples=300, deadline=None)
+@given(law=laws, x=ranges, y=ranges, shares=shares)
+def test_no_value_of_a_law_leaves_its_interval(law, x, y, shares):
+    low, high = ends(enclosure_of(law, [X, Y])([interval(*x), interval(*y)]))
+    for a, b in shares:
+        px = min(max(x[0] + a * (x[1] - x[0]), x[0]), x[1])
+        py = min(max(y[0] + b * (y[1] - y[0]), y[0]), y[1])
+        try:
+            value = exact(law, px, py)
+        except OverflowError:
+            continue
+        assert low <= value <= high
+
+
+@settings(max_examples=100, deadline=None)
+@given(law=laws, x=ranges, y=ranges, shares=shares)
+def test_no_value_is_below_the_least_and_the_least_is_met(law, x, y, shares):
+    found = least_value(law, {X: tuple(x), Y: tuple(y)})
+    for a, b in shares:
+        px = min(max(x[0] + a * (x[1] - x[0]), x[0]), x[1])
+        py = min(max(y[0] + b * (y[1] - y[0]), y[0]), y[1])
+        assert found.bound <= exact(law, px, py)
+    if found.point and found.met < inf:
+        here = exact(law, found.point.get(X, 0), found.point.get(Y, 0))
+        assert found.bound <= here <= found.met
+
+
+def test_ends_beyond_the_range_of_floats_lie_outside():
+    tiny = enclosure_of(X**2, [X])([interval(1e-200, 1e-200)])
+    assert ends(tiny) == (0.0, 5e-324)
+    assert ends(-tiny) == (-5e-324, 0.0)
+    huge = enclosure_of(X**2, [X])([interval(1e200, 1e200)])
+    assert ends(huge) == (1.7976931348623157e308, inf)
+
+
+@pytest.mark.parametrize(
+    ("law", "over", "least"),
+    [
+        (X**2 - X, {X: (0.0, 1.0)}, -0.25),
+        (X, {X: (0.3, 0.3)}, 0.3),
+        (sp.exp(-((S / X) ** 2)), {S: (0.0, inf), X: (0.0, 0.01)}, 0.0),
+        (1 + 0.2 * sp.sin(X / Y), {X: (-inf, inf), Y: (0.04, 0.06)}, 0.8),
+        (1 - 0.3 * (1 - sp.exp(-S / X)), {S: (0.0, inf), X: (0.0, 5.0)}, 0.7),
+        (1 / (1 + S), {S: (0.0, inf)}, 0.0),
+        (X / sp.sqrt(1 + X**2), {X: (-3.0, 5.0)}, -3 / 10**0.5),
+        (sp.Piecewise((X, X > 1), (2 - X, True)), {X: (-3.0, 3.0)}, 1.0),
+        (sp.Abs(X) - X / 2, {X: (-1.0, 1.0)}, 0.0),
+    ],
+)
+def test_the_least_value_is_known_to_the_stated_tightness(law, over, least):
+    found = least_value(law, over)
+    # what a law is compared with: its value at the middle of the ranges, at most 3 here
+    assert least - 3 * TIGHTNESS <= found.bound <= least + 1e-14
+    assert found.met >= least - 1e-14
+
+
+def test_a_jump_is_not_taken_for_a_slope():
+    step = sp.Piecewise((0, X < 1), (-1, True)) + sp.Rational(1, 10) * X
+    assert least_value(step, {X: (0.0, 2.0)}).bound == pytest.approx(-0.9, rel=1e-4)
+    falls = -sp.sign(X) + X / 10
+    assert least_value(falls, {X: (-1.0, 1.0)}).bound == pytest.approx(-1.0, rel=1e-4)
+    # falls on either side of a pole, and jumps up there
+    pole = sp.tanh(1 / X)
+    assert least_value(pole, {X: (-1.0, 1.0)}).bound <= -1 + 1e-4
+
+
+def test_a_law_without_a_bound_has_none():
+    assert least_value(-X * Y, {X: (0.0, 1.0), Y: (0.0, inf)}).bound == -inf
+    assert least_value(1 / X, {X: (-1.0, 1.0)}).bound == -inf
+    assert least_value(sp.log(X), {X: (0.0, 1.0)}).bound == -inf
+
+
+def test_a_function_of_which_no_bound_is_known_is_named():
+    with pytest.raises(ModelError, match="erf"):
+        least_value(sp.erf(X), {X: (0.0, 1.0)})
+    with pytest.raises(ModelError, match="no range of y"):
+        least_value(X * Y, {X: (0.0, 1.0)})
+
+
+def test_a_slope_where_the_law_may_be_undefined_tells_nothing():
+    slope = enclosure_of(1 / X, [X], smooth=True)
+    with pytest.raises(Singular):
+        slope([interval(0.0, 1.0)])

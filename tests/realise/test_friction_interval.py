@@ -1,0 +1,251 @@
+"""The friction interval holds every level that the body's law takes, and is one everywhere."""
+
+from math import inf
+
+import numpy as np
+import pytest
+import sympy as sp
+from effects.along import typical, with_needs
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import teleopdesign as td
+from teleopdesign.effects import EFFECTS, SIGNALS, Effect, Parameter, State
+from teleopdesign.errors import ModelError
+from teleopdesign.passivity.identified import identified
+from teleopdesign.realise.acting_bound import largest_acting_force
+from teleopdesign.realise.damping_interval import damping_interval, small_motion_damping
+from teleopdesign.realise.friction_interval import friction_interval
+from teleopdesign.realise.reach import Reach
+
+REACH = Reach(
+    low=-0.05, high=0.05, peak_speed=0.3, rms_speed=0.1, command=3.0, duration=10.0,
+    sample_period=1e-3, step=5e-6, unresolved=2e-5, measures_force=True,
+)  # fmt: skip
+LEVELS = [
+    n for n, e in EFFECTS.items() if e.role in ("friction_level", "friction_factor") and e.needs
+]
+
+
+def body_of(values, errors=None):
+    """A body of 0.1 kg with these parameters, {"coulomb.level": 0.5, ...}, and standard errors."""
+    body = td.Body("prismatic", {"inertia": td.Value(0.1)})
+    for name in dict.fromkeys(n.partition(".")[0] for n in values):
+        own = {n.partition(".")[2]: v for n, v in values.items() if n.startswith(f"{name}.")}
+        body = body.with_effect(EFFECTS[name], own)
+    errors = errors or {}
+    return body.with_values({n: td.Value(values[n], stderr=e) for n, e in errors.items()})
+
+
+@st.composite
+def bodies(draw):
+    """Coulomb friction with effects that shape its level, and standard errors of all of them."""
+    chosen = draw(st.lists(st.sampled_from(LEVELS), unique=True, max_size=3))
+    names = list(dict.fromkeys(n for c in ["coulomb", *chosen] for n in with_needs(c)))
+    values = {
+        f"{n}.{p}": typical(n, p) * draw(st.floats(0.3, 1.5))
+        for n in names
+        for p in EFFECTS[n].parameters
+    }
+    errors = {n: v * draw(st.sampled_from([0.0, 0.01, 0.1])) for n, v in values.items()}
+    return body_of(values, errors)
+
+
+def levels_at(body, rng, number, errors):
+    """The level at random signals within the reach and parameters within their errors."""
+    symbols = [*SIGNALS.values(), *body.symbols().values()]
+    law = sp.lambdify(symbols, body.level(), "numpy")
+    direction = rng.choice([-1.0, 1.0], number)
+    speed = 3.0 * rng.choice([0.0, 1.0, 1e-3, 1e-2], number) * rng.uniform(0, 1, number)
+    signals = {n: rng.uniform(-1, 1, number) for n in SIGNALS} | {
+        "direction": direction,
+        "velocity": direction * speed,
+        "position": rng.uniform(REACH.low, REACH.high, number),
+        "time": rng.choice([0.0, 1.0, 1000.0], number) * rng.uniform(0, 1, number),
+        "acting_force": rng.uniform(-REACH.command, REACH.command, number),
+    }
+    parameters = []
+    for name in body.symbols():
+        value, declared = body.parameters[name], body.parameter(name)
+        half = errors * (value.stderr if np.isfinite(value.stderr) else 0.0)
+        moved = value.value + half * rng.choice([-1.0, 0.0, 1.0], number)
+        parameters.append(np.clip(moved, declared.lower, declared.upper))
+    return np.broadcast_to(law(*signals.values(), *parameters), number)
+
+
+def check_levels_within(body, seed):
+    found = friction_interval(body, REACH, errors=2.0)
+    rounding = 1e-13 * abs(found.highest.high)  # of the law in floats
+    rng = np.random.default_rng(seed)
+    within = levels_at(body, rng, 4000, errors=2.0)
+    assert found.lowest.low - rounding <= within.min()
+    assert within.max() <= found.highest.high + rounding
+    at_estimate = levels_at(body, rng, 4000, errors=0.0)
+    assert found.lowest.estimate - rounding <= at_estimate.min()
+    assert at_estimate.max() <= found.highest.estimate + rounding
+    assert found.lowest.low <= found.lowest.estimate <= found.lowest.high
+    assert found.highest.low <= found.highest.estimate <= found.highest.high
+    return found
+
+
+@settings(max_examples=10, deadline=None)
+@given(body=bodies(), seed=st.integers(0, 2**31))
+def test_no_level_within_reach_and_errors_leaves_the_interval(body, seed):
+    check_levels_within(body, seed)
+
+
+@pytest.mark.slow
+@settings(max_examples=40, deadline=None)
+@given(body=bodies(), seed=st.integers(0, 2**31))
+def test_a_wider_reach_has_no_narrower_interval(body, seed):
+    found = check_levels_within(body, seed)
+    everywhere = friction_interval(body, None, errors=2.0)
+    # both are bounds, met within 1e-4 of a level
+    assert everywhere.lowest.low <= found.lowest.low + 1e-4 * found.highest.high
+
+
+def test_a_constant_level_is_the_number_that_was_given():
+    found = friction_interval(body_of({"coulomb.level": 0.3}), errors=1.96)
+    assert (found.lowest.low, found.lowest.estimate, found.lowest.high) == (0.3, 0.3, 0.3)
+    assert found.over == found.where_lowest == "any motion"
+    stribeck = {"stribeck.extra_static_level": 0.2, "stribeck.stribeck_velocity": 0.01}
+    found = friction_interval(body_of({"coulomb.level": 0.3} | stribeck), errors=1.96)
+    assert found.lowest.low == 0.3
+    assert found.highest.high == pytest.approx(0.5, rel=1e-14)
+
+
+WAVE = {
+    "coulomb.level": 1.0,
+    "stribeck.extra_static_level": 0.4,
+    "stribeck.stribeck_velocity": 0.02,
+    "position_dependent_friction.amplitude": 0.2,
+    "position_dependent_friction.period": 0.05,
+    "position_dependent_friction.phase": 0.3,
+}
+WAVE_ERRORS = {
+    "coulomb.level": 0.05,
+    "position_dependent_friction.amplitude": 0.02,
+    "position_dependent_friction.period": 0.002,
+    "position_dependent_friction.phase": 0.1,
+}
+
+
+@pytest.mark.parametrize("reach", [REACH, None])
+def test_a_wave_of_unknown_phase_counts_for_its_amplitude(reach):
+    """A slope in the period times ten metres of position would make it -2.7 N."""
+    found = friction_interval(body_of(WAVE, WAVE_ERRORS), reach, errors=2.0)
+    assert found.lowest.low == pytest.approx(0.9 * (1 - 0.24), rel=1e-4)
+    assert found.highest.high == pytest.approx(1.1 * (1 + 0.24) + 0.4, rel=1e-4)
+
+
+def test_a_parameter_stays_within_its_declared_bounds():
+    found = friction_interval(body_of({"coulomb.level": 0.5}, {"coulomb.level": 1.0}), errors=2.0)
+    assert found.lowest.low == 0.0
+
+
+def test_a_level_at_zero_with_an_error_may_be_there():
+    stribeck = {"stribeck.extra_static_level": 0.0, "stribeck.stribeck_velocity": 0.02}
+    body = body_of({"coulomb.level": 0.5} | stribeck, {"stribeck.extra_static_level": 0.1})
+    assert friction_interval(body, errors=2.0).highest.high == pytest.approx(0.7)
+
+
+def test_friction_of_the_load_has_no_upper_bound_until_the_load_has():
+    values = {"coulomb.level": 0.5, "load_dependent_friction.coefficient": 0.1}
+    assert friction_interval(body_of(values), errors=2.0).highest.estimate == inf
+    found = friction_interval(body_of(values), REACH, errors=2.0)
+    assert found.highest.estimate == pytest.approx(0.8)
+    assert found.over == "acting force -3 to 3 N"
+    values["presliding.stiffness"] = 1e4
+    with pytest.raises(ModelError, match="no upper bound of the friction level.*give the experi"):
+        identified(body_of(values))
+    assert identified(body_of(values), REACH).highest.high == pytest.approx(0.8)
+
+
+def user(law, role="friction_level", **more):
+    """A user's own effect with one parameter, `size`."""
+    parameters = {"size": Parameter("force", "size")}
+    made = Effect(role=role, law=law, parameters=parameters, absent={"size": 0.0}, **more)
+    return made.named("own", "Own.")
+
+
+def with_own(effect, size=0.1, base=None):
+    body = body_of(base or {"coulomb.level": 0.5})
+    return body.with_effect(effect, {"size": size})
+
+
+def test_a_level_that_falls_without_end_is_refused_with_what_to_give():
+    falling = user(lambda now, p: -p.size * now.position)
+    with pytest.raises(ModelError, match="no lower bound over any position: give the experiment"):
+        friction_interval(with_own(falling), errors=2.0)
+    found = friction_interval(with_own(falling), REACH, errors=2.0)
+    assert found.lowest.low == pytest.approx(0.5 - 0.1 * 0.05, rel=1e-4)
+    assert found.where_lowest == "position 0.05"
+
+
+def test_a_law_without_known_bounds_is_refused_by_name():
+    with pytest.raises(ModelError, match="erf"):
+        friction_interval(with_own(user(lambda now, p: p.size * sp.erf(now.velocity))), errors=2.0)
+
+
+def test_a_speed_that_overshoots_is_no_lagging_speed():
+    def faster(now, p):
+        return (2 * abs(now.velocity) - now.film) / p.size
+
+    own = user(
+        lambda now, p: now.film, role="friction_speed", states={"film": State("velocity", faster)}
+    )
+    stribeck = {"stribeck.extra_static_level": 0.2, "stribeck.stribeck_velocity": 0.02}
+    body = with_own(own, base={"coulomb.level": 0.5} | stribeck)
+    with pytest.raises(ModelError, match="can leave those of the motion"):
+        friction_interval(body, REACH, errors=2.0)
+
+
+# what acts, and what damps
+
+
+def test_an_actuation_makes_no_more_of_a_command_than_its_bound():
+    values = {
+        "actuator_gain.gain": 1.1,
+        "torque_ripple.amplitude": 0.2,
+        "torque_ripple.period": 0.05,
+        "torque_ripple.phase": 0.0,
+        "actuator_lag.time_constant": 0.01,
+        "actuation_delay.delay": 2e-3,
+        "actuator_saturation.limit": 0.5,
+    }
+    body = body_of(values, {"actuator_gain.gain": 0.05})
+    assert largest_acting_force(body, 0.1, errors=2.0) == pytest.approx(0.1 * 1.2 * 1.2, rel=1e-4)
+    assert largest_acting_force(body, 10.0, errors=2.0) == 0.5
+    resonant = user(
+        lambda now, p: now.out,
+        role="actuation",
+        states={"out": State("force", lambda now, p: (2 * now.command - now.out) / p.size)},
+    )
+    assert largest_acting_force(with_own(resonant), 1.0, errors=2.0) == inf
+
+
+def test_damping_is_that_of_the_worse_direction_at_every_speed():
+    values = {
+        "viscous.damping": 2.0,
+        "viscous_asymmetry.half_difference": -0.5,
+        "quadratic_drag.drag": 1.0,
+    }
+    found = damping_interval(body_of(values, {"viscous.damping": 0.1}), errors=2.0)
+    assert (found.least.low, found.least.estimate) == pytest.approx((1.3, 1.5))
+    assert found.supplying == ()
+    values["viscous_asymmetry.half_difference"] = -3.0
+    found = damping_interval(body_of(values), errors=2.0)
+    assert found.supplying == ("viscous_asymmetry",)
+    assert found.least.low == pytest.approx(2.0)
+
+
+def test_a_users_damper_counts_in_small_motion_under_any_name():
+    damper = user(lambda now, p: p.size * now.velocity, role="force", energy="dissipates")
+    body = with_own(damper, size=1.5, base={"coulomb.level": 0.5, "viscous.damping": 2.0})
+    assert small_motion_damping(body, errors=0.0) == pytest.approx(3.5)
+    presliding = {"stiffness": 1e4, "bristle_damping": 4.0}
+    bristle = body.with_effect(EFFECTS["presliding"], presliding)
+    assert small_motion_damping(bristle, errors=0.0) == pytest.approx(7.5)
+    pushing = user(lambda now, p: -p.size * now.velocity, role="force")
+    undeclared = with_own(pushing)
+    assert damping_interval(undeclared, errors=0.0).supplying == ("own",)
