@@ -13,7 +13,7 @@ from .fit import Fit
 from .force_error import Prepared
 from .noise_floor import NoiseFloor
 from .one_moment import Moment, worst_moment
-from .rank import Ranking
+from .rank import BLIND, Ranking
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,6 +47,7 @@ class Diagnosis:
     estimated: the last rung's fit before what its readings do was taken off: to be held against
         other fits
     moment: the one moment that holds all that is left above noise; None where there is none
+    named: accepted effects that are probable enough to be said missing
     """
 
     experiment: Experiment
@@ -57,6 +58,7 @@ class Diagnosis:
     estimated: Fit
     floor: NoiseFloor
     moment: Moment | None = None
+    named: tuple[Candidate, ...] = ()
 
     @property
     def before(self) -> Fit:
@@ -76,10 +78,13 @@ class Diagnosis:
     @property
     def missing(self) -> tuple[Candidate, ...]:
         """Effects that can be named, in the order added; none where the verdict is undecided."""
-        added = [r for r in self.rungs if r.added is not None]
-        if self.verdict != "effects_missing":
-            return ()
-        return tuple(r.added for r in added if r.added is not None)
+        return self.named if self.verdict == "effects_missing" else ()
+
+    @property
+    def unlikely(self) -> bool:
+        """Whether it is undecided only since no effect that explains most is probable enough."""
+        decided = verdict(self.rungs, self.floor, self.moment) == "effects_missing"
+        return self.verdict == "undecided" and decided
 
     @property
     def groups(self) -> tuple[tuple[Candidate, ...], ...]:
@@ -93,8 +98,8 @@ class Diagnosis:
 
     @property
     def left(self) -> float:
-        """Error that is left, in noise floors."""
-        return self.after.check_error / self.floor.value if self.floor.value else float("inf")
+        """Error that is left, in noise floors: of the force or seen at the command, the larger."""
+        return floors_left(self.after, self.floor)
 
     def plot(self) -> Figure:
         """The figure: forces, residual over time, velocity and position, ladder (a Figure)."""
@@ -108,14 +113,25 @@ class Diagnosis:
         return ladder_text(self)
 
 
+def floors_left(found: Fit, floor: NoiseFloor) -> float:
+    """Error that a model leaves on the check records, in noise floors, seen at the command too."""
+    if not floor.value:
+        return float("inf")
+    return max(found.check_error / floor.value, found.seen.error / floor.seen)
+
+
 def is_noise(check_error: float, floor: NoiseFloor) -> bool:
     """Whether so large an error on the check records counts as noise."""
     return check_error <= ADEQUATE * floor.value
 
 
 def is_adequate(found: Fit, floor: NoiseFloor) -> bool:
-    """Whether what a model leaves on the check records counts as noise."""
-    return is_noise(found.check_error, floor)
+    """Whether what a model leaves on the check records counts as noise, seen at the command too.
+
+    A model that is blind in much of the motion says too little to be adequate.
+    """
+    at_command = found.seen.error <= ADEQUATE * floor.seen and found.seen.blind <= BLIND
+    return is_noise(found.check_error, floor) and at_command
 
 
 def moment_above_noise(found: Fit, prepared: Prepared, floor: NoiseFloor) -> Moment | None:
@@ -127,9 +143,16 @@ def moment_above_noise(found: Fit, prepared: Prepared, floor: NoiseFloor) -> Mom
 
 
 def explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
-    """Part of the squares above the noise floor that the effects between the two explain."""
-    whole, left = before.check_error**2, after.check_error**2
-    return (whole - left) / max(whole - floor.value**2, 1e-300)
+    """Part of the squares above the noise floor that the effects between the two explain.
+
+    Of the force or seen at the command, the smaller part.
+    """
+    of_force = _taken_away(before.check_error, after.check_error, floor.value)
+    return min(of_force, _taken_away(before.seen.error, after.seen.error, floor.seen))
+
+
+def _taken_away(before: float, after: float, floor: float) -> float:
+    return (before**2 - after**2) / max(before**2 - floor**2, 1e-300)
 
 
 def verdict(rungs: Sequence[Rung], floor: NoiseFloor, moment: Moment | None = None) -> str:

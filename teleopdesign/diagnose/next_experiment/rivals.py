@@ -53,7 +53,7 @@ def rivals_of(diagnosis: Diagnosis) -> tuple[Rival, ...]:
         if rung.added is not None:
             found += _of_rung(diagnosis, rung, question)
     if not found and diagnosis.verdict == "undecided":
-        told = [r for r in diagnosis.last.ranked if r.told and r.score > 0.0]
+        told = [r for r in diagnosis.last.ranked if r.counts and r.score > 0.0]
         found = [Rival(r.candidate, r.fit) for r in told[: MOST - 1]]
     return tuple(found) if len(found) > 1 else ()
 
