@@ -228,17 +228,21 @@ def seen_text(found: Fit) -> str | None:
     alike = abs(seen.error - found.check_error) <= DIFFERENT * found.check_error
     if alike and seen.blind == 0.0:
         return None
-    error = f"{100 * seen.error:.2f} %" if math.isfinite(seen.error) else "not told"
     blind = f", blind in {100 * seen.blind:.2g} % of the motion" if seen.blind else ""
-    return f"check error seen at the command: {error}{blind}"
+    return f"check error seen at the command: {_percent(seen.error)}{blind}"
+
+
+def _percent(error: float) -> str:
+    """An error in percent; that of a model that is blind everywhere is not told."""
+    return f"{100 * error:.2f} %" if math.isfinite(error) else "not told"
 
 
 def refused_lines(diagnosis: Diagnosis) -> list[str]:
     """What left less force than the model that the ladder ends with, and why it does not count."""
     after = diagnosis.after
     return [
-        f"refused: {r.candidate} ({100 * r.fit.check_error:.2f} %; seen at the command "
-        f"{100 * r.fit.seen.error:.2f} %): {REFUSALS[r.refused]}"
+        f"refused: {r.candidate} ({_percent(r.fit.check_error)}; seen at the command "
+        f"{_percent(r.fit.seen.error)}): {REFUSALS[r.refused]}"
         for r in diagnosis.last.ranked
         if r.refused and r.fit.check_error < after.check_error
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -115,7 +116,7 @@ class Diagnosis:
 
 def floors_left(found: Fit, floor: NoiseFloor) -> float:
     """Error that a model leaves on the check records, in noise floors, seen at the command too."""
-    if not floor.value:
+    if not (floor.value and math.isfinite(found.seen.error)):
         return float("inf")
     return max(found.check_error / floor.value, found.seen.error / floor.seen)
 

@@ -64,7 +64,7 @@ class SeenAtCommand:
 class _Way:
     """A way from one signal to another along a motion, linearised.
 
-    gain: (n,) of a signal held for good;  dynamics: over frequency, 1 at rest;  delay: s
+    gain: (n,) of a signal held for good;  dynamics: of what oscillates, over frequency;  delay: s
     """
 
     gain: Array
