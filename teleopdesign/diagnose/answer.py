@@ -25,6 +25,7 @@ from .force_error import along_own, own_groups
 from .next_experiment.rivals import open_questions
 from .one_moment import Moment
 from .probability import CandidateEvidence, evidence_of
+from .rank import REFUSALS
 
 
 def answer(diagnosis: Diagnosis) -> dict[str, Any]:
@@ -38,9 +39,12 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
                 "added": None if r.added is None else _place(r.added.key),
                 "fit_error": r.fit.fit_error,
                 "check_error": r.fit.check_error,
+                "check_error_at_command": plain(r.fit.seen.error),
+                "blind": r.fit.seen.blind,
             }
             for r in diagnosis.rungs
         ],
+        "blind": diagnosis.after.seen.blind,
         "noise_floor": diagnosis.floor.value,
         "noise_floor_source": diagnosis.floor.source,
         "check": "records" if checked else "blocks of fit",
@@ -133,14 +137,14 @@ def _parameters(found: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
 
 
 def _candidates(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """Every effect tried, most probable first: with its best step's fit and probability."""
-    found: dict[tuple[str, str], dict[str, Any]] = {}
+    """Every effect tried, most probable first: on the step that accepted it, or its best one."""
+    best: dict[tuple[str, str], CandidateEvidence] = {}
     for one in evidence_of(diagnosis):
-        key = one.ranked.candidate.key
-        probability = one.probability()
-        if key not in found or probability > found[key]["probability"]:
-            found[key] = _row(diagnosis, one, probability)
-    return sorted(found.values(), key=lambda c: -c["probability"])
+        before = best.setdefault(one.ranked.candidate.key, one)
+        if (one.accepted, one.probability()) > (before.accepted, before.probability()):
+            best[one.ranked.candidate.key] = one
+    rows = [_row(diagnosis, one) for one in best.values()]
+    return sorted(rows, key=lambda c: -c["probability"])
 
 
 def _evidence(one: CandidateEvidence) -> dict[str, Any]:
@@ -154,19 +158,24 @@ def _evidence(one: CandidateEvidence) -> dict[str, Any]:
     }
 
 
-def _row(diagnosis: Diagnosis, one: CandidateEvidence, probability: float) -> dict[str, Any]:
-    ranked = one.ranked
-    effect, at = ranked.candidate.key
-    model = ranked.fit.model
+def _row(diagnosis: Diagnosis, one: CandidateEvidence) -> dict[str, Any]:
+    candidate, found = one.ranked.candidate, one.ranked.fit
+    effect, at = candidate.key
+    if one.accepted:  # fitted again with what was exchanged or left out since: as in the ladder
+        found = next(r.fit for r in diagnosis.rungs if r.added == candidate)
+    model = found.model
     if one.accepted and diagnosis.model.body(at).has(effect):
         model = diagnosis.model  # all parameters are re-estimated with each effect that follows
     return {
         "effect": effect,
         "at": at,
-        "probability": probability,
-        "check_error": ranked.fit.check_error,
+        "probability": one.probability(),
+        "check_error": found.check_error,
+        "check_error_at_command": plain(found.seen.error),
+        "blind": found.seen.blind,
+        "refused": REFUSALS.get(one.ranked.refused),
         "parameters": {
-            n: _parameter(model, f"{at}.{effect}.{n}") for n in ranked.candidate.effect.parameters
+            n: _parameter(model, f"{at}.{effect}.{n}") for n in candidate.effect.parameters
         },
     }
 
@@ -240,6 +249,36 @@ def _number(value: float, error: float, unit: str) -> str:
     return f"{value:.4g} {unit}"
 
 
+#: part of the error from which the one seen at the command is told beside it
+DIFFERENT = 0.02
+
+
+def seen_text(found: Fit) -> str | None:
+    """The error seen at the command and the blind share, where they say more than the error."""
+    seen = found.seen
+    alike = abs(seen.error - found.check_error) <= DIFFERENT * found.check_error
+    if alike and seen.blind == 0.0:
+        return None
+    blind = f", blind in {100 * seen.blind:.2g} % of the motion" if seen.blind else ""
+    return f"check error seen at the command: {_percent(seen.error)}{blind}"
+
+
+def _percent(error: float) -> str:
+    """An error in percent; that of a model that is blind everywhere is not told."""
+    return f"{100 * error:.2f} %" if math.isfinite(error) else "not told"
+
+
+def refused_lines(diagnosis: Diagnosis) -> list[str]:
+    """What left less force than the model that the ladder ends with, and why it does not count."""
+    after = diagnosis.after
+    return [
+        f"refused: {r.candidate} ({_percent(r.fit.check_error)}; seen at the command "
+        f"{_percent(r.fit.seen.error)}): {REFUSALS[r.refused]}"
+        for r in diagnosis.last.ranked
+        if r.refused and r.fit.check_error < after.check_error
+    ]
+
+
 def ladder_text(diagnosis: Diagnosis) -> str:
     """The ladder as a table, with parameters, noise floor and verdict."""
     lines = [f"{'added':<42}{'fit error':>10}{'check error':>13}"]
@@ -258,6 +297,8 @@ def ladder_text(diagnosis: Diagnosis) -> str:
             lines.append(
                 f"      {p} = {_number(value.value, value.stderr, model.unit(full))}{bound}"
             )
+        if (seen := seen_text(rung.fit)) is not None:
+            lines.append(f"      {seen}")
         if rung.equals:
             others = ", ".join(map(str, rung.equals))
             lines.append(f"      no different on these records: {others}")
@@ -269,6 +310,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
         f"  ({diagnosis.floor.source})"
     )
+    lines += refused_lines(diagnosis)
     lines.append("")
     lines.append(sentence(diagnosis))
     return "\n".join(lines)
@@ -290,7 +332,15 @@ def sentence(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "effects_missing":
         equals = {r.added: r.equals for r in diagnosis.rungs if r.added is not None}
         names = ", ".join(" or ".join(map(str, (c, *equals[c]))) for c in diagnosis.missing)
-        return f"verdict: effects_missing: {names}.{rest}"
+        less = [str(c) for c in equals if c not in diagnosis.missing]
+        others = f" {', '.join(less)}: less likely than not." if less else ""
+        return f"verdict: effects_missing: {names}.{others}{rest}"
+    if diagnosis.unlikely:
+        names = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)
+        return (
+            f"verdict: undecided. What helps most ({names}) is less likely than not what is "
+            f"missing: {left:.1f} noise floors are left."
+        )
     if len(diagnosis.rungs) > 1 and any(r.added and not r.equals for r in diagnosis.rungs):
         names = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)
         return (

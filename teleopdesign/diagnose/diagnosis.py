@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -15,7 +16,7 @@ from .fit import Fit
 from .force_error import Prepared
 from .noise_floor import NoiseFloor
 from .one_moment import Moment, worst_moment
-from .rank import Ranking
+from .rank import BLIND, Ranking
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -64,6 +65,7 @@ class Diagnosis(ByValue):
         other fits
     moment: the one moment that holds all that is left above noise; None where there is none
     open: what the records leave open, of a diagnosis that was read back: it has no rankings
+    named: accepted effects that are probable enough to be said missing
     """
 
     experiment: Experiment
@@ -75,6 +77,7 @@ class Diagnosis(ByValue):
     floor: NoiseFloor
     moment: Moment | None = None
     open: tuple[OpenQuestion, ...] | None = None
+    named: tuple[Candidate, ...] = ()
 
     @property
     def before(self) -> Fit:
@@ -94,10 +97,13 @@ class Diagnosis(ByValue):
     @property
     def missing(self) -> tuple[Candidate, ...]:
         """Effects that can be named, in the order added; none where the verdict is undecided."""
-        added = [r for r in self.rungs if r.added is not None]
-        if self.verdict != "effects_missing":
-            return ()
-        return tuple(r.added for r in added if r.added is not None)
+        return self.named if self.verdict == "effects_missing" else ()
+
+    @property
+    def unlikely(self) -> bool:
+        """Whether it is undecided only since no effect that explains most is probable enough."""
+        decided = verdict(self.rungs, self.floor, self.moment) == "effects_missing"
+        return self.verdict == "undecided" and decided
 
     @property
     def groups(self) -> tuple[tuple[Candidate, ...], ...]:
@@ -111,8 +117,8 @@ class Diagnosis(ByValue):
 
     @property
     def left(self) -> float:
-        """Error that is left, in noise floors."""
-        return self.after.check_error / self.floor.value if self.floor.value else float("inf")
+        """Error that is left, in noise floors: of the force or seen at the command, the larger."""
+        return floors_left(self.after, self.floor)
 
     def plot(self) -> Figure:
         """The figure: forces, residual over time, velocity and position, ladder (a Figure)."""
@@ -141,14 +147,25 @@ class Diagnosis(ByValue):
         return ladder_text(self)
 
 
+def floors_left(found: Fit, floor: NoiseFloor) -> float:
+    """Error that a model leaves on the check records, in noise floors, seen at the command too."""
+    if not (floor.value and math.isfinite(found.seen.error)):
+        return float("inf")
+    return max(found.check_error / floor.value, found.seen.error / floor.seen)
+
+
 def is_noise(check_error: float, floor: NoiseFloor) -> bool:
     """Whether so large an error on the check records counts as noise."""
     return check_error <= ADEQUATE * floor.value
 
 
 def is_adequate(found: Fit, floor: NoiseFloor) -> bool:
-    """Whether what a model leaves on the check records counts as noise."""
-    return is_noise(found.check_error, floor)
+    """Whether what a model leaves on the check records counts as noise, seen at the command too.
+
+    A model that is blind in much of the motion says too little to be adequate.
+    """
+    at_command = found.seen.error <= ADEQUATE * floor.seen and found.seen.blind <= BLIND
+    return is_noise(found.check_error, floor) and at_command
 
 
 def moment_above_noise(found: Fit, prepared: Prepared, floor: NoiseFloor) -> Moment | None:
@@ -160,9 +177,16 @@ def moment_above_noise(found: Fit, prepared: Prepared, floor: NoiseFloor) -> Mom
 
 
 def explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
-    """Part of the squares above the noise floor that the effects between the two explain."""
-    whole, left = before.check_error**2, after.check_error**2
-    return (whole - left) / max(whole - floor.value**2, 1e-300)
+    """Part of the squares above the noise floor that the effects between the two explain.
+
+    Of the force or seen at the command, the smaller part.
+    """
+    of_force = _taken_away(before.check_error, after.check_error, floor.value)
+    return min(of_force, _taken_away(before.seen.error, after.seen.error, floor.seen))
+
+
+def _taken_away(before: float, after: float, floor: float) -> float:
+    return (before**2 - after**2) / max(before**2 - floor**2, 1e-300)
 
 
 def verdict(rungs: Sequence[Rung], floor: NoiseFloor, moment: Moment | None = None) -> str:

@@ -12,12 +12,27 @@ from ..blocks import Value
 from ..by_value import ByValue
 from ..measurement.filtering import Array
 from ..model import Model
-from .force_error import Prepared, Stretch, folds, force_error, referred
+from .force_error import AtCommand, Prepared, Stretch, at_command, folds, force_error, referred
 from .least_squares import minimise
 from .scales import scales
 
 #: seconds over which residuals count as one observation in standard errors and tests
 BLOCK = 0.25
+
+
+@dataclass(frozen=True, eq=False)
+class Seen(ByValue):
+    """What a model leaves on the check records, seen at the command.
+
+    residual: of `Fit.check_residual`'s rows;  told: those of them that are not blind
+    error, blind, weak: as `AtCommand` has them
+    """
+
+    residual: Array
+    told: NDArray[np.bool_]
+    error: float
+    blind: float
+    weak: bool
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -27,6 +42,8 @@ class Fit(ByValue):
     fit_error, check_error: relative force errors; NaN where there is no such record
     fit_residual, check_residual: low-passed residuals on the rows that count, weighted, relative to
         the force that acts by the model (`referred`): what models are compared by
+    seen: what is left on the check records as an error of the recorded forces (`at_command`): an
+        effect must lower it too
     fit_blocks, check_blocks: number of the block of each of these rows
     jacobian: (rows, p) of fit_residual by `free`, in units of `scale`
     scale: (p,) SI value of the unit of each free parameter in `jacobian`
@@ -39,6 +56,7 @@ class Fit(ByValue):
     at_bound: tuple[str, ...]
     fit_residual: Array
     check_residual: Array
+    seen: Seen
     fit_blocks: NDArray[np.intp]
     check_blocks: NDArray[np.intp]
     jacobian: Array
@@ -125,8 +143,9 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = FINE) -> Fit:
     if check:
         parts = [v for v, _ in referred(fitted, check)]
         check_error = force_error(fitted, check)
+        seen = seen_on(fitted, check)
     else:
-        check, parts, check_error = _held_out(fitted, free, prepared)
+        check, parts, check_error, seen = _held_out(fitted, free, prepared)
     return Fit(
         model=fitted,
         free=free,
@@ -135,6 +154,7 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = FINE) -> Fit:
         at_bound=tuple(n for n, b in zip(free, solution.at_bound, strict=True) if b),
         fit_residual=solution.residual,
         check_residual=weighted(check, parts),
+        seen=seen,
         fit_blocks=blocks,
         check_blocks=block_numbers(check),
         jacobian=solution.jacobian,
@@ -142,20 +162,44 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = FINE) -> Fit:
     )
 
 
+def seen_on(model: Model, stretches: Sequence[Stretch]) -> Seen:
+    """What the model leaves on these stretches, seen at the command."""
+    found = at_command(model, stretches)
+    return _in_one(stretches, found)
+
+
+def _in_one(stretches: Sequence[Stretch], found: AtCommand) -> Seen:
+    told = np.concatenate(found.told) if found.told else np.zeros(0, dtype=bool)
+    residual = weighted(stretches, found.residual)
+    return Seen(residual, told, found.error, found.blind, found.weak)
+
+
 def _held_out(
     fitted: Model, free: tuple[str, ...], prepared: Prepared
-) -> tuple[tuple[Stretch, ...], list[Array], float]:
-    """Residuals of blocks of the fit records, each from a fit that has not seen it; the error."""
+) -> tuple[tuple[Stretch, ...], list[Array], float, Seen]:
+    """Residuals of blocks of the fit records, each from a fit that has not seen it; the errors."""
     held: list[Stretch] = []
     parts: list[Array] = []
-    squares = 0.0
-    for seen, unseen in folds(prepared.of("fit")):
-        solution = solve(fitted, free, prepared, seen, HELD_OUT)
+    seen: list[AtCommand] = []
+    squares = at_commands = 0.0
+    for known, unseen in folds(prepared.of("fit")):
+        solution = solve(fitted, free, prepared, known, HELD_OUT)
         model = fitted.with_values(dict(zip(free, solution.values, strict=True)))
         held += unseen
         parts += [v for v, _ in referred(model, unseen)]
-        squares += force_error(model, unseen) ** 2 * sum(s.measured for s in unseen)
-    return tuple(held), parts, float(np.sqrt(squares / sum(s.measured for s in held)))
+        seen.append(at_command(model, unseen))
+        measured = sum(s.measured for s in unseen)
+        squares += force_error(model, unseen) ** 2 * measured
+        at_commands += seen[-1].error ** 2 * measured
+    whole = sum(s.measured for s in held)
+    together = AtCommand(
+        tuple(r for one in seen for r in one.residual),
+        tuple(t for one in seen for t in one.told),
+        float(np.sqrt(at_commands / whole)),
+        float(np.mean([one.blind for one in seen])),
+        any(one.weak for one in seen),
+    )
+    return tuple(held), parts, float(np.sqrt(squares / whole)), _in_one(held, together)
 
 
 def solve(

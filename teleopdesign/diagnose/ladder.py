@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -25,13 +26,15 @@ from .diagnosis import (
 from .excerpt import excerpt
 from .exchange import best_exchange, rivals_of
 from .fit import Fit, estimate, fit_squares
-from .force_error import Prepared, force_error, prepare
+from .force_error import Prepared, at_command, force_error, prepare
 from .noise_floor import NoiseFloor, noise_floor
 from .outside_tone import Tone, acts_by_the_clock, best_tone
+from .probability import probable
 from .rank import (
     Ranking,
     check_squares,
     rank_candidates,
+    ranked,
 )
 from .reading_error import with_reading_error
 from .search import estimate_from_starts
@@ -119,13 +122,21 @@ def find_missing(
     read = with_reading_error(
         here, prepared, generator, adequate=lambda fit: is_adequate(fit, floor)
     )
-    rungs[-1] = replace(rungs[-1], fit=read)
-    moment = moment_above_noise(read, prepared, floor)
+    corrected = [*rungs[:-1], replace(rungs[-1], fit=read)]
+    if _first_rise(corrected) is None:
+        rungs = corrected
+    moment = moment_above_noise(rungs[-1].fit, prepared, floor)
     if long:
         say("errors on the whole records")
         rungs = [replace(r, fit=_on_all(r.fit, whole)) for r in rungs]
+        if len(steady := _without_rise(rungs)) < len(rungs):
+            rungs, here = steady, steady[-1].fit
     said = verdict(rungs, floor, moment)
-    return Diagnosis(experiment, whole, said, tuple(rungs), ranking, here, floor, moment)
+    found = Diagnosis(experiment, whole, said, tuple(rungs), ranking, here, floor, moment)
+    named = probable(found)
+    if said == "effects_missing" and not named:
+        return replace(found, verdict="undecided")
+    return replace(found, named=named)
 
 
 def _bounded(floor: NoiseFloor, here: Fit, ranking: Ranking) -> NoiseFloor:
@@ -134,7 +145,7 @@ def _bounded(floor: NoiseFloor, here: Fit, ranking: Ranking) -> NoiseFloor:
     Without what is missing a parameter may be led where sensor noise would ask for any force: what
     the records themselves leave shows that it does not.
     """
-    left = [here.check_error, *(r.fit.check_error for r in ranking.ranked if r.told)]
+    left = [here.check_error, *(r.fit.check_error for r in ranking.ranked if r.counts)]
     return replace(floor, value=min(floor.value, *left))
 
 
@@ -149,11 +160,11 @@ def _on_all(found: Fit, whole: Prepared) -> Fit:
     """A fit that was made on windows, with the errors that it has on the whole records."""
     fit_error = force_error(found.model, whole.of("fit"))
     check = whole.of("check")
-    return replace(
-        found,
-        fit_error=fit_error,
-        check_error=force_error(found.model, check) if check else found.check_error,
-    )
+    if not check:
+        return replace(found, fit_error=fit_error)
+    error, seen = force_error(found.model, check), at_command(found.model, check)
+    there = replace(found.seen, error=seen.error, blind=seen.blind, weak=seen.weak)
+    return replace(found, fit_error=fit_error, check_error=error, seen=there)
 
 
 def _pair(
@@ -175,7 +186,7 @@ def _pair(
     if is_adequate(here, floor):
         return []
     found: list[list[Rung]] = []
-    trials = [r for r in ranking.ranked if r.told and fit_squares(r.fit) < fit_squares(here)]
+    trials = [r for r in ranking.ranked if r.counts and fit_squares(r.fit) < fit_squares(here)]
     for first in trials[:TRIED]:
         again = rank_candidates(first.fit, prepared, among=among, stated=stated, progress=say)
         second = next((r for r in again.ranked if is_supported(first.fit, r, floor)), None)
@@ -186,7 +197,8 @@ def _pair(
             Rung(second.candidate, second.fit, again, equals_of(second, again, first.fit, floor)),
         ]
         if _stands(here, rungs, prepared, floor):
-            found.append(rungs)
+            falling = _falling([base, *rungs], prepared)
+            found += [falling[1:]] if falling else []
     return min(found, key=lambda rungs: check_squares(rungs[-1].fit), default=[])
 
 
@@ -205,7 +217,7 @@ def _settling_pair(
     first = rungs[1].ranking if len(rungs) > 1 else None
     if first is None or is_adequate(rungs[-1].fit, floor):
         return []
-    told = [r.candidate for r in first.ranked if r.told]
+    told = [r.candidate for r in first.ranked if r.counts]
     pair = _pair(rungs[0], first, prepared, floor, stated, say, told)
     return [rungs[0], *pair] if pair and is_adequate(pair[-1].fit, floor) else []
 
@@ -250,7 +262,8 @@ def _exchanged(
     equals = equals_of(best, found.ranking, found.without, floor)
     taken = Rung(best.candidate, best.fit, found.ranking, equals)
     kept = [r for r in rungs if r.added is not found.dropped]
-    return _pruned(_refitted([*kept, taken], taken.fit, prepared), prepared, floor)
+    changed = _falling(_refitted([*kept, taken], taken.fit, prepared), prepared)
+    return _pruned(changed, prepared, floor) if changed else []
 
 
 def _said(say: Callable[[str], None], before: str, text: str) -> None:
@@ -268,8 +281,50 @@ def _pruned(rungs: list[Rung], prepared: Prepared, floor: NoiseFloor) -> list[Ru
         except ModelError:
             continue  # another effect needs it
         if not is_better(without, last.fit, floor):
-            return _refitted([r for r in rungs if r is not rung], without, prepared)
+            fewer = [r for r in rungs if r is not rung]
+            return _falling(_refitted(fewer, without, prepared), prepared) or rungs
     return rungs
+
+
+def _first_rise(rungs: Sequence[Rung]) -> int | None:
+    """The first rung that leaves more on the check records than the one before it."""
+    rises = (later.fit.check_error > rung.fit.check_error for rung, later in pairwise(rungs))
+    return next((i for i, rises_here in enumerate(rises, 1) if rises_here), None)
+
+
+def _falling(rungs: list[Rung], prepared: Prepared) -> list[Rung]:
+    """The rungs in an order in which the check error falls with each; none where none is found.
+
+    A rung that leaves more than the one before it was masked by what follows it: the two change
+    places.
+    """
+    for _ in rungs:
+        rise = _first_rise(rungs)
+        if rise is None:
+            return rungs
+        if rise + 1 == len(rungs):
+            return []
+        masked, masking = rungs[rise], rungs[rise + 1]
+        assert masked.added is not None and masking.added is not None
+        before, (name, at) = rungs[rise - 1].fit, masked.added.key
+        try:
+            alone = estimate(masking.fit.model.without_effect(name, at=at), prepared)
+        except ModelError:
+            return []  # the second needs the first
+        first = Rung(masking.added, alone, _ranked_alone(before, masking.added, alone))
+        second = Rung(masked.added, masking.fit, _ranked_alone(alone, masked.added, masking.fit))
+        rungs = [*rungs[:rise], first, second, *rungs[rise + 2 :]]
+    return []
+
+
+def _ranked_alone(base: Fit, candidate: Candidate, found: Fit) -> Ranking:
+    """The ranking of one candidate that was fitted already."""
+    return Ranking(base, (ranked(base, candidate, found),))
+
+
+def _without_rise(rungs: list[Rung]) -> list[Rung]:
+    """The rungs up to the first that leaves more than the one before it."""
+    return rungs[: _first_rise(rungs)]
 
 
 def _refitted(rungs: list[Rung], last: Fit, prepared: Prepared) -> list[Rung]:

@@ -17,7 +17,7 @@ from ..by_value import ByValue
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motion_of
 from ..model import Model
-from .force_error import Prepared, Stretch, error_of, residuals
+from .force_error import Prepared, Stretch, at_command, error_of, residuals
 from .sensors import sensor_of
 
 #: records drawn anew per floor; its spread from draw to draw is a few percent
@@ -29,6 +29,8 @@ class NoiseFloor(ByValue):
     """The floor as a relative force error, and where its numbers come from.
 
     drawn: what the readings drawn anew left;  value: what counts of it
+    at_command: what sensors leave seen at the command (`force_error.at_command`), over what they
+        leave of the force: 1 where nothing stands between
     held: kept below what this model makes of sensor errors, or what it leaves would hide in them
     """
 
@@ -36,6 +38,12 @@ class NoiseFloor(ByValue):
     source: str
     drawn: float
     held: bool = False
+    at_command: float = 1.0
+
+    @property
+    def seen(self) -> float:
+        """The floor of the error seen at the command."""
+        return self.value * self.at_command
 
     @property
     def counted(self) -> float:
@@ -57,13 +65,19 @@ def noise_floor(
     channels = prepared.experiment.channels
     stated = all(channels[f"{s.motion.body}.position"].resolution is not None for s in stretches)
     errors, before = [], residuals(model, stretches)
+    seen, seen_before = [], at_command(model, stretches).residual
     for _ in range(DRAWS):
         drawn = [_drawn(s, prepared, generator) for s in stretches]
         pairs = zip(residuals(model, drawn), before, strict=True)
         errors.append(error_of(drawn, [r - r0 for (r, _), (r0, _) in pairs]))
+        again = zip(at_command(model, drawn).residual, seen_before, strict=True)
+        seen.append(error_of(drawn, [r - r0 for r, r0 in again]))
     source = "stated resolution and noise" if stated else "step and noise seen in the readings"
     left = float(np.sqrt(np.mean(np.square(errors))))
-    return NoiseFloor(left, source, drawn=left)
+    back = float(np.sqrt(np.mean(np.square(seen)))) / left if left else 1.0
+    # a law that weakens what it passes makes more of sensor noise, one that amplifies it less; what
+    # counts as noise is never less than what sensors leave of the force
+    return NoiseFloor(left, source, drawn=left, at_command=max(back, 1.0))
 
 
 def _drawn(stretch: Stretch, prepared: Prepared, generator: np.random.Generator) -> Stretch:

@@ -42,7 +42,7 @@ def worst_moment(found: Fit, prepared: Prepared, floor: NoiseFloor) -> Moment | 
     if not stretches or not floor.value:
         return None
     numbers = block_numbers(stretches)
-    squares = np.bincount(numbers, found.check_residual**2)
+    squares = np.bincount(numbers, found.seen.residual**2)
     rows = np.bincount(numbers)
     lengths = [len(s.keep) for s in stretches]
     whose = np.repeat(np.arange(len(stretches)), lengths)
@@ -55,7 +55,7 @@ def worst_moment(found: Fit, prepared: Prepared, floor: NoiseFloor) -> Moment | 
     worst = int(np.argmax(pairs))
     rest = 1.0 - pairs[worst] / squares.sum()
     others = 1.0 - (rows[worst] + rows[worst + 1]) / rows.sum()
-    without = found.check_error / floor.value * float(np.sqrt(rest / others))
+    without = found.seen.error / floor.seen * float(np.sqrt(rest / others))
     stretch = stretches[of_block[worst]]
     inside = (numbers == worst) | (numbers == worst + 1)
     motion = stretch.motion

@@ -13,14 +13,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .candidates import Candidate
 from .diagnosis import ADEQUATE, Diagnosis, Rung
 from .evidence import chance
 from .rank import Ranked, Ranking
+from .support import displaced
 
 #: of 74 effects that were accepted with nothing but noise left, 73 were true: (73 + 1)/(74 + 2)
 TRUE_OF_ACCEPTED = 0.97
 #: of 31 best candidates that were not accepted none was true: 1/33
 TRUE_OF_OTHERS = 0.03
+#: probability from which an effect is said to be missing: what is less likely than not is not named
+NAMED = 0.5
 
 
 @dataclass(frozen=True)
@@ -75,12 +79,24 @@ def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
     return found
 
 
+def probable(diagnosis: Diagnosis) -> tuple[Candidate, ...]:
+    """The accepted effects that are at least as likely as not, in the order added."""
+    found = {
+        one.ranked.candidate.key: one.probability()
+        for one in evidence_of(diagnosis)
+        if one.accepted
+    }
+    added = [r.added for r in diagnosis.rungs if r.added is not None]
+    return tuple(c for c in added if found[c.key] >= NAMED)
+
+
 def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
     """Share of each candidate in what the ranking cannot tell apart; they sum to one.
 
-    What was accepted shares with those as good as it; a candidate that takes the place of an effect
-    that is there has no part.
+    What was accepted shares with those as good as it. A candidate that takes the place of an effect
+    that is there has no part, nor has one that was not accepted and drives anything to a bound.
     """
+    accepted = rung is not None and rung.added is not None
     if rung is not None and rung.added is not None:
         alike = {c.key for c in (rung.added, *rung.equals)}
         first = next(r.behind for r in ranking.ranked if r.candidate.key == rung.added.key)
@@ -90,7 +106,10 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
     bound = set(ranking.base.at_bound)
     weights = {}
     for r in ranking.ranked:
-        serious = r.told and r.candidate.key in alike and not set(r.fit.at_bound) - bound
+        driven = set(r.fit.at_bound) - bound
+        # what was accepted may have a parameter of its own at a bound: it was supported so
+        beside = not displaced(ranking.base, r.fit) if accepted else not driven
+        serious = r.counts and r.candidate.key in alike and beside
         weights[r.candidate.key] = (
             math.exp(-0.5 * max(r.behind - first, 0.0) ** 2) if serious else 0.0
         )

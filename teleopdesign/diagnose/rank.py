@@ -25,6 +25,7 @@ class Ranked(ByValue):
     score: how surely it lowers the error on the check records (standard deviations)
     behind: how surely the best candidate has the smaller error on all records; 0 for the best
     told: its parameters are determined, and told from those of the model it was added to
+    refused: why it does not count though it may leave less force (a key of `REFUSALS`), or ""
     """
 
     candidate: Candidate
@@ -32,13 +33,19 @@ class Ranked(ByValue):
     score: float
     behind: float
     told: bool
+    refused: str = ""
+
+    @property
+    def counts(self) -> bool:
+        """Whether the records can speak for it: told, and not refused."""
+        return self.told and not self.refused
 
     @property
     def note(self) -> str:
         """What is to be said beside the numbers; "" where nothing is."""
         if self.candidate.key in self.fit.model.absent:
             return "gains nothing"
-        return "" if self.told else "not determined"
+        return REFUSALS.get(self.refused, "" if self.told else "not determined")
 
     def __repr__(self) -> str:
         return f"Ranked {self.candidate}: score {self.score:.1f}, behind {self.behind:.1f}"
@@ -86,6 +93,55 @@ def check_squares(found: Fit) -> float:
 def check_score(before: Fit, after: Fit) -> float:
     """How surely `after` has the smaller error on the check records."""
     return gain_score(before.check_residual, after.check_residual, after.check_blocks)
+
+
+def seen_score(before: Fit, after: Fit) -> float:
+    """How surely `after` has the smaller error on the check records, seen at the command.
+
+    On the rows that both can tell: what a model is blind to speaks for neither.
+    """
+    rows = before.seen.told & after.seen.told
+    return gain_score(
+        before.seen.residual[rows], after.seen.residual[rows], after.check_blocks[rows]
+    )
+
+
+def seen_gain(before: Fit, after: Fit) -> float:
+    """Part of the squares seen at the command that `after` takes away, on rows that both tell.
+
+    No more than the error itself says of each model on its own rows: to be blind to where most is
+    left is no gain.
+    """
+    rows = before.seen.told & after.seen.told
+    whole, left = (float(np.sum(f.seen.residual[rows] ** 2)) for f in (before, after))
+    own = 1.0 - (after.seen.error / before.seen.error) ** 2
+    return min(own, 1.0 - left / whole) if whole > 0.0 else 0.0
+
+
+#: share of the samples where the body slides that may be blind: of more, a model says too little
+BLIND = 0.25
+#: part of the squares before from which a gain counts: less is no answer to where a model fails
+RELEVANT = 0.03
+#: reasons for which an effect does not count, in words
+REFUSALS = {
+    "blind": "the command has no influence in more than a quarter of the motion",
+    "weak": "the actuator could not give what the model needs to slide",
+    "hides": "explains no more of the command: less force acts, and so less is left",
+}
+
+
+def refusal(base: Fit, other: Fit) -> str:
+    """Why what was added to `base` does not count (a key of `REFUSALS`); "" where nothing bars it.
+
+    What makes the recorded force unpredictable has not explained it.
+    """
+    already = base.seen.blind if base.seen.blind > BLIND else 0.0
+    if other.seen.blind - already > BLIND:
+        return "blind"
+    if other.seen.weak and not base.seen.weak:
+        return "weak"
+    less = check_squares(other) < (1.0 - RELEVANT) * check_squares(base)
+    return "hides" if less and not seen_gain(base, other) > RELEVANT else ""
 
 
 def whole_score(before: Fit, after: Fit) -> float:
@@ -225,19 +281,33 @@ def rank_candidates(
     fits = in_threads(tried, sorted(possible, key=lambda c: not c.effect.states))
     fits.sort(key=lambda cf: possible.index(cf[0]))
     fits = in_threads(lambda cf: _from_kin(cf, fits, prepared), fits)
-    leading = (1.0 + CONTENDING) * min((fit_squares(f) for _, f in fits), default=0.0)
+    # one that does not count is no measure of what others must reach
+    counted = [f for _, f in fits if not refusal(base, f)] or [f for _, f in fits]
+    leading = (1.0 + CONTENDING) * min((fit_squares(f) for f in counted), default=0.0)
     worthless = (1.0 - worth) * fit_squares(base)
     fits = in_threads(lambda cf: _refined(cf, leading, worthless, prepared, stated), fits)
     told = {c.key: is_told(f, base) for c, f in fits}
-    fits.sort(key=lambda cf: (not told[cf[0].key], check_squares(cf[1])))
-    ranked = [
-        Ranked(
-            candidate=c,
-            fit=f,
-            score=check_score(base, f),
-            behind=whole_score(f, fits[0][1]) if i else 0.0,
-            told=told[c.key],
-        )
-        for i, (c, f) in enumerate(fits)
-    ]
-    return Ranking(base, tuple(ranked))
+    refused = {c.key: refusal(base, f) for c, f in fits}
+
+    def place(tried: tuple[Candidate, Fit]) -> tuple[bool, float]:
+        key = tried[0].key
+        return not told[key] or bool(refused[key]), check_squares(tried[1])
+
+    fits.sort(key=place)
+    found = [ranked(base, c, f, fits[0][1] if i else None) for i, (c, f) in enumerate(fits)]
+    return Ranking(base, tuple(found))
+
+
+def ranked(base: Fit, candidate: Candidate, found: Fit, best: Fit | None = None) -> Ranked:
+    """A candidate as a ranking has it.
+
+    best: fit of the candidate that the ranking begins with; None: this one
+    """
+    return Ranked(
+        candidate=candidate,
+        fit=found,
+        score=check_score(base, found),
+        behind=whole_score(found, best) if best is not None else 0.0,
+        told=is_told(found, base),
+        refused=refusal(base, found),
+    )

@@ -7,7 +7,17 @@ from .diagnosis import is_adequate
 from .evidence import chance
 from .fit import Fit
 from .noise_floor import NoiseFloor
-from .rank import Ranked, Ranking, check_score, check_squares, whole_score
+from .rank import (
+    RELEVANT,
+    Ranked,
+    Ranking,
+    check_score,
+    check_squares,
+    refusal,
+    seen_gain,
+    seen_score,
+    whole_score,
+)
 from .search import WORTH
 
 #: a gain counts from this many standard deviations of its chance part, or, where it makes an
@@ -16,8 +26,6 @@ SURE, BY_CHANCE = 4.0, 0.01
 #: ... and from this part of the noise floor's square: while a body is stuck or turns, its friction
 #: is known no better than that, and less may be the method's own
 OF_FLOOR = 0.5
-#: ... and from this part of the squares before: less is no answer to where a model fails
-RELEVANT = 0.03
 #: candidates that lie closer than this (standard deviations) explain the record equally well
 CLOSE = 3.0
 
@@ -30,17 +38,22 @@ def is_supported(base: Fit, ranked: Ranked, floor: NoiseFloor) -> bool:
     needs a parameter of its own at its bound is itself another effect, unless it leaves noise only.
     """
     driven = set(ranked.fit.at_bound) - set(base.at_bound)
-    displaced = [n for n in driven if n in base.model.parameters]
     own = [n for n in driven if n not in base.model.parameters]
     return (
         ranked.told
-        and not any(_is_there(base, name) for name in displaced)
+        and not displaced(base, ranked.fit)
         and (
             all(ranked.fit.model.declared(n).optional for n in own)
             or _settles(base, ranked.fit, floor)
         )
         and is_better(base, ranked.fit, floor)
     )
+
+
+def displaced(base: Fit, found: Fit) -> list[str]:
+    """Parameters driven to a bound whose effect the records tell from its absence in the base."""
+    driven = set(found.at_bound) - set(base.at_bound)
+    return sorted(n for n in driven if n in base.model.parameters and _is_there(base, n))
 
 
 def _settles(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
@@ -56,10 +69,23 @@ def _is_there(base: Fit, name: str) -> bool:
 
 
 def is_better(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
-    """Whether `other` has the smaller check error by more than chance and by enough to matter."""
+    """Whether `other` has the smaller check error by more than chance and by enough to matter.
+
+    In both figures: of the force, and seen at the command, where less force acting gains nothing.
+    A force that is only smaller relative to what acts is no gain either.
+    """
     before = check_squares(base)
-    gain = (before - check_squares(other)) / before
-    score = check_score(base, other)
+    of_force = (before - check_squares(other)) / before
+    return (
+        not refusal(base, other)
+        and other.check_error < base.check_error
+        and _is_enough(base, other, of_force, check_score(base, other), floor)
+        and _is_enough(base, other, seen_gain(base, other), seen_score(base, other), floor)
+    )
+
+
+def _is_enough(base: Fit, other: Fit, gain: float, score: float, floor: NoiseFloor) -> bool:
+    """Whether so large a part of the squares, gained with this score, is more than chance."""
     return (
         (score > SURE or _settles(base, other, floor))
         and gain > RELEVANT

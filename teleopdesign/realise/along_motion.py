@@ -14,7 +14,7 @@ from the same sympy law. Hidden states advance exactly where their rate is affin
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -33,6 +33,22 @@ from .traced import TRACED, Law, Probe, Traced, law_of, through
 _MOTION = ("time", "position", "velocity", "acceleration")
 #: parts of a row over which a command that acts late is averaged
 PARTS = 4
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A stage of the actuation along a motion: what goes in, what comes out, hidden states between.
+
+    law: on symbols, its delayed signals as symbols of their own;  delays: those symbols -> s
+    given: symbols -> signals over `parts` equal parts of each row;  output: as long
+    """
+
+    effect: Effect
+    law: sp.Expr
+    delays: Mapping[sp.Symbol, float]
+    given: Mapping[sp.Symbol, Traced]
+    parts: int
+    output: Traced
 
 
 @dataclass(frozen=True)
@@ -151,17 +167,32 @@ def _present(body: Body, role: Role, values: Mapping[Any, float]) -> list[Effect
 def _acting(
     body: Body, motion: Motion, command: Traced, values: Mapping[Any, float], columns: list[Any]
 ) -> Traced:
-    """Acting force at the rows: each stage on averages over the hold of a row, or over parts of it.
+    """Acting force at the rows."""
+    stages = stages_along(body, motion, command, values, columns)
+    return through(motion.at_rows, stages[-1].output if stages else command)
+
+
+def stages_along(
+    body: Body,
+    motion: Motion,
+    command: Traced,
+    values: Mapping[Any, float],
+    columns: list[Any],
+) -> list[Stage]:
+    """Each stage of the actuation, on averages over the hold of a row, or over parts of it.
 
     What is late turns edges of the staircase into something between the rows.
+    command: at the rows (n);  values: of the body's parameters, by symbol
     """
-    stages = _present(body, "actuation", values)
-    parts = PARTS if any(e.states or e.expression().has(delayed) for e in stages) else 1
-    stage = Traced(np.repeat(command.value, parts), np.repeat(command.tangent, parts, axis=1))
+    effects = _present(body, "actuation", values)
+    parts = PARTS if any(e.states or e.expression().has(delayed) for e in effects) else 1
+    signal = Traced(np.repeat(command.value, parts), np.repeat(command.tangent, parts, axis=1))
     along = {name: np.repeat(getattr(motion, name), parts) for name in _MOTION}
-    for effect in stages:
-        stage = _stage(effect, along, motion.sample_time / parts, stage, values, columns)
-    return through(motion.at_rows, stage)
+    stages: list[Stage] = []
+    for effect in effects:
+        stages.append(_stage(effect, along, motion.sample_time / parts, signal, values, columns))
+        signal = stages[-1].output
+    return [replace(stage, parts=parts) for stage in stages]
 
 
 def _stage(
@@ -171,7 +202,7 @@ def _stage(
     command: Traced,
     values: Mapping[Any, float],
     columns: list[Any],
-) -> Traced:
+) -> Stage:
     """A stage of the actuation, as averages over each step (s) of its command."""
     law = effect.expression()
     zero = np.zeros_like(command.tangent)
@@ -179,17 +210,20 @@ def _stage(
         SIGNALS["command"]: command
     }
     extra: list[sp.Symbol] = []
+    delays: dict[sp.Symbol, float] = {}
     for i, call in enumerate(sorted(law.atoms(delayed), key=str)):
         symbol = sp.Symbol(f"delayed_{i}", real=True)
         law = law.subs(call, symbol)
         given[symbol] = _shifted(command, call.args[1], values, columns, step)
+        delays[symbol] = max(float(call.args[1].subs(values)), 0.0)
         extra.append(symbol)
     if effect.states:
         outputs = stage_scan(effect, given, values, columns, step)
         given |= outputs
         extra += outputs
     signals = (*SIGNALS.values(), *extra)
-    return law_of(law, signals, TRACED | set(extra))(given, values, columns)
+    output = law_of(law, signals, TRACED | set(extra))(given, values, columns)
+    return Stage(effect, law, delays, given, 1, output)
 
 
 def _shifted(
@@ -226,6 +260,13 @@ def _level(
         else:
             speeds |= driven_scan(effect, given, values, columns, motion.sample_time)
     return level, speeds
+
+
+def level_along(
+    body: Body, motion: Motion, given: Mapping[Any, Traced], values: Mapping[Any, float]
+) -> tuple[sp.Expr, dict[Any, Traced]]:
+    """The friction level on symbols, and along the motion the hidden speeds that it follows."""
+    return _level(body, motion, given, values, [])
 
 
 def _law_of_level(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..diagnose import Diagnosis
-from ..diagnose.answer import answer
+from ..diagnose.answer import answer, seen_text
 from ..diagnose.diagnosis import Rung
 from ..diagnose.rank import Ranked, Ranking
 from .words import step_name
@@ -13,7 +13,10 @@ from .words import step_name
 
 @dataclass(frozen=True)
 class LadderRow:
-    """One rung; errors are relative to the measured force, floors are noise floors."""
+    """One rung; errors are relative to the measured force, floors are noise floors.
+
+    seen: the error seen at the command and the blind share in words, where they say more
+    """
 
     name: str
     brief: str
@@ -21,6 +24,7 @@ class LadderRow:
     check_error: float
     floors: float
     alike: tuple[str, ...] = ()
+    seen: str | None = None
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,7 @@ def ladder_rows(diagnosis: Diagnosis) -> tuple[LadderRow, ...]:
             check_error=r.fit.check_error,
             floors=r.fit.check_error / floor if floor else float("inf"),
             alike=tuple(map(str, r.equals)),
+            seen=seen_text(r.fit),
         )
         for r in diagnosis.rungs
     )
@@ -65,7 +70,10 @@ def candidate_rows(diagnosis: Diagnosis) -> tuple[CandidateRow, ...]:
     done: dict[tuple[str, str], list[Tried | None]] = {}
     for i, (rung, ranking) in enumerate(rankings):
         for ranked in ranking.ranked:
-            tried = Tried(ranked.fit.check_error, ranked.score, _outcome(rung, ranking, ranked))
+            outcome = _outcome(rung, ranking, ranked)
+            # what was added may have been fitted again since: one error for one model
+            fit = rung.fit if rung is not None and outcome == "added" else ranked.fit
+            tried = Tried(fit.check_error, ranked.score, outcome)
             done.setdefault(ranked.candidate.key, [None] * len(rankings))[i] = tried
     accepted = [r.added.key for r, _ in steps if r.added is not None]
     rows = [
@@ -91,6 +99,8 @@ def _outcome(rung: Rung | None, ranking: Ranking, ranked: Ranked) -> str:
         return "as good"
     if key in ranked.fit.model.absent:
         return "no gain"
+    if ranked.refused:
+        return ranked.refused
     if not ranked.told:
         return "open"
     return "displaces" if set(ranked.fit.at_bound) - set(ranking.base.at_bound) else ""

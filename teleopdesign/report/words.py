@@ -103,11 +103,22 @@ def verdict(diagnosis: Diagnosis) -> str:
             f"sensor noise alone would leave {floor}." + (f" {rest}" if moment is not None else "")
         )
     if diagnosis.verdict == "effects_missing":
-        return f"Your model lacks {listed(added)}. With {_it(added)}, {fell}. {rest}"
+        named = [step_name(r) for r in diagnosis.rungs if r.added in diagnosis.missing]
+        less = [step_name(r) for r in diagnosis.rungs[1:] if r.added not in diagnosis.missing]
+        others = (
+            f" {listed(less)} helps, but is less likely than not what is missing." if less else ""
+        )
+        return f"Your model lacks {listed(named)}. With {_it(added)}, {fell}.{others} {rest}"
     if not added:
         return (
             f"Undecided: something is missing, but no effect that was tried explains it. The force "
             f"error is {percent(after)}, {left} times what sensor noise alone would leave."
+        )
+    if diagnosis.unlikely:
+        each = "it is" if len(added) == 1 else "each is"
+        return (
+            f"Undecided: with {listed(added)} {fell}, but {each} less likely than not what is "
+            f"missing. {rest}"
         )
     if all(r.equals for r in diagnosis.rungs[1:]):
         names = listed(added)

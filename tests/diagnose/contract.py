@@ -2,6 +2,12 @@
 
 import math
 
+PLACE = ("effect", "at")
+LADDER = {"added", "fit_error", "check_error", "check_error_at_command", "blind"}
+CANDIDATE = {
+    "effect", "at", "probability", "check_error", "check_error_at_command", "blind", "refused",
+    "parameters",
+}  # fmt: skip
 VERDICTS = ("effects_missing", "model_adequate", "undecided")
 
 
@@ -37,19 +43,35 @@ def violations(answer, places=("device",)):
     need(len(set(keys)) == len(keys), "missing: the same effect twice")
     need(len(ladder) >= 1 and ladder[0]["added"] is None, "ladder: begins with the user's model")
     for row in ladder:
-        need(set(row) == {"added", "fit_error", "check_error"}, "ladder: keys of a row")
+        need(set(row) == LADDER, "ladder: keys of a row")
         need(row["added"] is None or is_place(row["added"]), "ladder: added")
         need(is_number(row["fit_error"], 0, 1e6), "ladder: fit_error")
         need(is_number(row["check_error"], 0, 1e6), "ladder: check_error")
-    need(
-        all(r["added"] in missing for r in ladder[1:]) or verdict == "undecided", "ladder, missing"
-    )
+        seen = row["check_error_at_command"]
+        need(seen is None or is_number(seen, 0, 1e6), "ladder: check_error_at_command")
+        need(is_number(row["blind"], 0, 1), "ladder: blind")
+    errors = [row["check_error"] for row in ladder]
+    need(errors == sorted(errors, reverse=True), "ladder: a rung leaves more than the one before")
+    need(answer["blind"] == ladder[-1]["blind"], "blind")
+    added = [row["added"] for row in ladder[1:]]
+    need(all(d in added for d in missing), "missing: what the ladder has not added")
+    said = {(c["effect"], c["at"]): c["probability"] for c in answer["candidates"]}
+    need(all(said[key] >= 0.5 for key in keys), "missing: less likely than not")
+    likely = [d for d in added if said[d["effect"], d["at"]] >= 0.5]
+    need(missing == likely or verdict == "undecided", "missing: a likely one is left out")
+    for row in ladder[1:]:
+        same = [c for c in answer["candidates"] if row["added"] == {k: c[k] for k in PLACE}]
+        need(
+            all(c["check_error"] == row["check_error"] for c in same),
+            "one model, two errors: " + str(row["added"]),
+        )
     need(is_number(answer["noise_floor"], 0, 1e6), "noise_floor")
     probabilities = [c["probability"] for c in answer["candidates"]]
     need(all(is_number(p, 0, 1) for p in probabilities), "candidates: probability")
     need(probabilities == sorted(probabilities, reverse=True), "candidates: best first")
     for c in answer["candidates"]:
-        need(set(c) == {"effect", "at", "probability", "check_error", "parameters"}, "candidate")
+        need(set(c) == CANDIDATE, "candidate")
+        need(c["refused"] is None or isinstance(c["refused"], str), "candidate: refused")
         need(is_place({"effect": c["effect"], "at": c["at"]}), "candidate: place")
         need(c["parameters"] and are_parameters(c["parameters"]), "candidate: parameters")
     for group in answer["indistinguishable"]:

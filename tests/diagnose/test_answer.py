@@ -14,10 +14,13 @@ from teleopdesign import Model, compare, find_missing
 from teleopdesign.diagnose.answer import (
     answer,
     ladder_text,
+    seen_text,
     write_answer,
     write_predictions,
 )
+from teleopdesign.diagnose.ladder import _first_rise, _without_rise
 from teleopdesign.diagnose.probability import shares
+from teleopdesign.diagnose.rank import REFUSALS
 
 EVERY_KEY = {
     "verdict", "missing", "ladder", "noise_floor", "candidates", "indistinguishable",
@@ -35,6 +38,38 @@ def written(diagnosis, tmp_path_factory):
 def test_the_answer_file_keeps_the_format(written):
     assert set(written) >= EVERY_KEY
     assert violations(written) == []
+
+
+def test_what_is_less_likely_than_not_is_not_named(diagnosis):
+    unlikely = replace(diagnosis, verdict="undecided", named=())
+    assert unlikely.unlikely and not diagnosis.unlikely
+    assert answer(unlikely)["missing"] == []
+    # the leading candidate is still shown
+    assert answer(unlikely)["candidates"][0]["effect"] == "stribeck"
+    assert "less likely than not" in ladder_text(unlikely)
+
+
+def test_a_ladder_ends_before_a_rung_that_leaves_more(diagnosis):
+    rungs = list(diagnosis.rungs)
+    worse = replace(rungs[-1], fit=replace(rungs[-1].fit, check_error=2 * rungs[0].fit.check_error))
+    assert _first_rise(rungs) is None and _without_rise(rungs) == rungs
+    assert _first_rise([*rungs, worse]) == len(rungs)
+    assert _without_rise([*rungs, worse]) == rungs
+
+
+def test_the_error_seen_at_the_command_is_told_where_it_differs(diagnosis):
+    after = diagnosis.after
+    assert seen_text(after) is None  # nothing stands between command and force
+    less = replace(after.seen, error=2 * after.check_error, blind=0.1)
+    said = f"{200 * after.check_error:.2f} %, blind in 10 % of the motion"
+    assert seen_text(replace(after, seen=less)).endswith(said)
+    last = diagnosis.last
+    first = replace(
+        last.ranked[0], refused="blind", fit=replace(after, check_error=0.5 * after.check_error)
+    )
+    refused = replace(diagnosis, last=replace(last, ranked=(first, *last.ranked[1:])))
+    text = ladder_text(refused)
+    assert f"refused: {first.candidate}" in text and REFUSALS["blind"] in text
 
 
 def test_the_answer_says_what_the_diagnosis_found(written, diagnosis):

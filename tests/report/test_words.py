@@ -86,5 +86,14 @@ def test_an_adequate_model_and_an_unexplained_rest_are_said_as_such(diagnosis):
 
 
 def test_effects_that_help_too_little_are_said_to(diagnosis):
-    text = verdict(replace(diagnosis, verdict="undecided"))
+    first, second = diagnosis.rungs
+    little = replace(second.fit, check_error=0.9 * first.fit.check_error)
+    rungs = (first, replace(second, fit=little))
+    text = verdict(replace(diagnosis, verdict="undecided", rungs=rungs, named=()))
     assert "stribeck at device helps, but explains less than half" in text
+
+
+def test_effects_that_explain_most_but_are_unlikely_are_said_to(diagnosis):
+    text = verdict(replace(diagnosis, verdict="undecided", named=()))
+    assert text.startswith("Undecided: with stribeck at device the force error")
+    assert "less likely than not" in text

@@ -84,6 +84,7 @@ def restored(
         estimated=evaluated(steps.estimated, prepared),
         floor=_floor(content),
         moment=_moment(content.get("one_moment")),
+        named=tuple(c for c in steps.added if c is not None and _place(c) in content["missing"]),
         open=tuple(
             OpenQuestion(added, tuple((c, evaluated(m, prepared)) for c, m in others))
             for added, others in steps.open
@@ -163,6 +164,11 @@ def _in_model(
         if not there:
             raise ExperimentError(f"{saved.file}: {key}: {candidate}: its model has no such effect")
     return candidate
+
+
+def _place(candidate: Candidate) -> dict[str, str]:
+    effect, at = candidate.key
+    return {"effect": effect, "at": at}
 
 
 def _error(told: float | None) -> float:

@@ -67,7 +67,7 @@ def open_questions(diagnosis: Diagnosis) -> tuple[OpenQuestion, ...]:
         return diagnosis.open
     found = [_of_rung(diagnosis, rung) for rung in diagnosis.rungs if rung.added is not None]
     if diagnosis.verdict == "undecided":
-        told = [r for r in diagnosis.last.ranked if r.told and r.score > 0.0]
+        told = [r for r in diagnosis.last.ranked if r.counts and r.score > 0.0]
         others = tuple((r.candidate, r.fit) for r in told[: MOST - 1])
         found.append(OpenQuestion(None, others))
     return tuple(q for q in found if q.others)

@@ -17,7 +17,8 @@ from ...measurement.filtering import Array
 from ..evidence import chance, gain_score
 from ..force_error import FOLDS
 from ..least_squares import solve_normal
-from ..support import OF_FLOOR, RELEVANT, SURE
+from ..rank import RELEVANT
+from ..support import OF_FLOOR, SURE
 from .rows import Rows
 from .shapes import SHAPES, Shape, columns_of, knots_of, roughness
 from .waves import wave_number

@@ -1,0 +1,302 @@
+"""A residual force as an error of the recorded command: mapped back through the model's actuation.
+
+    gain g: r / g     lag: (1 + tau s) r     delay: r, earlier by it     ripple: r / (1 + r sin ...)
+
+Nothing here knows an effect. Each law between the command and what moves the body is linearised
+along the motion by its own derivatives: the stages of the actuation, friction that the acting force
+makes, forces that depend on it. A law then is a gain, sample by sample, of a command held for good,
+times dynamics that are 1 at rest, with coefficients at their mean along the motion:
+
+    H(s) = law_command + law_delayed e^(-s delay) + law_state (s - rate_state)^-1 rate_command
+
+The residual is divided by both. Where a gain is next to none the command has no influence: blind.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from ..blocks import Body
+from ..effects import SIGNALS, Effect
+from ..measurement.filtering import Array
+from ..measurement.motion import Motion
+from .along_motion import Residual, Stage, level_along, residual_along, stages_along
+from .traced import Traced
+
+#: part of the gain that a law has where it has most, below which a sample is blind. A command ten
+#: times as uncertain as elsewhere is not told; of a larger part a ripple or a soft limit would be
+#: called blind that still tells
+SLIGHT = 0.1
+#: dynamics are divided by no less than this part of what they are at rest: rounding, not physics
+LEAST = 1e-3
+#: commands, as multiples of the largest recorded, at which the strongest force of an actuator is
+#: sought: a law may be strongest for a small command
+COMMANDS = tuple(10.0 ** (0.25 * k) for k in range(-6, 13))
+
+_COMMAND, _ACTING = SIGNALS["command"], SIGNALS["acting_force"]
+_INTERACTION = SIGNALS["interaction_force"]
+
+
+@dataclass(frozen=True)
+class SeenAtCommand:
+    """What a model leaves along one motion (n samples), as an error of the recorded command.
+
+    residual: mapped back, SI; in blind samples only through what the command passes elsewhere
+    blind: samples in which the command has next to no influence on what moves the body
+    passed: part of the interaction force that reaches the body, signed as it
+    weak: the actuator cannot give, at any command, what the model needs to slide
+    """
+
+    residual: Array
+    blind: NDArray[np.bool_]
+    passed: Array
+    weak: bool
+
+
+@dataclass(frozen=True)
+class _Way:
+    """A way from one signal to another along a motion, linearised.
+
+    gain: (n,) of a signal held for good;  dynamics: of what oscillates, over frequency;  delay: s
+    """
+
+    gain: Array
+    dynamics: NDArray[np.complex128]
+    delay: float
+
+
+def is_between(body: Body) -> bool:
+    """Whether a law stands between the recorded forces and what moves the body."""
+    return (
+        any(e.role == "actuation" for e in body.effects)
+        or body.level().has(_ACTING, _INTERACTION)
+        or bool(_taking(body, _ACTING) or _taking(body, _INTERACTION))
+    )
+
+
+def seen_at_command(body: Body, motion: Motion, along: Residual | None = None) -> SeenAtCommand:
+    """The residual along a motion as an error of the recorded command.
+
+    along: what `residual_along` says of this body and motion, if it is known already
+    """
+    along = along or residual_along(body, motion)
+    values = body.numbers()
+    residual, blind = along.residual.value.copy(), np.zeros(len(motion.time), dtype=bool)
+    given = _signals(motion, along)
+    stages = stages_along(body, motion, _plain(motion.command), values, [])
+    ways = [_net(body, motion, given, values, _ACTING)]
+    ways += [_of_stage(stage, motion, values) for stage in reversed(stages)]
+    for way in ways:
+        residual, blind = _back(residual, blind, way, motion)
+    passed = motion.interaction
+    if passed.any():
+        passed = _through(passed, _net(body, motion, given, values, _INTERACTION), motion)
+    weak = bool(blind.any()) and _is_weak(body, motion, along, values)
+    return SeenAtCommand(residual, blind, passed, weak)
+
+
+def _plain(y: Array) -> Traced:
+    return Traced(y, np.zeros((0, len(y))))
+
+
+def _signals(motion: Motion, along: Residual) -> dict[sp.Symbol, Array]:
+    names = ("time", "position", "velocity", "acceleration")
+    given = {SIGNALS[n]: np.asarray(getattr(motion, n), dtype=float) for n in names}
+    return given | {
+        SIGNALS["direction"]: motion.direction.astype(float),
+        _ACTING: along.acting.value,
+        _INTERACTION: motion.interaction,
+    }
+
+
+def _taking(body: Body, signal: sp.Symbol) -> list[Effect]:
+    """Effects that take from the forces that move the body, by laws that depend on this signal."""
+    taking = [e for e in body.effects if e.role in ("force", "structure")]
+    return [e for e in taking if any(x.has(signal) for x in (e.expression(), *e.rates().values()))]
+
+
+@lru_cache(maxsize=256)
+def _slopes(
+    effect: Effect, law: sp.Expr, signals: tuple[sp.Symbol, ...]
+) -> tuple[list[sp.Expr], list[sp.Expr], list[list[sp.Expr]], list[sp.Expr]]:
+    """Derivatives of a law by signals and its states, and of its rates by states and the first."""
+    states, rates = list(effect.state_symbols().values()), list(effect.rates().values())
+    return (
+        [sp.diff(law, s) for s in signals],
+        [sp.diff(law, z) for z in states],
+        [[sp.diff(rate, z) for z in states] for rate in rates],
+        [sp.diff(rate, signals[0]) for rate in rates],
+    )
+
+
+@lru_cache(maxsize=1024)
+def _function(expression: sp.Expr) -> tuple[tuple[sp.Symbol, ...], Any]:
+    symbols = tuple(sorted(expression.free_symbols, key=str))
+    return symbols, sp.lambdify(symbols, expression, "numpy", cse=True)
+
+
+def _evaluated(
+    expression: sp.Expr, given: Mapping[sp.Symbol, Array], values: Mapping[Any, float], n: int
+) -> Array:
+    """An expression along the motion (n,); a hidden state that is not given is at rest."""
+    symbols, call = _function(expression)
+    # arrays all: what is printed for a Max of a number and an array stacks the two
+    numbers = [given[s] if s in given else np.full(n, values.get(s, 0.0)) for s in symbols]
+    with np.errstate(all="ignore"):
+        found = np.broadcast_to(np.asarray(call(*numbers), dtype=float), (n,))
+    return np.asarray(found)
+
+
+def _way(
+    effect: Effect,
+    law: sp.Expr,
+    signal: sp.Symbol,
+    delays: Mapping[sp.Symbol, float],
+    given: Mapping[sp.Symbol, Array],
+    values: Mapping[Any, float],
+    motion: Motion,
+    parts: int = 1,
+) -> _Way:
+    """The way from a signal through a law, with its hidden states and delayed copies."""
+    n = len(motion.time)
+
+    def along(expression: sp.Expr) -> Array:
+        whole = _evaluated(expression, given, values, n * parts)
+        return np.asarray(whole.reshape(n, parts).mean(axis=1))
+
+    direct, by_state, between, driven = _slopes(effect, law, (signal, *delays))
+    now = np.array([along(e) for e in direct])
+    late = np.array([0.0, *delays.values()])
+    gain = now.sum(axis=0)
+    omega = 2.0 * np.pi * motion.spectrum.frequency
+    over = (now.mean(axis=1)[:, None] * np.exp(-1j * late[:, None] * omega)).sum(axis=0)
+    if by_state:
+        out = np.array([along(e) for e in by_state])
+        rates = np.array([[along(e) for e in row] for row in between])
+        into = np.array([along(e) for e in driven])
+        gain = gain - np.einsum("in,ni->n", out, _solved(np.moveaxis(rates, 2, 0), into.T))
+        frozen = 1j * omega[:, None, None] * np.eye(len(by_state)) - rates.mean(axis=2)
+        reached = _solved(frozen, np.broadcast_to(into.mean(axis=1), frozen.shape[:2]))
+        over = over + reached @ out.mean(axis=1)
+    delay = float(now.mean(axis=1) @ late / over[0].real) if over[0].real and late.any() else 0.0
+    return _Way(gain, over, delay)
+
+
+def _solved(matrices: Array | NDArray[np.complex128], right: Array) -> Any:
+    """Solutions (k, m) of k systems of m equations; what has none is not a number."""
+    try:
+        return np.linalg.solve(matrices, right[..., None])[..., 0]
+    except np.linalg.LinAlgError:
+        return np.full(right.shape, np.nan)
+
+
+def _of_stage(stage: Stage, motion: Motion, values: Mapping[Any, float]) -> _Way:
+    given = {symbol: signal.value for symbol, signal in stage.given.items()}
+    return _way(stage.effect, stage.law, _COMMAND, stage.delays, given, values, motion, stage.parts)
+
+
+def _net(
+    body: Body,
+    motion: Motion,
+    given: Mapping[sp.Symbol, Array],
+    values: Mapping[Any, float],
+    signal: sp.Symbol,
+) -> _Way:
+    """From a force to what is left of it to move the body, less what it makes laws take away."""
+    gain, over = np.ones(len(motion.time)), np.ones(len(motion.spectrum.frequency), dtype=complex)
+    for effect in _taking(body, signal):
+        if effect.states and effect.is_absent(values):
+            continue
+        taken = _way(effect, effect.expression(), signal, {}, given, values, motion)
+        gain, over = gain - taken.gain, over - taken.dynamics
+    if body.level().has(signal):
+        level, speeds = level_along(body, motion, _plain_all(given), values)
+        hidden = {symbol: speed.value for symbol, speed in speeds.items()}
+        slope = _evaluated(sp.diff(level, signal), {**given, **hidden}, values, len(gain))
+        gain = gain - given[SIGNALS["direction"]] * slope
+    return _Way(gain, over, 0.0)
+
+
+def _plain_all(given: Mapping[sp.Symbol, Array]) -> dict[Any, Traced]:
+    return {symbol: _plain(signal) for symbol, signal in given.items()}
+
+
+def _back(
+    residual: Array, blind: NDArray[np.bool_], way: _Way, motion: Motion
+) -> tuple[Array, NDArray[np.bool_]]:
+    """A residual behind a way as one before it, with the samples that are blind there."""
+    finite = np.isfinite(way.gain)
+    most = float(np.max(np.abs(way.gain), initial=0.0, where=finite))
+    slight = ~finite | (np.abs(np.where(finite, way.gain, 0.0)) < SLIGHT * most)
+    if most == 0.0 or not np.isfinite(way.dynamics).all():
+        return residual, np.ones(len(residual), dtype=bool)
+    residual = residual / np.where(slight, most, way.gain)
+    blind = blind | slight
+    dynamics = _from_rest(way)
+    if np.any(dynamics != 1.0):
+        size = np.abs(dynamics)
+        dynamics = np.where(size < LEAST, LEAST * dynamics / np.maximum(size, 1e-300), dynamics)
+        dynamics = np.where(dynamics == 0, LEAST, dynamics)
+        residual = motion.spectrum.multiply(residual, 1.0 / dynamics)
+    if way.delay > 0.0:
+        later = np.arange(len(blind)) + round(way.delay / motion.sample_time)
+        blind = blind[np.minimum(later, len(blind) - 1)]
+    return residual, blind
+
+
+def _from_rest(way: _Way) -> NDArray[np.complex128]:
+    """Dynamics over what they are at rest; those that pass nothing at rest as they are."""
+    return way.dynamics / way.dynamics[0] if way.dynamics[0] != 0 else way.dynamics
+
+
+def _through(force: Array, way: _Way, motion: Motion) -> Array:
+    """What a way passes of a force; a resonance adds nothing that was not recorded."""
+    # a coupling that is open somewhere along the motion has no dynamics at rest: it is passed whole
+    gain = np.where(np.isfinite(way.gain), way.gain, 1.0)
+    dynamics = np.where(np.isfinite(way.dynamics), way.dynamics, 1.0)
+    limited = dynamics / np.maximum(np.abs(dynamics), 1.0)
+    static = float(dynamics[0].real)
+    if np.any(limited != 1.0):
+        force = motion.spectrum.multiply(force, limited)
+    else:
+        static = 1.0
+    varying = gain / static if static else np.ones(len(force))
+    return np.asarray(force * np.clip(varying, -1.0, 1.0))
+
+
+def _is_weak(body: Body, motion: Motion, along: Residual, values: Mapping[Any, float]) -> bool:
+    """Whether no command would slide the body as the model says it slid, most of the time.
+
+    What it needs to slide is what friction and other forces take, without what accelerates it.
+    """
+    inertia = body.parameters["inertia"].value * motion.acceleration
+    needed = along.acting.value - along.residual.value - inertia
+    short: list[Array] = []
+    largest = float(np.max(np.abs(motion.command)))
+    for way in (1.0, -1.0):
+        rows = motion.direction == way
+        best = np.full(len(motion.time), -np.inf)
+        for part in COMMANDS:
+            for sign in (1.0, -1.0):
+                held = _plain(np.full(len(motion.time), sign * part * largest))
+                stages = stages_along(body, motion, held, values, [])
+                force = stages[-1].output.value if stages else held.value
+                best = np.maximum(best, way * motion.at_rows(force))
+        short.append((way * needed - best)[rows])
+    whole = np.concatenate(short)
+    return bool(len(whole)) and float(np.median(whole)) > 0.0
+
+
+def blind_share(seen: Sequence[SeenAtCommand], motions: Sequence[Motion]) -> float:
+    """Share of blind samples among those where the body slides; of all, where it never does."""
+    blind = np.concatenate([s.blind for s in seen])
+    slides = np.concatenate([m.direction != 0 for m in motions])
+    counted = blind[slides] if slides.any() else blind
+    return float(counted.mean()) if len(counted) else 0.0
