@@ -20,9 +20,9 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 
 import teleopdesign as td
-from teleopdesign.diagnose.unexplained import where_it_fails
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.recordings import RECORDINGS
+from teleopdesign.unexplained import where_it_fails
 
 DOCS = Path(__file__).resolve().parent
 README, PAGE = DOCS.parent / "README.md", DOCS / "recordings.md"

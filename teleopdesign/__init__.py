@@ -50,8 +50,11 @@ The folders, each importing only from those before it:
     passivity     claims: proved with a certificate, refuted by a motion, or evidence
     simulate      motions and responses in time, sampled or continuous
     measurement   experiment, record, motion; whether a recording is sound
-    diagnose      residual, noise floor, ladder, answer; what is left, what to measure next
+    diagnose      residual, noise floor, ladder, answer
     identify      Coulomb level and largest stiffness by the papers' own experiments
+    check         before a diagnosis: is a recording sound, and what can it show
+    unexplained   after it: where a model fails, and what that depends on
+    next_experiment  what to measure next, so that rivals are told apart
     design        from a diagnosed model to controllers, predictions and claims
     papers        statements of the two papers, each with its proof or check
     plot          draws result objects, computes nothing
@@ -66,6 +69,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import blocks as blocks
+    from . import check as check
     from . import controllers as controllers
     from . import derive as derive
     from . import design as design
@@ -75,12 +79,15 @@ if TYPE_CHECKING:
     from . import frequency as frequency
     from . import identify as identify
     from . import measurement as measurement
+    from . import next_experiment as next_experiment
     from . import passivity as passivity
     from . import plot as plot
     from . import realise as realise
     from . import report as report
     from . import simulate as simulate
+    from . import unexplained as unexplained
     from .blocks import Body, Value, hand
+    from .check import check_experiment
     from .controllers import CONTROLLERS, Controller, controller, from_control
     from .derive import all_transfers as derive_transfers
     from .derive import transfer_functions
@@ -90,14 +97,11 @@ if TYPE_CHECKING:
         Comparison,
         Diagnosis,
         Ranking,
-        check_experiment,
         compare,
-        describe,
         find_missing,
         fit,
         rank,
     )
-    from .diagnose.next_experiment import propose as propose_experiment
     from .diagrams import ANY, Diagram, haptic_interface, read_diagram, teleoperator, write_diagram
     from .effects import EFFECTS, Effect, Parameter, State, load_effect
     from .errors import ExperimentError, ModelError, TeleopDesignError
@@ -106,10 +110,12 @@ if TYPE_CHECKING:
     from .measurement import Experiment, Record, load_experiment
     from .measurement.recordings import fetch
     from .model import Model
+    from .next_experiment import propose as propose_experiment
     from .passivity import Certificate, Claim, diagram_claims, positive_real
     from .realise.iosystem import to_iosystem
     from .simulate import Sampling, Simulation, sine
     from .simulate import simulate as simulate_diagram
+    from .unexplained import describe
 
 __all__ = [
     "ANY",
@@ -174,7 +180,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "Experiment": "measurement",
         "Record": "measurement",
         "load_experiment": "measurement",
-        "check_experiment": "diagnose",
+        "check_experiment": "check",
         "example": "examples",
         "fetch": "measurement.recordings",
     },
@@ -195,8 +201,8 @@ GROUPS: dict[str, dict[str, str]] = {
         "compare": "diagnose",
         "rank": "diagnose",
         "find_missing": "diagnose",
-        "describe": "diagnose",
-        "propose_experiment": "diagnose.next_experiment:propose",
+        "describe": "unexplained",
+        "propose_experiment": "next_experiment:propose",
         "Comparison": "diagnose",
         "Ranking": "diagnose",
         "Diagnosis": "diagnose",
@@ -248,6 +254,7 @@ _HOMES = {name: home for group in GROUPS.values() for name, home in group.items(
 #: folders that are there as `td.NAME`, imported when first used
 _FOLDERS = (
     "blocks",
+    "check",
     "controllers",
     "derive",
     "design",
@@ -257,11 +264,13 @@ _FOLDERS = (
     "frequency",
     "identify",
     "measurement",
+    "next_experiment",
     "passivity",
     "plot",
     "realise",
     "report",
     "simulate",
+    "unexplained",
 )
 __version__ = "0.1.0.dev0"
 

@@ -1,9 +1,32 @@
-"""Under CI the property-based tests draw the same examples each time; elsewhere new ones."""
+"""Under CI the property-based tests draw the same examples each time; elsewhere new ones.
+
+The truth simulator of tests/hidden can be imported everywhere.
+"""
 
 import os
+import sys
+from pathlib import Path
 
+import pytest
+from devices import CANCELLATION, FEEDBACK, LOOP, LUGRE, body
 from hypothesis import settings
+
+from teleopdesign.diagrams import haptic_interface
+
+sys.path.insert(0, str(Path(__file__).parent / "hidden"))
 
 settings.register_profile("ci", derandomize=True, deadline=None)
 if os.environ.get("CI"):
     settings.load_profile("ci")
+
+
+@pytest.fixture
+def hybrid():
+    """LuGre device, 0.5 kg in place of the hand, hybrid compensation, position loop."""
+    return haptic_interface(
+        body(**LUGRE),
+        hand=body(0.5),
+        cancellation=CANCELLATION,
+        force_feedback=FEEDBACK,
+        position_loop=LOOP,
+    )

@@ -29,7 +29,7 @@ def run(options: argparse.Namespace) -> int:
     """Print the findings, warnings first; write what was asked for."""
     if options.json is not None:
         check_output(options.json, (".json",))
-    from ..diagnose.soundness_check import check_experiment
+    from ..check.soundness_check import check_experiment
 
     experiment = experiment_of(options.folder)
     model = stated_model(experiment, options)

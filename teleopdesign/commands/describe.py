@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..diagnose.fit import Fit
     from ..diagnose.force_error import Prepared
     from ..diagnose.noise_floor import NoiseFloor
-    from ..diagnose.unexplained import Unexplained
+    from ..unexplained import Unexplained
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -49,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
             check_output(path, endings)
     if options.effect_file is not None and not options.effect_file.stem.isidentifier():
         raise ModelError(f"{options.effect_file}: expected a name such as my_effect.py")
-    from ..diagnose.unexplained import unexplained
+    from ..unexplained import unexplained
 
     fit, prepared, floor, said = _fitted(options)
     print(f"{said}\n")
@@ -90,7 +90,7 @@ def _fitted(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor | No
 
 
 def _write(found: Unexplained, path: Path, folder: Path) -> None:
-    from ..diagnose.unexplained.effect_file import write_effect
+    from ..unexplained.effect_file import write_effect
 
     largest = found.largest
     if largest is None:

@@ -65,10 +65,10 @@ def run(options: argparse.Namespace) -> int:
 
 def _write_report(diagnosis: Diagnosis, path: Path) -> None:
     """The page, with what was found about the recording, what is left, and what to measure next."""
-    from ..diagnose import check_experiment
-    from ..diagnose.next_experiment import propose
-    from ..diagnose.unexplained import where_it_fails
+    from ..check import check_experiment
+    from ..next_experiment import propose
     from ..report import write_report
+    from ..unexplained import where_it_fails
 
     say("checking the recording")
     soundness = check_experiment(diagnosis.experiment, diagnosis.before.model)

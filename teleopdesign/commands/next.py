@@ -16,8 +16,8 @@ from ._diagnosis import add_experiment, diagnosis_of, experiment_of
 from ._options import check_output, say
 
 if TYPE_CHECKING:
-    from ..diagnose.next_experiment import Limits, Shown
     from ..measurement import Experiment
+    from ..next_experiment import Limits, Shown
 
 #: columns of the terminal
 WIDTH = 100
@@ -74,7 +74,7 @@ def run(options: argparse.Namespace) -> int:
             check_output(path, endings)
     if not (math.isfinite(options.duration) and options.duration > 0):
         raise ExperimentError(f"--duration: found {options.duration:g}, expected more than 0 s")
-    from ..diagnose.next_experiment import propose, show_in_simulation, write_reference
+    from ..next_experiment import propose, show_in_simulation, write_reference
 
     experiment = experiment_of(options.folder)
     limits = _limits(_asked(options.limit, experiment), experiment)
@@ -112,7 +112,7 @@ def _wrapped(text: str) -> str:
 
 
 def _content(proposal: Any, shown: Sequence[Shown]) -> dict[str, Any]:
-    from ..diagnose.next_experiment import proposal_data
+    from ..next_experiment import proposal_data
 
     simulated = [
         {
@@ -169,7 +169,7 @@ def _asked(texts: Sequence[str], experiment: Experiment) -> dict[str, dict[str, 
 def _limits(asked: dict[str, dict[str, float]], experiment: Experiment) -> dict[str, Limits]:
     """Body -> the limits that its records have shown, with those asked for in their place."""
     from ..diagnose.force_error import prepare
-    from ..diagnose.next_experiment import shown_limits
+    from ..next_experiment import shown_limits
 
     if not asked:
         return {}

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from ..arguments import check_arguments
 from ..measurement.experiment import Experiment
 from ..model import Model
@@ -14,10 +12,6 @@ from .force_error import prepare
 from .ladder import find_missing
 from .rank import Ranked, Ranking, rank_candidates
 from .search import estimate_from_starts
-from .soundness_check import check_experiment
-
-if TYPE_CHECKING:
-    from .unexplained import Unexplained
 
 __all__ = [
     "Comparison",
@@ -26,9 +20,7 @@ __all__ = [
     "Ranked",
     "Ranking",
     "Rung",
-    "check_experiment",
     "compare",
-    "describe",
     "find_missing",
     "fit",
     "rank",
@@ -42,17 +34,6 @@ def fit(model: Model, experiment: Experiment) -> Model:
     own scale.
     """
     return estimate_from_starts(model, prepare(experiment)).model
-
-
-def describe(model: Model, experiment: Experiment, *, seed: int = 0) -> Unexplained:
-    """Where the model fails, re-estimated, and what that depends on: sentences with their numbers.
-
-    seed: of the draws for the noise floor
-    """
-    from .unexplained import unexplained
-
-    prepared = prepare(experiment)
-    return unexplained(estimate_from_starts(model, prepared), prepared, seed=seed)
 
 
 def rank(model: Model, experiment: Experiment) -> Ranking:

@@ -22,8 +22,8 @@ from .answers.fingerprint import experiment_data
 from .diagnosis import Diagnosis
 from .fit import Fit
 from .force_error import along_own, own_groups
-from .next_experiment.rivals import open_questions
 from .one_moment import Moment
+from .open_questions import open_questions
 from .probability import CandidateEvidence, evidence_of
 from .rank import REFUSALS
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..diagnose.next_experiment import Proposal
+    from ..next_experiment import Proposal
 
 TRUTH, OTHER, NOW = "0.55", "#D55E00", "#0072B2"
 

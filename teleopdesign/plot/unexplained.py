@@ -6,7 +6,7 @@ import math
 import textwrap
 from typing import TYPE_CHECKING, Any
 
-from ..diagnose.unexplained import BodyUnexplained, Unexplained
+from ..unexplained import BodyUnexplained, Unexplained
 from .diagnosis import AFTER, BACKWARD, FORWARD, MEASURED, STYLE
 
 if TYPE_CHECKING:

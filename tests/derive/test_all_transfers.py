@@ -5,9 +5,9 @@ import time
 import numpy as np
 import pytest
 import sympy as sp
-from design.devices import body
-from design.test_wiring import pair
+from devices import body
 from diagrams.random_diagrams import diagrams
+from diagrams.test_wiring import pair
 from hypothesis import HealthCheck, Phase, assume, given, settings
 
 from teleopdesign.controllers import controller

@@ -1,16 +1,48 @@
+"""Experiment and model that several tests here share."""
+
+from dataclasses import replace
+
 import pytest
-from design.devices import CANCELLATION, FEEDBACK, LOOP, LUGRE, body
 
-from teleopdesign.diagrams import haptic_interface
+import teleopdesign as td
+from teleopdesign.blocks import Value
+from teleopdesign.design import Diagnosed
+
+#: what a diagnosis of the rod ends with, rounded: value and standard error
+ROD = {
+    "device.inertia": (0.198, 4e-4),
+    "device.coulomb.level": (0.548, 5e-4),
+    "device.viscous.damping": (1.84, 4e-3),
+    "device.stribeck.extra_static_level": (0.197, 4e-3),
+    "device.stribeck.stribeck_velocity": (0.0225, 3e-4),
+}
 
 
-@pytest.fixture
-def hybrid():
-    """LuGre device, 0.5 kg in place of the hand, hybrid compensation, position loop."""
-    return haptic_interface(
-        body(**LUGRE),
-        hand=body(0.5),
-        cancellation=CANCELLATION,
-        force_feedback=FEEDBACK,
-        position_loop=LOOP,
-    )
+@pytest.fixture(scope="session")
+def experiment():
+    return td.load_experiment(td.example("rod"))
+
+
+@pytest.fixture(scope="session")
+def rod(experiment):
+    """The rod as a diagnosis leaves it, with Stribeck friction."""
+    model = td.Model.from_experiment(experiment).with_effect("stribeck")
+    model = model.with_values({n: Value(v, stderr=e) for n, (v, e) in ROD.items()})
+    return Diagnosed(experiment, model, "effects_missing", 1.05)
+
+
+@pytest.fixture(scope="session")
+def designed(rod):
+    """The design for it."""
+    from teleopdesign.design import design
+
+    return design(rod)
+
+
+@pytest.fixture(scope="session")
+def unsure(rod):
+    """The design for the rod if its Coulomb level were hardly known."""
+    from teleopdesign.design import design
+
+    level = {"device.coulomb.level": Value(0.548, stderr=0.3)}
+    return design(replace(rod, model=rod.model.with_values(level)))

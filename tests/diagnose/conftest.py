@@ -1,11 +1,6 @@
-"""Lets the tests here import the truth simulator; cases and diagnoses that several of them use."""
-
-import sys
-from pathlib import Path
+"""Cases and diagnoses that several of them use."""
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "hidden"))
 
 
 @pytest.fixture(scope="session")

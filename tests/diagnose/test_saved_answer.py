@@ -20,10 +20,10 @@ from teleopdesign.diagnose.answers import load_answer, restored
 from teleopdesign.diagnose.answers.bodies import model_data, model_from
 from teleopdesign.diagnose.answers.fingerprint import digest
 from teleopdesign.diagnose.answers.restored import steps_of
-from teleopdesign.diagnose.unexplained import unexplained
 from teleopdesign.effects import catalogue
 from teleopdesign.errors import TeleopDesignError
 from teleopdesign.plain_data import write_json
+from teleopdesign.unexplained import unexplained
 
 #: what came later than the rest of the format
 LATER = ("experiment", "models", "floor", "open")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import sympy as sp
-from design.devices import body
+from devices import body
 from effects.along import NAMES, body_of, with_needs
 
 from teleopdesign.controllers import controller, scheduled_force_feedback

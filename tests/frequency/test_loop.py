@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from design.devices import CANCELLATION, FEEDBACK, body
+from devices import CANCELLATION, FEEDBACK, body
 
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.errors import ModelError

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 import xarray
-from design.devices import LUGRE, body
+from devices import LUGRE, body
 
 from teleopdesign.blocks import Body, Value
 from teleopdesign.controllers import controller

@@ -4,7 +4,7 @@ import control
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from design.devices import FEEDBACK, body
+from devices import FEEDBACK, body
 
 from teleopdesign.diagrams import four_cases, haptic_interface, world_haptics_2005
 from teleopdesign.errors import ModelError

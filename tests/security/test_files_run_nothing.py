@@ -499,8 +499,8 @@ TITLES = (*CODE, '"' * 7, "\\", "\\N{x}", '\\"""', "'''" + '"""')
 @pytest.mark.parametrize("text", TITLES, ids=range(len(TITLES)))
 def test_a_written_effect_file_holds_titles_as_text_alone(tmp_path, monkeypatch, text):
     """It is code that is run later: titles and sentences with file names stand in its docstring."""
-    from teleopdesign.diagnose.unexplained import effect_file
-    from teleopdesign.diagnose.unexplained.shapes import SHAPES
+    from teleopdesign.unexplained import effect_file
+    from teleopdesign.unexplained.shapes import SHAPES
 
     shape = next(s for s in SHAPES if s.variable is None and s.carrier.name == "force")
     dependence = SimpleNamespace(

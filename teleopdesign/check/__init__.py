@@ -1,0 +1,8 @@
+"""Before a diagnosis: is a recording sound, do its columns agree, and what can it show?"""
+
+from ..arguments import check_arguments
+from .soundness_check import check_experiment
+
+__all__ = ["check_experiment"]
+
+check_arguments(globals(), __all__)

@@ -1,0 +1,210 @@
+"""Which effects a record can show, which only if they are large, which not at all, and why."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+
+from ..diagnose.candidates import Candidate, candidates
+from ..diagnose.diagnosis import ADEQUATE
+from ..diagnose.fit import ROUGH, Fit, estimate
+from ..diagnose.force_error import Prepared
+from ..diagnose.noise_floor import noise_floor
+from ..effects import CONTACT_ROLES, SIGNALS, Effect
+from ..finding import Finding
+from ..model import Model
+from ..quantity import unit_of
+from .motion_facts import RARE, describe_motion, lacking
+from .visibility import Visibility, visibilities
+
+#: force that an effect must make, over the measured force, from which it shows "only if large"
+LARGE = 0.1
+#: cosine of two marks from which the effects look alike: only at seven times the least size is the
+#: difference as large as what shows
+ALIKE = 0.99
+
+
+def check_excitation(
+    model: Model, prepared: Prepared, generator: np.random.Generator
+) -> tuple[Finding, ...]:
+    """Findings about the motion of each body and what it can show, from the fit records."""
+    base = estimate(model, _unfolded(prepared), effort=ROUGH)
+    floor = noise_floor(base.model, prepared, generator, use="fit")
+    motions = [s.motion for s in prepared.of("fit")]
+    every = candidates(base.model)
+    judged = candidates(base.model, motions)
+    seen = visibilities(base, prepared, judged, floor.value)
+    found: list[Finding] = []
+    for place in base.model.places:
+        body = base.model.holder(place)
+        own = [m for m in motions if m.body == body]
+        if not own:
+            continue
+        poor = lacking(own, base.model, body)
+        if place == body:
+            found.append(describe_motion(own, place, poor, base.model.body(place).axis))
+            found += _own_parameters(base, place)
+        never = [c for c in every if c.at == place and c not in judged]
+        mine = [v for v in seen if v.candidate.at == place]
+        if mine or never:
+            found.append(_summary(mine, never, poor, base, floor.value, place))
+            found += _look_alikes(mine, place)
+    return tuple(found)
+
+
+def _unfolded(prepared: Prepared) -> Prepared:
+    """Without a check record, errors of held-out blocks would be made, which nothing here uses."""
+    if prepared.of("check"):
+        return prepared
+    again = tuple(replace(s, use="check") for s in prepared.of("fit"))
+    return replace(prepared, stretches=(*prepared.stretches, *again))
+
+
+def _summary(
+    seen: Sequence[Visibility],
+    never: Sequence[Candidate],
+    poor: Mapping[str, str],
+    base: Fit,
+    floor: float,
+    place: str,
+) -> Finding:
+    """The one sentence for each kind: shown, shown if large, not shown and why."""
+    shown = sorted((v for v in seen if v.size <= LARGE), key=lambda v: v.size)
+    large = sorted((v for v in seen if LARGE < v.size <= 1.0), key=lambda v: v.size)
+    hidden = [v for v in seen if v.size > 1.0]
+    numbers = {v.candidate.effect.name: v.size for v in seen}
+    numbers |= {c.effect.name: math.inf for c in never} | {"noise_floor": floor}
+    reasons: dict[str, list[str]] = {}
+    for v in hidden:
+        reasons.setdefault(_reason(v, poor, base.model), []).append(v.candidate.effect.name)
+    for c in never:
+        reasons.setdefault(poor.get("position", "the model has no place for it"), []).append(
+            c.effect.name
+        )
+    parts = []
+    if shown:
+        parts.append("can show " + ", ".join(_least(v, base.model) for v in shown))
+    if large:
+        parts.append("only if large: " + ", ".join(_least(v, base.model, v.size) for v in large))
+    if reasons:
+        text = "; ".join(f"{', '.join(names)} ({why})" for why, names in reasons.items())
+        parts.append(f"cannot show {text}")
+    if waiting := _waiting(base.model, place):
+        parts.append("not judged, for the model lacks what they act on: " + ", ".join(waiting))
+    if base.fit_error > ADEQUATE * floor:
+        parts.append(
+            f"all this above the noise floor, {100 * floor:.2g} % of the force; while the model "
+            f"leaves {100 * base.fit_error:.2g} % unexplained, small effects hide in that"
+        )
+    return Finding(
+        "what the record can show",
+        "note" if hidden or never or large else "fine",
+        ". ".join(p[0].upper() + p[1:] for p in parts) + ".",
+        numbers,
+        place,
+    )
+
+
+def _waiting(model: Model, place: str) -> list[str]:
+    """Effects that need another one beside them which the model does not have."""
+    body = model.body(place)
+    return [
+        f"{e.name} ({', '.join(n for n in sorted(e.needs) if not body.has(n))})"
+        for e in model.known.values()
+        if not body.has(e.name)
+        and (place in model.bodies) != (e.role in CONTACT_ROLES)
+        and not all(body.has(n) for n in e.needs)
+    ]
+
+
+def _least(v: Visibility, model: Model, share: float | None = None) -> str:
+    """An effect with the least strength that shows, and the force that it then makes."""
+    effect = v.candidate.effect
+    name, value = next(iter(v.strength.items()))
+    unit = unit_of(effect.parameters[name].quantity, model.body(v.candidate.at).axis)
+    off = effect.absent[name]
+    word, size = ("below", value) if math.isinf(off) else ("from", abs(value - off))
+    number = f"{size:.2g}{'' if unit == '1' else ' ' + unit}"
+    force = "" if share is None else f", {100 * share:.2g} % of the force"
+    return f"{effect.name} ({word} {number}{force})"
+
+
+def _reason(v: Visibility, poor: Mapping[str, str], model: Model) -> str:
+    """Why an effect cannot be seen: its numbers, and what it or what hides it does not get."""
+    signals = list(needed(v.candidate.effect))
+    if v.silent:
+        why = "it makes no force here"
+    elif v.own < RARE and v.imitated:
+        own = [n.partition(".")[2] for n in v.imitated]
+        why = "the same as " + " with ".join(own)
+        body = model.body(v.candidate.at)
+        for effect in body.effects:
+            if any(n.startswith(f"{effect.name}.") for n in own):
+                signals += needed(effect)
+    elif math.isinf(v.size):
+        why = "drowned by noise"
+    else:
+        why = f"it would have to make {100 * v.size:.0f} % of the force"
+    facts = dict.fromkeys(poor[s] for s in signals if s in poor)
+    return ": ".join([why, "; ".join(facts)] if facts else [why])
+
+
+def needed(effect: Effect) -> tuple[str, ...]:
+    """Signals that an effect's law and hidden states follow.
+
+    Friction always follows the velocity; what stands between command and force is told by a force
+    that does not pass through it.
+    """
+    laws = [effect.expression(), *effect.rates().values()]
+    names = [n for n, s in SIGNALS.items() if any(law.has(s) for law in laws)]
+    follows = effect.role.startswith("friction") or "direction" in names
+    more = ["velocity"] if follows else ["interaction_force"] * (effect.role == "actuation")
+    return tuple(dict.fromkeys([*more, *names]))
+
+
+def _look_alikes(seen: Sequence[Visibility], place: str) -> list[Finding]:
+    """Effects whose marks have the same shape: the record would not say which it is."""
+    told = [v for v in seen if v.size <= 1.0]
+    groups: list[set[str]] = []
+    for a, b in combinations(told, 2):
+        if abs(float(a.mark @ b.mark)) < ALIKE:
+            continue
+        pair = {a.candidate.effect.name, b.candidate.effect.name}
+        touching = [g for g in groups if g & pair]
+        groups = [g for g in groups if not g & pair] + [pair.union(*touching)]
+    if not groups:
+        return []
+    text = "; ".join(" and ".join(sorted(g)) for g in groups)
+    return [
+        Finding(
+            "look-alikes",
+            "note",
+            f"would look alike here, told apart only where they are large: {text}.",
+            {"groups": float(len(groups))},
+            place,
+        )
+    ]
+
+
+def _own_parameters(base: Fit, place: str) -> list[Finding]:
+    """Parameters of the user's own model that the record does not determine."""
+    free = {n: base.model.parameters[n] for n in base.free if base.model.locate(n)[0] == place}
+    open_ = {n: v for n, v in free.items() if not v.stderr < abs(v.value)}
+    if not open_:
+        return []
+    text = ", ".join(
+        f"{n} ({v.value:.2g} +- {v.stderr:.2g} {base.model.unit(n)})" for n, v in open_.items()
+    )
+    return [
+        Finding(
+            "own parameters",
+            "note",
+            f"the record does not determine {text}: fix what is known of it.",
+            {n: v.stderr for n, v in open_.items()},
+            place,
+        )
+    ]

@@ -1,0 +1,162 @@
+"""Scale, sign and timing of each force, from how it balances with the others along the motion.
+
+    lead(t + shift) + gain other(t + shift') = sum of strength_j column_j + what the model says else
+
+By linear least squares, unbounded, on the rows where the body is told to move. `lead` is the
+actuator force (the interaction force where nothing is commanded); columns are the tangents of the
+user's model by its inertia and by every strength in which its force is linear. A force that is
+turned gives a negative gain, a motion that is turned negative strengths, a unit that is off a
+strength that is off by its factor. Shifts come from the forces' derivatives, solved again about
+each shift found, first at low frequency, where a period is long.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..blocks import Body
+from ..diagnose.fit import block_numbers, standard_errors
+from ..diagnose.force_error import Prepared, Stretch
+from ..measurement.filtering import Array
+from ..model import Model
+from .force_timing import BANDS, ON_TIME, Along, Settled, along_in, rows_of, settle, with_shifts
+
+#: rows below which nothing is said; part of the other force from which a force is there at all
+FEWEST, LEAST = 50, 1e-5
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number with its standard error."""
+
+    value: float
+    error: float
+
+    @property
+    def sure(self) -> int:
+        """Its sign where it is told from zero by five standard errors, else 0."""
+        return int(np.sign(self.value)) if abs(self.value) > 5.0 * self.error else 0
+
+
+@dataclass(frozen=True)
+class ForceBalance:
+    """How the forces on one body balance.
+
+    lead: channel that the others are held against;  other: the second measured force, or ""
+    gain: of the other force, 1 where its scale and sign are right, and 1 where there is none
+    strengths: "inertia", "coulomb.level" ... -> estimate (SI);  power: of each, W, mean
+    shifts: "actuator_force", "interaction_force" -> s by which its log lags the motion; "position"
+        -> s by which the motion's does, where that alone explains it; empty: none is told
+    left, unshifted: force left unexplained over the measured force, with and without the shifts
+    rows: part of the record on which all this rests
+    """
+
+    body: str
+    lead: str
+    other: str
+    gain: Estimate
+    strengths: Mapping[str, Estimate]
+    power: Mapping[str, Estimate]
+    shifts: Mapping[str, Estimate]
+    left: float
+    unshifted: float
+    rows: float
+
+
+def strengths_of(body: Body) -> list[str]:
+    """The inertia, and the parameters whose being zero takes a force away altogether."""
+    found = ["inertia"]
+    for effect in body.effects:
+        if effect.role in ("force", "friction_level"):
+            found += [f"{effect.name}.{p}" for p, zero in effect.absent.items() if zero == 0.0]
+    return [n for n in found if n in body.parameters]
+
+
+def force_balance(
+    body: Body, stretches: Sequence[Stretch], *, timed: bool = True
+) -> ForceBalance | None:
+    """The balance of one body; None where it hardly moves or no force is measured.
+
+    stretches: those of this body;  timed: look for shifts
+    """
+    names = strengths_of(body)
+    bands = {
+        b: [along_in(body, s, names, b) for s in stretches]
+        for b in dict.fromkeys(BANDS if timed else (1.0,))
+    }
+    parts = bands[1.0]
+    counted = sum(len(p.keep) for p in parts)
+    if counted < FEWEST:
+        return None
+    rows = rows_of(parts, ON_TIME)
+    size = dict(zip(ON_TIME, np.sqrt(np.mean(rows[:2] ** 2, axis=1)).tolist(), strict=True))
+    forces = [n for n in ON_TIME if size[n] > LEAST * max(size.values())]
+    if not forces:
+        return None
+    measured = float(np.sqrt(np.mean((rows[0] + rows[1]) ** 2)))
+    plain = settled = settle(bands, forces, [], ON_TIME, BANDS[-1:])
+    if timed:
+        settled = with_shifts(bands, forces, plain, measured)
+    numbers = np.unique(_blocks(stretches, parts), return_inverse=True)[1]
+    errors = standard_errors(settled.jacobian, settled.left, numbers)
+    told = [Estimate(float(v), float(e)) for v, e in zip(settled.solution, errors, strict=True)]
+    strengths = dict(zip(names, told, strict=False))
+    both = len(forces) > 1
+    return ForceBalance(
+        body=stretches[0].motion.body,
+        lead=forces[0],
+        other=forces[1] if both else "",
+        gain=told[len(names)] if both else Estimate(1.0, 0.0),
+        strengths=strengths,
+        power=_power(parts, settled.rows[5:], strengths),
+        shifts=_named(settled, told[len(names) + both :]),
+        left=settled.size / measured,
+        unshifted=plain.size / measured,
+        rows=counted / sum(len(s.keep) for s in stretches),
+    )
+
+
+def force_balances(
+    model: Model, prepared: Prepared, *, timed: bool = True
+) -> dict[str, ForceBalance]:
+    """The balance of every body that has one, on the fit records."""
+    found = {}
+    for place, body in model.bodies.items():
+        own = [s for s in prepared.of("fit") if s.motion.body == place]
+        balance = force_balance(body, own, timed=timed) if own else None
+        if balance is not None:
+            found[place] = balance
+    return found
+
+
+def _named(settled: Settled, steps: Sequence[Estimate]) -> dict[str, Estimate]:
+    """The shifts by channel; one that both forces share is the position's, the other way."""
+    found: dict[str, Estimate] = {}
+    for group, step in zip(settled.groups, steps, strict=True):
+        late = settled.shifts[group[0]]
+        if len(group) > 1:
+            found["position"] = Estimate(-late, step.error)
+        else:
+            found[group[0]] = Estimate(late, step.error)
+    return found
+
+
+def _blocks(stretches: Sequence[Stretch], parts: Sequence[Along]) -> NDArray[np.intp]:
+    told = [np.isin(s.keep, p.keep) for s, p in zip(stretches, parts, strict=True)]
+    return block_numbers(stretches)[np.concatenate(told)]
+
+
+def _power(
+    parts: Sequence[Along], columns: Array, strengths: Mapping[str, Estimate]
+) -> dict[str, Estimate]:
+    """Mean power (W) that each strength takes out of the motion."""
+    velocity = np.concatenate([p.motion.velocity[p.keep] for p in parts])
+    mean = columns @ velocity / len(velocity)
+    return {
+        n: Estimate(e.value * float(m), e.error * abs(float(m)))
+        for (n, e), m in zip(strengths.items(), mean, strict=True)
+    }

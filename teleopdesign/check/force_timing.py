@@ -1,0 +1,179 @@
+"""Timing of the forces on one body: by how much each one's log lags the motion.
+
+A force that is late by t is f(t + shift) = f + shift df/dt + ...: its derivative is one more
+column of the balance. Each step moves the forces by what it found; the first ones look at low
+frequency only, where a period is long. Forces that share one shift stand for a motion that is
+shifted itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..blocks import Body
+from ..diagnose.force_error import Stretch
+from ..measurement.filtering import Array
+from ..measurement.motion import Motion
+from ..realise.along_motion import residual_along
+
+#: part of the comparison's bandwidth at which shifts are looked for, one after the other
+BANDS = (0.125, 0.25, 0.5, 1.0, 1.0)
+#: part of the measured force left unexplained above which other shifts are started from; these, s
+STARTS_ANEW, LATE = 0.2, 0.06
+#: part of the unexplained force that shifts must leave at most to be believed, and part of what
+#: they explain that one alone must explain to be believed alone
+REMAINS, ALONE = 0.85, 0.8
+#: low-passed share of told motion from which a row counts
+TOLD = 0.98
+#: shifts of forces that are in step with the motion, s
+ON_TIME: Mapping[str, float] = {"actuator_force": 0.0, "interaction_force": 0.0}
+
+
+@dataclass(frozen=True)
+class Along:
+    """One stretch in one band: transforms of both forces; what the model needs besides, columns.
+
+    others: (1 + p, rows), already low-passed;  keep: the rows that count
+    """
+
+    motion: Motion
+    keep: NDArray[np.intp]
+    forces: Mapping[str, NDArray[np.complex128]]
+    others: Array
+
+
+def along_in(body: Body, stretch: Stretch, names: Sequence[str], band: float) -> Along:
+    """One stretch below `band` times the comparison's bandwidth.
+
+    names: the strengths that have columns
+    """
+    motion, s = stretch.motion, stretch.motion.spectrum
+    along = residual_along(body, motion, names)
+    columns = -along.residual.tangent
+    values = np.array([body.parameters[n].value for n in names])
+    acting = along.acting.value
+    rest = acting + motion.interaction - along.residual.value - values @ columns
+    told = motion.lowpassed(np.abs(motion.direction).astype(np.float64))
+    keep = stretch.keep[told[stretch.keep] > TOLD]
+    low = s.lowpass(band * motion.bandwidth)
+    forces = {
+        "actuator_force": s.transform(acting) * low,
+        "interaction_force": s.transform(motion.interaction) * low,
+    }
+    return Along(motion, keep, forces, s.multiply(np.vstack([rest[None], columns]), low)[:, keep])
+
+
+def rows_of(parts: Sequence[Along], shifts: Mapping[str, float]) -> Array:
+    """Acting force, interaction force, their derivatives, the rest and the columns, (5 + p, rows).
+
+    shifts: s by which each force is late
+    """
+    found = []
+    for part in parts:
+        s = part.motion.spectrum
+        both = [y * np.exp(2j * np.pi * s.frequency * shifts[n]) for n, y in part.forces.items()]
+        signals = [s.back(y)[part.keep] for y in both]
+        signals += [s.back(y * s.derivative(1))[part.keep] for y in both]
+        found.append(np.vstack([*signals, part.others]))
+    return np.hstack(found)
+
+
+@dataclass(frozen=True)
+class Settled:
+    """Shifts that have settled, for groups of forces that share one, and the balance there.
+
+    solution: strengths, gain of the other force where there is one, last steps of the shifts
+    left: force left unexplained on each row;  jacobian: of it, by the solution
+    """
+
+    groups: Sequence[tuple[str, ...]]
+    shifts: Mapping[str, float]
+    rows: Array
+    solution: Array
+    jacobian: Array
+    left: Array
+
+    @property
+    def size(self) -> float:
+        """Rms of what is left."""
+        return float(np.sqrt(np.mean(self.left**2)))
+
+
+def with_shifts(
+    bands: Mapping[float, list[Along]], forces: Sequence[str], plain: Settled, measured: float
+) -> Settled:
+    """The balance at the fewest shifts that explain what shifts can; `plain` where none does."""
+    each = [(f,) for f in forces]
+    free = _from_starts(bands, forces, each, measured)
+    if free.size > REMAINS * plain.size:
+        return plain
+    alone = [*each, tuple(forces)] if len(forces) > 1 else []
+    single = [_from_starts(bands, forces, [g], measured) for g in alone]
+    best = min(single, key=lambda s: s.size, default=free)
+    explained = (plain.size**2 - best.size**2) / (plain.size**2 - free.size**2)
+    return best if explained > ALONE else free
+
+
+def _from_starts(
+    bands: Mapping[float, list[Along]],
+    forces: Sequence[str],
+    groups: Sequence[tuple[str, ...]],
+    measured: float,
+) -> Settled:
+    """Settled from no shift, or from others where that leaves too much."""
+    best = settle(bands, forces, groups, ON_TIME)
+    if best.size < STARTS_ANEW * measured:
+        return best
+    starts = [
+        {**ON_TIME, **dict.fromkeys(g, t)}
+        for g in {*groups, tuple(f for g in groups for f in g)}
+        for t in (-LATE, -LATE / 2, LATE / 2, LATE)
+    ]
+    coarse = [settle(bands, forces, groups, s, BANDS[:2]) for s in starts]
+    start = min(coarse, key=lambda b: b.size).shifts
+    return min(best, settle(bands, forces, groups, start), key=lambda b: b.size)
+
+
+def settle(
+    bands: Mapping[float, list[Along]],
+    forces: Sequence[str],
+    groups: Sequence[tuple[str, ...]],
+    shifts: Mapping[str, float],
+    steps: Sequence[float] = BANDS,
+) -> Settled:
+    """Shifts after a step in each band, no further than an eighth of a second at once."""
+    found, gain = dict(shifts), 1.0
+    for band in (*steps, steps[-1]):
+        rows = rows_of(bands[band], found)
+        solution, jacobian, left = _solve(rows, forces, groups, gain)
+        now = Settled(groups, dict(found), rows, solution, jacobian, left)
+        if len(forces) > 1:
+            gain = float(solution[len(rows) - 5])
+        for group, step in zip(groups, solution[len(solution) - len(groups) :], strict=True):
+            for name in group:
+                found[name] += float(np.clip(step, -0.125, 0.125))
+    return now
+
+
+def _solve(
+    rows: Array, forces: Sequence[str], groups: Sequence[tuple[str, ...]], gain: float
+) -> tuple[Array, Array, Array]:
+    """Strengths, gain of the other force, steps of the shifts; the columns; what is left.
+
+    gain: of the other force, from the step before
+    """
+    value = {"actuator_force": rows[0], "interaction_force": rows[1]}
+    slope = {"actuator_force": rows[2], "interaction_force": rows[3]}
+    weight = {n: 1.0 if n == forces[0] else gain for n in forces}
+    columns = [*rows[5:], *(-value[n] for n in forces[1:])]
+    columns += [-sum((weight[n] * slope[n] for n in g), np.zeros(rows.shape[1])) for g in groups]
+    matrix = np.stack(columns, axis=1)
+    size = np.linalg.norm(matrix, axis=0)
+    size[size == 0.0] = 1.0
+    target = value[forces[0]] - rows[4]
+    solution = np.linalg.lstsq(matrix / size, target, rcond=1e-9)[0] / size
+    return solution, matrix, target - matrix @ solution

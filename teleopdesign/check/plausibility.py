@@ -1,0 +1,195 @@
+"""Do forces, motion and model agree in sign, unit and time? Plain findings from `force_balance`.
+
+What these sentences rest on is one linear fit to the rows in motion: a warning is given where the
+user's columns, as they are labelled, contradict each other by far more than an effect could.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Literal
+
+from ..diagnose.force_error import Prepared
+from ..finding import Finding
+from ..measurement.soundness.signal import written
+from ..model import Model
+from ..quantity import unit_of
+from .force_balance import ForceBalance, force_balances
+from .swapped_columns import check_swapped
+from .unit_slips import NEAR, POWERS, slips
+
+#: a gain or an inertia off by more than this factor is a unit, not a calibration or a poor guess
+FAR = 10.0
+#: force left unexplained above which a shift is not all that is wrong
+UNEXPLAINED = 0.25
+#: force left unexplained above which nothing is said about signs, units and shifts
+NOTHING = 0.9
+
+
+def check_plausibility(model: Model, prepared: Prepared) -> tuple[Finding, ...]:
+    """Findings about sign, unit and timing of the channels of every body."""
+    balances = force_balances(model, prepared)
+    swapped = list(check_swapped(model, prepared, balances))
+    if swapped:
+        return tuple(swapped)
+    found: list[Finding] = []
+    for place, balance in balances.items():
+        own = [*_signs(prepared, balance), *_gain(model, prepared, balance)]
+        if not own:
+            own = [*_units(model, balance), *_shifts(prepared, balance)]
+        found += own or [_agreeing(model, place, balance)]
+    return tuple(found)
+
+
+def _name(prepared: Prepared, body: str, quantity: str) -> str:
+    return written(prepared.experiment, f"{body}.{quantity}")
+
+
+def _signs(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
+    """A force that drives where it should brake: something has the wrong sign."""
+    inertia = balance.strengths["inertia"]
+    braking = max(
+        (p for n, p in balance.power.items() if n != "inertia"),
+        key=lambda p: abs(p.value),
+        default=None,
+    )
+    brakes = 0 if braking is None else braking.sure
+    against = balance.gain.sure < 0
+    turned = inertia.sure < 0 and brakes <= 0 or inertia.sure == 0 and brakes < 0
+    if balance.left > NOTHING or not (against or turned):
+        return
+    lead, other = (_name(prepared, balance.body, q) for q in (balance.lead, balance.other or ""))
+    if against:
+        wrong = lead if turned else other
+    elif balance.other:
+        wrong = _name(prepared, balance.body, "position")
+    else:
+        wrong = f"{lead} or {_name(prepared, balance.body, 'position')}"
+    unit = unit_of("inertia", prepared.experiment.axis(balance.body))
+    drives = f" and friction drives with {-braking.value:.3g} W" if braking and brakes < 0 else ""
+    evidence = f"the inertia is {inertia.value:.3g} {unit}{drives}"
+    if against and not turned:
+        evidence = f"what balances {lead} is {balance.gain.value:.3g} times it"
+    yield Finding(
+        "signs",
+        "warning",
+        f"{wrong} has the opposite sign: as recorded, {evidence}. All forces on a body and its "
+        "position are positive the same way.",
+        {
+            "gain": balance.gain.value,
+            "inertia": inertia.value,
+            "power": float("nan") if braking is None else braking.value,
+        },
+        balance.body,
+    )
+
+
+def _gain(model: Model, prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
+    """A second force whose scale is not that of the first."""
+    gain = balance.gain
+    if not balance.other or balance.left > NOTHING or gain.sure <= 0:
+        return
+    if 1 / FAR < gain.value < FAR:
+        return
+    lead, other = (_name(prepared, balance.body, q) for q in (balance.lead, balance.other))
+    said = model.body(balance.body).parameters["inertia"].value
+    ratio = balance.strengths["inertia"].value / said if said else float("nan")
+    wrong = "one of the two is"
+    if abs(math.log10(max(ratio, 1e-300))) < NEAR:
+        wrong = f"{other} is"
+    elif abs(math.log10(max(ratio / gain.value, 1e-300))) < NEAR:
+        wrong = f"{lead} is"
+    yield Finding(
+        "units",
+        "warning",
+        f"{other} is {1 / gain.value:.3g} times as large as what balances {lead}: going by the "
+        f"inertia, {wrong} in another unit than stated.",
+        {"gain": gain.value, "error": gain.error, "inertia_ratio": ratio},
+        balance.body,
+    )
+
+
+def _units(model: Model, balance: ForceBalance) -> Iterator[Finding]:
+    """Strengths that all lie off the model's by what a slip of units makes."""
+    body = model.body(balance.body)
+    ratios: dict[str, float] = {}
+    for name, estimate in balance.strengths.items():
+        stated = body.parameters[name].value
+        known = body.parameter(name).quantity in POWERS
+        if estimate.sure > 0 and stated > 0 and known:
+            ratios[name] = estimate.value / stated
+    inertia = ratios.get("inertia", 1.0)
+    if balance.left > NOTHING or 1 / FAR < inertia < FAR:
+        return
+    quantities = {n: body.parameter(n).quantity for n in ratios}
+    causes = slips(body.axis, ratios, quantities)
+    strengths = ", ".join(
+        f"{n} {balance.strengths[n].value:.3g} where the model says {body.parameters[n].value:.3g}"
+        for n in ratios
+    )
+    why = " or ".join(causes) if causes else "a unit, or a guess that is far off"
+    yield Finding(
+        "units",
+        "warning",
+        f"the motion asks for {strengths} ({body.unit('inertia')} for the inertia): {why}.",
+        {f"ratio.{n}": r for n, r in ratios.items()},
+        balance.body,
+    )
+
+
+def _shifts(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
+    """Channels that are late or early by half a sample or more."""
+    h = max(s.motion.sample_time for s in prepared.of("fit") if s.motion.body == balance.body)
+    late = {n: e.value for n, e in balance.shifts.items() if e.sure and abs(e.value) >= 0.5 * h}
+    if not late:
+        return
+    parts = [
+        f"{_name(prepared, balance.body, n)} "
+        + _late(t, h, "the forces" if n == "position" else "the motion")
+        for n, t in late.items()
+    ]
+    concern: Literal["note", "warning"] = "warning"
+    remedy = "shift it or state the delay"
+    less = max(map(abs, late.values())) < h
+    if less or balance.left > UNEXPLAINED or len(late) > 1:
+        # a shift by whole samples alone does not explain it: something between force and motion may
+        concern, remedy = "note", "columns out of step, or something gives in between"
+    elif late.get("actuator_force", 0.0) < 0:
+        # a cause before its effect: physics does that too
+        concern, remedy = "note", "the actuator is late, or the position is logged late"
+    numbers = {f"{n}.lag": t for n, t in late.items()}
+    numbers |= {"left": balance.left, "unshifted": balance.unshifted, "sample_time": h}
+    shares = f"{100 * balance.unshifted:.2g} -> {100 * balance.left:.2g} % of the force in motion"
+    text = " and ".join(parts)
+    yield Finding(
+        "time shift",
+        concern,
+        f"{text}: {remedy} ({shares} left unexplained).",
+        numbers,
+        balance.body,
+    )
+
+
+def _late(seconds: float, sample_time: float, behind: str) -> str:
+    samples = seconds / sample_time
+    word = "lags" if seconds > 0 else "leads"
+    return f"{word} {behind} by {1e3 * abs(seconds):.2g} ms ({abs(samples):.1f} samples)"
+
+
+def _agreeing(model: Model, place: str, balance: ForceBalance) -> Finding:
+    body = model.body(place)
+    inertia = balance.strengths["inertia"]
+    said = body.parameters["inertia"].value
+    numbers = {"inertia": inertia.value, "left": balance.left, "gain": balance.gain.value}
+    if not inertia.sure:
+        text = "no sign or unit contradicts the motion, but it tells no inertia"
+    else:
+        text = (
+            f"signs and units agree: the motion asks for an inertia of {inertia.value:.3g} "
+            f"{body.unit('inertia')}, the model says {said:.3g}"
+        )
+    if balance.other:
+        text += f"; {balance.other} balances at {balance.gain.value:.3f} +- "
+        text += f"{balance.gain.error:.1g} times its size"
+    return Finding("signs and units", "fine", f"{text}.", numbers, place)

@@ -1,0 +1,69 @@
+"""Before fitting: is the recording sound, and what can it show?"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..diagnose.excerpt import excerpt
+from ..diagnose.force_error import prepare
+from ..finding import Finding
+from ..measurement.experiment import Experiment
+from ..measurement.soundness import check_signals
+from ..model import Model
+from .excitation import check_excitation
+from .plausibility import check_plausibility
+
+#: topics whose warnings make it pointless to ask what a record can show
+_CONTRADICTIONS = ("signs", "units", "swapped columns")
+
+
+def check_experiment(
+    experiment: Experiment, model: Model | None = None, *, seed: int = 0
+) -> tuple[Finding, ...]:
+    """Plain findings about a recording: soundness, signs and units, what it can show.
+
+    model: what the user believes so far; default: the experiment's own
+    seed: of the draws for the noise floor
+    Signs, units, shifts and effects of a long experiment are judged on windows (`excerpt`).
+    raises ExperimentError: the model is incomplete, or the bandwidth does not suit the records
+    """
+    model = Model.from_experiment(experiment) if model is None else model
+    found = list(check_signals(experiment))
+    resting = _resting(experiment)
+    if resting:
+        names = " and ".join(resting)
+        sentence = f"not asked what the record can show: {names} never moves."
+        return (*found, Finding("what the record can show", "note", sentence))
+    part = excerpt(experiment)
+    if part is not experiment:
+        found.append(_windows(experiment, part))
+    prepared = prepare(part)
+    agreement = check_plausibility(model, prepared)
+    found += agreement
+    against = [f for f in agreement if f.concern == "warning" and f.topic in _CONTRADICTIONS]
+    if against:
+        sentence = "not asked what the record can show: first make signs, units and columns agree."
+        return (*found, Finding("what the record can show", "note", sentence))
+    found += check_excitation(model, prepared, np.random.default_rng(seed))
+    return tuple(found)
+
+
+def _resting(experiment: Experiment) -> list[str]:
+    """Bodies whose position is the same throughout every fit record."""
+    return [
+        body
+        for body in experiment.bodies
+        if all(np.ptp(r.signals[f"{body}.position"]) == 0 for r in experiment.fit_records)
+    ]
+
+
+def _windows(whole: Experiment, part: Experiment) -> Finding:
+    lengths = [(s.stop - s.start) * r.sample_time for r in part.records for s in r.segments]
+    duration = sum(r.duration for r in whole.records)
+    return Finding(
+        "excerpt",
+        "note",
+        f"signs, units and what the record can show are judged on {len(lengths)} windows, "
+        f"{sum(lengths):.3g} s of {duration:.4g} s.",
+        {"windows": float(len(lengths)), "seconds": sum(lengths), "of": duration},
+    )

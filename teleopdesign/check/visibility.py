@@ -1,0 +1,240 @@
+"""How large each effect would have to be for these records to show it.
+
+The effect is put into the fitted model at some strength. By how much that changes the residual
+along the measured motion is its mark; what the model's own parameters cannot imitate of it (the
+part outside the span of their columns) is what a fit would see. The strength is then turned down,
+or up, until that part stands as far above the noise floor as the diagnosis asks for. Effects are
+known here by their declared parameters only, so that a user's own are judged like any other.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from ..diagnose.candidates import Candidate
+from ..diagnose.diagnosis import ADEQUATE
+from ..diagnose.fit import Fit, weighted
+from ..diagnose.force_error import Prepared, Stretch, referred
+from ..diagnose.rank import TOLD
+from ..diagnose.scales import scales
+from ..measurement.filtering import Array
+from ..model import Model
+
+#: shapes of one effect (periods, speeds) that are tried at most
+SHAPES = 4
+#: factor on the first strength where that shows nothing
+STRONG = 30.0
+#: corrections of the strength at most; factor above the threshold that is close enough
+CORRECTIONS, CLOSE = 6, 1.25
+#: strengths, in the effect's own starting value, between which is searched; farthest step (log)
+WEAKEST, STRONGEST, FARTHEST = 1e-6, 1e4, 7.0
+
+
+@dataclass(frozen=True)
+class Visibility:
+    """What it takes for one effect to be seen.
+
+    size: force that the effect makes at the least strength that shows, relative to the measured
+        force (both rms, low-passed); inf where no strength shows
+    strength: parameter -> value (SI) there;  shape: of its other parameters
+    own: part of its mark that the model's own parameters cannot imitate, 0 to 1
+    imitated: the model's parameters that imitate the rest best
+    mark: direction of that part, (rows,), length 1;  silent: it makes no force at all
+    """
+
+    candidate: Candidate
+    size: float
+    strength: dict[str, float]
+    shape: dict[str, float]
+    own: float
+    imitated: tuple[str, ...]
+    mark: Array
+    silent: bool
+
+
+@dataclass(frozen=True)
+class _Scene:
+    """The fitted model, its records and what rises above their noise (all rows weighted)."""
+
+    base: Fit
+    stretches: Sequence[Stretch]
+    residual: Array
+    span: Array
+    measured: float
+    threshold: float
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """One strength: its whole mark and the part outside the span, rms over the measured force."""
+
+    model: Model
+    factor: float
+    whole: float
+    part: float
+    mark: Array
+    rest: Array
+
+    @property
+    def own(self) -> float:
+        """Part of the mark that the model's own parameters cannot imitate."""
+        return self.part / self.whole if self.whole > 0.0 else 0.0
+
+
+def visibilities(
+    base: Fit, prepared: Prepared, found: Sequence[Candidate], floor: float
+) -> list[Visibility]:
+    """What it takes for each candidate to be seen on the fit records.
+
+    floor: noise floor of these records, a relative force error
+    """
+    stretches = prepared.of("fit")
+    residual = weighted(stretches, [r for r, _ in referred(base.model, stretches)])
+    columns = base.jacobian[:, np.linalg.norm(base.jacobian, axis=0) > 0]
+    span = np.linalg.svd(columns / np.linalg.norm(columns, axis=0), full_matrices=False)
+    kept = span[0][:, span[1] > 1e-8 * span[1].max(initial=0.0)]
+    scene = _Scene(
+        base,
+        stretches,
+        residual,
+        kept,
+        math.sqrt(sum(s.measured for s in stretches)),
+        # an error of ADEQUATE floors is where a model stops being adequate
+        floor * math.sqrt(ADEQUATE**2 - 1.0),
+    )
+    unit = scales([s.motion for s in stretches], prepared.bandwidth)
+    return [_visibility(c, scene, unit) for c in found]
+
+
+def _visibility(candidate: Candidate, scene: _Scene, unit: dict[str, float]) -> Visibility:
+    shapes = _shapes(candidate, scene.base.model, unit)
+    best, shaped = _best(candidate, shapes, 1.0, scene)
+    if best.own < TOLD:
+        best, shaped = _best(candidate, shapes, STRONG, scene)
+    if best.own >= TOLD:
+        best = _at_threshold(candidate, best, shaped, scene)
+    shows = best.own >= TOLD and best.part >= scene.threshold
+    strength, shape = _values(candidate, best.model)
+    return Visibility(
+        candidate,
+        best.whole if shows else math.inf,
+        strength,
+        shape,
+        best.own,
+        _imitating(best, scene),
+        best.rest / max(float(np.linalg.norm(best.rest)), 1e-300),
+        best.whole < 1e-9,
+    )
+
+
+def _best(
+    candidate: Candidate, shapes: Sequence[Model], factor: float, scene: _Scene
+) -> tuple[_Trial, Model]:
+    """The shape that shows most at equal strength; one that nothing imitates goes first."""
+    trials = [(_trial(candidate, m, factor, scene), m) for m in shapes]
+    return max(trials, key=lambda t: (t[0].own >= TOLD, t[0].part))
+
+
+def _shapes(candidate: Candidate, model: Model, unit: dict[str, float]) -> list[Model]:
+    """The model with the effect at its first strength, and a few of its other parameters' starts.
+
+    One phase stands for all: how much it shows hardly depends on it.
+    """
+    effect, place = candidate.effect, candidate.at
+    added = model.with_effect(effect, at=place)
+    names = [f"{place}.{effect.name}.{n}" for n in effect.parameters]
+    grids = []
+    for full, (name, p) in zip(names, effect.parameters.items(), strict=True):
+        one = name in effect.absent or p.chosen or p.quantity == "angle"
+        scaled = [x * unit[p.scale or p.quantity] for x in (p.starts[:1] if one else p.starts)]
+        grids.append([added.parameters[full].value] if p.optional else scaled)
+    every = list(product(*grids))
+    some = every[:: max(1, math.ceil(len(every) / SHAPES))]
+    return [_bounded(added, dict(zip(names, values, strict=True))) for values in some]
+
+
+def _bounded(model: Model, values: dict[str, float]) -> Model:
+    bounds = {n: model.declared(n) for n in values}
+    inside = {n: min(max(v, bounds[n].lower), bounds[n].upper) for n, v in values.items()}
+    return model.with_values(inside)
+
+
+def _trial(candidate: Candidate, shaped: Model, factor: float, scene: _Scene) -> _Trial:
+    """The effect at `factor` times its first strength; where that is absent already, beside it."""
+    effect, place = candidate.effect, candidate.at
+    values = {}
+    for name, absent in effect.absent.items():
+        full = f"{place}.{effect.name}.{name}"
+        first = shaped.parameters[full].value
+        if math.isinf(absent):
+            values[full] = first / factor
+        else:
+            step = first - absent if first != absent else 0.1
+            values[full] = absent + factor * step
+    model = _bounded(shaped, values)
+    parts = referred(model, scene.stretches)
+    mark = weighted(scene.stretches, [r for r, _ in parts]) - scene.residual
+    if not np.isfinite(mark).all():
+        mark = np.zeros_like(mark)
+    rest = mark - scene.span @ (scene.span.T @ mark)
+    whole, part = (float(np.linalg.norm(y)) / scene.measured for y in (mark, rest))
+    return _Trial(model, factor, whole, part, mark, rest)
+
+
+def _at_threshold(candidate: Candidate, first: _Trial, shaped: Model, scene: _Scene) -> _Trial:
+    """The least strength found at which what shows reaches the threshold; `first` if none does.
+
+    Secants of the logarithms, and halves of the factor between a strength that shows and one that
+    does not, for an effect such as a limit sets in all at once.
+    """
+    trials, slope = [first], 1.0
+    for _ in range(CORRECTIONS):
+        here = trials[-1]
+        if 1.0 <= here.part / scene.threshold < CLOSE:
+            break
+        low = max((t.factor for t in trials if t.part < scene.threshold), default=WEAKEST)
+        high = min((t.factor for t in trials if t.part >= scene.threshold), default=STRONGEST)
+        factor = math.sqrt(low * high)
+        if here.part > 0.0:
+            aim = scene.threshold * math.sqrt(CLOSE) / here.part
+            step = min(max(math.log(aim) / slope, -FARTHEST), FARTHEST)
+            secant = here.factor * math.exp(step)
+            factor = secant if low < secant < high else factor
+        trials.append(_trial(candidate, shaped, factor, scene))
+        slope = _slope(here, trials[-1], slope)
+    shown = [t for t in trials if t.part >= scene.threshold]
+    return min(shown, key=lambda t: t.factor) if shown else max(trials, key=lambda t: t.part)
+
+
+def _slope(one: _Trial, two: _Trial, before: float) -> float:
+    """Power of the strength with which what shows grows; linear to begin with."""
+    if min(one.part, two.part) <= 0.0 or one.factor == two.factor or one.part == two.part:
+        return before
+    found = math.log(two.part / one.part) / math.log(two.factor / one.factor)
+    return min(max(found, 0.3), 5.0)
+
+
+def _values(candidate: Candidate, model: Model) -> tuple[dict[str, float], dict[str, float]]:
+    effect = candidate.effect
+    prefix = f"{candidate.at}.{effect.name}."
+    values = {n: model.parameters[prefix + n].value for n in effect.parameters}
+    strength = {n: v for n, v in values.items() if n in effect.absent}
+    return strength, {n: v for n, v in values.items() if n not in effect.absent}
+
+
+def _imitating(trial: _Trial, scene: _Scene) -> tuple[str, ...]:
+    """The model's free parameters that take up most of a mark, those with a third of it or more."""
+    columns, names = scene.base.jacobian, scene.base.free
+    size = np.linalg.norm(columns, axis=0)
+    size[size == 0.0] = 1.0
+    if not len(names) or trial.whole == 0.0:
+        return ()
+    taken = np.abs(np.linalg.lstsq(columns / size, trial.mark, rcond=1e-9)[0])
+    order = np.argsort(-taken)
+    whole = float(np.linalg.norm(trial.mark))
+    return tuple(names[i] for i in order[:2] if taken[i] > whole / 3)

@@ -1,0 +1,48 @@
+"""What the records of a diagnosis leave open: accepted effects that others could replace."""
+
+from __future__ import annotations
+
+from .diagnosis import Diagnosis, OpenQuestion, Rung
+from .rank import Ranked
+from .support import is_supported
+
+#: two models that the check records tell by less than this (noise floors, in quadrature) are left
+#: open: a right model's own error lies between one and about one and a half noise floors
+OPEN = 1.0
+#: most rivals of one question
+MOST = 4
+
+
+def open_questions(diagnosis: Diagnosis) -> tuple[OpenQuestion, ...]:
+    """What `rivals_of` makes rivals of, before anything is fitted anew: one entry an accepted
+    effect that others could replace, and what would be added next where the verdict is undecided.
+    """
+    if diagnosis.open is not None:
+        return diagnosis.open
+    found = [_of_rung(diagnosis, rung) for rung in diagnosis.rungs if rung.added is not None]
+    if diagnosis.verdict == "undecided":
+        told = [r for r in diagnosis.last.ranked if r.counts and r.score > 0.0]
+        others = tuple((r.candidate, r.fit) for r in told[: MOST - 1])
+        found.append(OpenQuestion(None, others))
+    return tuple(q for q in found if q.others)
+
+
+def _of_rung(diagnosis: Diagnosis, rung: Rung) -> OpenQuestion:
+    """The accepted effect of a rung and what may stand in its place."""
+    assert rung.added is not None and rung.ranking is not None
+    equals = {c.key for c in rung.equals}
+    ranked = [r for r in rung.ranking.ranked if r.candidate.key != rung.added.key]
+    close = sorted(
+        (r for r in ranked if r.candidate.key in equals or _is_open(r, rung, diagnosis)),
+        key=lambda r: (r.candidate.key not in equals, r.fit.check_error),
+    )
+    return OpenQuestion(rung.added, tuple((r.candidate, r.fit) for r in close[: MOST - 1]))
+
+
+def _is_open(ranked: Ranked, rung: Rung, diagnosis: Diagnosis) -> bool:
+    """Whether a candidate could have been accepted too, and the records leave it open."""
+    assert rung.ranking is not None and rung.added is not None
+    added = next(r for r in rung.ranking.ranked if r.candidate.key == rung.added.key)
+    more = ranked.fit.check_error**2 - added.fit.check_error**2
+    near = more < (OPEN * diagnosis.floor.value) ** 2
+    return near and is_supported(rung.ranking.base, ranked, diagnosis.floor)

@@ -1,0 +1,36 @@
+"""The next experiment: for what a diagnosis leaves open, the motion that best tells it.
+
+proposal = propose(find_missing(experiment))
+proposal                                    # what to run, and what it will show
+write_reference(proposal.reference, experiment, "next.csv")
+show_in_simulation(proposal)                # each rival is made the truth, and diagnosed
+"""
+
+from ..arguments import check_arguments
+from .in_simulation import Shown, show_in_simulation
+from .limits import Limits, shown_limits
+from .prediction import Determined, Separation
+from .proposal import Proposal, Reference
+from .propose import propose
+from .reference_csv import write_reference
+from .remedies import Remedy
+from .rivals import Rival
+from .words import proposal_data
+
+__all__ = [
+    "Determined",
+    "Limits",
+    "Proposal",
+    "Reference",
+    "Remedy",
+    "Rival",
+    "Separation",
+    "Shown",
+    "proposal_data",
+    "propose",
+    "show_in_simulation",
+    "shown_limits",
+    "write_reference",
+]
+
+check_arguments(globals(), __all__)

@@ -1,0 +1,224 @@
+"""The motions that are tried: what an experimenter would ask a servo for, within limits.
+
+Each part starts and ends at rest in the middle of the stroke, so that parts follow one another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..measurement.filtering import Array
+from .limits import Limits
+from .path import Hold, Move, largest_factor, sines, travel, windowed
+
+#: shows a value of a quantity ("position", "velocity", "frequency", "time") with its unit
+Show = Callable[[float, str], str]
+#: parts of the largest speed at which runs are made: three decades, about three to a decade
+SPEEDS = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
+#: parts of the largest amplitude of sums of sines
+SHARES = (1.0, 0.4, 0.15)
+#: encoder steps that a motion must cover to be seen as one
+SEEN = 10.0
+#: s, about how long a part is meant to last, and the longest of a sweep of the whole stroke
+ABOUT, LONGEST = 4.0, 8.0
+#: part of the largest speed at which a part goes where it starts
+BRISK = 0.5
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a motion: what the body does, and the path (n,) about the middle, SI."""
+
+    sentence: str
+    path: Array
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What the family is made for.
+
+    step: what one reading leaves open of the position;  bandwidth: of the comparison, Hz
+    repeated: s that a run is repeated for, where something depends on time itself; 0: none
+    """
+
+    limits: Limits
+    step: float
+    bandwidth: float
+    sample_time: float
+    show: Show
+    repeated: float = 0.0
+
+
+def family(setting: Setting) -> tuple[Part, ...]:
+    """Every part that is tried."""
+    makers = (
+        _sums_of_sines,
+        _runs,
+        _sweeps,
+        _two_speeds,
+        _starts_after_rest,
+        _steps,
+        _places,
+        _growing,
+        _repeated,
+    )
+    return tuple(part for maker in makers for part in maker(setting))
+
+
+def _part(setting: Setting, sentence: str, legs: list[Move | Hold]) -> Part:
+    return Part(sentence, travel(legs, setting.limits, sample_time=setting.sample_time))
+
+
+def _sums_of_sines(s: Setting) -> Iterator[Part]:
+    top = s.bandwidth  # nothing above it is compared
+    for low, high in (
+        (0.3, 3.0),
+        (1.0, 8.0),
+        (0.05 * top, 0.25 * top),
+        (0.15 * top, 0.5 * top),
+        (0.3 * top, 0.9 * top),
+    ):
+        duration = min(max(ABOUT, 2.0 / low), LONGEST)
+        for share in SHARES:
+            path = sines(
+                np.geomspace(low, high, 9),
+                duration,
+                s.limits,
+                share=share,
+                sample_time=s.sample_time,
+            )
+            size = float(np.abs(path).max())
+            if size > SEEN * s.step:
+                text = (
+                    f"move in a sum of sines from {s.show(low, 'frequency')} to "
+                    f"{s.show(high, 'frequency')}, up to {s.show(size, 'position')}"
+                )
+                yield Part(text, path)
+
+
+def _reach(s: Setting, speed: float, time: float) -> float:
+    return min(s.limits.high, speed * time)
+
+
+def _runs(s: Setting) -> Iterator[Part]:
+    for ratio in SPEEDS:
+        speed = ratio * s.limits.speed
+        reach = _reach(s, speed, 0.25 * ABOUT)
+        if reach < SEEN * s.step:
+            continue
+        times = max(1, round(ABOUT * speed / (4 * reach)))
+        legs: list[Move | Hold] = []
+        for _ in range(times):
+            legs += [Move(reach, speed), Move(-reach, speed)]
+        text = _back_and_forth(s, reach, speed)
+        yield _part(s, text, [*legs, Move(0.0, speed)])
+
+
+def _back_and_forth(s: Setting, reach: float, speed: float) -> str:
+    return f"run back and forth over {s.show(2 * reach, 'position')} at {s.show(speed, 'velocity')}"
+
+
+def _sweeps(s: Setting) -> Iterator[Part]:
+    brisk, whole = BRISK * s.limits.speed, 2 * s.limits.high
+    for time in (0.5 * LONGEST, LONGEST):
+        speed = min(whole / time, s.limits.speed)
+        for end, way in ((1.0, "forward"), (-1.0, "backward")):
+            far = end * s.limits.high
+            legs: list[Move | Hold] = [Move(-far, brisk), Hold(0.3), Move(far, speed), Hold(0.3)]
+            text = (
+                f"creep {way}, one way, over {s.show(whole, 'position')} at "
+                f"{s.show(speed, 'velocity')}"
+            )
+            yield _part(s, text, [*legs, Move(0.0, brisk)])
+
+
+def _two_speeds(s: Setting) -> Iterator[Part]:
+    for reach in (s.limits.high, 0.3 * s.limits.high):
+        fast, slow = s.limits.speed, max(2 * reach / LONGEST, 0.1 * s.limits.speed)
+        if reach < SEEN * s.step or slow >= fast:
+            continue
+        legs: list[Move | Hold] = []
+        for speed in (fast, slow):
+            legs += [Move(reach, speed), Move(-reach, speed), Move(0.0, speed)]
+        text = (
+            f"run the same path of {s.show(2 * reach, 'position')} at {s.show(fast, 'velocity')} "
+            f"and at {s.show(slow, 'velocity')}"
+        )
+        yield _part(s, text, legs)
+
+
+def _starts_after_rest(s: Setting) -> Iterator[Part]:
+    for ratio in (0.5, 0.05):
+        speed = ratio * s.limits.speed
+        reach = _reach(s, speed, 0.5)
+        if reach < SEEN * s.step:
+            continue
+        legs: list[Move | Hold] = []
+        for rest in (0.05, 0.2, 0.8):
+            # on the same way after a rest, then back after a rest
+            legs += [Move(0.5 * reach, speed), Hold(rest), Move(reach, speed), Hold(rest)]
+            legs += [Move(0.0, speed), Hold(rest)]
+        text = (
+            f"start anew after rests of 0.05, 0.2 and 0.8 s, on the same way and back, in moves of "
+            f"{s.show(0.5 * reach, 'position')} at {s.show(speed, 'velocity')}"
+        )
+        yield _part(s, text, legs)
+
+
+def _steps(s: Setting) -> Iterator[Part]:
+    for share in (1.0, 0.2):
+        size = share * s.limits.high
+        if size < SEEN * s.step:
+            continue
+        legs: list[Move | Hold] = []
+        for to in (0.6, -0.4, 1.0, -1.0, 0.3, -0.6, 0.0):
+            legs += [Move(to * size, s.limits.speed), Hold(0.3)]
+        yield _part(s, f"step between places up to {s.show(2 * size, 'position')} apart", legs)
+
+
+def _places(s: Setting) -> Iterator[Part]:
+    brisk, small = BRISK * s.limits.speed, 0.15 * s.limits.high
+    if small < SEEN * s.step:
+        return
+    for ratio in (0.5, 0.05):
+        speed = max(ratio * s.limits.speed, small)  # four runs of a small stroke take 4 s at most
+        legs: list[Move | Hold] = []
+        for place in (-0.85, 0.0, 0.85):
+            at = place * s.limits.high
+            legs += [Move(at, brisk), Move(at + small, speed), Move(at - small, speed)]
+            legs += [Move(at, speed)]
+        text = (
+            f"run over {s.show(2 * small, 'position')} at {s.show(speed, 'velocity')} at either "
+            "end of the stroke and in its middle"
+        )
+        yield _part(s, text, [*legs, Move(0.0, brisk)])
+
+
+def _growing(s: Setting) -> Iterator[Part]:
+    t = np.arange(0.0, 1.5 * ABOUT, s.sample_time)
+    for largest in (0.3 * s.limits.high, 100 * s.step):
+        smallest = 0.5 * SEEN * s.step
+        if largest < 2 * smallest:
+            continue
+        grown = smallest * (largest / smallest) ** (t / t[-1])
+        y = windowed(grown * np.sin(2 * np.pi * 1.5 * t), ramp=0.3, sample_time=s.sample_time)
+        y *= min(1.0, largest_factor(y, s.limits, sample_time=s.sample_time))
+        text = (
+            f"swing at 1.5 Hz with an amplitude that grows from {s.show(smallest, 'position')} to "
+            f"{s.show(float(np.abs(y).max()), 'position')}"
+        )
+        yield Part(text, y)
+
+
+def _repeated(s: Setting) -> Iterator[Part]:
+    if s.repeated <= 0.0:
+        return
+    speed = BRISK * s.limits.speed
+    reach = _reach(s, speed, 0.5 * ABOUT)
+    times = max(1, round(s.repeated * speed / (4 * reach)))
+    legs: list[Move | Hold] = [Move(reach, speed), Move(-reach, speed)] * times
+    text = f"{_back_and_forth(s, reach, speed)} for {s.show(s.repeated, 'time')}, from cold"
+    yield _part(s, text, [*legs, Move(0.0, speed)])

@@ -1,0 +1,62 @@
+"""Does the proposal keep its promise? Each rival is made the truth, and everything is diagnosed."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ..diagnose.diagnosis import Diagnosis
+from ..diagnose.ladder import find_missing
+from .prediction import extended, run_twice
+from .proposal import Proposal
+from .rivals import Rival
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a diagnosis of the present and the new records says if one rival is the truth.
+
+    named: whether the truth is named, and alone;  diagnosis: all of it
+    """
+
+    truth: Rival
+    named: bool
+    diagnosis: Diagnosis
+
+    def __str__(self) -> str:
+        what = ", ".join(str(c) for c in self.diagnosis.missing) or self.diagnosis.verdict
+        return f"if {self.truth} is right, the diagnosis says: {what}"
+
+
+def show_in_simulation(
+    proposal: Proposal,
+    *,
+    seconds: float = float("inf"),
+    progress: Callable[[str], None] | None = None,
+    seed: int = 100,
+) -> tuple[Shown, ...]:
+    """Diagnose the present records and those that each rival would give along the motion.
+
+    seconds: no further rival is begun after this time;  seed: of the new records' sensor errors
+    """
+    shown: list[Shown] = []
+    began = time.perf_counter()
+    for i, rival in enumerate(proposal.rivals):
+        if proposal.plan is None or time.perf_counter() - began > seconds:
+            break
+        if progress is not None:
+            progress(f"simulating: {rival} is right")
+        new = run_twice(rival.model, proposal.plan, proposal.bench, seed=seed + i)
+        experiment = extended(proposal.diagnosis.experiment, new)
+        found = find_missing(experiment, proposal.diagnosis.before.model)
+        shown.append(Shown(rival, names_alone(found, rival), found))
+    return tuple(shown)
+
+
+def names_alone(diagnosis: Diagnosis, rival: Rival) -> bool:
+    """Whether a diagnosis names the rival's effect, with none that does as well."""
+    key = rival.candidate.key
+    return diagnosis.verdict == "effects_missing" and any(
+        r.added is not None and r.added.key == key and not r.equals for r in diagnosis.rungs
+    )

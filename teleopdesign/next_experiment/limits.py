@@ -1,0 +1,148 @@
+"""Limits within which a motion is known to be safe: those that the records have shown.
+
+Nothing further out is proposed unless the user says so (`Limits` of one's own).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from ..diagnose.force_error import Prepared, Stretch
+from ..errors import ModelError, did_you_mean
+
+#: part of the samples of a signal that may lie above the limit read off: single samples are noise
+OUTLYING = 1e-3
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of one body (SI).
+
+    low, high: ends of the stroke;  speed, acceleration, jerk, force: largest magnitudes; force is
+        that of the command
+    """
+
+    low: float
+    high: float
+    speed: float
+    acceleration: float
+    jerk: float
+    force: float
+
+    def __post_init__(self) -> None:
+        if not self.high > self.low:
+            raise ModelError(
+                f"limits: the stroke ends at {self.high:g}, expected more than {self.low:g}"
+            )
+        for name in ("speed", "acceleration", "jerk", "force"):
+            if not getattr(self, name) > 0:
+                raise ModelError(f"limits: {name} is {getattr(self, name):g}, expected more than 0")
+
+    def with_values(self, **values: float) -> Limits:
+        """Other values by name; ModelError with the nearest name where there is none such."""
+        known = [f.name for f in fields(self)]
+        for name in values:
+            if name not in known:
+                raise ModelError(
+                    f'limits: no limit "{name}", has {", ".join(known)}{did_you_mean(name, known)}'
+                )
+        return replace(self, **values)
+
+    def widened(self, factor: float) -> Limits:
+        """All limits times a factor; the stroke about its middle."""
+        middle, half = 0.5 * (self.low + self.high), 0.5 * factor * (self.high - self.low)
+        return Limits(
+            middle - half,
+            middle + half,
+            factor * self.speed,
+            factor * self.acceleration,
+            factor * self.jerk,
+            factor * self.force,
+        )
+
+
+def shown_limits(prepared: Prepared) -> dict[str, Limits]:
+    """Body -> the limits that its records have shown to be safe.
+
+    Records whose encoder zero is their own do not share a stroke with the others: they count for
+    it only where there are no others.
+    """
+    bodies = dict.fromkeys(s.motion.body for s in prepared.stretches)
+    return {b: _shown([s for s in prepared.stretches if s.motion.body == b]) for b in bodies}
+
+
+def _shown(stretches: Sequence[Stretch]) -> Limits:
+    common = [s for s in stretches if not s.own_zero] or [stretches[0]]
+    accelerations = [s.motion.lowpassed(s.motion.acceleration)[_inside(s)] for s in stretches]
+    jerks = [
+        np.diff(a) / s.motion.sample_time for a, s in zip(accelerations, stretches, strict=True)
+    ]
+    return Limits(
+        low=min(float(s.motion.position.min()) for s in common),
+        high=max(float(s.motion.position.max()) for s in common),
+        speed=_largest([s.motion.velocity[_inside(s)] for s in stretches]),
+        acceleration=_largest(accelerations),
+        jerk=_largest(jerks),
+        force=max(float(np.abs(s.motion.command).max()) for s in stretches),
+    )
+
+
+def _inside(stretch: Stretch) -> slice:
+    """The rows between those that count: derivatives at a record's ends are not known."""
+    return slice(int(stretch.keep[0]), int(stretch.keep[-1]) + 1)
+
+
+def _largest(parts: Sequence[np.ndarray]) -> float:
+    return float(np.quantile(np.abs(np.concatenate(parts)), 1.0 - OUTLYING))
+
+
+@dataclass(frozen=True)
+class Course:
+    """How one path moves every body: position = middle + gain times the path (SI of the first).
+
+    limits: those of the path itself: the stroke is low = -high, the rest the tightest of all bodies
+    """
+
+    middle: Mapping[str, float]
+    gain: Mapping[str, float]
+    limits: Limits
+
+
+def course_of(limits: Mapping[str, Limits], prepared: Prepared) -> Course:
+    """One path for all bodies: a coupled pair keeps its ratio, others go by their strokes."""
+    first = next(iter(limits))
+    gain = {b: _ratio(first, b, limits, prepared) for b in limits}
+    middle = {b: 0.5 * (own.low + own.high) for b, own in limits.items()}
+
+    def tightest(name: str) -> float:
+        return min(float(getattr(own, name)) / abs(gain[b]) for b, own in limits.items())
+
+    half = min(0.5 * (own.high - own.low) / abs(gain[b]) for b, own in limits.items())
+    bounds = {name: tightest(name) for name in ("speed", "acceleration", "jerk")}
+    # each body is held to its own force when the force is known
+    return Course(middle, gain, Limits(-half, half, **bounds, force=limits[first].force))
+
+
+#: correlation of two bodies' positions from which they count as coupled
+COUPLED = 0.9
+
+
+def _ratio(first: str, body: str, limits: Mapping[str, Limits], prepared: Prepared) -> float:
+    if body == first:
+        return 1.0
+    one, other = (
+        [
+            s.motion.position - s.motion.position.mean()
+            for s in prepared.stretches
+            if s.motion.body == b
+        ]
+        for b in (first, body)
+    )
+    x, y = np.concatenate(one), np.concatenate(other)
+    if len(x) == len(y) and float(np.corrcoef(x, y)[0, 1]) > COUPLED:
+        return float(x @ y / (x @ x))
+    strokes = [limits[b].high - limits[b].low for b in (first, body)]
+    return strokes[1] / strokes[0]

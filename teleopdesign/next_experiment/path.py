@@ -1,0 +1,118 @@
+"""Smooth paths within limits: positions over time that a servo can follow.
+
+A path is a broken line of moves at constant speed and holds, rounded by a raised-cosine window.
+The window's length follows from the limits: with speeds that span a range R,
+
+    acceleration <= 2 R / T,   jerk <= 4 pi R / T^2
+
+for a window of length T, whatever the line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..measurement.filtering import Array
+from .limits import Limits
+
+#: s at rest at either end of a part
+REST = 0.3
+
+
+@dataclass(frozen=True)
+class Move:
+    """To a position at a constant speed."""
+
+    to: float
+    speed: float
+
+
+@dataclass(frozen=True)
+class Hold:
+    """Stay for some time (s)."""
+
+    time: float
+
+
+def travel(legs: Sequence[Move | Hold], limits: Limits, *, sample_time: float) -> Array:
+    """The rounded line through these legs, from rest at 0; it ends at rest where the last one ends.
+
+    returns: positions, shape (n,), one per `sample_time` seconds
+    """
+    times, places, lowest, highest = [0.0], [0.0], 0.0, 0.0
+    for leg in legs:
+        if isinstance(leg, Hold):
+            times.append(times[-1] + leg.time)
+            places.append(places[-1])
+            continue
+        distance = leg.to - places[-1]
+        if distance == 0.0:
+            continue
+        times.append(times[-1] + abs(distance) / leg.speed)
+        places.append(leg.to)
+        lowest = min(lowest, leg.speed * np.sign(distance))
+        highest = max(highest, leg.speed * np.sign(distance))
+    width = window_length(highest - lowest, limits)
+    margin = REST + 0.5 * width
+    t = np.arange(0.0, times[-1] + 2 * margin, sample_time) - margin
+    return rounded(np.interp(t, times, places), width, sample_time)
+
+
+def window_length(range_of_speed: float, limits: Limits) -> float:
+    """Length (s) of the raised cosine that keeps acceleration and jerk within the limits."""
+    return max(
+        2.0 * range_of_speed / limits.acceleration,
+        float(np.sqrt(4.0 * np.pi * range_of_speed / limits.jerk)),
+    )
+
+
+def rounded(line: Array, width: float, sample_time: float) -> Array:
+    """The line through a raised-cosine window of that length (s); its ends stay where they are."""
+    samples = max(3, 2 * round(0.5 * width / sample_time) + 1)
+    window = np.hanning(samples + 2)[1:-1]
+    half = samples // 2
+    padded = np.concatenate([np.full(half, line[0]), line, np.full(half, line[-1])])
+    return np.asarray(np.convolve(padded, window / window.sum(), mode="valid"))
+
+
+def sines(
+    frequencies: Array, duration: float, limits: Limits, *, share: float, sample_time: float
+) -> Array:
+    """Sum of sines in a smooth window, as large as the limits allow times `share`.
+
+    frequencies: Hz, shape (k,); amplitudes fall so that none dominates the acceleration, phases are
+        Schroeder's (a low peak for the power)
+    """
+    t = np.arange(0.0, duration, sample_time)
+    k = np.arange(len(frequencies))
+    corner = float(np.sqrt(frequencies[0] * frequencies[-1]))
+    amplitude = 1.0 / (1.0 + (frequencies / corner) ** 2)
+    phase = -np.pi * k * (k + 1) / len(frequencies)
+    y = amplitude @ np.sin(2 * np.pi * np.outer(frequencies, t) + phase[:, None])
+    y = windowed(y, ramp=min(0.5, 0.2 * duration), sample_time=sample_time)
+    return share * y * largest_factor(y, limits, sample_time=sample_time)
+
+
+def windowed(y: Array, *, ramp: float, sample_time: float) -> Array:
+    """The signal faded in and out (s), with a rest before and after."""
+    t = np.arange(len(y)) * sample_time
+    rise = np.clip(np.minimum(t, t[-1] - t) / ramp, 0.0, 1.0)
+    rest = np.zeros(round(REST / sample_time))
+    # sixth order at both ends: no jump of jerk
+    return np.concatenate(
+        [rest, y * rise**4 * (35 - 84 * rise + 70 * rise**2 - 20 * rise**3), rest]
+    )
+
+
+def largest_factor(y: Array, limits: Limits, *, sample_time: float) -> float:
+    """The factor that takes a path to the nearest of its limits (stroke, speed and so on)."""
+    peaks = [y]
+    for _ in range(3):
+        peaks.append(np.gradient(peaks[-1], sample_time))
+    bounds = (limits.high, limits.speed, limits.acceleration, limits.jerk)
+    return min(
+        bound / max(float(np.abs(p).max()), 1e-300) for bound, p in zip(bounds, peaks, strict=True)
+    )

@@ -1,0 +1,218 @@
+"""What a proposed motion will show: every rival in turn is the truth, the others are fitted anew.
+
+The motion is run twice: one record is fitted together with the present ones, the other is checked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..diagnose.evidence import gain_score
+from ..diagnose.fit import Fit, estimate
+from ..diagnose.force_error import Stretch, error_of, prepare, referred
+from ..diagnose.noise_floor import noise_floor
+from ..measurement.experiment import Experiment
+from ..measurement.filtering import Array
+from ..measurement.record import Record
+from ..model import Model
+from ..quantity import unit_of
+from .rivals import Rival, pairs
+from .separation import rms_measured
+from .synthesis import Bench, Planned, record_under
+
+#: the two records of a proposed motion
+FIT, CHECK = "next_fit", "next_check"
+#: separation (noise floors) from which a motion decides: a right model's own error lies between one
+#: and about one and a half noise floors, so that less may be the method's own
+DECIDES = 1.0
+#: separation below which two models' forces count as the same: a twentieth of what sensors leave
+SAME = 0.05
+
+
+@dataclass(frozen=True)
+class Separation:
+    """What one rival leaves along the proposed motion where another is the truth.
+
+    present: error that the present records show beyond the truth's own, in noise floors
+    predicted: the same of the new check record, after all is fitted anew on all fit records
+    score: how surely the truth then has the smaller error (standard deviations)
+    """
+
+    truth: Rival
+    other: Rival
+    present: float
+    predicted: float
+    score: float
+
+
+@dataclass(frozen=True)
+class Determined:
+    """A parameter that the present records leave open and the new one settles.
+
+    before, after: standard error over value;  unit: of the value
+    """
+
+    name: str
+    value: float
+    unit: str
+    before: float
+    after: float
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Force that a rival leaves along the new check record, and what the truth leaves (rows n).
+
+    body: where the truth's effect is;  unit: of the forces
+    """
+
+    body: str
+    unit: str
+    time: Array
+    left: Array
+    noise: Array
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Everything that follows if one rival is the truth."""
+
+    truth: int
+    separations: tuple[Separation, ...]
+    determined: tuple[Determined, ...]
+    curves: tuple[Curves, ...]
+
+
+def run_twice(truth: Model, plan: Planned, bench: Bench, *, seed: int) -> tuple[Record, Record]:
+    """The fit and the check record of the planned motion with this model as the truth."""
+    made = [
+        record_under(truth, plan, bench, np.random.default_rng([seed, i]), file=name, use=use)
+        for i, (name, use) in enumerate(((FIT, "fit"), (CHECK, "check")))
+    ]
+    return made[0], made[1]
+
+
+def extended(experiment: Experiment, records: Sequence[Record]) -> Experiment:
+    """The experiment with records more."""
+    return replace(experiment, records=(*experiment.records, *records))
+
+
+@dataclass(frozen=True)
+class Refit:
+    """Rivals fitted to all fit records together, and what they leave along the new check record.
+
+    errors: one for each rival, in noise floors: those of the new record or of the present ones,
+        whichever is larger
+    floor: relative force error that is one of them
+    """
+
+    fits: tuple[Fit, ...]
+    errors: tuple[float, ...]
+    floor: float
+    check: tuple[Stretch, ...]
+
+    def found(self, *, truth: int, other: int) -> float:
+        """Error of one rival beyond another's, in noise floors (in quadrature); 0 if it has less.
+
+        For records that were measured.
+        """
+        return float(np.sqrt(max(self.errors[other] ** 2 - self.errors[truth] ** 2, 0.0)))
+
+    def expected(self, *, truth: int, other: int) -> float:
+        """What `found` is on average over the sensors' errors, for records made by the truth."""
+        both = (referred(self.fits[i].model, self.check) for i in (truth, other))
+        apart = [b - a for (a, _), (b, _) in zip(*both, strict=True)]
+        return error_of(self.check, apart) / self.floor
+
+
+def refit(
+    rivals: Sequence[Rival], new: Sequence[Record], bench: Bench, *, best: int = 0, seed: int = 0
+) -> Refit:
+    """Fit rivals to the present records and new ones, and hold them against the new check record.
+
+    new: records with the names `FIT` and `CHECK`;  best: rival that the noise floor is taken with
+    """
+    prepared = prepare(extended(bench.experiment, new), bandwidth=bench.bandwidth)
+    check = tuple(s for s in prepared.stretches if s.motion.file == CHECK)
+    fits = tuple(estimate(r.model, prepared) for r in rivals)
+    generator = np.random.default_rng(seed)
+    own = noise_floor(fits[best].model, replace(prepared, stretches=check), generator).value
+    floor = max(own, bench.floor / rms_measured(check))
+    # relative to what acts by each model: one whose actuator passes less has gained nothing by that
+    left = [[r for r, _ in referred(f.model, check)] for f in fits]
+    return Refit(fits, tuple(error_of(check, r) / floor for r in left), floor, check)
+
+
+def predicted(
+    number: int,
+    rivals: Sequence[Rival],
+    plan: Planned,
+    bench: Bench,
+    present: Mapping[tuple[int, int], float],
+    *,
+    seed: int,
+) -> Prediction:
+    """Fit every rival to the present and the new records that rival `number` would give.
+
+    present: (truth, other) -> separation on the present records
+    """
+    truth = rivals[number]
+    against = [i for i in range(len(rivals)) if (number, i) in pairs(rivals)]
+    new = run_twice(truth.model, plan, bench, seed=seed)
+    found = refit([truth, *(rivals[i] for i in against)], new, bench, seed=seed)
+    separations = tuple(
+        Separation(
+            truth,
+            rivals[i],
+            present[number, i],
+            found.expected(truth=0, other=k),
+            _score(found.fits[k], found.fits[0]),
+        )
+        for k, i in enumerate(against, start=1)
+    )
+    curves = tuple(_curves(truth, found, k) for k in range(1, len(found.fits)))
+    return Prediction(number, separations, _determined(truth, found.fits[0]), curves)
+
+
+def _score(other: Fit, truth: Fit) -> float:
+    return gain_score(other.check_residual, truth.check_residual, truth.check_blocks)
+
+
+def _curves(truth: Rival, found: Refit, other: int) -> Curves:
+    """The residuals of the truth and of another along the body where the truth's effect is."""
+    at = truth.candidate.at
+    here = [s for s in found.check if s.motion.body == at] or list(found.check)
+    (left, _), (noise, _) = (referred(found.fits[i].model, here[:1])[0] for i in (other, 0))
+    body, rows = here[0].motion.body, here[0].keep
+    unit = unit_of("force", truth.model.body(body).axis)
+    return Curves(body, unit, here[0].motion.time[rows], left, noise)
+
+
+def settled(found: Sequence[Determined]) -> tuple[Determined, ...]:
+    """Each parameter once, as the truth that settles it least leaves it."""
+    least: dict[str, Determined] = {}
+    for d in found:
+        if d.name not in least or d.after > least[d.name].after:
+            least[d.name] = d
+    return tuple(least.values())
+
+
+#: standard error over value from which a parameter counts as left open, and below which as settled
+LEFT_OPEN, SETTLED = 0.25, 0.1
+
+
+def _determined(truth: Rival, fit: Fit) -> tuple[Determined, ...]:
+    """Parameters of the truth that the present records leave open and all of them settle."""
+    found = []
+    for name in fit.free:
+        old, new = truth.model.parameters[name], fit.model.parameters[name]
+        size = np.pi if fit.model.declared(name).quantity == "angle" else abs(new.value)
+        size = max(float(size), 1e-300)
+        before, after = old.stderr / size, new.stderr / size
+        # a standard error that is not a number: the records say nothing at all
+        if not before < LEFT_OPEN and after < SETTLED:
+            found.append(Determined(name, new.value, fit.model.unit(name), before, after))
+    return tuple(found)

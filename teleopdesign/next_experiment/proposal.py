@@ -1,0 +1,90 @@
+"""The proposal: what to run next, why, what it will show, and what it cannot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from ..by_value import ByValue
+from ..diagnose.diagnosis import Diagnosis
+from ..finding import Finding
+from ..measurement.filtering import Array
+from .limits import Limits
+from .prediction import DECIDES, SAME, Curves, Determined, Separation
+from .remedies import Remedy
+from .rivals import Rival
+from .synthesis import Bench, Planned
+from .words import proposal_findings, proposal_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, eq=False)
+class Reference(ByValue):
+    """Positions for the servos of the bodies (SI).
+
+    time: s, (n,), uniform with the record's own sample time;  position: body -> (n,)
+    parts: what is done, one sentence each, in their order;  repeats: of all of them
+    """
+
+    time: Array
+    position: Mapping[str, Array]
+    parts: tuple[str, ...]
+    repeats: int
+
+    @property
+    def duration(self) -> float:
+        """Length, s."""
+        return float(self.time[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class Proposal(ByValue):
+    """What to measure next, so that rivals can be told apart.
+
+    rivals: models that the present records leave open; empty where these decide
+    reference: the motion; None where there is nothing to tell apart or nothing could be proposed
+    sentence: what to do and what it will show, in words
+    separations: one for each truth and each of its rivals;  determined: what becomes determinable
+    remedies: pair of rivals (numbers) that the motion leaves open -> changes that were tried
+    limits: body -> limits that the motion keeps
+    bench, plan: what its records are made with (`in_simulation`)
+    """
+
+    diagnosis: Diagnosis
+    rivals: tuple[Rival, ...]
+    reference: Reference | None
+    sentence: str
+    separations: tuple[Separation, ...]
+    determined: tuple[Determined, ...]
+    curves: tuple[Curves, ...]
+    remedies: Mapping[tuple[int, int], tuple[Remedy, ...]]
+    limits: Mapping[str, Limits]
+    bench: Bench = field(repr=False)
+    plan: Planned | None = field(default=None, repr=False)
+
+    def decides(self, pair: tuple[int, int]) -> bool:
+        """Whether the motion separates two rivals, whichever of them is the truth."""
+        a, b = (self.rivals[i] for i in pair)
+        both = [s for s in self.separations if {id(s.truth), id(s.other)} == {id(a), id(b)}]
+        return len(both) == 2 and all(s.predicted >= DECIDES for s in both)
+
+    @property
+    def is_useful(self) -> bool:
+        """Whether the motion tells any two rivals better than the present records do."""
+        return any(s.predicted > max(s.present, SAME) for s in self.separations)
+
+    def __repr__(self) -> str:
+        return proposal_text(self)
+
+    def findings(self) -> tuple[Finding, ...]:
+        """The proposal as findings for a report."""
+        return proposal_findings(self)
+
+    def plot(self) -> Figure:
+        """The motion, what a wrong model would leave along it, and the separations."""
+        from ..plot.next_experiment import plot_proposal
+
+        return plot_proposal(self)

@@ -1,0 +1,187 @@
+"""Find the motion that best separates what a diagnosis leaves open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..diagnose.diagnosis import Diagnosis
+from ..diagnose.sensors import sensors_of
+from ..errors import ModelError, did_you_mean
+from ..measurement.experiment import Experiment
+from ..quantity import si_factor
+from .family import Part, Setting, Show, family
+from .following import servo_of
+from .limits import Limits, course_of, shown_limits
+from .prediction import predicted, settled
+from .proposal import Proposal, Reference
+from .remedies import Remedy, remedies, setups
+from .rivals import Rival, depends_on_time, pairs, rivals_of
+from .search import Tried, composed, joined, tried
+from .separation import floor_force, present_separation
+from .synthesis import Bench, planned
+from .words import sentence_of, unordered
+
+#: s that a proposal may last by default, and that it lasts at least: a short one is repeated, so
+#: that chance weighs less
+LONGEST, SHORTEST = 20.0, 10.0
+#: s of a repeated run, and how many times the longest record, where time itself matters: a warm-up
+#: is seen when a record lasts several of its time constants
+REPEATED, TIMES = 60.0, 3.0
+#: most pairs that remedies are tried for
+PAIRS = 2
+
+
+def propose(
+    diagnosis: Diagnosis,
+    *,
+    duration: float = LONGEST,
+    limits: Mapping[str, Limits] | None = None,
+    progress: Callable[[str], None] | None = None,
+    seed: int = 0,
+) -> Proposal:
+    """The motion that best separates the models that a diagnosis leaves open.
+
+    duration: s, longest motion (a warm-up comes on top);  limits: body -> limits to keep; default:
+        those that the records have shown to be safe
+    progress: called with a line of text at each step;  seed: of the sensors' errors
+    raises ModelError: limits of a body that the experiment has not
+    """
+    say = progress or (lambda _: None)
+    say("finding what is left open")
+    rivals = rivals_of(diagnosis)
+    kept = _kept(diagnosis, limits or {})
+    bench = _bench(diagnosis, kept)
+    if not rivals:
+        return _finished(diagnosis, rivals, kept, bench)
+    setting = _setting(diagnosis, rivals, bench)
+    parts = family(setting)
+    say(f"trying {len(parts)} motions")
+    found = tried(parts, rivals, diagnosis.prepared, bench, kept, floor=bench.floor, seed=seed)
+    if not found.parts:
+        return _finished(diagnosis, rivals, kept, bench)
+    chosen = composed(found, duration + setting.repeated, bench.sample_time)
+    reference, path_parts = _reference([found.parts[k] for k in chosen], bench)
+    plan = planned(joined(path_parts), bench)
+    present = {
+        (i, j): present_separation(rivals[i], rivals[j], diagnosis.prepared, diagnosis.floor.value)
+        for i, j in pairs(rivals)
+    }
+    predictions = []
+    for i, rival in enumerate(rivals):
+        say(f"predicting what follows if {rival} is right")
+        predictions.append(predicted(i, rivals, plan, bench, present, seed=seed + 1))
+    proposal = Proposal(
+        diagnosis=diagnosis,
+        rivals=rivals,
+        reference=reference,
+        sentence="",
+        separations=tuple(s for p in predictions for s in p.separations),
+        determined=settled([d for p in predictions for d in p.determined]),
+        curves=tuple(c for p in predictions for c in p.curves),
+        remedies={},
+        limits=kept,
+        bench=bench,
+        plan=plan,
+    )
+    say("trying other set-ups")
+    return sentence_of(replace(proposal, remedies=_remedies(proposal, found, setting, seed)))
+
+
+def _finished(
+    diagnosis: Diagnosis, rivals: tuple[Rival, ...], limits: Mapping[str, Limits], bench: Bench
+) -> Proposal:
+    return sentence_of(Proposal(diagnosis, rivals, None, "", (), (), (), {}, limits, bench))
+
+
+def _kept(diagnosis: Diagnosis, given: Mapping[str, Limits]) -> dict[str, Limits]:
+    shown = shown_limits(diagnosis.prepared)
+    for body in given:
+        if body not in shown:
+            raise ModelError(
+                f'limits: no body "{body}", has {", ".join(shown)}{did_you_mean(body, shown)}'
+            )
+    return {**shown, **given}
+
+
+def _bench(diagnosis: Diagnosis, limits: Mapping[str, Limits]) -> Bench:
+    experiment = diagnosis.experiment
+    return Bench(
+        experiment=experiment,
+        bandwidth=diagnosis.prepared.bandwidth,
+        sample_time=experiment.fit_records[0].sample_time,
+        sensors=sensors_of(experiment),
+        course=course_of(limits, diagnosis.prepared),
+        floor=floor_force(diagnosis.prepared, diagnosis.floor.value),
+        servos={b: servo_of(diagnosis.model, diagnosis.prepared.stretches, b) for b in limits},
+    )
+
+
+def _setting(diagnosis: Diagnosis, rivals: Sequence[Rival], bench: Bench) -> Setting:
+    stretches = diagnosis.prepared.stretches
+    gain = bench.course.gain
+    longest = max(r.duration for r in diagnosis.experiment.records)
+    return Setting(
+        limits=bench.course.limits,
+        step=max(s.motion.step / abs(gain[s.motion.body]) for s in stretches),
+        bandwidth=bench.bandwidth,
+        sample_time=bench.sample_time,
+        show=shows(diagnosis.experiment),
+        repeated=max(REPEATED, TIMES * longest) if depends_on_time(rivals) else 0.0,
+    )
+
+
+def shows(experiment: Experiment) -> Show:
+    """Shows values of the first body in the units of its position channel."""
+    body = next(iter(experiment.bodies))
+    unit = experiment.channels[f"{body}.position"].unit
+    factor = si_factor(unit, quantity="position", axis=experiment.axis(body))
+    units = {"position": (factor, unit), "velocity": (factor, f"{unit}/s")}
+
+    def show(value: float, quantity: str) -> str:
+        scale, name = units.get(quantity, (1.0, {"frequency": "Hz", "time": "s"}.get(quantity, "")))
+        return f"{value / scale:.3g} {name}"
+
+    return show
+
+
+def _reference(parts: Sequence[Part], bench: Bench) -> tuple[Reference, list[Part]]:
+    """The motion of these parts, repeated until it is long enough."""
+    once = sum(len(p.path) for p in parts) * bench.sample_time
+    repeats = max(1, int(np.ceil(SHORTEST / once)))
+    whole = list(parts) * repeats
+    path = joined(whole)
+    course = bench.course
+    return (
+        Reference(
+            time=np.asarray(bench.sample_time * np.arange(len(path), dtype=np.float64)),
+            position={b: course.middle[b] + g * path for b, g in course.gain.items()},
+            parts=tuple(p.sentence for p in parts),
+            repeats=repeats,
+        ),
+        whole,
+    )
+
+
+def _remedies(
+    proposal: Proposal, found: Tried, setting: Setting, seed: int
+) -> dict[tuple[int, int], tuple[Remedy, ...]]:
+    """What was tried for the first pairs that the motion does not separate, whichever is true."""
+    diagnosis, bench = proposal.diagnosis, proposal.bench
+    inertia = {b: own.parameters["inertia"].value for b, own in diagnosis.model.bodies.items()}
+    others = {}
+    for i, j in [p for p in unordered(proposal) if not proposal.decides(p)][:PAIRS]:
+        a, b = proposal.rivals[i], proposal.rivals[j]
+        places = list(dict.fromkeys((a.candidate.at, b.candidate.at)))
+        changed = setups(places, diagnosis.prepared, bench, setting, proposal.limits, inertia)
+        others[i, j] = remedies(
+            (a, b),
+            diagnosis.prepared,
+            tuple(changed),
+            found.sums.get((i, j)),
+            found.sums.get((j, i)),
+            seed=seed,
+        )
+    return others

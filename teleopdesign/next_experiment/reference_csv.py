@@ -1,0 +1,33 @@
+"""The proposed motion as a CSV file that a servo can be fed with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ..measurement.experiment import Experiment
+from ..plain_data import replacing
+from ..quantity import si_factor
+from .proposal import Reference
+
+
+def write_reference(reference: Reference, experiment: Experiment, path: str | Path) -> None:
+    """Write time and position reference of each body; header and units are the experiment's own.
+
+    Without a time channel the first column is t, in s.
+    """
+    clock = experiment.channels.get("time")
+    head, columns, forms = ["t"], [reference.time], ["%.9g"]
+    if clock is not None:
+        head = [clock.column]
+        columns = [reference.time / si_factor(clock.unit, quantity="time")]
+    for body, position in reference.position.items():
+        channel = experiment.channels[f"{body}.position"]
+        factor = si_factor(channel.unit, quantity="position", axis=experiment.axis(body))
+        head.append(channel.column)
+        columns.append(position / factor)
+        forms.append("%.9g")
+    with replacing(path) as part, part.open("w", encoding="utf-8", newline="") as file:
+        file.write(",".join(head) + "\n")
+        np.savetxt(file, np.column_stack(columns), fmt=forms, delimiter=",")

@@ -1,0 +1,96 @@
+"""The models that an experiment should tell apart: what the present records leave open."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..diagnose.candidates import Candidate
+from ..diagnose.diagnosis import Diagnosis, OpenQuestion
+from ..diagnose.fit import Fit, estimate
+from ..diagnose.open_questions import open_questions
+from ..effects import SIGNALS
+from ..errors import ModelError
+from ..model import Model
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A model that may be the truth, fitted to the present records.
+
+    candidate: what makes it different from its rivals;  question: those of one number are rivals
+    """
+
+    candidate: Candidate
+    fit: Fit
+    question: int = 0
+
+    @property
+    def model(self) -> Model:
+        """The fitted model."""
+        return self.fit.model
+
+    def __str__(self) -> str:
+        return str(self.candidate)
+
+
+def rivals_of(diagnosis: Diagnosis) -> tuple[Rival, ...]:
+    """Models that the records of a diagnosis leave open; none where they decide.
+
+    Of each effect that was accepted, those that do as well within `OPEN` noise floors take its
+    place in turn. Where nothing was accepted, or what was explains little: the best few of what
+    would be added next.
+    """
+    found: list[Rival] = []
+    questions = open_questions(diagnosis)
+    for number, question in enumerate(questions):
+        if question.added is not None:
+            found += _of_question(diagnosis, question, number)
+    if not found:
+        next_ones = [q for q in questions if q.added is None]
+        found = [Rival(c, fit) for q in next_ones for c, fit in q.others]
+    return tuple(found) if len(found) > 1 else ()
+
+
+def _of_question(diagnosis: Diagnosis, question: OpenQuestion, number: int) -> list[Rival]:
+    """The accepted effect of a question and its rivals, each in the final model."""
+    assert question.added is not None
+    found = [Rival(question.added, diagnosis.estimated, number)]
+    for candidate, there in question.others:
+        fit = _instead(diagnosis, question.added, candidate, there)
+        if fit is not None:
+            found.append(Rival(candidate, fit, number))
+    return found if len(found) > 1 else []
+
+
+def _instead(diagnosis: Diagnosis, added: Candidate, other: Candidate, there: Fit) -> Fit | None:
+    """The final model with another effect in the place of an accepted one; None if it has none.
+
+    there: the fit that the other was compared by
+    """
+    effect, at = other.effect, other.at
+    names = effect.parameters
+    values = {n: there.model.parameters[f"{at}.{effect.name}.{n}"].value for n in names}
+    model = diagnosis.estimated.model
+    if model.body(at).has(effect.name):
+        return None  # a later rung has added it beside
+    try:
+        model = model.without_effect(added.effect.name, at=added.at)
+        return estimate(model.with_effect(effect, at=at, values=values), diagnosis.prepared)
+    except ModelError:
+        return None  # a later effect needs the one that would go
+
+
+def depends_on_time(rivals: Sequence[Rival]) -> bool:
+    """Whether the law of what is in question depends on time itself, as a warm-up does."""
+    return any(r.candidate.effect.expression().has(SIGNALS["time"]) for r in rivals)
+
+
+def pairs(rivals: Sequence[Rival]) -> list[tuple[int, int]]:
+    """(truth, other): both orders of every two rivals of one question."""
+    return [
+        (i, j)
+        for i, a in enumerate(rivals)
+        for j, b in enumerate(rivals)
+        if i != j and a.question == b.question
+    ]

@@ -1,0 +1,131 @@
+"""Which parts of the family, one after the other, take the rivals furthest apart."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..diagnose.force_error import Prepared, prepare, referred
+from ..measurement.filtering import Array
+from .family import Part
+from .limits import Limits
+from .rivals import Rival, pairs
+from .separation import Sums, normal_matrix, sums_of
+from .synthesis import Bench, Planned, planned, record_under
+
+#: a part that is added may cost this share of what was reached: it dilutes what others show
+DILUTES = 0.02
+
+
+@dataclass(frozen=True)
+class Tried:
+    """The parts that keep within the limits, and how each pair of rivals fares along them.
+
+    sums: (truth, other) -> sums over the parts
+    """
+
+    parts: tuple[Part, ...]
+    sums: Mapping[tuple[int, int], Sums]
+
+    def worth(self, chosen: Sequence[int]) -> float:
+        """What a composition is worth: the sum over pairs of s^2/(s^2 + 1), s the worse order's.
+
+        In noise floors; well above one, more of it decides nothing.
+        """
+        both: dict[frozenset[int], list[float]] = {}
+        for pair, own in self.sums.items():
+            both.setdefault(frozenset(pair), []).append(own.separation(chosen))
+        return sum(min(s) ** 2 / (min(s) ** 2 + 1.0) for s in both.values())
+
+    def best(self, pair: tuple[int, int]) -> float:
+        """The largest separation of a pair along any one part, its worse order."""
+        orders = [p for p in self.sums if set(p) == set(pair)]
+        found = [min(self.sums[p].separation([k]) for p in orders) for k in range(len(self.parts))]
+        return max(found, default=0.0)
+
+
+def tried(
+    parts: Sequence[Part],
+    rivals: Sequence[Rival],
+    prepared: Prepared,
+    bench: Bench,
+    limits: Mapping[str, Limits],
+    *,
+    floor: float,
+    seed: int,
+) -> Tried:
+    """Let each rival be the truth along each part, and see what the others leave.
+
+    floor: force (rms) that sensors leave on the present records;  seed: of the sensors' errors
+    """
+    plans = [planned(p.path, bench) for p in parts]
+    made = {i: _made(r, plans, bench, seed) for i, r in enumerate(rivals)}
+    safe = [k for k in range(len(parts)) if all(_is_safe(m, k, limits) for m in made.values())]
+    present = [normal_matrix(r, prepared) for r in rivals]
+    sums: dict[tuple[int, int], Sums] = {}
+    for i, truth in enumerate(rivals):
+        stretches = [s for s in made[i].stretches if _number(s.motion.file) in safe]
+        numbers = [safe.index(_number(s.motion.file)) for s in stretches]
+        if not stretches:
+            break
+        own = [r for r, _ in referred(truth.model, stretches)]
+        for j, other in enumerate(rivals):
+            if (i, j) in pairs(rivals):
+                sums[i, j] = sums_of(other, own, stretches, numbers, present[j], floor)
+    return Tried(tuple(parts[k] for k in safe), sums)
+
+
+def _made(rival: Rival, plans: Sequence[Planned], bench: Bench, seed: int) -> Prepared:
+    """Records of all plans with this rival as the truth, ready for comparison."""
+    records = tuple(
+        record_under(
+            rival.model,
+            plan,
+            bench,
+            np.random.default_rng([seed, k]),
+            file=str(k),
+            use="fit",
+        )
+        for k, plan in enumerate(plans)
+    )
+    return prepare(replace(bench.experiment, records=records), bandwidth=bench.bandwidth)
+
+
+def _number(file: str) -> int:
+    return int(file)
+
+
+def _is_safe(made: Prepared, part: int, limits: Mapping[str, Limits]) -> bool:
+    """Whether no body needs more than its force along a part."""
+    signals = made.experiment.records[part].signals
+    return all(
+        float(np.abs(signals[f"{body}.actuator_force"]).max()) <= own.force
+        for body, own in limits.items()
+    )
+
+
+def composed(found: Tried, duration: float, sample_time: float) -> tuple[int, ...]:
+    """Parts chosen one at a time, each the one that gains most, until the time (s) is used up."""
+    chosen: list[int] = []
+    reached = 0.0
+    while True:
+        used = sum(len(found.parts[k].path) for k in chosen) * sample_time
+        left = [
+            k
+            for k, part in enumerate(found.parts)
+            if k not in chosen and (not chosen or used + len(part.path) * sample_time <= duration)
+        ]
+        if not left:
+            return tuple(chosen)
+        worth, best = max((found.worth([*chosen, k]), k) for k in left)
+        if chosen and worth < (1.0 - DILUTES) * reached:
+            return tuple(chosen)
+        chosen.append(best)
+        reached = max(reached, worth)
+
+
+def joined(parts: Sequence[Part]) -> Array:
+    """The path of the parts one after the other."""
+    return np.concatenate([p.path for p in parts])

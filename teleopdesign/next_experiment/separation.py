@@ -1,0 +1,124 @@
+"""How far apart a motion takes two models, to first order.
+
+One model is the truth; the force that it needs along a motion acts on the other, whose parameters
+are re-estimated on the present records and the new one together:
+
+    left = d + J step,   step = -(N + J'J)^-1 J'd,   d = residual(other) - residual(truth)
+
+with J the tangents of the other's residual along the new motion and N those of the present fit.
+Sums over parts of a motion add, so any composition of parts is judged without a new residual.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..diagnose.force_error import Prepared, Stretch, referred
+from ..diagnose.least_squares import solve_normal
+from ..measurement.filtering import Array
+from .rivals import Rival
+
+
+@dataclass(frozen=True)
+class Sums:
+    """Sums over the rows of k parts (leading axis) for one truth and one other model.
+
+    squares: of d, (k,);  gradient: J'd, (k, p);  normal: J'J, (k, p, p)
+    noise: squares of what sensors leave of the truth itself, (k,), or of what they leave on the
+        present records in as many rows, whichever is larger
+    present: normal matrix of the present fit records, (p, p)
+    """
+
+    squares: Array
+    gradient: Array
+    normal: Array
+    noise: Array
+    present: Array
+
+    def separation(self, parts: Sequence[int] | NDArray[np.intp]) -> float:
+        """Error that is left along these parts, in noise floors of them."""
+        chosen = list(parts)
+        normal, gradient = self.normal[chosen].sum(0), self.gradient[chosen].sum(0)
+        step = -solve_normal(self.present + normal, gradient)
+        left = float(self.squares[chosen].sum() + 2 * gradient @ step + step @ normal @ step)
+        noise = float(self.noise[chosen].sum())
+        return float(np.sqrt(max(left, 0.0) / max(noise, 1e-300)))
+
+
+def normal_matrix(rival: Rival, prepared: Prepared, use: str = "fit") -> Array:
+    """J'J of a model by its free parameters on the records of one use."""
+    stretches = prepared.of(use)
+    parts = referred(rival.model, stretches, rival.fit.free)
+    p = len(rival.fit.free)
+    return sum(
+        (s.weight * d @ d.T for s, (_, d) in zip(stretches, parts, strict=True)), np.zeros((p, p))
+    )
+
+
+def sums_of(
+    other: Rival,
+    truth_left: Sequence[Array],
+    stretches: Sequence[Stretch],
+    part_of: Sequence[int],
+    present: Array,
+    floor: float,
+) -> Sums:
+    """The sums for one other model along parts that were made with one truth.
+
+    truth_left: the truth's own residual on the rows that count, per stretch
+    part_of: number of the part of each stretch
+    floor: force (rms) that sensors leave on the present records: a motion that hardly moves the
+        body has a lower one, which the present records would drown
+    """
+    k, p = max(part_of) + 1, len(other.fit.free)
+    squares, noise, rows = np.zeros(k), np.zeros(k), np.zeros(k)
+    gradient, normal = np.zeros((k, p)), np.zeros((k, p, p))
+    parts = referred(other.model, stretches, other.fit.free)
+    for i, s, own, (r, d) in zip(part_of, stretches, truth_left, parts, strict=True):
+        apart = r - own
+        squares[i] += s.weight * float(apart @ apart)
+        gradient[i] += s.weight * (d @ apart)
+        normal[i] += s.weight * (d @ d.T)
+        noise[i] += s.weight * float(own @ own)
+        rows[i] += s.weight * len(s.keep)
+    return Sums(squares, gradient, normal, np.maximum(noise, rows * floor**2), present)
+
+
+def floor_force(prepared: Prepared, floor: float) -> float:
+    """Force (rms) that sensors leave on the check records (the fit records where there are none).
+
+    floor: the same as a relative error
+    """
+    check = prepared.of("check") or prepared.of("fit")
+    return floor * rms_measured(check)
+
+
+def rms_measured(stretches: Sequence[Stretch]) -> float:
+    """Measured force (rms) over the rows that count."""
+    rows = sum(s.weight * len(s.keep) for s in stretches)
+    return float(np.sqrt(sum(s.measured for s in stretches) / rows))
+
+
+def present_separation(truth: Rival, other: Rival, prepared: Prepared, floor: float) -> float:
+    """The separation on the present records: what the check records show if `truth` is true.
+
+    Without check records: what the fit records show.  floor: relative noise floor
+    """
+    fit, check = prepared.of("fit"), prepared.of("check") or prepared.of("fit")
+    present = normal_matrix(other, prepared)
+    seen = _against(truth, other, fit, present)
+    step = -solve_normal(present, seen.gradient.sum(0))
+    shown = seen if check is fit else _against(truth, other, check, present)
+    left = float(
+        shown.squares.sum() + 2 * shown.gradient.sum(0) @ step + step @ shown.normal.sum(0) @ step
+    )
+    return float(np.sqrt(max(left, 0.0) / sum(s.measured for s in check)) / floor)
+
+
+def _against(truth: Rival, other: Rival, stretches: Sequence[Stretch], present: Array) -> Sums:
+    own = [r for r, _ in referred(truth.model, stretches)]
+    return sums_of(other, own, stretches, [0] * len(stretches), present, 0.0)

@@ -1,0 +1,242 @@
+"""The proposal in words, as data, and as findings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..finding import Finding, Graph, Series
+from ..plain_data import plain
+from ..quantity import si_factor
+from .prediction import DECIDES, SAME
+from .rivals import pairs
+
+if TYPE_CHECKING:
+    from .prediction import Separation
+    from .proposal import Proposal
+    from .remedies import Remedy
+
+#: pairs of rivals that are told one by one in the sentence; more are summed up
+FEW = 2
+
+
+def sentence_of(proposal: Proposal) -> Proposal:
+    """The proposal with its sentence."""
+    return replace(proposal, sentence=" ".join(_sentences(proposal)))
+
+
+def _sentences(proposal: Proposal) -> list[str]:
+    if not proposal.rivals:
+        return [_nothing_open(proposal)]
+    if proposal.reference is None:
+        return ["No motion that was tried keeps within the limits: none is proposed."]
+    said = []
+    pairs = unordered(proposal)
+    decided = [p for p in pairs if proposal.decides(p)]
+    left_open = [p for p in pairs if not proposal.decides(p)]
+    if proposal.is_useful:
+        said.append(_what_to_do(proposal))
+    if len(decided) > FEW:
+        said.append(_how_many(proposal, decided))
+    else:
+        said += [_what_it_shows(proposal, p) for p in decided]
+    said += [_what_stays_open(proposal, p) for p in left_open]
+    if proposal.diagnosis.more_is_missing:
+        said.append(
+            f"None of these models explains the present records: {proposal.diagnosis.left:.1f} "
+            "noise floors are left, and the true effect may be none of them."
+        )
+    return said
+
+
+def _nothing_open(proposal: Proposal) -> str:
+    if proposal.diagnosis.verdict == "undecided":
+        return (
+            "No effect tried helps, so there are no rivals to tell apart and no motion is proposed."
+        )
+    return "The present records decide: no rival is left to tell apart."
+
+
+def unordered(proposal: Proposal) -> list[tuple[int, int]]:
+    """Pairs of rivals of one question, each once."""
+    return [(i, j) for i, j in pairs(proposal.rivals) if i < j]
+
+
+def of_pair(proposal: Proposal, pair: tuple[int, int]) -> list[Separation]:
+    """Both separations of a pair of rivals."""
+    ids = {id(proposal.rivals[i]) for i in pair}
+    return [s for s in proposal.separations if {id(s.truth), id(s.other)} == ids]
+
+
+def _what_to_do(proposal: Proposal) -> str:
+    reference = proposal.reference
+    assert reference is not None
+    all_bodies = " and the ".join(reference.position)
+    times = {1: "", 2: ", the whole twice over"}.get(
+        reference.repeats, f", the whole {reference.repeats} times over"
+    )
+    return (
+        f"Let the {all_bodies} follow the reference ({reference.duration:.1f} s), no hand on it "
+        f"and nothing in its way, twice: one record to fit, one to check. It will "
+        f"{', then '.join(reference.parts)}{times}."
+    )
+
+
+def _how_many(proposal: Proposal, decided: Sequence[tuple[int, int]]) -> str:
+    both = [s for p in decided for s in of_pair(proposal, p)]
+    return (
+        f"That tells {len(decided)} of {len(unordered(proposal))} pairs of rivals: the wrong one "
+        f"of each then leaves {min(s.predicted for s in both):.1f} to "
+        f"{max(s.predicted for s in both):.1f} noise floors more than sensors do (now "
+        f"{min(s.present for s in both):.2f} to {max(s.present for s in both):.2f})."
+    )
+
+
+def _what_it_shows(proposal: Proposal, pair: tuple[int, int]) -> str:
+    first, second = of_pair(proposal, pair)
+    return (
+        f"If {first.truth} is right, {first.other} then leaves {first.predicted:.1f} noise floors "
+        f"more than sensors do (now {first.present:.2f}); if {second.truth} is right, "
+        f"{second.other} leaves {second.predicted:.1f} (now {second.present:.2f})."
+    )
+
+
+def _what_stays_open(proposal: Proposal, pair: tuple[int, int]) -> str:
+    a, b = (proposal.rivals[i] for i in pair)
+    most = min(s.predicted for s in of_pair(proposal, pair))
+    said = (
+        f"No motion tried within the limits separates {a} from {b}: {most:.2f} noise floors, "
+        f"{min(s.present for s in of_pair(proposal, pair)):.2f} on the present records, where 1 is "
+        "clear."
+    )
+    tried = proposal.remedies.get(pair, ())
+    if not tried:
+        return said
+    return f"{said} {_remedies_said(tried)}"
+
+
+def _remedies_said(tried: Sequence[Remedy]) -> str:
+    helping = [r for r in tried if r.separation >= DECIDES]
+    if helping:
+        listed = "; or ".join(f"{r.change} ({r.separation:.1f})" for r in helping)
+        return f"Tried in simulation, it would be told if {listed}."
+    changes = "; ".join(f"{r.change} ({r.separation:.2f})" for r in tried)
+    if all(r.separation < SAME for r in tried):
+        return (
+            f"Nor would it help if {changes}. Along all of them the two need the same force: which "
+            "it is, only knowledge of the device can say."
+        )
+    return f"It would not be enough if {changes}."
+
+
+def proposal_text(proposal: Proposal) -> str:
+    """The proposal as text: sentence, table of separations, what becomes determinable."""
+    lines = ["next experiment: " + proposal.sentence]
+    if proposal.separations:
+        lines += [
+            "",
+            f"{'if this is right':<36}{'this leaves':<36}{'now':>7}{'then':>8}  noise floors",
+        ]
+        for s in proposal.separations:
+            lines.append(f"{s.truth!s:<36}{s.other!s:<36}{s.present:>7.2f}{s.predicted:>8.2f}")
+    for d in proposal.determined:
+        lines.append(
+            f"  {d.name} becomes determinable: standard error {_percent(d.before)} -> "
+            f"{_percent(d.after)} of {d.value:.3g} {d.unit}"
+        )
+    return "\n".join(lines)
+
+
+def _percent(part: float) -> str:
+    return f"{100 * part:.2g} %" if np.isfinite(part) else "unknown"
+
+
+def proposal_data(proposal: Proposal) -> dict[str, Any]:
+    """The proposal as plain data (SI) for a JSON file."""
+    reference = proposal.reference
+    data = {
+        "verdict": proposal.diagnosis.verdict,
+        "sentence": proposal.sentence,
+        "rivals": [_place(r) for r in proposal.rivals],
+        "reference": None
+        if reference is None
+        else {
+            "duration": reference.duration,
+            "parts": list(reference.parts),
+            "repeats": reference.repeats,
+        },
+        "separations": [
+            {
+                "truth": _place(s.truth),
+                "other": _place(s.other),
+                "present": s.present,
+                "predicted": s.predicted,
+                "score": s.score,
+            }
+            for s in proposal.separations
+        ],
+        "determined": [asdict(d) for d in proposal.determined],
+        "remedies": [
+            {
+                "rivals": [_place(proposal.rivals[i]) for i in pair],
+                "tried": [asdict(r) for r in own],
+            }
+            for pair, own in proposal.remedies.items()
+        ],
+        "limits": {b: asdict(own) for b, own in proposal.limits.items()},
+    }
+    content: dict[str, Any] = plain(data)
+    return content
+
+
+def _place(rival: Any) -> dict[str, str]:
+    return {"effect": rival.candidate.effect.name, "at": rival.candidate.at}
+
+
+def proposal_findings(proposal: Proposal) -> tuple[Finding, ...]:
+    """The proposal as findings: what to do, how far apart that takes the rivals, what would."""
+    if not proposal.rivals:
+        return (Finding("next experiment", "fine", proposal.sentence),)
+    found = [
+        Finding(
+            "next experiment",
+            "note",
+            proposal.sentence,
+            {} if proposal.reference is None else {"duration": proposal.reference.duration},
+            graph=_reference_graph(proposal),
+        )
+    ]
+    for pair in unordered(proposal):
+        both = of_pair(proposal, pair)
+        if not both:
+            continue
+        decides = proposal.decides(pair)
+        text = _what_it_shows(proposal, pair) if decides else _what_stays_open(proposal, pair)
+        numbers = {f"present {i}": s.present for i, s in enumerate(both)}
+        numbers |= {f"predicted {i}": s.predicted for i, s in enumerate(both)}
+        found.append(
+            Finding("separation of rivals", "note" if decides else "warning", text, numbers)
+        )
+    for d in proposal.determined:
+        text = f"{d.name} becomes determinable: standard error {_percent(d.after)} of its value."
+        found.append(
+            Finding("determinable parameters", "note", text, {"before": d.before, "after": d.after})
+        )
+    return tuple(found)
+
+
+def _reference_graph(proposal: Proposal) -> Graph | None:
+    reference, experiment = proposal.reference, proposal.diagnosis.experiment
+    if reference is None:
+        return None
+    body = next(iter(reference.position))
+    unit = experiment.channels[f"{body}.position"].unit
+    series = []
+    for name, position in reference.position.items():
+        own = experiment.channels[f"{name}.position"].unit
+        factor = si_factor(own, quantity="position", axis=experiment.axis(name))
+        series.append(Series(name, reference.time, position / factor, "model"))
+    return Graph("time (s)", f"position reference ({unit})", tuple(series))

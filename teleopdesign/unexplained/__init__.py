@@ -1,0 +1,113 @@
+"""Where a model fails, and a description of what no candidate explains.
+
+found = unexplained(model, prepared)
+found.findings          sentences, each with its numbers and its graph
+found.parts             per body: views, tests, curves with bands, formulas
+found.plot()            the views and the dependences
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ..arguments import check_arguments
+from ..by_value import ByValue
+from ..diagnose.fit import Fit
+from ..diagnose.force_error import Prepared, prepare
+from ..diagnose.noise_floor import NoiseFloor
+from ..diagnose.search import estimate_from_starts
+from ..finding import Finding
+from ..measurement.experiment import Experiment
+from ..model import Model
+from .description import BodyUnexplained, Described, described, findings_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = [
+    "BodyUnexplained",
+    "Described",
+    "Unexplained",
+    "describe",
+    "unexplained",
+    "where_it_fails",
+]
+
+
+@dataclass(frozen=True, eq=False)
+class Unexplained(ByValue):
+    """What a fitted model leaves of every body, and what that depends on.
+
+    parts: one a body
+    """
+
+    model: Model
+    prepared: Prepared
+    parts: tuple[BodyUnexplained, ...]
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """The sentences, each with its numbers and its graph."""
+        many = len(self.parts) > 1
+        return tuple(f for p in self.parts for f in findings_of(p, name_body=many))
+
+    @property
+    def largest(self) -> tuple[BodyUnexplained, Described] | None:
+        """The dependence that takes most away, with its body; None where none was found."""
+        found = [(p, p.found[0]) for p in self.parts if p.found]
+        return max(
+            found,
+            key=lambda pd: pd[0].error ** 2 * pd[1].dependence.explained,
+            default=None,
+        )
+
+    def plot(self) -> Figure:
+        """The views of each body, and the curve of each dependence."""
+        from ..plot.unexplained import plot_unexplained
+
+        return plot_unexplained(self)
+
+    def as_data(self) -> dict[str, Any]:
+        """The findings as plain data, SI units."""
+        from .as_data import as_data
+
+        return as_data(self)
+
+    def __repr__(self) -> str:
+        return "\n".join(str(f) for f in self.findings)
+
+
+def unexplained(
+    model: Model | Fit, prepared: Prepared, floor: NoiseFloor | None = None, *, seed: int = 0
+) -> Unexplained:
+    """Look at what a fitted model leaves of the force on each body.
+
+    model: with its free parameters re-estimated on the fit records (to first order they move here
+    too);  floor: that of a diagnosis that ended with this model: of the bodies' floors the same
+    part counts;  seed: of the draws for the noise floor
+    """
+    chosen = model.model if isinstance(model, Fit) else model
+    bodies = [b for b in chosen.bodies if any(s.motion.body == b for s in prepared.of("fit"))]
+    counted = 1.0 if floor is None else floor.counted
+    parts = tuple(described(chosen, prepared, b, counted=counted, seed=seed) for b in bodies)
+    return Unexplained(chosen, prepared, parts)
+
+
+def where_it_fails(
+    model: Model | Fit, prepared: Prepared, floor: NoiseFloor | None = None
+) -> tuple[Finding, ...]:
+    """Plain sentences on where a fitted model fails, made from the numbers; see `unexplained`."""
+    return unexplained(model, prepared, floor).findings
+
+
+def describe(model: Model, experiment: Experiment, *, seed: int = 0) -> Unexplained:
+    """Where the model fails, re-estimated, and what that depends on: sentences with their numbers.
+
+    seed: of the draws for the noise floor
+    """
+    prepared = prepare(experiment)
+    return unexplained(estimate_from_starts(model, prepared), prepared, seed=seed)
+
+
+check_arguments(globals(), __all__)

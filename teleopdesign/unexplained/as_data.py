@@ -1,0 +1,74 @@
+"""What was found about the residual as plain data, for a JSON file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ..plain_data import plain
+from ..quantity import unit_of
+from .description import BodyUnexplained, Described
+from .sentences import formula_text
+
+if TYPE_CHECKING:
+    from . import Unexplained
+
+
+def as_data(found: Unexplained) -> dict[str, Any]:
+    """Sentences, dependences with curves, and every test; SI units."""
+    data = {
+        "findings": [
+            {
+                "topic": f.topic,
+                "concern": f.concern,
+                "where": f.where,
+                "sentence": f.sentence,
+                "numbers": dict(f.numbers),
+            }
+            for f in found.findings
+        ],
+        "bodies": [_body(p) for p in found.parts],
+    }
+    content: dict[str, Any] = plain(data)
+    return content
+
+
+def _body(part: BodyUnexplained) -> dict[str, Any]:
+    return {
+        "body": part.body,
+        "check_error": part.error,
+        "noise_floor": part.floor,
+        "check_error_described": part.after,
+        "dependences": [_dependence(d, part.axis) for d in part.found],
+        "tests": [
+            {
+                "dependence": t.shape.name,
+                "score": t.score,
+                "probability_of_chance": t.probability,
+                "explained": t.explained,
+            }
+            for t in part.tests
+        ],
+        "whiteness": {
+            "probability_of_chance": part.whiteness.probability,
+            "half_between_hertz": list(part.whiteness.band),
+        },
+    }
+
+
+def _dependence(one: Described, axis: str) -> dict[str, Any]:
+    shape, curve = one.dependence.shape, one.curve
+    return {
+        "dependence": shape.name,
+        "sentence": one.sentence,
+        "explained": one.dependence.explained,
+        "score": one.dependence.score,
+        "formula": None if one.formula is None else formula_text(one.formula, axis),
+        "curve": {
+            "x": curve.x.tolist(),
+            "x_unit": "" if shape.variable is None else unit_of(shape.variable.quantity, axis),
+            "y": curve.y.tolist(),
+            "low": curve.low.tolist(),
+            "high": curve.high.tolist(),
+            "y_unit": unit_of(shape.carrier.quantity, axis),
+        },
+    }

@@ -1,0 +1,134 @@
+"""A dependence as one sees it in the residual: a smooth curve with a band, and binned means."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..measurement.filtering import Array
+from .dependence import Columns, Dependence, own_columns
+from .rows import Rows
+from .shapes import LOST, Shape, functions_of
+
+#: half width of a band, in standard deviations
+BAND = 2.0
+#: points of a curve, and bins of the means beside it
+POINTS, BINS = 161, 14
+#: part of the largest carrier from which a row tells something of what it multiplies
+TELLS = 0.05
+
+
+@dataclass(frozen=True)
+class Curve:
+    """f of a shape: learnt from fit records, beside means over the checked rows.
+
+    x: of the variable (g,), one zero where there is none;  y, low, high: f and its band (g,)
+    means: rows x, y, low, high of the binned means (4, b)
+    weight: squares of the carrier in the rows nearest to each x (g,)
+    All SI; the band holds under residuals that are correlated within a quarter of a second.
+    """
+
+    x: Array
+    y: Array
+    low: Array
+    high: Array
+    means: Array
+    weight: Array
+
+
+def curve_of(rows: Rows, found: Dependence, earlier: tuple[Dependence, ...] = ()) -> Curve:
+    """The curve that the residual shows once the earlier dependences are taken out.
+
+    A constant, a sinusoid and what the command loses are given at their full size, that is with the
+    model's own parameters free beside them; other lines are what the model as it is leaves.
+    """
+    left = rows.residual * rows.root
+    for before in earlier:
+        left = left - before.columns.values @ before.columns.solve(left, rows.learnt)
+    variable = found.shape.variable
+    alone = variable is not None and not variable.wave and not found.shape.of_command
+    columns = found.columns if alone else own_columns(rows).beside(found.columns)
+    value, spread = _coefficients(rows, columns, left, len(found.columns.penalty))
+    x = _grid(rows, found.shape, found.knots)
+    functions = functions_of(found.shape, found.knots, x)
+    y = value @ functions
+    half = BAND * np.sqrt(np.maximum(np.einsum("ig,ij,jg->g", functions, spread, functions), 0.0))
+    means, weight = _means(rows, found.shape, left, x), _weight(rows, found.shape, x)
+    if found.shape.carrier is LOST and variable is None:
+        # counted so far in what arrives, for residuals are referred to that: c / (1 + c) of all
+        low, y, high = (c / (1.0 + c) for c in (y - half, y, y + half))
+        return Curve(x, y, low, high, means, weight)
+    return Curve(x, y, y - half, y + half, means, weight)
+
+
+def _coefficients(rows: Rows, columns: Columns, left: Array, last: int) -> tuple[Array, Array]:
+    """The last coefficients and their covariance.
+
+    Curves of penalised least squares with the covariance of their smoothness taken as a prior cover
+    the truth across the curve; the noise is that of block sums, for rows are correlated.
+    Wahba, J. R. Stat. Soc. B 45 (1983) 133.
+    """
+    learnt = rows.learnt
+    a, target = columns.values[learnt], left[learnt]
+    value = columns.solve(left, learnt)
+    normal = a.T @ a + columns.penalty
+    size = np.sqrt(np.maximum(np.diag(normal), 1e-300))
+    inverse = np.linalg.pinv(normal / np.outer(size, size), hermitian=True) / np.outer(size, size)
+    scores = np.zeros((int(rows.blocks.max()) + 1, a.shape[1]))
+    np.add.at(scores, rows.blocks[learnt], a * (target - a @ value)[:, None])
+    noise = float(np.einsum("bi,ij,bj->", scores, inverse, scores)) / max(
+        float(np.einsum("ij,ji->", inverse, a.T @ a)), 1e-300
+    )
+    return value[-last:], noise * inverse[-last:, -last:]
+
+
+def _grid(rows: Rows, shape: Shape, knots: Array) -> Array:
+    variable = shape.variable
+    if variable is None:
+        return np.zeros(1)
+    if variable.wave:
+        values = rows.at(variable.name)[rows.learnt]
+        values = values[np.isfinite(values)]
+        return np.linspace(values.min(), values.max(), POINTS)
+    place = np.linspace(0, len(knots) - 1, POINTS)
+    one = np.interp(place, np.arange(len(knots)), knots)
+    return np.concatenate([-one[::-1], one]) if variable.signed else one
+
+
+def _weight(rows: Rows, shape: Shape, x: Array) -> Array:
+    if shape.variable is None:
+        return np.ones(1)
+    value = rows.at(shape.variable.name)
+    known = np.isfinite(value)
+    near = np.searchsorted(0.5 * (x[1:] + x[:-1]), value[known])
+    squares = (shape.carrier.at(rows) * rows.root)[known] ** 2
+    return np.asarray(np.bincount(near, squares, minlength=len(x)))
+
+
+def _means(rows: Rows, shape: Shape, left: Array, x: Array) -> Array:
+    """Means over bins of the checked rows, each with its band from blocks."""
+    if shape.variable is None:
+        return np.zeros((4, 0))
+    carrier = shape.carrier.at(rows) * rows.root
+    value = rows.at(shape.variable.name)
+    told = rows.checked & (np.abs(carrier) > TELLS * np.abs(carrier).max()) & np.isfinite(value)
+    edges = x[np.linspace(0, len(x) - 1, BINS + 1).astype(int)]
+    found = []
+    for low, high in zip(edges[:-1], edges[1:], strict=True):
+        own = told & (value >= low) & (value < high)
+        blocks = np.unique(rows.blocks[own])
+        if len(blocks) < 3:
+            continue
+        c, r = carrier[own], left[own]
+        mean = float(c @ r / (c @ c))
+        sums = np.bincount(rows.blocks[own], c * (r - mean * c))[blocks]
+        half = BAND * float(np.sqrt(np.sum(sums**2) * len(blocks) / (len(blocks) - 1)) / (c @ c))
+        found.append((float(np.average(value[own], weights=c**2)), mean, mean - half, mean + half))
+    return np.array(found).T.reshape(4, -1)
+
+
+def shortened(dependence: Dependence) -> Dependence:
+    """The dependence without its columns, which are as long as the records."""
+    none = Columns(np.zeros((0, len(dependence.coefficients))), dependence.columns.penalty)
+    return replace(dependence, columns=none)

@@ -1,0 +1,235 @@
+"""How the residual depends on something, learnt on fit records and held against check records.
+
+Beside each dependence the model's own parameters move freely (to first order), so that nothing is
+called missing that another value of a parameter would give. Roughness is weighed by blocks of the
+fit records held out in turn. What counts is the gain on rows that were not learnt from, in
+standard deviations of its chance part, by blocks: see `evidence`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..diagnose.evidence import chance, gain_score
+from ..diagnose.force_error import FOLDS
+from ..diagnose.least_squares import solve_normal
+from ..diagnose.rank import RELEVANT
+from ..diagnose.support import OF_FLOOR, SURE
+from ..measurement.filtering import Array
+from .rows import Rows
+from .shapes import SHAPES, Shape, columns_of, knots_of, roughness
+from .waves import wave_number
+
+#: weights of roughness that are tried, relative to the data's
+SMOOTHNESS = np.logspace(-4, 3, 8)
+#: weight of f itself, relative to the data's: what another value of the model's own parameters
+#: would explain as well is left to them; what the rows tell is lowered by a thousandth
+SMALLNESS = 1e-3
+#: part of a gain that must be there too with the variable as the model expects it: at steady speed
+#: the command is what the model needs plus the residual, and goes along with any residual
+NOT_ITSELF = 0.5
+#: chance that a right model is said to depend on anything, over all that is looked at
+ALARM = 0.01
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Weighted columns (n, k) with the penalty on their coefficients (k, k)."""
+
+    values: Array
+    penalty: Array
+
+    def beside(self, other: Columns) -> Columns:
+        """Both sets of columns in one."""
+        k, m = len(self.penalty), len(other.penalty)
+        penalty = np.zeros((k + m, k + m))
+        penalty[:k, :k], penalty[k:, k:] = self.penalty, other.penalty
+        return Columns(np.hstack([self.values, other.values]), penalty)
+
+    def solve(self, target: Array, rows: NDArray[np.bool_]) -> Array:
+        """Coefficients (k,) by penalised least squares on these rows."""
+        a = self.values[rows]
+        normal = a.T @ a + self.penalty
+        return solve_normal(normal, a.T @ target[rows])
+
+
+@dataclass(frozen=True)
+class Dependence:
+    """One dependence, tested.
+
+    knots: of f, see `shapes.hats`;  columns: as fitted, weighted;  coefficients: of f (k,)
+    before, after: weighted residual of the checked rows without and with it
+    score: gain on the checked rows in standard deviations of chance;  probability: that chance
+    alone brings such a score to one or more of all that was looked at
+    explained: part of the squares on the checked rows that it takes away
+    alike: names of others that do as well
+    """
+
+    shape: Shape
+    knots: Array
+    columns: Columns
+    coefficients: Array
+    before: Array
+    after: Array
+    score: float
+    probability: float
+    explained: float
+    alike: tuple[str, ...] = field(default=())
+
+    @property
+    def squares(self) -> float:
+        """Sum of squares that it leaves on the checked rows."""
+        return float(self.after @ self.after)
+
+
+def own_columns(rows: Rows) -> Columns:
+    """The columns of the model's own free parameters: weighted, no penalty."""
+    values = rows.tangents * rows.root[:, None]
+    size = np.linalg.norm(values, axis=0)
+    values = values[:, size > 0] / size[size > 0]
+    return Columns(values, np.zeros((values.shape[1],) * 2))
+
+
+def shape_columns(rows: Rows, shape: Shape, left: Array) -> tuple[Array, Columns] | None:
+    """Knots and columns of a shape, as yet not smoothed; None where rows know nothing of it.
+
+    left: weighted residual (n,) that a sinusoid is looked for in
+    """
+    knots = np.zeros(1)
+    if shape.is_wave:
+        knots = np.array([wave_number(rows, left, shape)])
+    elif shape.variable is not None:
+        knots = knots_of(shape.variable, rows)
+    if not len(knots):
+        return None
+    values = columns_of(shape, knots, rows) * rows.root[:, None]
+    size = float(np.sum(values**2)) / values.shape[1]
+    if size == 0.0:
+        return None
+    return knots, Columns(values, SMALLNESS * size * np.eye(values.shape[1]))
+
+
+def held_out(rows: Rows, columns: Columns) -> Array:
+    """Weighted residual of the checked rows beside what columns learnt elsewhere predict."""
+    target = rows.residual * rows.root
+    left = np.zeros_like(target)
+    for train, test in rows.splits:
+        left[test] = target[test] - columns.values[test] @ columns.solve(target, train)
+    return left[rows.checked]
+
+
+def tested(
+    rows: Rows, beside: Columns, shape: Shape, knots_and_columns: tuple[Array, Columns]
+) -> Dependence:
+    """Learn one dependence beside other columns and hold it against the checked rows."""
+    knots, own = knots_and_columns
+    if shape.variable is not None and not shape.is_wave:
+        own = _smoothed(rows, beside, own, roughness(shape, knots))
+    together = beside.beside(own)
+    before, after = held_out(rows, beside), held_out(rows, together)
+    score = gain_score(before, after, rows.blocks[rows.checked])
+    return Dependence(
+        shape=shape,
+        knots=knots,
+        columns=own,
+        coefficients=together.solve(rows.residual * rows.root, rows.learnt)[len(beside.penalty) :],
+        before=before,
+        after=after,
+        score=score,
+        probability=min(1.0, len(SHAPES) * chance(score)),
+        explained=1.0 - float(after @ after) / max(float(before @ before), 1e-300),
+    )
+
+
+def _smoothed(rows: Rows, beside: Columns, own: Columns, rough: Array) -> Columns:
+    """With the weight of roughness that predicts blocks of the rows learnt from best."""
+    target = rows.residual * rows.root
+    where = np.flatnonzero(rows.learnt)
+    together = beside.beside(own)
+    every, n = together.values, len(own.penalty)
+    part = rows.blocks[where] % FOLDS
+    held = [where[part == fold] for fold in range(FOLDS)]
+    normal = np.array([every[k].T @ every[k] for k in held])
+    gradient = np.array([every[k].T @ target[k] for k in held])
+    seen = normal.sum(axis=0) - normal + together.penalty
+    size = np.trace(own.penalty) / (n * SMALLNESS)
+
+    def missed(weight: float) -> float:
+        penalised = seen.copy()
+        penalised[:, -n:, -n:] += weight * size * rough
+        x = solve_normal(penalised, gradient.sum(axis=0) - gradient)
+        bent = np.einsum("fi,fij,fj->", x, normal, x)
+        return float(bent - 2 * np.einsum("fi,fi->", x, gradient))
+
+    weight = min(SMOOTHNESS.tolist(), key=missed)
+    return replace(own, penalty=own.penalty + weight * size * rough)
+
+
+def is_not_itself(rows: Rows, beside: Columns, dependence: Dependence) -> bool:
+    """Whether a dependence on what holds the residual is more than that on itself."""
+    variable = dependence.shape.variable
+    if variable is None or not variable.expected:
+        return True
+    expected = replace(variable, name=variable.expected, expected="")
+    shape = replace(dependence.shape, variable=expected)
+    found = shape_columns(rows, shape, rows.residual)
+    return found is not None and (
+        tested(rows, beside, shape, found).explained > NOT_ITSELF * dependence.explained
+    )
+
+
+def is_real(dependence: Dependence, whole: float, floor_squares: float) -> bool:
+    """Whether the checked rows support it, by more than chance and by enough to matter.
+
+    whole: squares on the checked rows that the model leaves;  floor_squares: what sensors alone do.
+    By the same measures as an effect of the ladder, where the gain may be the method's own; one
+    beyond all that the sensors leave needs only to be no chance.
+    """
+    gain = float(dependence.before @ dependence.before) - dependence.squares
+    return (
+        dependence.probability < ALARM
+        and gain > RELEVANT * whole
+        and gain > (OF_FLOOR if dependence.score > SURE else 1.0) * floor_squares
+    )
+
+
+def dependences(
+    rows: Rows, floor_squares: float, *, most: int = 3
+) -> tuple[tuple[Dependence, ...], tuple[Dependence, ...]]:
+    """What the residual depends on, largest first; and every test of the first round.
+
+    floor_squares: what sensors alone leave on the checked rows;  most: found, at most
+    Each one found is taken into account before the next is looked for.
+    """
+    target = rows.residual * rows.root
+    whole = float(np.sum(target[rows.checked] ** 2))
+    known = {s: shape_columns(rows, s, target) for s in SHAPES}
+    beside, found = own_columns(rows), list[Dependence]()
+    first: tuple[Dependence, ...] = ()
+    while len(found) < most:
+        left = target - beside.values @ beside.solve(target, rows.learnt)
+        tests = []
+        for shape, own in known.items():
+            if shape.is_wave and found:
+                own = shape_columns(rows, shape, left)
+            if own is not None:
+                tests.append(tested(rows, beside, shape, own))
+        first = first or tuple(sorted(tests, key=lambda t: t.squares))
+        real = [
+            t for t in tests if is_real(t, whole, floor_squares) and is_not_itself(rows, beside, t)
+        ]
+        if not real:
+            break
+        found.append(_simplest(real))
+        beside = beside.beside(found[-1].columns)
+    return tuple(found), first
+
+
+def _simplest(real: list[Dependence]) -> Dependence:
+    """Of those that do as well as the best to all that matters, the first in `SHAPES`."""
+    best = max(t.explained for t in real)
+    alike = [t for t in real if t.explained > (1.0 - RELEVANT) * best]
+    return replace(alike[0], alike=tuple(t.shape.name for t in alike[1:]))

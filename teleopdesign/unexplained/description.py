@@ -1,0 +1,202 @@
+"""One body: its rows, what they depend on, and the sentences made from that."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..diagnose.diagnosis import ADEQUATE
+from ..diagnose.force_error import Prepared
+from ..diagnose.noise_floor import noise_floor
+from ..finding import Finding, Graph
+from ..model import Model
+from .amounts import number
+from .curve import Curve, curve_of, shortened
+from .dependence import ALARM, Dependence, dependences, own_columns
+from .formula import Formula, formula_for
+from .qualifiers import Contrast, contrasts
+from .rows import Rows, rows_of
+from .sentences import sentence_for
+from .shapes import SHAPES
+from .views import curve_graph, views_of
+from .whiteness import Whiteness, whiteness_of
+
+#: part of what is left that may stay undescribed unmentioned: to first order, with f as lines
+#: between knots, a description leaves some percent of its own
+UNDESCRIBED = 0.1
+#: part of what is left from which it is said to lie where no motion can be told
+MOSTLY = 0.5
+
+
+@dataclass(frozen=True)
+class Described:
+    """One dependence with all that is said about it.
+
+    curve: as the residual shows it;  formula: None where none with few terms holds
+    sentence: without its full stop;  graph: the figure of the sentence
+    """
+
+    dependence: Dependence
+    curve: Curve
+    formula: Formula | None
+    contrasts: tuple[Contrast, ...]
+    sentence: str
+    graph: Graph
+
+
+@dataclass(frozen=True)
+class BodyUnexplained:
+    """What the model leaves of one body.
+
+    error: relative force error on the check records (blocks of the fit records where none)
+    floor: what sensors alone would leave of it;  after: error once what was found is taken out,
+    while it slides
+    at_rest: part of the squares that is left where no motion can be told
+    found: what the residual depends on, largest first;  tests: of each dependence looked at, best
+    first;  views: name -> graph of the residual
+    """
+
+    body: str
+    axis: str
+    error: float
+    floor: float
+    after: float
+    at_rest: float
+    found: tuple[Described, ...]
+    tests: tuple[Dependence, ...]
+    whiteness: Whiteness
+    views: Mapping[str, Graph]
+
+    @property
+    def floors(self) -> float:
+        """Error in noise floors."""
+        return self.error / self.floor if self.floor else float("inf")
+
+    @property
+    def is_adequate(self) -> bool:
+        """Whether nothing is left that sensors would not leave."""
+        return not self.found and self.floors <= ADEQUATE
+
+
+def described(
+    model: Model, prepared: Prepared, body: str, *, counted: float = 1.0, seed: int = 0
+) -> BodyUnexplained:
+    """Look at what a fitted model leaves of one body; seed: of the draws for the noise floor.
+
+    counted: part of the noise floor that counts
+    """
+    own = replace(prepared, stretches=tuple(s for s in prepared.stretches if s.motion.body == body))
+    rows = rows_of(model, own, body)
+    floor = counted * noise_floor(model, own, np.random.default_rng(seed)).value
+    used = rows.checked
+    weight = np.concatenate([np.full(len(a.stretch.keep), a.stretch.weight) for a in rows.alongs])
+    whole = float(np.sum((weight * rows.measured**2)[used]))
+    squares = float(np.sum((weight * rows.residual**2)[used]))
+    resting = float(np.sum((weight * rows.residual**2)[used & (rows.root == 0)]))
+    found, tests = dependences(rows, floor**2 * whole)
+    whiteness = whiteness_of(rows)
+    told = _described(rows, found)
+    after = told[-1].dependence.squares if told else squares
+    return BodyUnexplained(
+        body=body,
+        axis=rows.axis,
+        error=float(np.sqrt(squares / whole)),
+        floor=floor,
+        after=float(np.sqrt(after / whole)),
+        at_rest=resting / max(squares, 1e-300),
+        found=told,
+        tests=tuple(shortened(t) for t in tests),
+        whiteness=whiteness,
+        views=views_of(rows, whiteness),
+    )
+
+
+def _described(rows: Rows, found: tuple[Dependence, ...]) -> tuple[Described, ...]:
+    told = []
+    beside = own_columns(rows)
+    target = rows.residual * rows.root
+    for i, dependence in enumerate(found):
+        curve = curve_of(rows, dependence, found[:i])
+        formula = formula_for(rows, beside, dependence)
+        left = target - beside.values @ beside.solve(target, rows.learnt)
+        sides = contrasts(rows, dependence, left)
+        said = sentence_for(dependence.shape, curve, formula, sides, rows.axis)
+        if not said:
+            break
+        graph = curve_graph(dependence.shape, curve, rows.axis)
+        told.append(Described(shortened(dependence), curve, formula, sides, said, graph))
+        beside = beside.beside(dependence.columns)
+    return tuple(told)
+
+
+def findings_of(part: BodyUnexplained, *, name_body: bool) -> tuple[Finding, ...]:
+    """The sentences about one body, each with its numbers and its graph."""
+    where = part.body if name_body else ""
+    numbers = {"error": part.error, "noise floor": part.floor, "noise floors": part.floors}
+    error, floors = f"{100 * part.error:.2g} %", number(part.floors)
+    time = part.views["time"]
+    if part.is_adequate:
+        said = f"what the model leaves ({error} of the force) is what its sensors would leave"
+        return (Finding("what is left", "fine", f"{said}.", numbers, where, time),)
+    said = f"the model leaves {error} of the force, {floors} times what its sensors would leave"
+    found = [Finding("what is left", "warning", f"{said}.", numbers, where, time)]
+    for one in part.found:
+        found.append(_finding(one, where))
+    if part.floors > ADEQUATE:
+        found += _rest(part, where)
+    return tuple(found)
+
+
+def _finding(one: Described, where: str) -> Finding:
+    d = one.dependence
+    numbers = {
+        "explained": d.explained,
+        "score": d.score,
+        "probability of chance": d.probability,
+        "largest": float(one.curve.y.max()),
+        "smallest": float(one.curve.y.min()),
+    }
+    alike = ""
+    if d.alike:
+        listed = ", ".join(d.alike[:3]) + (", ..." if len(d.alike) > 3 else "")
+        alike = f" (no better: {listed})"
+    said = f"{one.sentence}. That is {100 * d.explained:.0f} % of what is left{alike}."
+    topic = f"dependence: {d.shape.name}"
+    return Finding(topic, "warning", said[0].upper() + said[1:], numbers, where, one.graph)
+
+
+def _rest(part: BodyUnexplained, where: str) -> list[Finding]:
+    """Where what is left lies in frequency, whether it has a memory, and what stays unexplained."""
+    low, high = part.whiteness.band
+    numbers = {"low": low, "high": high, "probability of chance": part.whiteness.probability}
+    said = f"Half of what is left lies between {number(low)} and {number(high)} Hz"
+    if low < 1.0:  # the first band
+        said = f"Three quarters of what is left lies below {number(max(high, 1.0))} Hz"
+    if part.whiteness.probability < ALARM:
+        largest = int(np.argmax(np.abs(part.whiteness.correlation) / part.whiteness.noise))
+        lag, r = part.whiteness.lag[largest], part.whiteness.correlation[largest]
+        numbers |= {"lag": float(lag), "correlation": float(r)}
+        said += f"; it goes along with itself {number(1e3 * lag)} ms later (correlation {r:.2f})"
+        said += ", which noise of the sensors would not"
+    found = [Finding("frequency", "note", f"{said}.", numbers, where, part.views["frequency"])]
+    if part.at_rest > MOSTLY:
+        said = f"{100 * part.at_rest:.0f} % of what is left is there while no motion can be told."
+        velocity = part.views["velocity"]
+        found.append(Finding("rest", "note", said, {"share": part.at_rest}, where, velocity))
+    floors = part.after / part.floor if part.floor else float("inf")
+    if floors > ADEQUATE and part.after**2 > UNDESCRIBED * part.error**2:
+        what = "Beside that" if part.found else f"None of {len(SHAPES)} dependences is sure:"
+        verb = f"{number(floors)} times the sensors' noise"
+        said = (
+            f"{what}, {verb} stays undescribed."
+            if part.found
+            else f"{what} {verb} stay undescribed."
+        )
+        found.append(
+            Finding(
+                "undescribed", "note", said, {"noise floors": floors}, where, part.views["time"]
+            )
+        )
+    return found

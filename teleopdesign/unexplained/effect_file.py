@@ -1,0 +1,162 @@
+"""A dependence as an effect file, in the form of `teleopdesign/effects`.
+
+With a formula its coefficients and numbers are the parameters, to be estimated; otherwise the
+curve's form is written down as numbers and only its size is estimated.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from pathlib import Path
+
+from ..diagnose.force_error import Prepared
+from ..diagnose.scales import scales
+from ..errors import ModelError
+from ..plain_data import write_text
+from .amounts import between
+from .description import BodyUnexplained, Described
+from .effect_law import drawn, written
+from .shapes import COMMAND, FRICTION, LATENESS, LOST, Shape
+
+#: the signal of a law for each variable; what is missing is known to no law
+SIGNALS = {
+    "position": "now.position",
+    "speed": "abs(now.velocity)",
+    "velocity": "now.velocity",
+    "acceleration": "now.acceleration",
+    "actuator_force": "now.acting_force",
+    "load": "abs(now.acting_force)",
+    "interaction_force": "now.interaction_force",
+    "time": "now.time",
+}
+#: what f is multiplied by in a law
+FACTORS = {"damping": " * now.velocity", "mass": " * now.acceleration"}
+_HEAD = '''"""{title}
+
+    {equation}
+
+{where}
+
+{source}
+"""
+
+{names}from teleopdesign.effects import Effect, Parameter
+
+
+def law(now, p):
+    {law}
+
+
+EFFECT = Effect(
+    role="{role}",
+    law=law,
+    parameters={{
+{parameters}
+    }},
+    absent={{{absent}}},
+    source="described from a recording",
+)
+'''
+
+
+def write_effect(
+    path: str | Path, part: BodyUnexplained, described: Described, prepared: Prepared
+) -> None:
+    """Write the effect file of a dependence; the file's name becomes the effect's.
+
+    raises ModelError: no law can say it, or the file's name is none for an effect
+    """
+    path = Path(path)
+    if not path.stem.isidentifier() or path.suffix != ".py":
+        raise ModelError(f'{path}: the file name "{path.name}" must be a name such as my_effect.py')
+    text = effect_text(part, described, prepared)
+    write_text(path, text)
+
+
+def effect_text(part: BodyUnexplained, described: Described, prepared: Prepared) -> str:
+    """The effect file as text; raises ModelError where no law can say the dependence."""
+    shape, formula = described.dependence.shape, described.formula
+    variable = shape.variable
+    if shape.carrier is LATENESS or (variable is not None and variable.name not in SIGNALS):
+        raise ModelError(
+            f'describe: "{shape.name}" cannot be written as an effect file: a law knows no '
+            f"{'earlier command' if shape.carrier is LATENESS else variable_words(shape)}; see "
+            "`teleopdesign effects` for those with a memory, such as presliding"
+        )
+    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
+    if variable is None or formula is None:
+        law = drawn(described.dependence, part.axis, unit)
+    else:
+        law = written(formula, part.axis, unit)
+    share = f"{100 * described.dependence.explained:.0f} %"
+    return _HEAD.format(
+        title=_wrapped(shape.name[0].upper() + shape.name[1:] + ", as described from a recording."),
+        equation=law.equation,
+        where=_wrapped(f"{said(described.sentence)}. {_known(part, described)}".strip()),
+        source=_wrapped(
+            f'Described by `teleopdesign describe` from "{prepared.experiment.title}": it explains '
+            f"{share} of what was left there."
+        ),
+        names=_names(law.text),
+        law=_returned(shape, law.text),
+        role=_role(shape),
+        parameters="\n".join(law.parameters),
+        absent=", ".join(f'"{s}": 0.0' for s in law.strengths),
+    )
+
+
+def said(sentence: str) -> str:
+    """The sentence with a capital letter."""
+    return sentence[:1].upper() + sentence[1:]
+
+
+def _known(part: BodyUnexplained, described: Described) -> str:
+    """The range of the variable that the records cover."""
+    variable, x = described.dependence.shape.variable, described.curve.x
+    if variable is None:
+        return ""
+    name = variable.name.replace("_", " ")
+    ends = between(float(x[0]), float(x[-1]), variable.quantity, part.axis)
+    return f"Known for {name} between {ends}."
+
+
+def variable_words(shape: Shape) -> str:
+    """The variable in words, for a message."""
+    return "" if shape.variable is None else shape.variable.name.replace("_", " ")
+
+
+def _role(shape: Shape) -> str:
+    if shape.of_command:
+        return "actuation"
+    # a branch for each direction opposes the motion, as friction does, also where it sticks
+    signed = shape.variable is not None and shape.variable.signed
+    return "friction_level" if shape.carrier is FRICTION or signed else "force"
+
+
+def _returned(shape: Shape, law: str) -> str:
+    variable = shape.variable
+    given = f"u = {SIGNALS[variable.name]}\n    " if variable is not None else ""
+    if shape.of_command and variable is COMMAND:
+        given = "u = now.command\n    "
+    factor = FACTORS.get(shape.carrier.name, "")
+    if shape.carrier is LOST:
+        return f"{given}return now.command * (1 - ({law}))"
+    if shape.of_command:
+        return f"{given}return now.command - ({law})"
+    return f"{given}return ({law}){factor}" if factor else f"{given}return {law}"
+
+
+def _names(law: str) -> str:
+    names = ("Max", "Min", "exp", "pi", "sin")
+    used = [n for n in names if f"{n}(" in law or f"{n} *" in law]
+    return f"from sympy import {', '.join(used)}\n\n" if used else ""
+
+
+def _wrapped(text: str) -> str:
+    """The text as it may stand in a docstring: nothing in it can end it, or begin an escape.
+
+    It holds titles and file names, which are anybody's.
+    """
+    plain = "".join(c if c.isprintable() else " " for c in text)
+    plain = plain.replace("\\", "/").replace('"', "'")
+    return "\n".join(textwrap.wrap(plain, 96))

@@ -1,0 +1,181 @@
+"""A sparse formula for a dependence: found on the fit records, kept if it holds on the others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from ..diagnose.evidence import gain_score
+from ..diagnose.fit import standard_errors
+from ..diagnose.support import SURE
+from ..measurement.filtering import Array
+from .dependence import Columns, Dependence, held_out
+from .library import Term, terms_of
+from .rows import Along, Rows
+from .shapes import POSITION_WAVE, TIME_WAVE, Shape, columns_from
+from .waves import wave_number
+
+#: part of a smooth curve's gain on the checked rows that a formula must reach to be kept
+HOLDS = 0.95
+#: most terms
+MOST = 2
+#: standard errors that each coefficient must differ from zero by
+TOLD = 3.0
+
+
+@dataclass(frozen=True)
+class Formula:
+    """Sum of coefficient times term, of one variable, times the carrier of the shape.
+
+    coefficients, errors: (k,), a sinusoid has two;  share: of the smooth curve's gain on the
+    checked rows, which it was not learnt from
+    """
+
+    shape: Shape
+    terms: tuple[Term, ...]
+    coefficients: Array
+    errors: Array
+    share: float
+
+    def values(self, u: Array) -> Array:
+        """f at values of the variable."""
+        return np.asarray(self.coefficients @ np.vstack([t.values(u) for t in self.terms]))
+
+    def split(self) -> list[tuple[Term, Array]]:
+        """Each term with its coefficients."""
+        return list(zip(self.terms, self._parts(self.coefficients), strict=True))
+
+    def split_errors(self) -> list[Array]:
+        """The standard errors of each term's coefficients."""
+        return self._parts(self.errors)
+
+    def _parts(self, values: Array) -> list[Array]:
+        edges = np.cumsum([t.functions for t in self.terms])[:-1]
+        return list(np.split(values, edges))
+
+
+def formula_for(rows: Rows, beside: Columns, found: Dependence) -> Formula | None:
+    """The formula with the fewest terms that does as well as the smooth curve; None if none does.
+
+    beside: columns of the model's own parameters and of what was found before
+    """
+    variable = found.shape.variable
+    if variable is None or variable.signed:
+        return None
+    terms = _terms(rows, beside, found)
+    every = _columns(rows, found.shape, tuple(terms)).values[rows.learnt]
+    chosen: tuple[Term, ...] = ()
+    for _ in range(MOST):
+        own = beside.beside(_columns(rows, found.shape, chosen)) if chosen else beside
+        search = _Search.beside(rows, own)
+        ranked = search.ranked(terms, every)
+        # what has no number to be found is simpler
+        simple = [t for t in ranked if not t.is_found]
+        for term in dict.fromkeys((*simple[:1], ranked[0])):
+            tried = (*chosen, _refined(rows, search, found.shape, term))
+            formula = _judged(rows, beside, found, tried)
+            if formula is not None:
+                return formula
+        chosen = tried
+    return None
+
+
+def _terms(rows: Rows, beside: Columns, found: Dependence) -> list[Term]:
+    variable = found.shape.variable
+    assert variable is not None
+    if variable.wave:
+        return [Term("wave", float(found.knots[0]))]
+    waving = {"position": POSITION_WAVE, "time": TIME_WAVE}.get(variable.name)
+    if waving is None:
+        return terms_of(variable, found.knots, 0.0)
+    target = rows.residual * rows.root
+    left = target - beside.values @ beside.solve(target, rows.learnt)
+    wave = wave_number(rows, left, replace(found.shape, variable=waving))
+    return terms_of(variable, found.knots, wave)
+
+
+@dataclass(frozen=True)
+class _Search:
+    """What is left on the rows learnt from, beside columns that move freely.
+
+    span: orthonormal columns (n, k);  left: (n,), orthogonal to them
+    """
+
+    span: Array
+    left: Array
+
+    @classmethod
+    def beside(cls, rows: Rows, columns: Columns) -> _Search:
+        span = np.linalg.qr(columns.values[rows.learnt])[0]
+        target = (rows.residual * rows.root)[rows.learnt]
+        return cls(span, target - span @ (span.T @ target))
+
+    def gains(self, columns: Array) -> Array:
+        """Squares that each column takes away by itself (k,)."""
+        own = columns - self.span @ (self.span.T @ columns)
+        size = np.sum(own**2, axis=0)
+        kept = size > 1e-8 * np.sum(columns**2, axis=0)
+        return np.where(kept, (own.T @ self.left) ** 2 / np.where(kept, size, 1.0), 0.0)
+
+    def ranked(self, terms: list[Term], columns: Array) -> list[Term]:
+        """Those first whose columns take most away; a sinusoid's two are nearly orthogonal."""
+        gains, at, each = self.gains(columns), 0, []
+        for term in terms:
+            each.append(float(gains[at : at + term.functions].sum()))
+            at += term.functions
+        return [terms[i] for i in np.argsort(-np.array(each), kind="stable")]
+
+
+def _columns(rows: Rows, shape: Shape, terms: tuple[Term, ...]) -> Columns:
+    variable = shape.variable
+    assert variable is not None
+
+    def functions(along: Along) -> Array:
+        u = along.signals[variable.name]
+        known = np.isfinite(u)
+        return np.vstack([t.values(np.where(known, u, 0.0)) for t in terms]) * known
+
+    values = columns_from(shape, rows, functions) * rows.root[:, None]
+    return Columns(values, np.zeros((values.shape[1],) * 2))
+
+
+def _refined(rows: Rows, search: _Search, shape: Shape, term: Term) -> Term:
+    """The term with its number searched between its neighbours on the grid."""
+    if not term.is_found or term.kind == "wave":  # a wave number is searched already
+        return term
+
+    def lost(n: float) -> float:
+        columns = _columns(rows, shape, (Term(term.kind, n),)).values[rows.learnt]
+        return -float(search.gains(columns)[0])
+
+    wide = 0.25 * abs(term.number)
+    bounds = (term.number - wide, term.number + wide)
+    found = minimize_scalar(lost, bounds=bounds, method="bounded", options={"maxiter": 12})
+    return Term(term.kind, float(found.x))
+
+
+def _judged(
+    rows: Rows, beside: Columns, found: Dependence, terms: tuple[Term, ...]
+) -> Formula | None:
+    """The formula of these terms, if each is sure and they hold on the checked rows."""
+    own = _columns(rows, found.shape, terms)
+    together = beside.beside(own)
+    after = held_out(rows, together)
+    before = float(found.before @ found.before)
+    share = (before - float(after @ after)) / (before - found.squares)
+    sure = gain_score(found.before, after, rows.blocks[rows.checked]) > SURE
+    learnt, k = rows.learnt, own.values.shape[1]
+    target = rows.residual * rows.root
+    value = together.solve(target, learnt)
+    left = (target - together.values @ value)[learnt]
+    errors = standard_errors(together.values[learnt], left, rows.blocks[learnt])[-k:]
+    formula = Formula(found.shape, terms, value[-k:], errors, share)
+    told = all(
+        np.hypot.reduce(c) > TOLD * np.hypot.reduce(e)
+        for (_, c), e in zip(formula.split(), formula.split_errors(), strict=True)
+    )
+    # a dependence that is a sinusoid is its own formula
+    holds = found.shape.is_wave or (share > HOLDS and sure and told)
+    return formula if holds else None

@@ -1,0 +1,78 @@
+"""Terms that a sparse formula may be made of: powers, decays, bells, ramps, sinusoids.
+
+Each is a function of one variable with at most one number that it is not linear in.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..measurement.filtering import Array
+from .shapes import ACCELERATION, COMMAND, INTERACTION, POSITION, TIME, Variable
+
+#: values of a number that a search begins with
+TRIED = 24
+
+
+@dataclass(frozen=True)
+class Term:
+    """One term.
+
+    kind: "power" (u^n), "decay" (exp(-u/n)), "bell" (exp(-(u/n)^2)), "above" and "below" (how far u
+    is beyond n), "beyond" (how far u is outside -n .. n), "wave" (cosine and sine of n cycles per
+    unit: two coefficients)
+    """
+
+    kind: str
+    number: float
+
+    def values(self, u: Array) -> Array:
+        """The term's functions (1 or 2, n) of the variable."""
+        n = self.number
+        if self.kind == "power":
+            return (u**n)[None]
+        if self.kind == "decay":
+            return np.exp(-u / n)[None]
+        if self.kind == "bell":
+            return np.exp(-((u / n) ** 2))[None]
+        if self.kind == "above":
+            return np.maximum(u - n, 0.0)[None]
+        if self.kind == "below":
+            return np.maximum(n - u, 0.0)[None]
+        if self.kind == "beyond":
+            return (u - np.clip(u, -n, n))[None]
+        return np.vstack([np.cos(2 * np.pi * n * u), np.sin(2 * np.pi * n * u)])
+
+    @property
+    def functions(self) -> int:
+        """How many functions, and coefficients, it has."""
+        return 2 if self.kind == "wave" else 1
+
+    @property
+    def is_found(self) -> bool:
+        """Whether its number is found by search."""
+        return self.kind != "power"
+
+
+def terms_of(variable: Variable, knots: Array, wave: float) -> list[Term]:
+    """The terms that are tried over a variable whose f has these knots.
+
+    wave: number of cycles per unit to try, 0 for none
+    """
+    low, high = float(knots[0]), float(knots[-1])
+    terms = [Term("power", p) for p in (1.0, 2.0, 3.0)]
+    if low >= 0.0 or variable is TIME:
+        first = max(float(knots[1]), 1e-3 * high)
+        for n in np.geomspace(first, high, TRIED).tolist():
+            terms += [Term("bell", n), Term("decay", n)]
+    if variable in (COMMAND, INTERACTION, ACCELERATION):
+        top = max(abs(low), abs(high))
+        terms += [Term("beyond", n) for n in (top * np.arange(1, TRIED) / TRIED).tolist()]
+    if variable is POSITION:
+        for n in np.linspace(low, high, TRIED + 2)[1:-1].tolist():
+            terms += [Term("above", n), Term("below", n)]
+    if wave > 0.0:
+        terms.append(Term("wave", wave))
+    return terms

@@ -1,0 +1,98 @@
+"""Where along a curve the device needs more than the model, or less: the ranges and the sizes.
+
+The ranges that come first are those in which most of the residual's squares lie, not those where f
+is largest: a curve is large at its ends, where few rows are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..measurement.filtering import Array
+from .curve import Curve
+
+#: a range is named from this part of the squares of all
+NAMED = 0.1
+#: part of the rows that a range may leave out at its ends and still be said to go on to there
+NONE_BEYOND = 0.02
+#: ranges named at most, and ranges from which something goes up and down
+MOST, TURNS = 3, 4
+
+
+@dataclass(frozen=True)
+class Region:
+    """A range of the variable (SI) where f keeps its sign and half of its extreme there.
+
+    low, high: infinite where the range goes on to the end of what is known
+    share: of the squares that the curve explains, those where f has this sign around here
+    backward: the variable is negative here
+    """
+
+    low: float
+    high: float
+    extreme: float
+    share: float
+    backward: bool
+
+
+def regions_of(curve: Curve, *, signed: bool = False) -> tuple[Region, ...]:
+    """The ranges where f differs from zero by more than its band, largest size first.
+
+    signed: f has a branch for each sign of the variable, looked at apart
+    """
+    half = len(curve.x) // 2
+    parts = [slice(None, half), slice(half, None)] if signed else [slice(None)]
+    squares = curve.weight * curve.y**2
+    whole = max(float(squares.sum()), 1e-300)
+    found = []
+    for part in parts:
+        x, y, low, high = (a[part] for a in (curve.x, curve.y, curve.low, curve.high))
+        sure = np.where((low > 0) | (high < 0), np.sign(y), 0.0)
+        for run in _runs(sure):
+            share = float(squares[part][run].sum()) / whole
+            found.append(_region(x, y, run, share, curve.weight[part]))
+    found.sort(key=lambda r: -r.share)
+    return tuple(found)
+
+
+def named(regions: tuple[Region, ...]) -> tuple[Region, ...]:
+    """The largest ranges, those of a tenth of the squares or more, from low to high."""
+    chosen = regions[:1] + tuple(r for r in regions[1:MOST] if r.share > NAMED)
+    return tuple(sorted(chosen, key=lambda r: r.low))
+
+
+def goes_up_and_down(regions: tuple[Region, ...]) -> bool:
+    """Whether the curve has so many ranges that none stands out."""
+    return sum(r.share > 0.5 * NAMED for r in regions) >= TURNS
+
+
+def _runs(sign: Array) -> list[slice]:
+    """Runs of one sign; what is not sure between two of the same sign parts them not."""
+    edges = np.flatnonzero(np.diff(sign)) + 1
+    runs: list[slice] = []
+    for a, b in zip([0, *edges], [*edges, len(sign)], strict=True):
+        if sign[a] == 0:
+            continue
+        if runs and sign[runs[-1].start] == sign[a]:
+            runs[-1] = slice(runs[-1].start, int(b))
+        else:
+            runs.append(slice(int(a), int(b)))
+    return runs
+
+
+def _region(x: Array, values: Array, run: slice, share: float, weight: Array) -> Region:
+    size = np.abs(values)
+    top = run.start + int(np.argmax(size[run]))
+    large = (size > 0.5 * size[top]) & (np.sign(values) == np.sign(values[top]))
+    low = top - int(np.argmin(np.append(large[top::-1], False))) + 1
+    high = top + int(np.argmin(np.append(large[top:], False))) - 1
+    few = NONE_BEYOND * float(weight.sum())
+    return Region(
+        low=-np.inf if weight[:low].sum() <= few else float(x[low]),
+        high=np.inf if weight[high + 1 :].sum() <= few else float(x[high]),
+        extreme=float(values[top]),
+        share=share,
+        backward=bool(x[top] < 0),
+    )

@@ -1,0 +1,181 @@
+"""Residual rows of one body, what else is known at each, and how a missing force would show there.
+
+Where a body sticks, friction balances whatever acts: a force that the model lacks leaves no
+residual. So every quantity that a residual is held against is first multiplied by what the
+residual would show of it (`push`, `grip`), then low-passed as the residual is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..diagnose.fit import block_numbers, free_parameters
+from ..diagnose.force_error import Prepared, Stretch, folds, residuals
+from ..effects import Effect, Parameter
+from ..measurement.filtering import Array
+from ..model import Model
+from ..realise.along_motion import residual_along
+from .reversals import since_reversal
+
+#: s without a told motion after which a body counts as having rested: above the quarter of a period
+#: at a hertz that a hand takes to turn round, below the half second that experimenters wait
+RESTED = 0.2
+
+_SIZE = {"size": Parameter("force", "size", lower=-float("inf"))}
+_PUSH = Effect(role="force", law=lambda now, p: p.size, parameters=_SIZE, absent={"size": 0.0})
+_GRIP = Effect(
+    role="friction_level", law=lambda now, p: p.size, parameters=_SIZE, absent={"size": 0.0}
+)
+PUSH, GRIP = _PUSH.named("unexplained_force", ""), _GRIP.named("unexplained_level", "")
+
+
+@dataclass(frozen=True)
+class Along:
+    """One stretch at full rate: n samples, SI.
+
+    signals: name -> (n,): what a residual may depend on
+    push: residual per missing force: 1 while the body slides, 0 where it sticks
+    grip: residual per missing friction level: the direction of sliding, 0 where it sticks
+    """
+
+    stretch: Stretch
+    signals: Mapping[str, Array]
+    push: Array
+    grip: Array
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The rows that count of one body (n in all); see `Stretch.keep`.
+
+    residual: low-passed, unit of the forces;  tangents: (n, p) by the free parameters
+    measured: measured force, low-passed likewise
+    root: square root of the samples that a row stands for, 0 where no motion can be told: friction
+    is known there no better than between its bounds;  blocks: number of its quarter second
+    number: of its stretch;  splits: (rows to learn from, rows to hold it against), masks
+    """
+
+    body: str
+    axis: str
+    bandwidth: float
+    alongs: tuple[Along, ...]
+    residual: Array
+    measured: Array
+    tangents: Array
+    root: Array
+    blocks: NDArray[np.intp]
+    number: NDArray[np.intp]
+    splits: tuple[tuple[NDArray[np.bool_], NDArray[np.bool_]], ...]
+
+    @property
+    def checked(self) -> NDArray[np.bool_]:
+        """The rows that something learnt elsewhere is held against."""
+        return np.asarray(sum(test for _, test in self.splits), dtype=bool)
+
+    @property
+    def learnt(self) -> NDArray[np.bool_]:
+        """The rows that the description is learnt from in the end: those of the fit records."""
+        return np.asarray(sum(train for train, _ in self.splits), dtype=bool)
+
+    def lowpassed(self, columns: Callable[[Along], Array]) -> Array:
+        """Columns (n, k) at the rows, from signals (k, samples) of each stretch."""
+        return np.concatenate(
+            [a.stretch.motion.lowpassed(columns(a))[:, a.stretch.keep].T for a in self.alongs]
+        )
+
+    def at(self, name: str) -> Array:
+        """A signal at the rows (n,)."""
+        return np.concatenate([a.signals[name][a.stretch.keep] for a in self.alongs])
+
+    @property
+    def push(self) -> Array:
+        """`Along.push` at the rows."""
+        return np.concatenate([a.push[a.stretch.keep] for a in self.alongs])
+
+    @property
+    def grip(self) -> Array:
+        """`Along.grip` at the rows."""
+        return np.concatenate([a.grip[a.stretch.keep] for a in self.alongs])
+
+
+def rows_of(model: Model, prepared: Prepared, body: str) -> Rows:
+    """The residual rows of one body of a fitted model."""
+    stretches = tuple(s for s in prepared.stretches if s.motion.body == body)
+    free = [n for n in free_parameters(model) if model.locate(n)[0] == body]
+    parts = residuals(model, stretches, free)
+    lengths = [len(s.keep) for s in stretches]
+    return Rows(
+        body=body,
+        axis=model.body(body).axis,
+        bandwidth=prepared.bandwidth,
+        alongs=tuple(_along(model, s) for s in stretches),
+        residual=np.concatenate([r for r, _ in parts]),
+        measured=np.concatenate([_measured(s) for s in stretches]),
+        tangents=np.concatenate([d.T for _, d in parts]),
+        root=np.concatenate(
+            [np.sqrt(s.weight) * (s.motion.direction[s.keep] != 0) for s in stretches]
+        ),
+        blocks=block_numbers(stretches),
+        number=np.repeat(np.arange(len(stretches)), lengths),
+        splits=_splits(stretches),
+    )
+
+
+def _measured(stretch: Stretch) -> Array:
+    motion = stretch.motion
+    force = motion.at_rows(motion.command) + motion.interaction
+    return motion.lowpassed(force)[stretch.keep]
+
+
+def _splits(
+    stretches: Sequence[Stretch],
+) -> tuple[tuple[NDArray[np.bool_], NDArray[np.bool_]], ...]:
+    """Fit and check rows; without check records, blocks of the fit records held out in turn."""
+    check = np.repeat([s.use == "check" for s in stretches], [len(s.keep) for s in stretches])
+    if check.any():
+        return ((~check, check),)
+    found = []
+    for _, unseen in folds(stretches):
+        held = [np.isin(s.keep, u.keep) for s, u in zip(stretches, unseen, strict=True)]
+        out = np.concatenate(held)
+        found.append((~out, out))
+    return tuple(found)
+
+
+def _along(model: Model, stretch: Stretch) -> Along:
+    motion = stretch.motion
+    body = model.body(motion.body).with_effect(PUSH, {"size": 0.0}).with_effect(GRIP, {"size": 0.0})
+    along = residual_along(body, motion, [f"{PUSH.name}.size", f"{GRIP.name}.size"])
+    acting = along.acting.value
+    since = since_reversal(
+        motion.direction, motion.position, sample_time=motion.sample_time, rest=RESTED
+    )
+    spectrum = motion.spectrum
+    expected = acting - motion.lowpassed(along.residual.value)
+    signals = {
+        "time": motion.time,
+        "position": motion.position,
+        "velocity": motion.velocity,
+        "speed": np.abs(motion.velocity),
+        "acceleration": motion.acceleration,
+        "actuator_force": acting,
+        "load": np.abs(acting),
+        "expected_force": expected,
+        "expected_load": np.abs(expected),
+        "interaction_force": motion.interaction,
+        "force_rate": spectrum.multiply(acting, spectrum.derivative(1)),
+        "direction": motion.direction.astype(float),
+        "since_reversal": since.time,
+        "travel": since.travel,
+        "rested": since.rested,
+    }
+    push, grip = -along.residual.tangent
+    grip = grip * (motion.direction != 0)
+    if not stretch.own_zero:
+        return Along(stretch, signals, push, grip)
+    # its position cannot be compared with that of other records: nothing is said of it
+    return Along(stretch, {**signals, "position": np.full_like(acting, np.nan)}, push, grip)

@@ -1,0 +1,219 @@
+"""What a missing force may look like: a carrier times a function of one variable.
+
+    missing force = carrier * f(variable)
+
+The carrier says what kind of physics it is (a force, a friction, a damping, a mass, ...). f is a
+line between knots, or a sinusoid of a wave number found by search; without a variable a constant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..measurement.filtering import Array
+from .rows import Along, Rows
+
+
+@dataclass(frozen=True)
+class Carrier:
+    """name: in results;  quantity: of f;  signal: what it multiplies beside push (or grip)."""
+
+    name: str
+    quantity: str
+    signal: str = ""
+    friction: bool = False
+
+    def along(self, along: Along) -> Array:
+        """The residual per f, not yet low-passed (samples,)."""
+        shown = along.grip if self.friction else along.push
+        return shown * along.signals[self.signal] if self.signal else shown
+
+    def at(self, rows: Rows) -> Array:
+        """The same at the rows, not low-passed (n,)."""
+        shown = rows.grip if self.friction else rows.push
+        return shown * rows.at(self.signal) if self.signal else shown
+
+
+FORCE = Carrier("force", "force")
+FRICTION = Carrier("friction", "force", friction=True)
+DAMPING = Carrier("damping", "damping", "velocity")
+MASS = Carrier("mass", "inertia", "acceleration")
+LOST = Carrier("lost command", "dimensionless", "actuator_force")
+LATENESS = Carrier("lateness", "time", "force_rate")
+
+
+@dataclass(frozen=True)
+class Variable:
+    """What f depends on.
+
+    name: a signal of `Along`;  knots: how many;  signed: f has a branch of its own for each sign
+    bent: knots lie closer where the variable is small, as what happens at low speed takes little
+    of the range;  wave: f is a sinusoid
+    expected: the signal as the model expects it, for one that holds the residual itself
+    """
+
+    name: str
+    quantity: str
+    knots: int = 16
+    signed: bool = False
+    bent: bool = False
+    wave: bool = False
+    expected: str = ""
+
+
+POSITION = Variable("position", "position", knots=40)
+POSITION_WAVE = Variable("position", "position", wave=True)
+SPEED = Variable("speed", "velocity", bent=True)
+VELOCITY = Variable("velocity", "velocity", knots=10, signed=True, bent=True)
+ACCELERATION = Variable("acceleration", "acceleration")
+COMMAND = Variable("actuator_force", "force", expected="expected_force")
+LOAD = Variable("load", "force", expected="expected_load")
+INTERACTION = Variable("interaction_force", "force")
+TIME = Variable("time", "time", knots=32)
+TIME_WAVE = Variable("time", "time", wave=True)
+SINCE = Variable("since_reversal", "time", knots=12, bent=True)
+TRAVEL = Variable("travel", "position", knots=12, bent=True)
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A carrier and what its size depends on (None: nothing, it is a constant)."""
+
+    carrier: Carrier
+    variable: Variable | None = None
+
+    @property
+    def of_command(self) -> bool:
+        """Whether it may stand for another gain of the actuator."""
+        return self.carrier is LOST or (self.carrier is FORCE and self.variable is COMMAND)
+
+    @property
+    def is_wave(self) -> bool:
+        """Whether f is a sinusoid, whose wave number is looked for."""
+        return self.variable is not None and self.variable.wave
+
+    @property
+    def name(self) -> str:
+        """Such as "friction over speed", or "force repeating over position"."""
+        if self.variable is None:
+            return self.carrier.name
+        how = "repeating over" if self.is_wave else "over"
+        return f"{self.carrier.name} {how} {self.variable.name}"
+
+
+#: what is looked at, the simpler of two that look alike first. Last what repeats with a motion that
+#: repeats (time), and what holds the residual itself (the command)
+SHAPES = (
+    *(Shape(c) for c in (FORCE, FRICTION, DAMPING, MASS, LOST, LATENESS)),
+    *(Shape(FRICTION, v) for v in (SPEED, POSITION, POSITION_WAVE)),
+    *(Shape(FORCE, v) for v in (POSITION, POSITION_WAVE, SPEED, ACCELERATION)),
+    Shape(DAMPING, POSITION),
+    *(Shape(MASS, v) for v in (POSITION, SPEED)),
+    *(Shape(LOST, v) for v in (POSITION, POSITION_WAVE)),
+    Shape(FORCE, VELOCITY),
+    *(Shape(FRICTION, v) for v in (SINCE, TRAVEL, TIME)),
+    *(Shape(FORCE, v) for v in (TIME, TIME_WAVE)),
+    Shape(DAMPING, TIME),
+    Shape(FORCE, COMMAND),  # an actuator's limit also looks like friction under load
+    Shape(FRICTION, LOAD),
+    Shape(FORCE, INTERACTION),
+)
+
+
+def knots_of(variable: Variable, rows: Rows) -> Array:
+    """Knots of f over the range that the rows learnt from cover; empty where nothing is known."""
+    values = rows.at(variable.name)
+    shown = (rows.root > 0) & rows.learnt & np.isfinite(values)
+    if np.count_nonzero(shown) < variable.knots or np.ptp(values[shown]) == 0.0:
+        return np.zeros(0)
+    if not variable.bent:
+        low, high = np.quantile(values[shown], [0.0005, 0.9995]).tolist()
+        return np.linspace(low, high, variable.knots)
+    # the first knot holds rows enough to tell f there, down to rest: as motions are told
+    first, top = np.quantile(np.abs(values[shown]), [0.01, 0.9995]).tolist()
+    small = min(resolved(variable, rows), 0.1 * top)
+    ends = np.arcsinh([first / small, top / small])
+    return np.asarray(small * np.sinh(np.linspace(ends[0], ends[1], variable.knots)))
+
+
+def resolved(variable: Variable, rows: Rows) -> float:
+    """The smallest value of the variable that the comparison resolves."""
+    step = max(a.stretch.motion.step for a in rows.alongs)
+    time = 1.0 / (2 * np.pi * rows.bandwidth)
+    return {"position": step, "velocity": step / time, "time": time}[variable.quantity]
+
+
+def basis(variable: Variable, knots: Array, values: Array) -> Array:
+    """Functions of the variable (k, n) that f is a sum of.
+
+    knots: for a sinusoid its wave number, in cycles per unit;  zero where a value is not known
+    """
+    known = np.isfinite(values)
+    values = np.where(known, values, 0.0)
+    if variable.wave:
+        turn = 2 * np.pi * knots[0] * values
+        return np.vstack([np.cos(turn), np.sin(turn)]) * known
+    size = np.abs(values) if variable.signed else values
+    # at rest friction is that of the slowest motion that is told
+    found = _hats(np.maximum(size, knots[0]) if variable.bent else size, knots) * known
+    return np.vstack([found * (values > 0), found * (values < 0)]) if variable.signed else found
+
+
+def _hats(values: Array, knots: Array) -> Array:
+    """Lines between knots, continued beyond the outer ones: (k, n)."""
+    place = np.clip(np.searchsorted(knots, values, side="right") - 1, 0, len(knots) - 2)
+    part = (values - knots[place]) / (knots[place + 1] - knots[place])
+    found = np.zeros((len(knots), len(values)))
+    each = np.arange(len(values))
+    found[place, each] = 1.0 - part
+    found[place + 1, each] = part
+    return found
+
+
+def functions_of(shape: Shape, knots: Array, values: Array) -> Array:
+    """Functions (k, n) at values of the variable (n,) that f is a sum of."""
+    variable = shape.variable
+    if variable is None:
+        return np.ones((1, len(values)))
+    found = basis(variable, knots, values)
+    # without a command there is none to lose
+    of_command = shape.carrier is FORCE and shape.of_command
+    return found - basis(variable, knots, np.zeros(1)) * of_command
+
+
+def columns_of(shape: Shape, knots: Array, rows: Rows) -> Array:
+    """What the residual would show of each coefficient of f (n, k), low-passed."""
+    name = "time" if shape.variable is None else shape.variable.name
+    return columns_from(shape, rows, lambda a: functions_of(shape, knots, a.signals[name]))
+
+
+def columns_from(shape: Shape, rows: Rows, functions: Callable[[Along], Array]) -> Array:
+    """What the residual would show (n, k) of functions (k, samples) times the shape's carrier."""
+    found = rows.lowpassed(lambda along: shape.carrier.along(along) * functions(along))
+    return _referred(found, rows) if shape.of_command else found
+
+
+def _referred(columns: Array, rows: Rows) -> Array:
+    """Columns of what changes the acting force, relative to the force that is left to act.
+
+    Where no other force is measured, less command with less of everything else leaves less
+    residual and explains nothing: see `force_error.referred`.
+    """
+    learnt = rows.learnt
+    own = (rows.root**2 * rows.measured)[learnt]
+    share = own @ columns[learnt] / float(own @ rows.measured[learnt])
+    return columns - np.outer(rows.residual, share)
+
+
+def roughness(shape: Shape, knots: Array) -> Array:
+    """Penalty (k, k) on the second differences of f between neighbouring knots."""
+    if shape.variable is None:
+        return np.zeros((1, 1))
+    if shape.is_wave:
+        return np.zeros((2, 2))
+    second = np.diff(np.eye(len(knots)), 2, axis=0)
+    one: Array = second.T @ second
+    return np.asarray(np.kron(np.eye(2), one), dtype=float) if shape.variable.signed else one

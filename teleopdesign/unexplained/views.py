@@ -1,0 +1,140 @@
+"""What the model leaves, against everything that is looked at: graphs, one a view."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..finding import Graph, Series
+from ..measurement.filtering import Array
+from ..quantity import unit_of
+from .amounts import unit_for
+from .curve import BAND, BINS, Curve
+from .rows import Rows
+from .shapes import Shape
+from .whiteness import Whiteness
+
+#: view -> (signal, quantity, its words on the axis)
+VIEWS = {
+    "time": ("time", "time", "time"),
+    "velocity": ("velocity", "velocity", "velocity"),
+    "position": ("position", "position", "position"),
+    "acceleration": ("acceleration", "acceleration", "acceleration"),
+    "force": ("actuator_force", "force", "actuator force"),
+    "direction": ("direction", "", "direction"),
+    "time since reversal": ("since_reversal", "time", "time since it set off"),
+}
+#: most points of a cloud
+CLOUD = 3000
+#: words of a variable and of a carrier on an axis
+WORDS = {
+    "speed": "speed",
+    "actuator_force": "actuator force",
+    "load": "size of the actuator force",
+    "interaction_force": "interaction force",
+    "since_reversal": "time since it set off",
+    "travel": "travel since it set off",
+}
+LACKS = {
+    "force": "missing force",
+    "friction": "missing friction",
+    "damping": "missing damping",
+    "mass": "missing moving mass",
+    "lost command": "part of command lost",
+    "lateness": "lateness of command",
+}
+
+
+def label(words: str, quantity: str, axis: str, largest: float = np.inf) -> tuple[float, str]:
+    """Factor from SI and the axis label with its unit; in SI unless the values are small."""
+    if not quantity:
+        return 1.0, words
+    if quantity == "acceleration" or not np.isfinite(largest):
+        return 1.0, f"{words} ({unit_of(quantity, axis).replace('*', ' ')})"
+    factor, unit = unit_for(quantity, axis, largest)
+    return factor, f"{words} ({unit})"
+
+
+def views_of(rows: Rows, whiteness: Whiteness) -> dict[str, Graph]:
+    """The residual of every row against each view, forward and backward apart, with means."""
+    return {
+        **{name: _view(rows, *VIEWS[name]) for name in VIEWS},
+        "frequency": _frequency(rows, whiteness),
+    }
+
+
+def _view(rows: Rows, signal: str, quantity: str, words: str) -> Graph:
+    value, direction = rows.at(signal), rows.at("direction")
+    known = np.isfinite(value)
+    most = float(np.max(np.abs(value[known]), initial=0.0))
+    fx, x_label = label(words, quantity, rows.axis, most)
+    fy, y_label = label("residual", "force", rows.axis, float(np.max(np.abs(rows.residual))))
+    x, y = fx * value, fy * rows.residual
+    series = []
+    for name, own in (("forward", direction > 0), ("backward", direction < 0)):
+        chosen = np.flatnonzero(own & known)
+        chosen = chosen[:: max(1, len(chosen) // CLOUD)]
+        series.append(Series(name, x[chosen], y[chosen], "rest"))
+    if signal == "time":  # records lie over each other
+        return Graph(x_label, y_label, tuple(series))
+    for name, own in (("mean forward", direction > 0), ("mean backward", direction < 0)):
+        if signal == "direction":
+            own = own & known
+        mean = _binned(x[own & known], y[own & known], rows.blocks[own & known])
+        series.append(Series(name, mean[0], mean[1], "trend", mean[2], mean[3]))
+    return Graph(x_label, y_label, tuple(series))
+
+
+def _binned(x: Array, y: Array, blocks: NDArray[np.intp]) -> Array:
+    """Means in bins of equally many rows with bands by blocks: rows x, y, low, high (4, b)."""
+    if not len(x):
+        return np.zeros((4, 0))
+    edges = np.unique(np.quantile(x, np.linspace(0, 1, BINS + 1)))
+    place = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, max(len(edges) - 2, 0))
+    found = []
+    for k in np.unique(place):
+        own = place == k
+        mean = float(y[own].mean())
+        sums = np.bincount(blocks[own], y[own] - mean)
+        half = BAND * float(np.sqrt(np.sum(sums**2))) / int(own.sum())
+        found.append((float(x[own].mean()), mean, mean - half, mean + half))
+    return np.array(found).T
+
+
+def _frequency(rows: Rows, whiteness: Whiteness) -> Graph:
+    frequency, left, measured = whiteness.spectrum
+    used = left > 0
+    largest = float(np.max(measured))
+    factor, y_label = label("rms per band", "force", rows.axis, largest)
+    return Graph(
+        "frequency (Hz)",
+        y_label,
+        (
+            Series("measured force", frequency[used], factor * measured[used], "measured"),
+            Series("residual", frequency[used], factor * left[used], "trend"),
+        ),
+        logarithmic=True,
+    )
+
+
+def curve_graph(shape: Shape, curve: Curve, axis: str) -> Graph:
+    """The dependence as a curve with its band, and means over the checked rows."""
+    quantity = shape.carrier.quantity
+    largest = float(np.max(np.abs([curve.low, curve.high])))
+    fy, y_label = label(LACKS[shape.carrier.name], quantity, axis, largest)
+    if shape.variable is None:
+        name = "all rows"
+        band = (fy * curve.low, fy * curve.high)
+        return Graph(name, y_label, (Series(name, curve.x, fy * curve.y, "trend", *band),))
+    variable = shape.variable
+    words = WORDS.get(variable.name, variable.name)
+    fx, x_label = label(words, variable.quantity, axis, float(np.max(np.abs(curve.x))))
+    x, y, low, high = curve.means
+    return Graph(
+        x_label,
+        y_label,
+        (
+            Series("check, means", fx * x, fy * y, "measured", fy * low, fy * high),
+            Series("smooth", fx * curve.x, fy * curve.y, "trend", fy * curve.low, fy * curve.high),
+        ),
+    )

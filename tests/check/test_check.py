@@ -1,0 +1,324 @@
+"""The check before fitting: signs, units, timing, swapped columns, and what a record can show."""
+
+import json
+import math
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from shared_data import shared_folder
+
+from teleopdesign import Model, example, load_experiment
+from teleopdesign.check.excitation import check_excitation
+from teleopdesign.check.plausibility import check_plausibility
+from teleopdesign.check.soundness_check import check_experiment
+from teleopdesign.cli import main
+from teleopdesign.diagnose.excerpt import excerpt
+from teleopdesign.diagnose.fit import ROUGH, estimate
+from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.effects import catalogue
+
+#: effects that stand for each way of being seen; all of them take longer
+SOME = ("bias", "coulomb", "coulomb_asymmetry", "viscous", "stribeck", "spring", "actuation_delay")
+
+
+@pytest.fixture(scope="module")
+def rod():
+    return load_experiment(example("rod"))
+
+
+@pytest.fixture(scope="module")
+def few():
+    known = catalogue()
+    return {n: known[n] for n in SOME}
+
+
+def changed(experiment, quantity, change, body="device"):
+    """The experiment with one channel of every record changed."""
+    key = f"{body}.{quantity}"
+    records = tuple(
+        replace(r, signals={**r.signals, key: change(r.signals[key])}) for r in experiment.records
+    )
+    return replace(experiment, records=records)
+
+
+def shifted(samples):
+    """Later by so many samples; the ends repeat."""
+
+    def change(x):
+        return x[np.clip(np.arange(len(x)) - samples, 0, len(x) - 1)]
+
+    return change
+
+
+def plausible(experiment):
+    return check_plausibility(Model.from_experiment(experiment), prepare(experiment))
+
+
+def the_one(experiment, topic):
+    found = [f for f in plausible(experiment) if f.concern != "fine"]
+    assert [f.topic for f in found] == [topic], list(map(str, found))
+    return found[0]
+
+
+# signs and units
+
+
+def test_a_right_record_agrees_with_its_model(rod):
+    (found,) = plausible(rod)
+    assert found.concern == "fine"
+    # Stribeck is missing in this model: 6 % of the force, which the inertia takes part of
+    assert found.numbers["inertia"] == pytest.approx(0.19, rel=0.1)
+    assert found.numbers["gain"] == pytest.approx(1.0, abs=0.03)
+
+
+@pytest.mark.parametrize("quantity", ["actuator_force", "interaction_force", "position"])
+def test_the_channel_whose_sign_is_turned_is_named(rod, quantity):
+    found = the_one(changed(rod, quantity, np.negative), "signs")
+    assert found.concern == "warning"
+    assert found.sentence.startswith(f"{quantity} has the opposite sign")
+    assert (found.numbers["gain"] < 0) == (quantity != "position")
+
+
+@pytest.mark.parametrize(("factor", "slip"), [(1e3, "in mm, given as m"), (1e2, "in cm, given")])
+def test_a_position_in_another_unit_than_stated_is_told_by_the_model(rod, factor, slip):
+    found = the_one(changed(rod, "position", lambda x: factor * x), "units")
+    assert slip in found.sentence
+    assert found.numbers["ratio.inertia"] == pytest.approx(1 / factor, rel=0.15)
+    assert found.numbers["ratio.coulomb.level"] == pytest.approx(1.0, rel=0.15)
+
+
+def test_an_inertia_in_grams_given_as_kilograms_is_told_from_a_position(rod):
+    model = Model.from_experiment(rod)
+    heavy = model.with_values({"device.inertia": 186.6})
+    (found,) = check_plausibility(heavy, prepare(rod))
+    assert "inertia is meant in g, given as kg" in found.sentence
+
+
+@pytest.mark.parametrize("quantity", ["actuator_force", "interaction_force"])
+def test_one_force_in_another_unit_is_named_by_the_inertia(rod, quantity):
+    found = the_one(changed(rod, quantity, lambda x: 1e3 * x), "units")
+    assert f"{quantity} is in another unit" in found.sentence
+    factor = max(found.numbers["gain"], 1 / found.numbers["gain"])
+    assert factor == pytest.approx(1e3, rel=0.05)
+
+
+# timing
+
+
+@pytest.mark.parametrize(
+    ("quantity", "samples", "concern"),
+    [
+        ("interaction_force", 5, "warning"),
+        ("interaction_force", -7, "warning"),
+        ("actuator_force", 5, "warning"),  # an effect before its cause
+        ("actuator_force", -5, "note"),  # a delay of the actuator does that too
+        ("position", 5, "warning"),
+        ("position", -60, "warning"),
+    ],
+)
+def test_a_channel_shifted_by_whole_samples_is_named_with_the_time(rod, quantity, samples, concern):
+    found = the_one(changed(rod, quantity, shifted(samples)), "time shift")
+    assert found.concern == concern
+    # three standard errors of the interaction force's shift, 0.4 ms; of the others' 0.1 ms
+    error = 1.2e-3 if quantity == "interaction_force" else 3e-4
+    assert found.numbers[f"{quantity}.lag"] == pytest.approx(samples * 1e-3, abs=error)
+    assert set(found.numbers) & {"left", "unshifted"}
+
+
+# teleoperators
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("quantity", ["position", "actuator_force", "interaction_force"])
+def test_columns_of_master_and_slave_that_are_swapped_are_named(quantity):
+    experiment = load_experiment(shared_folder("hidden/cases") / "007")
+    one, two = f"master.{quantity}", f"slave.{quantity}"
+    records = tuple(
+        replace(r, signals={**r.signals, one: r.signals[two], two: r.signals[one]})
+        for r in experiment.records
+    )
+    found = the_one(replace(experiment, records=records), "swapped columns")
+    assert one in found.sentence and two in found.sentence
+    assert found.numbers["swapped"] < 0.1 < found.numbers["as_given"]
+
+
+# what a record can show
+
+
+def shows(experiment, known):
+    model = Model.from_experiment(experiment, known)
+    found = check_excitation(model, prepare(experiment), np.random.default_rng(0))
+    return {f.topic: f for f in found}
+
+
+def test_a_rich_record_shows_what_is_tried_and_says_from_which_size(rod, few):
+    found = shows(rod, few)
+    numbers = found["what the record can show"].numbers
+    assert all(numbers[n] < 0.1 for n in SOME if n not in ("coulomb", "viscous"))
+    assert "stribeck (from 0.0" in found["what the record can show"].sentence
+    assert "bias and coulomb_asymmetry" in found["look-alikes"].sentence
+    assert found["motion"].concern == "fine"
+
+
+def test_the_least_size_that_shows_is_where_the_error_reaches_the_bound(rod, few):
+    """Planted at that size, an effect raises a fitted model's error to 1.8 noise floors."""
+    from teleopdesign.check.visibility import visibilities
+    from teleopdesign.diagnose.candidates import candidates
+    from teleopdesign.diagnose.diagnosis import ADEQUATE
+
+    model = Model.from_experiment(rod, few).with_effect("stribeck")
+    prepared = prepare(rod)
+    base = estimate(model, prepared, effort=ROUGH)
+    spring = [c for c in candidates(base.model) if c.effect.name == "spring"]
+    floor = base.fit_error
+    (seen,) = visibilities(base, prepared, spring, floor)
+    stiffness = seen.strength["stiffness"]
+    # a spring that the machine has and the model lacks: its force is missing from the command
+    planted = replace(
+        rod,
+        records=tuple(
+            replace(
+                r,
+                signals={
+                    **r.signals,
+                    "device.actuator_force": r.signals["device.actuator_force"]
+                    + stiffness * r.signals["device.position"],
+                },
+            )
+            for r in rod.records
+        ),
+    )
+    after = estimate(model, prepare(planted), effort=ROUGH)
+    # the size is found to 20 %, and what is left of Stribeck is in the floor used here
+    assert after.fit_error / floor == pytest.approx(ADEQUATE, rel=0.2)
+
+
+def one_way(experiment):
+    """A motion that only ever goes on, and the force that a friction of 0.5 N and 0.2 kg take."""
+    record = experiment.records[0]
+    t = record.time
+    v = 0.1 + 0.05 * np.sin(2 * np.pi * 1.3 * t)
+    x = 0.1 * t - 0.05 / (2 * np.pi * 1.3) * np.cos(2 * np.pi * 1.3 * t)
+    force = 0.2 * np.gradient(v, t) + 0.5 + 1.0 * v
+    noise = 1e-3 * np.random.default_rng(0).standard_normal(len(t))
+    signals = {
+        "device.position": 7.2e-6 * np.round(x / 7.2e-6),
+        "device.actuator_force": force + noise,
+    }
+    channels = {k: c for k, c in experiment.channels.items() if c.quantity != "interaction_force"}
+    return replace(experiment, channels=channels, records=(replace(record, signals=signals),))
+
+
+def test_a_motion_one_way_cannot_show_what_needs_both_and_says_so(rod, few):
+    found = shows(one_way(rod), few)
+    summary = found["what the record can show"]
+    assert math.isinf(summary.numbers["coulomb_asymmetry"])
+    assert math.isinf(summary.numbers["bias"]), "one way, friction is a constant force"
+    assert "the same as coulomb.level" in summary.sentence
+    assert "it only ever moves one way" in summary.sentence
+    assert "spring (it never comes back to where it was)" in summary.sentence
+    motion = found["motion"]
+    assert motion.numbers["forth"] > 0.99 and motion.numbers["reversals"] == 0
+    assert "no interaction force is measured" in motion.sentence
+
+
+def test_a_users_own_effect_is_judged_like_any_other(rod, few, tmp_path):
+    path = tmp_path / "magnet.py"
+    path.write_text(
+        '"""Magnet: pulls towards the middle, ever less far away."""\n'
+        "from teleopdesign.effects import Effect, Parameter\n"
+        "def law(now, p):\n"
+        "    return p.pull * now.position / (p.reach**2 + now.position**2)\n"
+        "EFFECT = Effect(role='force', law=law, absent={'pull': 0.0}, parameters={\n"
+        "    'pull': Parameter('dimensionless', 'pull'),\n"
+        "    'reach': Parameter('position', 'reach', starts=(0.3, 1.0))})\n"
+    )
+    known = {**few, "magnet": catalogue([path])["magnet"]}
+    numbers = shows(rod, known)["what the record can show"].numbers
+    assert 0.0 < numbers["magnet"] < 0.1
+
+
+def test_a_limit_that_the_command_never_reaches_is_said_to_show_below_it(rod):
+    known = {n: catalogue()[n] for n in ("coulomb", "viscous", "actuator_saturation")}
+    sentence = shows(rod, known)["what the record can show"].sentence
+    commands = np.abs(rod.records[0].signals["device.actuator_force"])
+    limit = float(sentence.split("actuator_saturation (below ")[1].split()[0])
+    assert 0.3 * commands.max() < limit < commands.max()
+
+
+# the whole, long records, the command
+
+
+def test_what_a_record_can_show_is_not_asked_while_signs_disagree(rod):
+    found = check_experiment(changed(rod, "position", np.negative))
+    assert found[-1].sentence.startswith("not asked what the record can show")
+    assert [f.topic for f in found if f.concern == "warning"] == ["signs"]
+
+
+def test_a_body_that_never_moves_is_said_to_rest(rod):
+    found = check_experiment(changed(rod, "position", np.zeros_like))
+    assert "device never moves" in found[-1].sentence
+
+
+def test_a_long_record_is_judged_on_windows_of_itself(rod):
+    short = excerpt(rod, most=16_000)
+    assert sum(s.stop - s.start for r in short.records for s in r.segments) == 16_000
+    assert short.records[0].segments[0].start == 0
+    assert short.records[0].segments[-1].stop == 12_000
+    assert short.records[0].signals is rod.records[0].signals
+    assert excerpt(rod) is rod
+
+
+@pytest.mark.parametrize("length", [1000, 4500])
+def test_of_many_short_segments_every_nth_is_taken(rod, length):
+    (record, *_) = rod.records
+    rows = len(record.time) // length * length
+    repeated = {n: np.tile(v[:rows], 60) for n, v in record.signals.items()}
+    time = np.arange(60 * rows) * record.sample_time
+    pieces = tuple(slice(a, a + length) for a in range(0, 60 * rows, length))
+    long = replace(record, time=time, signals=repeated, segments=pieces)
+    short = excerpt(replace(rod, records=(long,)), most=60_000)
+    (found,) = short.records
+    # a window of 4 s more or less
+    assert sum(s.stop - s.start for s in found.segments) == pytest.approx(60_000, abs=4000)
+    starts = np.array([s.start for s in found.segments])
+    assert starts[0] < 0.1 * len(time) and starts[-1] > 0.9 * len(time)
+    assert np.diff(starts).max() < 3 * np.diff(starts).min() + 2 * length
+
+
+def test_the_command_prints_findings_and_writes_them(tmp_path, capsys):
+    path = tmp_path / "findings.json"
+    assert main(["check", str(example("rod")), "--json", str(path)]) == 0
+    printed = capsys.readouterr().out
+    assert "no warnings." in printed
+    assert printed.index("note ") < printed.index("fine ")
+    found = json.loads(path.read_text())["findings"]
+    assert {f["concern"] for f in found} == {"note", "fine"}
+    assert {f["topic"] for f in found} >= {"sample clock", "signs and units", "motion"}
+
+
+def test_the_command_refuses_a_file_that_it_could_not_write(tmp_path, capsys):
+    assert main(["check", str(example("rod")), "--json", str(tmp_path / "no" / "f.json")]) == 2
+    assert "there is no folder" in capsys.readouterr().err
+
+
+@pytest.mark.benchmark
+@pytest.mark.slow
+def test_twenty_seconds_of_records_are_checked_within_two(rod):
+    check_experiment(rod)  # compiles
+    start = time.process_time()  # of this process: others may share the cores
+    check_experiment(rod)
+    assert time.process_time() - start < 2.0  # 0.8 s
+
+
+@pytest.mark.slow
+def test_shared_measurements_raise_no_false_warning():
+    """Of simulated cases none; a delayed command is a note, for physics does that too."""
+    found = {}
+    for folder in sorted(shared_folder("hidden/cases").iterdir()):
+        warned = [f for f in plausible(load_experiment(folder)) if f.concern == "warning"]
+        if warned:
+            found[folder.name] = list(map(str, warned))
+    assert found == {}

@@ -1,0 +1,256 @@
+"""Every control law: its forms agree, and what is sampled comes to what is continuous."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import control
+import numpy as np
+import pytest
+import sympy as sp
+from devices import body
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from teleopdesign.controllers import CONTROLLERS, controller, from_control, parameter_symbol
+from teleopdesign.diagrams import haptic_interface
+from teleopdesign.effects import EFFECTS
+from teleopdesign.errors import ModelError
+from teleopdesign.realise.iosystem import to_iosystem
+from teleopdesign.realise.lti import S, as_transfer_function
+from teleopdesign.simulate import Motion, Sampling, simulate, sine
+
+#: of the right order for a rod that moves 10 mm at some Hz; bandwidths and poles well below 1 kHz
+TYPICAL = {
+    "force": 0.5,
+    "inertia": 0.1,
+    "damping": 2.0,
+    "stiffness": 200.0,
+    "energy": 1e-2,
+    "velocity": 0.02,
+    "frequency": 15.0,
+    "dimensionless": 3.0,
+}
+NAMED = {"extra_static_level": 0.1, "bristle_damping": 3.0, "zero": 10.0, "pole": 90.0}
+#: two poles and a zero, feedthrough too
+SYSTEM = control.tf([2.0, 30.0, 800.0], [1.0, 40.0, 900.0])
+NAMES = [*CONTROLLERS, "state_space"]
+SINE = sine(amplitude=0.01, frequency=4.0, phase=0.3)  # velocity 0 at no sample
+PERIOD = 1e-3
+
+
+def law(name, **values):
+    """The law of that name at typical values."""
+    if name == "state_space":
+        return from_control(SYSTEM)
+    declared = CONTROLLERS[name].parameters
+    typical = {n: NAMED.get(n, TYPICAL[p.quantity]) for n, p in declared.items()}
+    return controller(name, typical | values)
+
+
+def moved(made, input="L"):
+    """A mass that a hand leads, the law as its cancellation; input: what is wired to the law."""
+    diagram = haptic_interface(body(0.1), cancellation=made)
+    blocks = (replace(b, input=input) if b.name == "C" else b for b in diagram.blocks)
+    return replace(diagram, blocks=tuple(blocks))
+
+
+def diagram_of(name):
+    takes = CONTROLLERS[name].takes if name in CONTROLLERS else ""
+    return moved(law(name), "R_D" if takes == "force" else "L")
+
+
+def desired(t):
+    return 0.8 * np.sin(2 * np.pi * 5 * t)
+
+
+def force(diagram, *, duration=0.25, motion=SINE, computer="continuous", **arguments):
+    found = simulate(
+        diagram,
+        duration=duration,
+        inputs={"R_D": desired},
+        motion={"L": motion},
+        computer=computer,
+        jit=False,
+        **{"step": 2.5e-4} | arguments,
+    )
+    return found["R_MBC"].values
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_kernel_and_python_control_give_one_force(name):
+    """In continuous time along a prescribed motion, desired force beside it.
+
+    1e-5 of the peak: python-control takes inputs as linear between samples of 0.1 ms, which leaves
+    2e-6 of the force; where sgn v jumps, no sample lies.
+    """
+    diagram, time = diagram_of(name), PERIOD * np.arange(81)
+    kernel = force(diagram, duration=0.08)  # a reversal at 51 ms
+    system = to_iosystem(diagram, prescribed=("L",))
+    fine = np.linspace(0, time[-1], 801)
+    given = dict(zip(("L", "L_velocity", "L_acceleration"), SINE.all, strict=True))
+    given |= {"R_D": desired}
+    inputs = [given[n](fine) if n in given else 0 * fine for n in system.input_labels]
+    options = {"rtol": 1e-9, "atol": 1e-13, "max_step": 1e-3}
+    response = control.input_output_response(
+        system, fine, inputs, t_eval=time, solve_ivp_method="LSODA", solve_ivp_kwargs=options
+    )
+    found = response.outputs[system.output_labels.index("R_MBC")]
+    assert np.abs(found - kernel).max() < 1e-5 * np.abs(kernel).max()
+
+
+LINEAR = [n for n in CONTROLLERS if CONTROLLERS[n].linear]
+
+
+@pytest.mark.parametrize("name", [*LINEAR, "state_space"])
+def test_the_linear_form_is_the_law_at_that_speed(name):
+    """A motion of constant speed is the step of G(s) v/s; 1e-6: order four at 0.25 ms."""
+    speed = 0.05
+    made = law(name)
+    ramp = Motion(lambda t: speed * t, lambda t: 0 * t + speed, np.zeros_like)
+    found = force(moved(made), motion=ramp, duration=0.1)
+    form = made.linear_form("C", S, sp.Float(speed))
+    form = form.subs({parameter_symbol("C", n): v for n, v in made.names().items()})
+    _, expected = control.step_response(
+        as_transfer_function(form * speed / S), PERIOD * np.arange(101)
+    )
+    np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_sampled_force_comes_to_the_continuous_one_as_the_period_falls(name):
+    """Mean error of the held force at periods of 4, 1 and 0.25 ms: of first order, a factor of 4.
+
+    0.4: at 4 ms the next order still counts.
+    """
+    diagram, errors = diagram_of(name), []
+    truth = force(diagram, every_step=True)
+    for period in (4e-3, 1e-3, 2.5e-4):
+        sampled = force(diagram, computer=Sampling(period=period), every_step=True)
+        n = min(len(sampled), len(truth))
+        errors.append(np.abs(sampled[:n] - truth[:n]).mean() / np.abs(truth).max())
+    assert errors[0] < 0.3
+    assert errors[1] < 0.4 * errors[0] and errors[2] < 0.4 * errors[1]
+
+
+def held(positions):
+    """A motion that is at these positions at the samples."""
+
+    def position(t):
+        return np.asarray(positions)[np.clip(np.round(t / PERIOD).astype(int), 0, None)]
+
+    return Motion(position, np.zeros_like, np.zeros_like)
+
+
+def along(made, positions, input="L"):
+    """Sampled force at each of these positions."""
+    return force(
+        moved(made, input),
+        motion=held(positions),
+        duration=PERIOD * (len(positions) - 1),
+        computer=Sampling(),
+        step=PERIOD,
+    )
+
+
+BOUNDED = ("coulomb", "dahl", "karnopp", "smoothed_coulomb")
+
+
+@pytest.mark.parametrize("name", BOUNDED)
+@settings(max_examples=40, deadline=None)
+@given(positions=st.lists(st.floats(-0.1, 0.1), min_size=2, max_size=40))
+def test_no_sequence_of_positions_drives_it_beyond_its_level(name, positions):
+    """P38: passivity beside ideal Coulomb friction needs this bound and nothing else."""
+    found = along(law(name), positions, "R_D" if name == "karnopp" else "L")
+    assert np.abs(found).max() <= 0.5 * (1 + 1e-12)
+
+
+def turning(q, samples=12):
+    """Down at constant speed until friction has its level, then up; q = T sigma abs(v)/F_D."""
+    step = q * 0.5 / TYPICAL["stiffness"]
+    down = -step * np.arange(41)
+    return np.concatenate([down, down[-1] + step * np.arange(1, samples + 1)])
+
+
+def test_forward_euler_leaves_its_level_where_the_exact_step_keeps_it():
+    """P30: from -F_D one step at q = 1.5 reaches (2 q - 1) F_D, twice the level."""
+    euler, exact = (along(law(n), turning(1.5)) for n in ("dahl_forward_euler", "dahl"))
+    # the step that the first velocity upwards makes is seen one sample later
+    assert euler[42] == pytest.approx(2 * 0.5, rel=1e-9)
+    assert np.abs(exact).max() <= 0.5 * (1 + 1e-12)
+    assert np.abs(along(law("dahl_forward_euler"), turning(0.9))).max() <= 0.5 * (1 + 1e-12)
+
+
+def test_forward_euler_diverges_where_the_exact_step_does_not():
+    """P29: pole 1 - q = -1.5 at q = 2.5; after 40 samples of steady motion 1.5^40 = 1e7."""
+    assert np.abs(along(law("dahl_forward_euler"), turning(2.5))).max() > 1e6
+    assert np.abs(along(law("dahl"), turning(2.5))).max() <= 0.5 * (1 + 1e-12)
+
+
+def test_ideal_coulomb_adds_nothing_at_rest():
+    found = along(law("coulomb"), 1e-3 * np.array([0.0, 1.0, 1.0, 1.0, 0.5, 0.5]))
+    np.testing.assert_array_equal(found, [0, 0.5, 0, 0, -0.5, 0])
+
+
+def test_ideal_coulomb_in_a_continuous_loop_is_refused_with_the_reason():
+    with pytest.raises(ModelError, match="L_velocity jumps with the sign of a velocity"):
+        simulate(moved(law("coulomb")), duration=0.1, computer="continuous", jit=False)
+
+
+def test_karnopp_balances_the_command_at_rest_and_adds_its_level_in_motion():
+    """Band 20 mm/s = 0.02 mm a sample; desired force 0.8 sin(2 pi 5 t)."""
+    resting = along(law("karnopp"), 1e-5 * (-1.0) ** np.arange(60), "R_D")
+    wanted = desired(PERIOD * np.arange(60))
+    np.testing.assert_allclose(resting, np.clip(wanted, -0.5, 0.5), atol=1e-12)
+    moving = along(law("karnopp"), -1e-4 * np.arange(60), "R_D")
+    np.testing.assert_allclose(moving[1:], -0.5)
+
+
+def test_a_law_that_takes_a_force_is_not_wired_to_the_motion():
+    with pytest.raises(ModelError, match='C: karnopp takes a force, found the motion "L"'):
+        force(moved(law("karnopp")))
+
+
+def test_lugre_in_steady_sliding_is_the_level_of_the_effects():
+    speed, made = 0.01, law("lugre", stribeck_velocity=0.02, bristle_damping=0.0)
+    found = along(made, speed * PERIOD * np.arange(6000))[-1]
+    values = SimpleNamespace(level=0.5, extra_static_level=0.1, stribeck_velocity=0.02)
+    now = SimpleNamespace(velocity=speed)
+    level = sum(EFFECTS[n].law(now, values) for n in ("coulomb", "stribeck"))
+    assert found == pytest.approx(float(level), rel=1e-6)  # after 60 mm, 20 bristle lengths
+
+
+def test_lugre_without_stribeck_and_damping_is_dahl():
+    positions = 1e-4 * np.random.default_rng(5).standard_normal(50).cumsum()
+    made = law("lugre", extra_static_level=0.0, bristle_damping=0.0)
+    np.testing.assert_allclose(along(made, positions), along(law("dahl"), positions), atol=1e-12)
+
+
+@pytest.mark.parametrize("bandwidth", [5.0, 50.0, 500.0])
+def test_the_sampled_derivative_of_a_ramp_is_its_slope(bandwidth):
+    """Also where the derivative's bandwidth is of the order of the sample rate."""
+    made = law("proportional_derivative", stiffness=0.0, bandwidth=bandwidth)
+    found = along(made, 0.05 * PERIOD * np.arange(1000))[-1]
+    assert found == pytest.approx(2.0 * 0.05, rel=1e-9)
+
+
+def test_a_linear_device_follows_its_model_inverse_as_the_low_pass_alone():
+    """A step of 1 m; the force held over a sample leaves an error of second order."""
+    values = {"inertia": 0.2, "damping": 3.0, "stiffness": 400.0, "bandwidth": 20.0}
+    device = body(0.2, viscous__damping=3.0, spring__stiffness=400.0)
+    diagram = haptic_interface(device, position_loop=controller("model_inverse", values))
+    blocks = (replace(b, input="L_D") if b.name == "K" else b for b in diagram.blocks)
+    diagram = replace(diagram, blocks=tuple(blocks))
+    low_pass = control.tf([1], [1 / (2 * np.pi * 20), 1]) ** 2
+    _, expected = control.step_response(low_pass, PERIOD * np.arange(101))
+    errors = []
+    for period in (1e-3, 2.5e-4):
+        found = simulate(
+            diagram,
+            duration=0.1,
+            inputs={"L_D": 1.0},
+            computer=Sampling(period=period),
+            jit=False,
+            step=2.5e-4,
+        )["L"].values[:: round(PERIOD / period)]
+        errors.append(np.abs(found - expected).max())
+    assert errors[0] < 2e-3 and errors[1] < 0.1 * errors[0]

@@ -1,0 +1,174 @@
+"""Systems of python-control as blocks of a diagram."""
+
+import control
+import numpy as np
+import pytest
+import sympy as sp
+from devices import body
+from scipy.signal import butter
+
+from teleopdesign.controllers import controller, from_control, inverted, parameter_symbol
+from teleopdesign.diagrams import haptic_interface
+from teleopdesign.errors import ModelError
+from teleopdesign.frequency import bode, transfer_function
+from teleopdesign.realise.iosystem import to_iosystem
+from teleopdesign.realise.lti import S
+from teleopdesign.simulate import Motion, Sampling, simulate, sine
+
+NOTCH = control.tf([1.0, 6.0, 4e3], [1.0, 120.0, 4e3])
+#: two resonances and a slow pole
+FIFTH = NOTCH * control.tf([3.0], [1.0, 0.5]) * control.tf([20.0, 1e3], [1.0, 4.0, 900.0])
+MOTION = {"L": sine(amplitude=0.01, frequency=3.0)}
+
+
+def sampled(made, **arguments):
+    diagram = haptic_interface(body(0.1), cancellation=made)
+    return simulate(
+        diagram, **{"duration": 0.1, "motion": MOTION, "jit": False, "step": 1e-3} | arguments
+    )
+
+
+@pytest.mark.parametrize("system", [NOTCH, FIFTH, control.tf(3.0, 1)])
+def test_a_computer_realises_it_exactly_for_an_input_held_over_a_sample(system):
+    """Against python-control's own discretisation by zero-order hold; 1e-12: rounding."""
+    found = sampled(from_control(system))
+    discrete = control.sample_system(control.ss(system), 1e-3, method="zoh")
+    response = control.forced_response(discrete, found["time"].values, found["L"].values)
+    expected = response.outputs
+    np.testing.assert_allclose(found["R_MBC"], expected, atol=1e-12 * np.abs(expected).max())
+
+
+def test_a_filter_of_high_order_keeps_its_digits():
+    """Butterworth of order 8 at 100 Hz, entries up to 2e22: its step as a sum of exponentials."""
+    zeros, poles, gain = butter(8, 2 * np.pi * 100, analog=True, output="zpk")
+    filtered = from_control(control.tf(*butter(8, 2 * np.pi * 100, analog=True)))
+    one = {"L": Motion(np.ones_like, np.zeros_like, np.zeros_like)}
+    found = sampled(filtered, motion=one, duration=0.05)
+    expected = np.zeros(len(found["time"]), dtype=complex)
+    for i, pole in enumerate(poles):
+        share = gain / pole / np.prod(pole - np.delete(poles, i))
+        expected += share * (np.exp(pole * found["time"].values) - 1)
+    assert len(zeros) == 0
+    np.testing.assert_allclose(found["R_MBC"], expected.real, atol=1e-12)
+
+
+@pytest.mark.parametrize("dt", [1e-3, True])
+def test_a_discrete_system_is_stepped_as_it_is(dt):
+    discrete = control.sample_system(NOTCH, 1e-3, method="tustin")
+    given = control.tf(discrete.num, discrete.den, dt)
+    found = sampled(from_control(given))
+    response = control.forced_response(discrete, found["time"].values, found["L"].values)
+    np.testing.assert_allclose(found["R_MBC"], response.outputs, atol=1e-12)
+
+
+def test_its_linear_form_is_its_transfer_function():
+    plant = FIFTH
+    made = from_control(plant)
+    form = made.linear_form("H", S, sp.S(0))
+    form = form.subs({parameter_symbol("H", n): v for n, v in made.names().items()})
+    for f in (0.01, 0.3, 20.0):
+        point = 2j * np.pi * f
+        assert complex(form.subs(S, point)) == pytest.approx(complex(plant(point)), rel=1e-9)
+
+
+def test_it_stands_in_series_with_other_laws_and_in_a_bode_plot():
+    low = controller("low_pass", {"bandwidth": 30.0})
+    diagrams = {
+        "written": haptic_interface(body(0.2), hand=body(0.1), force_feedback=low),
+        "given": haptic_interface(
+            body(0.2),
+            hand=body(0.1),
+            force_feedback=from_control(control.tf([1], [1 / (2 * np.pi * 30), 1])),
+        ),
+        "series": haptic_interface(
+            body(0.2),
+            hand=body(0.1),
+            force_feedback=low.then(from_control(NOTCH)).then(from_control(1 / NOTCH, name="back")),
+        ),
+    }
+    data = bode(diagrams).data["magnitude"].values
+    np.testing.assert_allclose(data[1], data[0], rtol=1e-9)
+    np.testing.assert_allclose(data[2], data[0], rtol=1e-9)
+
+
+def test_systems_of_one_order_share_one_kernel():
+    from teleopdesign.simulate import prepare
+
+    made = [
+        prepare(haptic_interface(body(0.1), cancellation=from_control(g)), duration=0.1, jit=False)
+        for g in (NOTCH, 1 / NOTCH)
+    ]
+    assert made[0].program.run is made[1].program.run
+
+
+@pytest.mark.parametrize(
+    ("system", "words"),
+    [
+        (control.tf([1, 0, 1], [1, 1]), "improper"),
+        (control.frd([1, 2], [1, 2]), "a frequency response tells nothing of the steps in time"),
+        (
+            control.ss(-np.eye(2), np.ones((2, 1)), np.eye(2), np.zeros((2, 1))),
+            "expected one input and one output, found 1 and 2",
+        ),
+        ([1, 2], "expected an InputOutputSystem of python-control"),
+        (
+            control.nlsys(None, lambda t, x, u, p: u**3, inputs=1, outputs=1, dt=1e-3),
+            "continuous time only",
+        ),
+    ],
+)
+def test_what_is_no_controller_is_said_in_one_line(system, words):
+    with pytest.raises(ModelError, match=words) as caught:
+        from_control(system)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_discrete_system_needs_a_computer_of_its_period():
+    made = from_control(control.sample_system(NOTCH, 1e-3), name="notch")
+    with pytest.raises(ModelError, match="notch: is sampled every 1 ms, the computer every 2 ms"):
+        sampled(made, computer=Sampling(period=2e-3))
+    with pytest.raises(ModelError, match="C: notch has no form in continuous time"):
+        sampled(made, computer="continuous")
+    _, left_out = transfer_function(haptic_interface(body(0.1), cancellation=made), given="L")
+    assert left_out == ("C",)
+
+
+def test_a_nonlinear_system_takes_part_in_python_control_alone():
+    """A cubic damper on its own state: dx/dt = 50 (u - x), y = x^3."""
+    cubic = control.nlsys(
+        lambda t, x, u, p: 50 * (u - x),
+        lambda t, x, u, p: x**3,
+        inputs=1,
+        outputs=1,
+        states=1,
+        name="cubic",
+    )
+    made = from_control(cubic)
+    with pytest.raises(ModelError, match="known as code only"):
+        sampled(made)
+    diagram = haptic_interface(body(0.1), cancellation=made)
+    system = to_iosystem(diagram, prescribed=("L",))
+    time = np.linspace(0, 0.1, 201)
+    inputs = [(0.1 + 0 * time) * (n == "L") for n in system.input_labels]
+    response = control.input_output_response(system, time, inputs)
+    found = response.outputs[system.output_labels.index("R_MBC")]
+    np.testing.assert_allclose(
+        found, (0.1 * (1 - np.exp(-50 * time))) ** 3, atol=1e-6
+    )  # its own tolerance, 1e-3 of x
+
+
+def test_an_inverse_leaves_the_low_pass_alone():
+    """T is of relative degree one: a rod of 0.2 kg with 4 N s/m, force to velocity."""
+    plant = control.tf([1.0, 9.0], [0.2, 4.0, 300.0])
+    made = inverted(plant, bandwidth=25.0)
+    form = made.linear_form("K", S, sp.S(0))
+    form = form.subs({parameter_symbol("K", n): v for n, v in made.names().items()})
+    for f in (0.1, 5.0, 80.0):
+        point = 2j * np.pi * f
+        whole = complex(form.subs(S, point)) * complex(plant(point))
+        assert whole == pytest.approx(1 / (1 + 1j * f / 25.0), rel=1e-9)
+
+
+def test_an_inverse_that_would_be_unstable_is_refused():
+    with pytest.raises(ModelError, match="zero at s = 3.* would be an unstable pole"):
+        inverted(control.tf([1.0, -3.0], [1.0, 2.0, 5.0]), bandwidth=10.0)

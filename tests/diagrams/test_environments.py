@@ -1,0 +1,182 @@
+"""Environments and hands to design with."""
+
+import control
+import numpy as np
+import pytest
+from devices import body
+
+from teleopdesign.blocks import (
+    CONTACT,
+    free_space,
+    hand,
+    hunt_crossley,
+    soft_rubber,
+    spring_damper,
+)
+from teleopdesign.diagrams import haptic_interface
+from teleopdesign.effects import CONTACT_ROLES
+from teleopdesign.frequency import transfer_function
+from teleopdesign.realise.iosystem import to_iosystem
+from teleopdesign.simulate import Motion, sampled_motion, simulate, sine
+
+HERTZ = {"stiffness": 2e3, "depth": 1e-3, "reference_velocity": 0.5}
+RUBBER = {"stiffness": 800.0, "damping": 0.0, "level": 0.3, "give": 5e-4}
+WALLS = {
+    "free space": free_space,
+    "spring and damper": lambda b: spring_damper(b, stiffness=2e3, damping=3.0, position=2e-3),
+    "hunt crossley": lambda b: hunt_crossley(b, position=2e-3, **HERTZ),
+    "soft rubber": lambda b: soft_rubber(b, position=2e-3, **{**RUBBER, "damping": 1.0}),
+}
+ARM = {"inertia": 1.2, "damping": 8.0, "stiffness": 120.0}
+
+
+def run(made, **arguments):
+    arguments = {"computer": "continuous", "jit": False, "every_step": True} | arguments
+    return simulate(haptic_interface(made), **arguments)
+
+
+def felt(made, motion, duration, step=1e-4):
+    """Time, position, velocity and force of a wall on a tip without inertia that is led."""
+    found = run(made(body(0.0)), motion={"L": motion}, duration=duration, step=step)
+    return (found[n].values for n in ("time", "L", "L_velocity", "R_V"))
+
+
+@pytest.mark.parametrize("name", WALLS)
+def test_kernel_and_python_control_run_into_it_alike(name):
+    """0.15 kg at 0.1 m/s from 1 mm ahead: touched, and in all but free space thrown back.
+
+    5e-4: the touch falls within a step of the kernel, 5e-5 s, in which the wall's force jumps.
+    """
+    diagram = haptic_interface(WALLS[name](body(0.15)))
+    start = {"L": 1e-3, "L_velocity": 0.1}
+    kernel = simulate(
+        diagram, duration=0.08, computer="continuous", initial=start, jit=False, step=5e-5
+    )
+    system = to_iosystem(diagram)
+    time = kernel["L"]["time"].values
+    named = [n.split("_", 1)[1] if n.startswith("mechanics_") else n for n in system.state_labels]
+    states = [start.get(n, 0.0) for n in named]
+    response = control.input_output_response(
+        system,
+        time,
+        np.zeros((len(system.input_labels), len(time))),
+        states,
+        solve_ivp_method="LSODA",
+        solve_ivp_kwargs={"rtol": 1e-9, "atol": 1e-12, "max_step": 1e-4},
+    )
+    x = response.outputs[system.output_labels.index("L")]
+    assert (kernel["L_velocity"].values[-1] < 0) == (name != "free space")
+    assert np.abs(x - kernel["L"].values).max() < 5e-4 * np.abs(x).max()
+
+
+def test_hunt_crossley_is_k_d_n_and_c_d_n_v():
+    k, c = 2e3 * 1e-3**-0.5, 2e3 * 1e-3**-0.5 / 0.5
+    motion = sine(amplitude=3e-3, frequency=8.0)
+    _, d, v, force = felt(lambda b: hunt_crossley(b, **HERTZ), motion, 0.2)
+    inside = np.clip(d, 0, None)
+    expected = np.clip(k * inside**1.5 + c * inside**1.5 * v, 0, None)
+    np.testing.assert_allclose(force, expected, atol=1e-12 * expected.max())
+
+
+@pytest.mark.parametrize("speed", [0.005, 0.02])
+def test_a_slow_impact_returns_at_one_less_alpha_v(speed):
+    """alpha = 2/(3 v_0); 0.6 (alpha v)^2 is the next order of the restitution."""
+    found = run(
+        hunt_crossley(body(0.2), **HERTZ),
+        initial={"L_velocity": speed},
+        duration=0.1,
+        step=1e-4,
+    )
+    assert found["L"].values[-1] < 0
+    alpha = 2 / (3 * 0.5)
+    ratio = -found["L_velocity"].values[-1] / speed
+    assert ratio == pytest.approx(1 - alpha * speed, abs=(alpha * speed) ** 2 + 1e-5)
+
+
+def wandering(seed):
+    time = np.linspace(0, 1.0, 60)
+    walk = 2e-3 * np.random.default_rng(seed).standard_normal(60)
+    walk[0] = 0.0  # nothing is stored at the start
+    return sampled_motion(time, walk)
+
+
+@pytest.mark.parametrize("name", ["spring and damper", "hunt crossley", "soft rubber"])
+@pytest.mark.parametrize("seed", range(2))
+def test_no_motion_gets_energy_out_of_a_wall(name, seed):
+    """Work done on the wall is never negative, and the wall never pulls.
+
+    1e-3 of the greatest work: the trapezium over steps of 0.1 ms, where the force jumps.
+    """
+    walls = {
+        "spring and damper": lambda b: spring_damper(b, stiffness=2e3, damping=3.0),
+        "hunt crossley": lambda b: hunt_crossley(b, **HERTZ),
+        "soft rubber": lambda b: soft_rubber(b, **RUBBER),
+    }
+    time, _, v, force = felt(walls[name], wandering(seed), 1.0)
+    power = force * v
+    work = np.concatenate([[0], np.cumsum(np.diff(time) * (power[1:] + power[:-1]) / 2)])
+    assert force.min() >= 0 and force.max() > 0.1
+    assert work.min() > -1e-3 * work.max()
+
+
+def test_rubber_loses_the_same_energy_in_slow_loading():
+    """Pressed between 2 and 6 mm, 1 and 0.25 Hz: the loop of Dahl's friction inside it."""
+    lost = []
+    for frequency in (1.0, 0.25):
+        swing = sine(amplitude=2e-3, frequency=frequency)
+        pressed = Motion(
+            lambda t, s=swing: 4e-3 + s.position(t), swing.velocity, swing.acceleration
+        )
+        time, x, v, force = felt(
+            lambda b: soft_rubber(b, **RUBBER), pressed, 2 / frequency, step=5e-4
+        )
+        cycle = time >= 1 / frequency - 1e-9
+        lost.append(np.trapezoid(force[cycle], x[cycle]))
+    u = 2e-3 / 5e-4
+    expected = 4 * 0.3 * 2e-3 * (1 - np.tanh(u) / u)  # P34
+    assert lost == pytest.approx([expected, expected], rel=1e-3)
+
+
+def test_free_space_takes_every_environment_away():
+    for make in WALLS.values():
+        assert free_space(make(body(0.1))).effects == ()
+    swapped = hunt_crossley(WALLS["soft rubber"](body(0.1)), **HERTZ)
+    names = [e.name for e in swapped.effects if e.role in CONTACT_ROLES]
+    assert names == [CONTACT.name, "contact_hardening", "impact_damping"]
+
+
+def test_a_gripping_hand_is_grip_and_arm_in_series():
+    """At rest two springs in series; far above the arm's resonance the grip alone."""
+    made = hand(mass=0.1, damping=2.0, stiffness=400.0, arm=ARM)
+    system, left_out = transfer_function(haptic_interface(made), output="L", input="R_V")
+    assert left_out == ()
+    assert float(np.real(system(0))) == pytest.approx(1 / 400 + 1 / 120, rel=1e-9)
+    s = 2j * np.pi * 5
+    grip, held = 2.0 * s + 400, 8.0 * s + 120
+    behind = 1.2 * s**2 + held
+    assert 1 / system(s) == pytest.approx(0.1 * s**2 + grip * behind / (grip + behind), rel=1e-9)
+
+
+def test_a_gripping_hand_moves_as_its_linear_form():
+    """Order four at 0.1 ms: 1e-7."""
+    diagram = haptic_interface(body(0.15), hand=hand(mass=0.1, damping=2.0, stiffness=400, arm=ARM))
+    system, _ = transfer_function(diagram, output="L", input="R_D")
+    found = simulate(diagram, duration=0.3, inputs={"R_D": 1.0}, jit=False)
+    _, expected = control.step_response(system, found["time"].values)
+    assert np.abs(found["L"].values - expected).max() < 1e-7 * np.abs(expected).max()
+
+
+def test_a_voluntary_motion_is_the_force_that_leads_the_free_hand_along_it():
+    made = hand(mass=0.2, damping=4.0, stiffness=300.0)
+    wanted = sine(amplitude=0.02, frequency=1.0)
+    force = run(made, motion={"L": wanted}, duration=0.5)["R_V"]
+    at = force["time"].values
+    start = {"L_velocity": float(wanted.velocity(np.zeros(1))[0])}
+    free = run(
+        made,
+        inputs={"R_V": lambda t: np.interp(t, at, force.values)},
+        initial=start,
+        duration=0.5,
+    )
+    # force as linear between steps of 0.1 ms: 1e-8 of it
+    np.testing.assert_allclose(free["L"].values, wanted.position(at), atol=1e-7 * 0.02)

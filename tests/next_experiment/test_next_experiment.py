@@ -1,0 +1,316 @@
+"""What is proposed keeps to limits, separates what can be separated, and is honest where none can.
+
+The proof runs on a simulator that shares nothing with the package: it runs the proposed reference.
+"""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from next_experiment.next_cases import KNOWN, POOR, RATE, Rod
+
+from teleopdesign import Model, find_missing
+from teleopdesign.cli import main
+from teleopdesign.diagnose.answer import write_answer
+from teleopdesign.diagnose.answers import load_answer, restored
+from teleopdesign.effects import EFFECTS
+from teleopdesign.errors import ModelError
+from teleopdesign.next_experiment import (
+    Limits,
+    proposal_data,
+    propose,
+    show_in_simulation,
+    shown_limits,
+    write_reference,
+)
+from teleopdesign.next_experiment.family import Setting, family
+from teleopdesign.next_experiment.following import Servo, followed
+from teleopdesign.next_experiment.path import Move, travel, window_length
+from teleopdesign.next_experiment.prediction import extended, refit
+from teleopdesign.next_experiment.synthesis import command_along, exact_motion
+
+FEW = {n: EFFECTS[n] for n in ("coulomb", "viscous", "quadratic_drag", "bias", "coulomb_asymmetry")}
+MOST = {n: EFFECTS[n] for n in KNOWN}
+
+
+def diagnosed(experiment, known):
+    return find_missing(experiment, Model.from_experiment(experiment, known))
+
+
+def number_of(proposal, effect):
+    return [r.candidate.effect.name for r in proposal.rivals].index(effect)
+
+
+@pytest.fixture(scope="module")
+def one_speed(tmp_path_factory):
+    """Rod with quadratic drag, recorded at one speed; what is proposed for it."""
+    rod, experiment = POOR["one speed"].experiment(tmp_path_factory.mktemp("next") / "drag", 1)
+    return rod, experiment, propose(diagnosed(experiment, FEW))
+
+
+@pytest.mark.slow
+def test_a_proposal_from_the_answer_is_the_same(one_speed, tmp_path):
+    _, experiment, proposal = one_speed
+    write_answer(proposal.diagnosis, tmp_path / "answer.json")
+    again = propose(restored(load_answer(tmp_path / "answer.json"), experiment, FEW))
+    assert proposal.rivals and proposal_data(again) == proposal_data(proposal)
+
+
+# the motion
+
+
+def test_the_motion_keeps_within_the_limits_that_the_records_have_shown(one_speed):
+    _, _, proposal = one_speed
+    limits = proposal.limits["device"]
+    signals = [proposal.reference.position["device"]]
+    for _ in range(3):
+        signals.append(np.gradient(signals[-1], 1 / RATE))
+    # numbers are rounded in the last places alone
+    assert signals[0].min() >= limits.low - 1e-9 and signals[0].max() <= limits.high + 1e-9
+    for signal, name in zip(signals[1:], ("speed", "acceleration", "jerk"), strict=True):
+        assert np.abs(signal).max() <= 1.001 * getattr(limits, name)
+
+
+@given(
+    time=st.floats(0.05, 3.0),
+    speed=st.floats(1e-3, 1.0),
+    acceleration=st.floats(0.1, 50.0),
+    jerk=st.floats(1.0, 5e3),
+)
+@settings(max_examples=25, deadline=None)
+def test_a_rounded_line_never_exceeds_its_limits(time, speed, acceleration, jerk):
+    limits, reach, step = Limits(-3.0, 3.0, 1.0, acceleration, jerk, 1.0), speed * time, 2e-3
+    assume(20 * step < window_length(2 * speed, limits) < 4.0)
+    legs = [Move(reach, speed), Move(-reach, speed), Move(0.0, speed)]
+    y = travel(legs, limits, sample_time=step)
+    assert y[0] == 0.0 and abs(y[-1]) < 1e-9 * reach
+    first, second, third = (np.diff(y, k) / step**k for k in (1, 2, 3))
+    assert np.abs(y).max() <= reach * (1 + 1e-9)
+    assert np.abs(first).max() <= speed * (1 + 1e-6)
+    # the window is made of 20 whole samples or more: its length is off by one, squared in jerk
+    assert np.abs(second).max() <= 1.06 * acceleration
+    assert np.abs(third).max() <= 1.12 * jerk
+
+
+def test_every_part_of_the_family_starts_and_ends_at_rest_in_the_middle():
+    limits = Limits(-0.05, 0.05, 0.2, 5.0, 500.0, 2.0)
+    setting = Setting(limits, 1e-5, 50.0, 1e-3, lambda v, q: f"{v:.3g} {q}", repeated=30.0)
+    parts = family(setting)
+    assert len(parts) > 20
+    for part in parts:
+        assert abs(part.path[0]) < 1e-9 and abs(part.path[-1]) < 1e-9
+        assert np.abs(np.diff(part.path[:5])).max() < 1e-9
+        assert np.abs(part.path).max() <= limits.high * (1 + 1e-9)
+
+
+def test_a_body_lies_behind_its_servo_by_the_play_and_catches_up_smoothly():
+    t = np.arange(0.0, 3.0, 1e-3)
+    path = 0.02 * np.sin(2 * np.pi * t)
+    servo = Servo(turn=0.02, play=2e-3)
+    behind = followed(path, servo, sample_time=1e-3)
+    # half of the play, and the catching up: no more than another play at this acceleration
+    assert np.abs(behind.path - path).max() <= 1.5 * servo.play
+    assert len(behind.stuck) == 6 + 1  # each turn and the start
+    for first, last in behind.stuck:
+        assert np.ptp(behind.path[first:last]) == 0.0
+
+
+def test_the_command_moves_the_model_as_asked(one_speed):
+    """Inverse dynamics through an actuator that lags: what is left is a thousandth of the force."""
+    _, _, proposal = one_speed
+    from teleopdesign.realise.along_motion import residual_along
+
+    lag = EFFECTS["actuator_lag"]
+    model = proposal.rivals[0].model.with_effect(lag, values={"time_constant": 0.005})
+    body = model.without_effect("coulomb").body("device")
+    t = np.arange(0.0, 4.0, 1e-3)
+    motion = exact_motion(
+        "device", 0.02 * np.sin(2 * np.pi * t) ** 3, sample_time=1e-3, bandwidth=50.0
+    )
+    command = command_along(body, motion, give=1e-6)
+    left = residual_along(body, replace(motion, command=command)).residual.value
+    whole = motion.lowpassed(motion.at_rows(command))
+    assert np.std(motion.lowpassed(left)) < 2e-3 * np.std(whole)
+
+
+def test_the_reference_is_written_with_the_experiments_own_header_units_and_sample_time(
+    one_speed, tmp_path
+):
+    _, experiment, proposal = one_speed
+    write_reference(proposal.reference, experiment, tmp_path / "next.csv")
+    head = (tmp_path / "next.csv").read_text().splitlines()[0]
+    table = np.loadtxt(tmp_path / "next.csv", delimiter=",", skiprows=1)
+    assert head == "clock,place"  # ms and mm
+    assert np.diff(table[:, 0]) == pytest.approx(1.0)
+    assert table[:, 1] == pytest.approx(1e3 * proposal.reference.position["device"], abs=1e-6)
+
+
+# what it shows
+
+
+def test_rivals_are_what_the_records_leave_open(one_speed):
+    _, _, proposal = one_speed
+    assert {r.candidate.effect.name for r in proposal.rivals} == {"viscous", "quadratic_drag"}
+    assert all(s.present < 1.0 for s in proposal.separations)
+    assert all(s.predicted > 2.0 * s.present for s in proposal.separations)
+    assert all(proposal.decides(p) for p in [(0, 1)])
+    assert "If quadratic_drag at device is right, viscous at device" in proposal.sentence
+
+
+def test_the_predicted_separation_is_found_on_an_independent_simulator(one_speed):
+    rod, _, proposal = one_speed
+    new = rod.records(proposal.reference.position["device"])
+    after = refit(proposal.rivals, new, proposal.bench)
+    truth, other = number_of(proposal, "quadratic_drag"), number_of(proposal, "viscous")
+    (predicted,) = (
+        s.predicted
+        for s in proposal.separations
+        if s.truth is proposal.rivals[truth] and s.other is proposal.rivals[other]
+    )
+    # the servo follows the reference in a way of its own, and chance takes part
+    assert after.found(truth=truth, other=other) == pytest.approx(predicted, rel=0.4)
+    assert after.found(truth=other, other=truth) == 0.0
+
+
+def test_two_laws_that_need_the_same_force_are_said_to_be_told_by_nothing(tmp_path):
+    _, experiment = POOR["one place"].experiment(tmp_path / "bias", 1)
+    proposal = propose(diagnosed(experiment, FEW))
+    assert {r.candidate.effect.name for r in proposal.rivals} == {"bias", "coulomb_asymmetry"}
+    # the two differ in nothing but rounding, along any motion and with any change of the set-up
+    assert all(s.predicted < 1e-3 for s in proposal.separations)
+    tried = proposal.remedies[0, 1]
+    assert len(tried) >= 6 and all(r.separation < 1e-3 for r in tried)
+    assert "only knowledge of the device can say" in proposal.sentence
+    assert not proposal.is_useful and "follow the reference" not in proposal.sentence
+
+
+def test_where_the_records_decide_nothing_is_proposed(diagnosis):
+    proposal = propose(diagnosis)
+    assert proposal.reference is None and not proposal.rivals
+    assert proposal.findings()[0].concern == "fine"
+    assert "decide" in proposal.sentence
+
+
+def test_findings_carry_the_numbers_of_their_sentences(one_speed):
+    _, _, proposal = one_speed
+    found = proposal.findings()
+    assert [f.topic for f in found][:2] == ["next experiment", "separation of rivals"]
+    assert found[0].graph is not None and found[0].graph.y_label == "position reference (mm)"
+    assert found[1].numbers["predicted 0"] == proposal.separations[0].predicted
+    json.dumps(proposal_data(proposal), allow_nan=False)
+
+
+def test_the_figure_draws_motion_residual_and_separations(one_speed):
+    _, _, proposal = one_speed
+    figure = proposal.plot()
+    assert [ax.get_ylabel() for ax in figure.axes][:2] == [
+        "position reference (mm)",
+        "force left (N)",
+    ]
+
+
+# what the user says
+
+
+def test_limits_of_the_users_own_are_kept_and_wrong_ones_refused(one_speed):
+    _, _, proposal = one_speed
+    shown = shown_limits(proposal.diagnosis.prepared)["device"]
+    slow = shown.with_values(speed=0.5 * shown.speed, high=0.5 * shown.high)
+    kept = propose(proposal.diagnosis, limits={"device": slow}, duration=10.0)
+    x = kept.reference.position["device"]
+    assert np.abs(np.diff(x)).max() * RATE <= 1.001 * slow.speed
+    assert x.max() <= slow.high + 1e-9
+    with pytest.raises(ModelError, match='no limit "sped".*did you mean "speed"'):
+        shown.with_values(sped=1.0)
+    with pytest.raises(ModelError, match='no body "devise".*did you mean "device"'):
+        propose(proposal.diagnosis, limits={"devise": shown})
+    with pytest.raises(ModelError, match="speed is -1, expected more than 0"):
+        shown.with_values(speed=-1.0)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--output", "next.txt"], "next.txt: found '.txt', expected .csv"),
+        (["--limit", "sped=1"], '--limit sped=1: no limit "sped"'),
+        (["--limit", "slave.speed=1"], '--limit slave.speed=1: no body "slave", has device'),
+        (["--limit", "speed=fast"], "--limit speed=fast: found 'fast', expected a number"),
+        (["--limit", "speed=1N"], '--limit speed=1N: found "N", expected a velocity'),
+        (["--limit", "speed=-1"], "limits: speed is -1, expected more than 0"),
+        (["--duration", "0"], "--duration: found 0, expected more than 0 s"),
+    ],
+)
+def test_the_command_says_in_one_line_what_is_wrong(one_speed, capsys, arguments, message):
+    _, experiment, _ = one_speed
+    assert main(["next", str(experiment.folder), *arguments]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1 and message in lines[0]
+
+
+# the proof: many cases, all rivals, the whole diagnosis
+
+
+def proposed(case, number, folder):
+    poor = POOR[case]
+    rod, experiment = poor.experiment(folder, number)
+    found = diagnosed(experiment, MOST)
+    wider = {b: own.widened(poor.wider) for b, own in shown_limits(found.prepared).items()}
+    return poor, rod, experiment, propose(found, limits=wider)
+
+
+CASES = [(c, k) for c, p in POOR.items() for k in range(len(p.truths)) if len(p.truths) > 1]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("case", "number"), [c for c in CASES if c[0] != "no scale of force"])
+def test_what_is_predicted_is_found_and_then_named(case, number, tmp_path):
+    poor, rod, experiment, proposal = proposed(case, number, tmp_path / "case")
+    truth, other = (number_of(proposal, poor.rivals[i]) for i in (number, 1 - number))
+    new = rod.records(proposal.reference.position["device"])
+    after = refit(proposal.rivals, new, proposal.bench)
+    (predicted,) = (
+        s.predicted
+        for s in proposal.separations
+        if s.truth is proposal.rivals[truth] and s.other is proposal.rivals[other]
+    )
+    found = after.found(truth=truth, other=other)
+    # found over predicted lay between 0.4 and 1.1 when this was written; the servo is not known
+    assert 0.3 * predicted < found < 2.0 * predicted
+    again = diagnosed(extended(experiment, new), MOST)
+    named = {c.effect.name for c in (*again.missing, *(c for g in again.groups for c in g))}
+    if predicted >= 1.0:
+        assert poor.rivals[number] in named and poor.rivals[1 - number] not in named
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [0, 1])
+def test_without_a_scale_of_force_a_sensor_is_asked_for_not_a_motion(number, tmp_path):
+    """Inertia fixed, no interaction force: a body more and a gain need the same commands."""
+    poor, _, _, proposal = proposed("no scale of force", number, tmp_path / "case")
+    pair = tuple(sorted(number_of(proposal, name) for name in poor.rivals))
+    assert not proposal.decides(pair)
+    helping = [r.change for r in proposal.remedies[pair] if r.separation >= 1.0]
+    assert any("a hand pushes the device" in change for change in helping)
+    assert not any("larger" in change or "finer" in change for change in helping)
+
+
+@pytest.mark.slow
+def test_each_rival_is_named_when_it_is_made_the_truth(one_speed):
+    _, _, proposal = one_speed
+    shown = show_in_simulation(proposal)
+    assert [s.named for s in shown] == [True, True]
+    assert show_in_simulation(proposal, seconds=-1.0) == ()
+
+
+@pytest.mark.slow
+def test_a_rod_that_stands_for_itself_needs_no_next_experiment(tmp_path):
+    """Nothing missing: the model is adequate and there is no rival."""
+    poor = POOR["one stroke"]
+    rod = Rod({})
+    from next_experiment.next_cases import write_experiment
+
+    experiment = write_experiment(tmp_path / "null", rod, poor.fit, poor.check, poor.effects)
+    assert propose(diagnosed(experiment, FEW)).reference is None

@@ -1,0 +1,273 @@
+"""Names are the user's: numbers do not depend on them, and no word is taken."""
+
+import ast
+import builtins
+import keyword
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from devices import CANCELLATION, FEEDBACK, LOOP, LUGRE, body
+from diagrams.several_axes import two_rods
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from teleopdesign.controllers import controller
+from teleopdesign.diagrams import (
+    Attached,
+    Control,
+    Diagram,
+    Junction,
+    Kinematics,
+    Linked,
+    Moving,
+    haptic_interface,
+    position_symbol,
+)
+from teleopdesign.errors import ModelError
+from teleopdesign.names import check_name
+from teleopdesign.realise._codegen import ARGUMENTS, Generator
+from teleopdesign.realise._codegen_loop import loop_source
+from teleopdesign.realise.equations import equations
+from teleopdesign.realise.iosystem import to_iosystem
+from teleopdesign.realise.private_names import private_names
+from teleopdesign.realise.simulated import in_computer, simulated
+from teleopdesign.simulate import prepare, simulate, sine
+
+#: words that generated code, Python, sympy or the package might want for itself
+WORDS = (
+    "a b c d e f g h i j k m n o p q r s t u v w x y z A B C D E I N O Q S e1 f0 k0 p0 s0 u0 x0 y0 "
+    "row exp sin cos sqrt floor pi inf nan lambda_ range abs max min np math numba sympy njit phi "
+    "weights rates slopes signals computer late_values before_rates after_steps run jitted self "
+    "inputs sampled start held history out samples inner period lag parameters step worst now made "
+    "values drive direction velocity position acceleration command level acting_force "
+    "no_command joined_0 dt print exec eval __import__ __name__ __builtins__ _ s000_ b000_ d000_ "
+    "s001__velocity x_velocity q_1 Gamma Max Min Piecewise control state_space mechanics"
+).split()
+_LETTERS = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_"
+NAMES = st.sampled_from(WORDS) | st.text(_LETTERS + "0123456789", min_size=1, max_size=12)
+
+
+def is_name(text):
+    try:
+        return check_name(text, where="") == text
+    except ModelError:
+        return False
+
+
+def hybrid():
+    return haptic_interface(
+        body(**LUGRE),
+        hand=body(0.5),
+        cancellation=CANCELLATION,
+        force_feedback=FEEDBACK,
+        position_loop=LOOP,
+    )
+
+
+def behind_a_compliance():
+    gap = {"tip_inertia": 0.05, "stiffness": 3e3, "damping": 1.5}
+    device = body(0.15, **{f"transmission_compliance__{n}": v for n, v in gap.items()})
+    spring = controller("spring_damper", {"stiffness": -50.0, "damping": -1.0})
+    return haptic_interface(device, hand=body(0.2), cancellation=spring)
+
+
+def renamed(diagram, names):
+    """The diagram with other names for its signals and blocks."""
+    symbols = {position_symbol(s): position_symbol(names[s]) for s in diagram.signals}
+
+    def placed(weight):
+        return weight.xreplace(symbols) if hasattr(weight, "xreplace") else weight
+
+    def of(many):
+        return tuple(names[s] for s in many)
+
+    blocks = []
+    for b in diagram.blocks:
+        name = names[b.name]
+        if isinstance(b, Moving):
+            loads = {names[s]: g for s, g in b.loads.items()}
+            wires = {"motion": names[b.motion], "command": names[b.command]}
+            blocks.append(replace(b, name=name, loads=loads, driver=names[b.driver], **wires))
+        elif isinstance(b, Attached):
+            blocks.append(replace(b, name=name, motion=names[b.motion], force=names[b.force]))
+        elif isinstance(b, Linked):
+            blocks.append(replace(b, name=name, motions=of(b.motions), forces=of(b.forces)))
+        else:
+            assert isinstance(b, Control)
+            wires = dict(
+                zip(("input", "output", "motion"), of((b.input, b.output, b.motion)), strict=True)
+            )
+            blocks.append(replace(b, name=name, **wires))
+    return Diagram(
+        diagram.name,
+        tuple(blocks),
+        tuple(
+            Junction(names[j.output], {names[s]: placed(w) for s, w in j.terms.items()})
+            for j in diagram.junctions
+        ),
+        {names[s]: q for s, q in diagram.outside.items()},
+        of(diagram.measured),
+        {},
+        tuple(Kinematics(names[k.output], placed(k.expression)) for k in diagram.kinematics),
+        {names[s]: x for s, x in diagram.pose.items()},
+    )
+
+
+def push(t):
+    return 2.0 * np.sin(30 * t)
+
+
+DIAGRAMS = {"hybrid": hybrid(), "compliance": behind_a_compliance(), "rods": two_rods()}
+
+
+def run(diagram, **more):
+    first = next(iter(diagram.outside))
+    made = {"duration": 0.02, "inputs": {first: push}, "jit": False} | more
+    return simulate(diagram, **made).data
+
+
+@pytest.fixture(scope="module")
+def before():
+    return {
+        (name, mode): run(diagram, **({"computer": "continuous"} if mode else {}))
+        for name, diagram in DIAGRAMS.items()
+        for mode in (False, True)
+    }
+
+
+def other_names(draw, diagram):
+    """A new name for each signal and block, none of which the package makes itself."""
+    old = list(dict.fromkeys([*diagram.signals, *(b.name for b in diagram.blocks)]))
+    usable = NAMES.filter(is_name).filter(lambda n: n != "time")
+    new = draw(st.lists(usable, min_size=len(old), max_size=len(old), unique=True))
+    return dict(zip(old, new, strict=True))
+
+
+@pytest.mark.parametrize("name", DIAGRAMS)
+@pytest.mark.parametrize("continuous", [False, True], ids=["sampled", "continuous"])
+@settings(max_examples=12, deadline=None)
+@given(data=st.data())
+def test_a_diagram_with_other_names_gives_the_same_numbers_to_the_last_bit(
+    before, name, continuous, data
+):
+    diagram = DIAGRAMS[name]
+    names = other_names(data.draw, diagram)
+    try:
+        found = run(renamed(diagram, names), **({"computer": "continuous"} if continuous else {}))
+    except ModelError as error:  # "x" and "x_velocity": two signals of one name
+        assert "call the signal otherwise" in str(error) or "is made by" in str(error)
+        return
+    for old, new in zip(before[name, continuous].data_vars.values(), found.values(), strict=True):
+        np.testing.assert_array_equal(old, new)
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_no_word_is_taken(before, word):
+    """The motion itself is called so: it stands in every equation."""
+    diagram = DIAGRAMS["hybrid"]
+    names = {n: n for n in (*diagram.signals, *(b.name for b in diagram.blocks))} | {"L": word}
+    if word in diagram.signals:
+        pytest.skip("another signal has it already")
+    found = run(renamed(diagram, names))
+    np.testing.assert_array_equal(found[word], before["hybrid", False]["L"])
+    np.testing.assert_array_equal(found[f"{word}_velocity"], before["hybrid", False]["L_velocity"])
+
+
+def test_diagrams_that_differ_by_names_alone_share_one_kernel():
+    diagram = DIAGRAMS["hybrid"]
+    names = {n: f"other_{n}" for n in (*diagram.signals, *(b.name for b in diagram.blocks))}
+    one, other = (prepare(d, duration=0.1, jit=False) for d in (diagram, renamed(diagram, names)))
+    assert one.program.run is other.program.run
+    assert other.program.layout.states[0] in {f"other_{n}" for n in one.program.layout.states}
+
+
+@pytest.mark.parametrize("words", [WORDS[:20], WORDS[20:40], WORDS[40:60], WORDS[60:80]])
+def test_the_python_control_form_takes_any_word_too(words):
+    diagram = DIAGRAMS["hybrid"]
+    old = [*diagram.signals, *(b.name for b in diagram.blocks)]
+    names = dict(zip(old, [*words, *(f"more_{i}" for i in range(len(old)))], strict=False))
+    one, other = to_iosystem(diagram), to_iosystem(renamed(diagram, names))
+
+    def at(system, names):
+        """Rates and outputs where each state and input has a value by its name."""
+        states = [s.split("_", 1)[1] for s in system.state_labels]
+        back = {new: old for old, new in names.items()}
+        plain = [_said(s, back) for s in states]
+        x = np.array([1e-3 * (1 + len(s)) for s in plain])
+        u = np.array([0.1 * len(back.get(s, s)) for s in system.input_labels])
+        outputs = [_said(s, back) for s in system.output_labels]
+        rates = dict(zip(plain, system.dynamics(0.0, x, u), strict=True))
+        return rates, dict(zip(outputs, system.output(0.0, x, u), strict=True))
+
+    for mine, yours in zip(at(one, {}), at(other, names), strict=True):
+        assert mine.keys() == yours.keys()
+        for key, value in mine.items():
+            assert value == yours[key], key
+
+
+def _said(label, back):
+    """A label made from one of the new names, with the old one in its place."""
+    for new in sorted(back, key=len, reverse=True):
+        if label == new or label.startswith(f"{new}_"):
+            return back[new] + label.removeprefix(new)
+    return label
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("L_velocity", '"L_velocity" is the name of the signal and of the velocity of L: call'),
+        ("L_acceleration", "of the signal and of the acceleration of L: call the signal other"),
+        ("Z_M_friction", '"Z_M_friction" is the name of the signal and of the friction of Z_M'),
+        ("Z_M_presliding_bristle", "the signal and of the presliding bristle of Z_M"),
+        ("time", '"time" is the name of the signal and of the time: call the signal otherwise'),
+    ],
+)
+def test_a_name_that_the_package_makes_itself_is_refused_in_one_line(name, words):
+    diagram = DIAGRAMS["hybrid"]
+    names = {n: n for n in (*diagram.signals, *(b.name for b in diagram.blocks))} | {"E": name}
+    with pytest.raises(ModelError) as caught:
+        run(renamed(diagram, names))
+    assert words in str(caught.value)
+
+
+def test_errors_speak_of_the_users_names():
+    """Equations are built on private names; nobody sees one."""
+    diagram = DIAGRAMS["hybrid"]
+    unseen = replace(diagram, measured=())
+    with pytest.raises(ModelError, match='haptic interface: the computer uses "L" of Z_M'):
+        run(unseen)
+    with pytest.raises(ModelError, match='haptic interface: "M" is no motion, has L$'):
+        prepare(diagram, duration=0.1, motion={"M": sine(amplitude=0.01, frequency=1.0)})
+
+
+#: what the templates of the source hold themselves, and the beginnings of private names
+OWN = {*dir(math), *keyword.kwlist, *dir(builtins), *ARGUMENTS, "math", "jitted", "function"}
+OWN |= set(
+    "phi weights rates slopes signals computer late_values made now values worst row".split()
+)
+OWN |= {f"{when}_{what}" for when in ("before", "after") for what in ("rates", "steps")}
+OWN |= {f"{made}_{when}" for made in ("made", "next") for when in ("before", "after")}
+OWN |= {"time", "time_middle", "time_end", "position_gain", "velocity_gain", "bend_gain"}
+PRIVATE = re.compile(r"(slope_)?v\d+_\w*|(p|q|r|k|out)\d+|j\d*_?|[cefmnqyz_]")
+
+
+@pytest.mark.parametrize("name", DIAGRAMS)
+@pytest.mark.parametrize("sampled", [False, True], ids=["continuous", "sampled"])
+def test_generated_source_holds_private_words_alone(name, sampled):
+    """No name of an effect, a law or a parameter either: users write those too."""
+    inner = simulated(DIAGRAMS[name], 1e-5)
+    inner = in_computer(inner, 1e-3) if sampled else inner
+    generator = Generator(equations(private_names(inner).diagram, sampled=sampled))
+    tree = ast.parse(generator.source(jit=False) + loop_source(generator))
+    words = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name)}
+    words |= {n.arg for n in ast.walk(tree) if isinstance(n, ast.arg)}
+    assert not [w for w in words - OWN if not PRIVATE.fullmatch(w)]
+    ends = {w.split("_", 1)[1].strip("_") for w in words if re.match(r"v\d+_\w", w)}
+    assert ends <= {"1", "2", "3", "e", "g", "h", "n0", "n1", "n2", "n3", *MORE}
+
+
+MORE = {"seen", "before", "made", "middle", "end", "observed", "bend"}

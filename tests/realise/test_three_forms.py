@@ -1,0 +1,245 @@
+"""The forms of a block agree: linear form, python-control system, kernel; for every effect."""
+
+import control
+import numpy as np
+import pytest
+from devices import CANCELLATION, FEEDBACK, body
+from effects.along import KNOWN
+
+from teleopdesign.blocks import Body, Value
+from teleopdesign.diagrams import Diagram, Junction, Moving, four_cases, haptic_interface
+from teleopdesign.effects import CONTACT_ROLES, EFFECTS
+from teleopdesign.errors import ModelError
+from teleopdesign.frequency import bode, transfer_function
+from teleopdesign.realise.iosystem import to_iosystem
+from teleopdesign.realise.simulated import without_absent
+from teleopdesign.simulate import simulate, sine
+
+#: a value of the right order for each quantity; a device of 0.15 kg moved by some newtons
+TYPICAL = {
+    "force": 0.3,
+    "inertia": 0.1,
+    "damping": 2.0,
+    "stiffness": 2e3,
+    "velocity": 0.05,
+    "time": 2e-3,
+    "dimensionless": 0.2,
+    "position": 0.01,
+    "drag": 1.0,
+    "cubic_stiffness": 1e5,
+    "angle": 0.3,
+    "frequency": 10.0,
+}
+LEVEL = 0.5  # N; above every effect that lowers it
+NAMES = sorted(n for n, e in EFFECTS.items() if e.role != "structure")
+LINEAR = [n for n in NAMES if EFFECTS[n].linear]
+
+
+def device(*names, absent=False):
+    """A body with these effects and what they need, at typical values or absent."""
+    wanted = dict.fromkeys(names)
+    while missing := {n for w in wanted for n in KNOWN[w].needs} - set(wanted):
+        wanted |= dict.fromkeys(sorted(missing))
+    values = {"inertia": Value(0.15)}
+    for name in wanted:
+        effect = KNOWN[name]
+        for parameter, declared in effect.parameters.items():
+            value = LEVEL if name == "coulomb" else TYPICAL[declared.quantity]
+            value = max(value, declared.lower)
+            if absent and name in names:
+                value = effect.absent.get(parameter, value)
+            values[f"{name}.{parameter}"] = Value(value)
+    return Body("prismatic", values, tuple(KNOWN[n] for n in wanted))
+
+
+def push(t):
+    return 2.0 * np.sin(2 * np.pi * 4 * t)
+
+
+def simulated(made, **arguments):
+    arguments = {"duration": 0.1, "inputs": {"R_V": push}, "jit": False} | arguments
+    return simulate(haptic_interface(made), **arguments)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_kernel_and_python_control_move_alike(name):
+    """A hand pushes with 2 N at 4 Hz: two codes, one law."""
+    diagram = haptic_interface(device(name))
+    if name == "actuation_delay":  # python-control holds no dead time
+        with pytest.raises(ModelError, match="no python-control form"):
+            to_iosystem(diagram)
+        return
+    kernel = simulate(
+        diagram, duration=0.1, inputs={"R_V": push}, computer="continuous", jit=False, step=1e-4
+    )
+    system = to_iosystem(diagram)
+    time = kernel["L"]["time"].values
+    fine = np.linspace(0, time[-1], 4001)  # it takes inputs as linear between these
+    inputs = np.zeros((len(system.input_labels), len(fine)))
+    inputs[system.input_labels.index("R_V")] = push(fine)
+    response = control.input_output_response(
+        system,
+        fine,
+        inputs,
+        t_eval=time,
+        solve_ivp_method="LSODA",
+        solve_ivp_kwargs={"rtol": 1e-9, "atol": 1e-12, "max_step": 1e-3},
+    )
+    x = response.outputs[system.output_labels.index("L")]
+    # 1e-5: inputs linear over 25 us leave 5e-8, LSODA at kinks of abs(v) some 1e-6. A touch falls
+    # within a step of the kernel, 1e-4 s: half a step of the damper's first force, 2 N s/m at
+    # 0.3 m/s on 0.15 kg, moves 1e-5 m of 0.015 m in the time left
+    most = 5e-4 if EFFECTS[name].role in CONTACT_ROLES else 1e-5
+    assert np.abs(x - kernel["L"].values).max() < most * np.abs(x).max()
+
+
+@pytest.mark.parametrize("name", LINEAR)
+def test_kernel_steps_as_the_declared_linear_form(name):
+    """Desired force of 1 N at once on a hand of spring and damper: sampled and held is exact."""
+    hand = body(0.2, viscous__damping=3.0, spring__stiffness=500.0)
+    diagram = haptic_interface(device(name), hand=hand)
+    system, left_out = transfer_function(diagram, output="L", input="R_D", delay_order=4)
+    found = simulate(diagram, duration=0.2, inputs={"R_D": 1.0}, jit=False, step=1e-4)
+    _, expected = control.step_response(system, found["L"]["time"].values)
+    assert left_out == ()
+    # order four at 1e-4 s leaves 1e-8; a dead time as a Pade of order 4 leaves 6e-6 in position
+    bound = 2e-5 if name == "actuation_delay" else 1e-7
+    assert np.abs(found["L"].values - expected).max() < bound * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_effect_at_zero_strength_changes_nothing(name):
+    """At its declared absent values the effect leaves the trajectory as it was, to the last bit."""
+    effect = EFFECTS[name]
+    with_it, needed = device(name, absent=True), sorted(effect.needs)
+    assert name not in [e.name for e in without_absent(with_it).effects]
+    without = simulated(device(*needed), duration=0.02)["L"].values
+    np.testing.assert_array_equal(simulated(with_it, duration=0.02)["L"].values, without)
+
+
+@pytest.mark.parametrize("name", [n for n in NAMES if EFFECTS[n].energy == "dissipates"])
+def test_friction_takes_energy_out(name):
+    """Over whole cycles of a prescribed motion the hand puts work in."""
+    found = simulated(
+        device(name),
+        duration=0.4,
+        inputs={},
+        motion={"L": sine(amplitude=0.005, frequency=5.0)},
+        every_step=True,
+        step=2e-4,
+    )
+    cycle = slice(len(found["L"]) // 2, None)
+    work = np.trapezoid(found["R_V"].values[cycle], found["L"].values[cycle])
+    stored = 0.0  # kinetic energy is the same at both ends of the cycle
+    assert work > stored
+
+
+@pytest.mark.parametrize("case", ["none", "MBC", "FF", "hybrid"])
+def test_kernel_and_python_control_agree_on_the_force_error(case):
+    """The force error against velocity, motion prescribed, controllers in continuous time.
+
+    Tolerance 1e-4 of the peak force: the kernel keeps 5e-5 at its default step with this bristle;
+    python-control's inputs are linear between samples of 0.1 ms, which leaves 1e-6.
+    """
+    hybrid = haptic_interface(
+        body(coulomb__level=0.5), cancellation=CANCELLATION, force_feedback=FEEDBACK
+    )
+    diagram, motion = four_cases(hybrid)[case], sine(amplitude=0.01, frequency=1.5)
+    kernel = simulate(diagram, duration=0.2, motion={"L": motion}, computer="continuous", jit=False)
+    system = to_iosystem(diagram, prescribed=("L",))
+    fine, time = np.linspace(0, 0.2, 2001), kernel["L"]["time"].values
+    given = dict(zip(("L", "L_velocity", "L_acceleration"), motion.all, strict=True))
+    inputs = [given[n](fine) if n in given else 0 * fine for n in system.input_labels]
+    response = control.input_output_response(
+        system,
+        fine,
+        inputs,
+        t_eval=time,
+        solve_ivp_method="LSODA",
+        solve_ivp_kwargs={"rtol": 1e-8, "atol": 1e-12, "max_step": 1e-3},
+    )
+    error = response.outputs[system.output_labels.index("E")]
+    assert np.abs(error - kernel["E"].values).max() < 1e-4 * np.abs(error).max()
+
+
+def test_kernel_and_python_control_agree_in_closed_loop(hybrid):
+    """Position loop, hybrid compensation, LuGre friction; 1e-4 of the peak force as above."""
+    time = np.linspace(0, 0.05, 51)
+    reference = 1e-3 * np.sin(2 * np.pi * 10 * time)  # linear between samples in both
+    kernel = simulate(
+        hybrid,
+        duration=0.05,
+        inputs={"L_D": lambda t: np.interp(t, time, reference)},
+        computer="continuous",
+        jit=False,
+    )
+    system = to_iosystem(hybrid)
+    inputs = [reference if n == "L_D" else 0 * time for n in system.input_labels]
+    options = {"rtol": 1e-7, "atol": 1e-11}
+    response = control.input_output_response(
+        system, time, inputs, solve_ivp_method="LSODA", solve_ivp_kwargs=options
+    )
+    for name in ("R_M", "Z_M_friction", "E"):
+        force = response.outputs[system.output_labels.index(name)]
+        assert np.abs(force - kernel[name].values).max() < 1e-4 * np.abs(force).max()
+
+
+def test_a_bode_plot_of_the_four_cases_says_what_it_leaves_out(tmp_path):
+    hand = body(0.05, viscous__damping=3.0, spring__stiffness=400.0)
+    diagram = haptic_interface(
+        body(coulomb__level=0.5, viscous__damping=0.4),
+        hand=hand,
+        cancellation=CANCELLATION,
+        force_feedback=FEEDBACK,
+    )
+    response = bode(four_cases(diagram), speed=0.05)
+    assert list(response.data["case"].values) == ["none", "MBC", "FF", "hybrid"]
+    assert response.left_out["hybrid"] == ("Z_M.coulomb",)
+    assert response.data["frequency"].attrs["units"] == "Hz"
+    # all four are 1 at rest and the ratio of masses far above every loop's bandwidth
+    np.testing.assert_allclose(response.data["magnitude"].isel(frequency=0), 1.0, atol=0.01)
+    np.testing.assert_allclose(response.data["magnitude"].isel(frequency=-1), 0.25, rtol=0.02)
+    assert "left out: Z_M.coulomb" in repr(response)
+    response.to_netcdf(tmp_path / "bode.nc")
+    assert len(response.plot().axes) == 2
+
+
+def test_python_control_and_the_exact_response_agree():
+    diagram = haptic_interface(body(viscous__damping=0.4), hand=body(0.3), force_feedback=FEEDBACK)
+    system, _ = transfer_function(diagram, speed=0.02)
+    f = np.geomspace(0.1, 100, 20)
+    exact = bode(diagram, speed=0.02, frequency=f).data["magnitude"].values[0]
+    np.testing.assert_allclose(np.abs(system(2j * np.pi * f)), exact, rtol=1e-9)
+
+
+def test_the_apparent_impedance_of_a_mass_is_m_omega_squared():
+    f = np.array([1.0, 10.0])
+    response = bode(haptic_interface(body(0.15)), output="E", input="L", given="L", frequency=f)
+    np.testing.assert_allclose(response.data["magnitude"].values[0], 0.15 * (2 * np.pi * f) ** 2)
+    np.testing.assert_allclose(response.data["phase"].values[0], 180.0)
+
+
+def test_an_empty_sum_makes_no_python_control_system_without_inputs():
+    """m x'' + b x' = f with an empty sum for its command."""
+    body_ = Body("prismatic", {"inertia": Value(0.15)})
+    body_ = body_.with_effect(EFFECTS["viscous"], {"damping": 2.0})
+    diagram = Diagram(
+        "no command",
+        (Moving("M", body_, "x", "u", {"f": 1}, "f"),),
+        (Junction("u", {"w": 2}), Junction("w", {})),
+        {"f": "force"},
+        measured=("x",),
+    )
+    system = to_iosystem(diagram)
+    assert all(one.ninputs for one in system.syslist)
+    assert system.input_labels == ["f"]
+    assert {"x", "u", "w"} <= set(system.output_labels)
+    t = np.linspace(0.0, 0.2, 101)
+    found = control.input_output_response(
+        system, t, np.ones((1, t.size)), solve_ivp_kwargs={"rtol": 1e-10, "atol": 1e-13}
+    )
+    tau = 0.15 / 2.0
+    exact = (t - tau * (1 - np.exp(-t / tau))) / 2.0
+    x = found.outputs[system.output_labels.index("x")]
+    np.testing.assert_allclose(x, exact, atol=1e-9)  # the solver's tolerance on 65 mm
+    assert not found.outputs[system.output_labels.index("u")].any()

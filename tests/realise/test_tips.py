@@ -1,0 +1,219 @@
+"""A compliant transmission is two moving bodies, whatever simulates it."""
+
+import control
+import numpy as np
+import pytest
+from devices import body
+
+from teleopdesign.blocks import spring_damper
+from teleopdesign.diagrams import haptic_interface
+from teleopdesign.errors import ModelError
+from teleopdesign.frequency import bode, measured_impedance, transfer_function
+from teleopdesign.frequency.matrix_response import matrix_response
+from teleopdesign.passivity import hand_port
+from teleopdesign.realise.iosystem import to_iosystem
+from teleopdesign.realise.tips import with_tips
+from teleopdesign.simulate import simulate, sine
+
+M, TIP, K, C, B = 0.3, 0.1, 3e3, 1.5, 2.0
+COMPLIANT = {
+    "viscous__damping": B,
+    "transmission_compliance__tip_inertia": TIP,
+    "transmission_compliance__stiffness": K,
+    "transmission_compliance__damping": C,
+}
+HAND = body(0.2, viscous__damping=3.0, spring__stiffness=200.0)
+
+
+def two_masses():
+    """Actuator 0.2 kg with a damper, tip and hand 0.3 kg: written down by hand; force to both."""
+    m, t = M - TIP, TIP + 0.2
+    a = [
+        [0, 1, 0, 0],
+        [-K / m, -(C + B) / m, K / m, C / m],
+        [0, 0, 0, 1],
+        [K / t, C / t, -(K + 200) / t, -(C + 3) / t],
+    ]
+    return control.ss(a, [[0], [1 / m], [0], [0]], [[1, 0, 0, 0], [0, 0, 1, 0]], [[0], [0]])
+
+
+@pytest.mark.parametrize("computer", ["continuous", "sampled"])
+def test_actuator_and_tip_move_as_two_masses_on_a_spring(computer):
+    """Step of force, held: the same sampled or not. Order four at 0.1 ms and 25 Hz: 1e-7."""
+    diagram = haptic_interface(body(M, **COMPLIANT), hand=HAND)
+    mode = {} if computer == "sampled" else {"computer": "continuous"}
+    found = simulate(diagram, duration=0.3, inputs={"R_D": 1.0}, jit=False, **mode)
+    _, expected = control.step_response(two_masses(), found["time"].values)
+    for name, row in zip(("L", "L_tip"), expected[:, 0], strict=True):
+        assert np.abs(found[name].values - row).max() < 1e-7 * np.abs(row).max()
+
+
+def test_the_transfer_function_of_the_parted_device_is_that_of_two_masses():
+    diagram = with_tips(haptic_interface(body(M, **COMPLIANT), hand=HAND))
+    for row, name in enumerate(("L", "L_tip")):
+        system, left_out = transfer_function(diagram, output=name, input="R_D")
+        point = 2j * np.pi * 7
+        assert left_out == ()
+        assert complex(system(point)) == pytest.approx(two_masses()(point)[row, 0], rel=1e-9)
+
+
+def test_python_control_moves_the_tip_alike():
+    """Friction at the actuator's side, a wall at the tip; 5e-4 as for other contacts."""
+    made = spring_damper(
+        body(M, coulomb__level=0.2, presliding__stiffness=2e4, **COMPLIANT),
+        stiffness=1e3,
+        damping=0.0,
+        position=2e-3,
+    )
+    diagram = haptic_interface(made)
+    arguments = {"inputs": {"R_D": 1.0}, "computer": "continuous", "jit": False}
+    kernel = simulate(diagram, duration=0.1, **arguments)
+    system = to_iosystem(diagram)
+    time = kernel["time"].values
+    given = [1.0 + 0 * time if n == "R_D" else 0 * time for n in system.input_labels]
+    options = {"rtol": 1e-9, "atol": 1e-12, "max_step": 1e-4}
+    response = control.input_output_response(
+        system, time, given, solve_ivp_method="LSODA", solve_ivp_kwargs=options
+    )
+    assert kernel["L_tip"].max() > 3e-3
+    for name in ("L", "L_tip"):
+        x = response.outputs[system.output_labels.index(name)]
+        assert np.abs(x - kernel[name].values).max() < 5e-4 * np.abs(x).max()
+
+
+def test_a_stiff_transmission_is_the_rigid_body():
+    """K = 2e6 N/m: give of F/K; 1e-4 of the travel."""
+    stiff = COMPLIANT | {
+        "transmission_compliance__stiffness": 2e6,
+        "transmission_compliance__damping": 200.0,
+    }
+    arguments = {"duration": 0.1, "inputs": {"R_D": 1.0}, "jit": False}
+    rigid = simulate(haptic_interface(body(M, viscous__damping=B), hand=HAND), **arguments)["L"]
+    found = simulate(haptic_interface(body(M, **stiff), hand=HAND), step=2e-5, **arguments)
+    for name in ("L", "L_tip"):
+        assert np.abs(found[name].values - rigid.values).max() < 1e-4 * float(rigid.max())
+
+
+def test_a_hand_leads_the_tip_and_feels_both_bodies():
+    """Slow against the resonance (13 Hz): the whole inertia and the actuator's friction."""
+    diagram = haptic_interface(body(M, **COMPLIANT))
+    motion = sine(amplitude=0.01, frequency=0.5)
+    found = simulate(diagram, duration=4.0, motion={"L_tip": motion}, jit=False, step=1e-3)
+    time = found["time"].values
+    expected = M * motion.acceleration(time) + B * motion.velocity(time)
+    late = time > 2.0
+    # the actuator is late by B omega/K = 2.1e-3, and 20 Hz on the spring: (0.5/20)^2 = 6e-4
+    assert np.abs(found["R_V"].values - expected)[late].max() < 3e-3 * np.abs(expected).max()
+
+
+def test_coulomb_friction_at_each_end():
+    """0.25 N on the tip, which holds 0.2 N: what passes through the spring is held behind it."""
+    diagram = haptic_interface(body(M, coulomb__level=0.3, **COMPLIANT))
+    both = with_tips(diagram).with_block("Z_M_tip", body(TIP, coulomb__level=0.2))
+    pushed = {"R_V": lambda t: 0.25 * np.clip(t / 0.1, 0, 1)}
+    found = simulate(both, duration=0.5, inputs=pushed, jit=False)
+    last = {n: float(x[-1]) for n, x in found.data.items()}
+    passed = -last["Z_M_transmission"]
+    assert 0.05 < passed < 0.25
+    # at rest but for what is left of the oscillation after 0.4 s
+    assert last["Z_M_friction"] == pytest.approx(passed, abs=2e-3)
+    assert last["Z_M_tip_friction"] == pytest.approx(0.25 - passed, abs=2e-3)
+    assert abs(last["L"]) < 1e-5 < last["L_tip"]  # 10 um: the give of its friction
+
+
+@pytest.mark.parametrize(
+    ("changed", "arguments", "words"),
+    [
+        ({}, {"motion": {"L": sine(amplitude=1e-3, frequency=1.0)}}, "give the motion L_tip"),
+        ({"transmission_compliance__tip_inertia": 0.3}, {}, "it must be less"),
+    ],
+)
+def test_what_cannot_be_parted_is_said_in_one_line(changed, arguments, words):
+    with pytest.raises(ModelError, match=words) as caught:
+        diagram = haptic_interface(body(M, **COMPLIANT | changed))
+        simulate(diagram, duration=0.01, jit=False, **arguments)
+    assert "\n" not in str(caught.value)
+
+
+def test_through_a_gap_two_bodies_exchange_momentum_and_keep_energy():
+    """No damping: the actuator's side meets the resting tip behind half a gap, and passes on."""
+    gap, stiffness, speed = 2e-3, 2e4, 0.1
+    values = {"tip_inertia": TIP, "stiffness": stiffness, "damping": 0.0, "gap": gap}
+    lost = body(M, **{f"backlash__{n}": v for n, v in values.items()})
+    start = {"L_velocity": speed}
+    found = simulate(
+        haptic_interface(lost), duration=0.1, initial=start, computer="continuous", step=2e-5
+    )
+    here, there = (found[f"{n}_velocity"].values for n in ("L", "L_tip"))
+    twist = found["L_twist"].values
+    free = np.abs(twist) <= gap / 2
+    m = M - TIP
+    before = found["time"].values < 0.009  # half the gap takes 10 ms
+    assert np.all(there[before] == 0.0) and free[-1]
+    # rounding, and the kink of the force at the touch: order one in a step of 2e-5 s
+    np.testing.assert_allclose(m * here + TIP * there, m * speed, rtol=1e-9)
+    deep = np.maximum(np.abs(twist) - gap / 2, 0)
+    energy = m * here**2 + TIP * there**2 + stiffness * deep**2
+    np.testing.assert_allclose(energy, m * speed**2, rtol=2e-3)
+    assert there.max() == pytest.approx(4 / 3 * speed, rel=1e-3)  # 0.2 kg on 0.1 kg
+
+
+def impedance_at_the_tip(f):
+    """R_V over L_tip: tip on a spring and damper that the actuator's side holds."""
+    s = 2j * np.pi * f
+    link, here = K + C * s, (M - TIP) * s**2 + B * s
+    return TIP * s**2 + link * here / (link + here)
+
+
+def test_all_linear_forms_see_the_hand_at_the_tip():
+    f = np.array([0.5, 13.0, 40.0])
+    diagram = haptic_interface(body(M, **COMPLIANT))
+    expected = impedance_at_the_tip(f)
+    zhat = {"output": "E", "input": "L", "given": "L"}
+    np.testing.assert_allclose(bode(diagram, frequency=f, **zhat).values(), expected, rtol=1e-9)
+    system, left_out = transfer_function(diagram, **zhat)
+    np.testing.assert_allclose(system(2j * np.pi * f), expected, rtol=1e-9)
+    found = matrix_response(diagram, ("E", "L"), ("L",), f, given=("L",))
+    np.testing.assert_allclose(found.data.values[:, 0, 0], expected, rtol=1e-9)
+    np.testing.assert_allclose(found.data.values[:, 1, 0], 1.0)
+    velocity, _ = hand_port(diagram)
+    s = 2j * np.pi * f
+    np.testing.assert_allclose(velocity(s) * s, expected, rtol=1e-9)
+    assert left_out == found.left_out == ()
+
+
+def test_simulated_and_symbolic_impedance_of_a_compliant_device_agree():
+    """Around its resonance (13 Hz at the tip held, 34 Hz free), within 0.1 %."""
+    f = [2.0, 13.0, 30.0]
+    diagram = haptic_interface(body(M, **COMPLIANT))
+    found = measured_impedance(diagram, amplitude=1e-3, frequency=f, computer="continuous")
+    z = found.data["impedance"].values.reshape(-1)
+    np.testing.assert_allclose(z, impedance_at_the_tip(np.array(f)), rtol=1e-3)
+
+
+def test_the_response_of_a_held_compliant_device_is_that_of_two_masses():
+    f = np.array([0.5, 7.0, 40.0])
+    diagram = haptic_interface(body(M, **COMPLIANT), hand=HAND)
+    for row, name in enumerate(("L", "L_tip")):
+        found = bode(diagram, output=name, input="R_D", frequency=f)
+        exact = two_masses()(2j * np.pi * f)[row, 0]
+        np.testing.assert_allclose(found.values(), exact, rtol=1e-9)
+        assert found.data["magnitude"].units == "m/N"
+
+
+def test_backlash_has_no_linear_form_and_is_named():
+    values = {"tip_inertia": TIP, "stiffness": 2e4, "damping": 0.0, "gap": 1e-3}
+    lost = body(M, viscous__damping=B, **{f"backlash__{n}": v for n, v in values.items()})
+    zhat = {"output": "E", "input": "L", "given": "L"}
+    system, left_out = transfer_function(haptic_interface(lost), **zhat)
+    assert left_out == ("Z_M.backlash",)
+    s = 20j
+    assert complex(system(s)) == pytest.approx(M * s**2 + B * s, rel=1e-9)
+
+
+def test_a_transmission_that_is_absent_is_the_rigid_body():
+    absent = body(M, **COMPLIANT | {"transmission_compliance__tip_inertia": 0.0})
+    system, left_out = transfer_function(haptic_interface(absent), output="E", input="L", given="L")
+    assert left_out == ()
+    s = 20j
+    assert complex(system(s)) == pytest.approx(M * s**2 + B * s, rel=1e-9)
