@@ -77,3 +77,12 @@ def test_every_module_and_public_function_has_a_docstring(source):
         and len(node.body) > 1  # one line says itself
     ]
     assert not bare
+
+
+def test_the_picture_of_the_house_shows_every_folder():
+    """docs/make_house.py draws it from the contract of imports; drawn again when that changes."""
+    root = Path(td.__file__).parent
+    drawn = (root.parent / "docs" / "_static" / "house.svg").read_text(encoding="utf-8")
+    for folder in root.iterdir():
+        if folder.is_dir() and (folder / "__init__.py").is_file():
+            assert f">{folder.name}<" in drawn, f"{folder.name}: run python docs/make_house.py"
