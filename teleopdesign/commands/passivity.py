@@ -222,7 +222,7 @@ def _z_width(device: IdentifiedDevice, period: float, delay: float) -> str:
 
 def _check(path: Path) -> int:
     """Check each certificate of a file of claims with the small checker alone."""
-    from ..passivity.check_certificate import Refused, check
+    from ..passivity.checker import Refused, check
 
     try:
         claims = json.loads(path.read_text(encoding="utf-8"))["claims"]

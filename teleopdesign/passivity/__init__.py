@@ -4,7 +4,7 @@
 
     claim = positive_real(0.15 * s + 4)      # force over velocity, N s/m
     claim.status, claim.verdict              # "proved", by what, with which margin
-    claim.certificates[0].write("c.json")    # python check_certificate.py c.json
+    claim.certificates[0].write("c.json")    # python -m teleopdesign.passivity.checker c.json
 
 A refuted claim holds a motion that gives out energy: `claim.record.replay()`.
 """

@@ -1,6 +1,6 @@
 """Certificates: what a proof rests on, in a form that a small program verifies.
 
-`check_certificate.py` knows nothing of this package; it reads the JSON that is written here, and
+`checker` knows nothing of this package; it reads the JSON that is written here, and
 states what that proves in words of its own. A title is for people; it proves nothing.
 """
 
@@ -17,7 +17,7 @@ import sympy as sp
 
 from ..arguments import checked
 from ..errors import ModelError
-from .check_certificate import Refused, check, load
+from .checker import Refused, check, load
 
 #: weight * product of factor^power * square^2
 Term = tuple[sp.Expr | int, Mapping[str, int], sp.Expr | int]
@@ -32,11 +32,11 @@ class Certificate:
 
     @property
     def kind(self) -> str:
-        """ "storage" or "positive real"."""
+        """ "storage", "positive real" or "absolute stability"."""
         return str(self.content.get("kind", "no kind"))
 
     def check(self) -> str:
-        """Verify with `check_certificate.py`.
+        """Verify with `checker`.
 
         returns: the statement that is proved, which the checker makes from the content
         raises ModelError: refused, and why
@@ -50,7 +50,7 @@ class Certificate:
         return f"Certificate ({self.kind}): {self.content.get('claim', '')}"
 
     def write(self, path: str | Path) -> None:
-        """Write the JSON file that `python check_certificate.py PATH` verifies."""
+        """Write the JSON file that `python -m teleopdesign.passivity.checker PATH` verifies."""
         text = json.dumps(self.content, indent=1, sort_keys=True)
         Path(path).write_text(text + "\n", encoding="utf-8")
 
@@ -70,6 +70,14 @@ def positive_real_certificate(title: str, impedance: Sequence[Sequence[sp.Expr]]
     """That a matrix of rational functions of s (1x1 or 2x2) is positive real."""
     rows = [[_written(e) for e in row] for row in impedance]
     return _sealed({"kind": "positive real", "title": title, "impedance": rows})
+
+
+def absolute_stability_certificate(
+    title: str, impedance: Sequence[Sequence[sp.Expr]]
+) -> Certificate:
+    """That a 2x2 matrix of rational functions of s is absolutely stable, residues included."""
+    rows = [[_written(e) for e in row] for row in impedance]
+    return _sealed({"kind": "absolute stability", "title": title, "impedance": rows})
 
 
 def storage_certificate(
@@ -153,6 +161,6 @@ def _written(expression: sp.Expr | int) -> str:
 
 
 def _sealed(content: dict[str, Any]) -> Certificate:
-    """With the digest that `check_certificate.py` expects."""
+    """With the digest that `checker` expects."""
     text = json.dumps(content, sort_keys=True)
     return Certificate({**content, "digest": hashlib.sha256(text.encode()).hexdigest()})

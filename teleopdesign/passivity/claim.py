@@ -1,6 +1,6 @@
 """A claim and how it is settled: proved, refuted, evidence, or unknown.
 
-A proof is exact and carries a certificate that `check_certificate.py` verifies without the package.
+A proof is exact and carries a certificate that `checker` verifies without the package.
 A refutation is a motion that gives out energy, kept so that anyone can replay it. Evidence says
 what was computed or searched, and with what margin; it is never called a proof.
 """
@@ -38,7 +38,7 @@ class Record(Protocol):
 class Proof(ByValue):
     """An exact proof.
 
-    method: in words;  certificates: what it rests on, each verified by `check_certificate.py`
+    method: in words;  certificates: what it rests on, each verified by `checker`
     margin: how far the statement is from failing, in `unit`, NaN where none was computed
     equality: where the inequality holds with equality, "" where nowhere or not computed
     """

@@ -2,9 +2,9 @@
 
 With dampings b_m, b_s of master and slave, stiffness P and one-way delay T the criterion of
 Llewellyn reads b_m b_s >= (P T)^2 q(w), q = (sin(w T)/(w T))^2 <= 1, with equality for w -> 0.
-The other conditions (`absolute_stability.py`) hold for every coupling: the entries have no pole but
-s = 0, with residues P, P and -P, for e^(-s T) is 1 there, so k11 k22 = k12 k21; at infinity the
-masses grow like s and nothing between the ports does; z12 z21 is bounded far out.
+The other conditions (`checker/absolute_stability.py`) hold for every coupling: the entries have no
+pole but s = 0, with residues P, P and -P, for e^(-s T) is 1 there, so k11 k22 = k12 k21; at
+infinity the masses grow like s and nothing between the ports does; z12 z21 is bounded far out.
 """
 
 from __future__ import annotations

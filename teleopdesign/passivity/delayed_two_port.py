@@ -18,8 +18,8 @@ import numpy as np
 import sympy as sp
 
 from ..realise.lti import S
-from .absolute_stability import Ratio, coprime
-from .fraction_polynomials import (
+from .checker.absolute_stability import Ratio, coprime
+from .checker.polynomials import (
     Polynomial,
     add,
     derivative,

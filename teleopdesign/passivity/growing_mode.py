@@ -21,22 +21,21 @@ import numpy as np
 import sympy as sp
 
 from ..realise.lti import S
-from .absolute_stability import (
+from .checker.absolute_stability import (
     Entries,
     Ratio,
     axis_poles,
     coprime,
-    grows_between,
-    hidden_poles,
     llewellyn,
 )
-from .fraction_polynomials import (
+from .checker.polynomials import (
     Polynomial,
     greatest_common_divisor,
     is_free_of_growth,
     polynomial,
 )
-from .fraction_polynomials import real_part as real_part_of
+from .checker.polynomials import real_part as real_part_of
+from .closed_loop import grows_between, hidden_poles
 from .growing_wave import LONGEST, square_root
 from .polynomials import X, positive_roots, where_negative
 from .two_port import stable_margin

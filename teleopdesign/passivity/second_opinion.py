@@ -13,7 +13,8 @@ from typing import Any
 
 from ..errors import ModelError
 from .certificate import Certificate
-from .check_certificate import Poly, Refused, read
+from .checker import Refused, read
+from .checker.algebra import Poly
 
 
 @dataclass(frozen=True)

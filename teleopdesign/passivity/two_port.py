@@ -8,7 +8,7 @@ both ports. Passive (Raisbeck): no motion of the ports takes energy out. Absolut
 absolutely stable. Dead times are exact: e^(-s T) is evaluated, not approximated.
 
 Llewellyn, Proc. IRE 40 (1952) 271; his inequality on the axis is one of the conditions: all of them
-stand in `absolute_stability.py`.
+stand in `checker/absolute_stability.py`.
 """
 
 from __future__ import annotations

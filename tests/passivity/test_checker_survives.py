@@ -32,7 +32,7 @@ from teleopdesign.passivity import (
     read_record,
 )
 from teleopdesign.passivity.certificate import Certificate
-from teleopdesign.passivity.check_certificate import Refused, check
+from teleopdesign.passivity.checker import Refused, check
 from teleopdesign.passivity.second_opinion import second_opinion
 from teleopdesign.realise.lti import S
 
@@ -335,7 +335,7 @@ def _paths(value, path=()):
     ],
 )
 def test_a_file_of_any_content_is_one_line_and_status_1(text, said, tmp_path):
-    source = Path(sys.modules[check.__module__].__file__)
+    source = Path(sys.modules[check.__module__].__file__).parent
     (tmp_path / "c.json").write_bytes(text.encode("utf-8", "surrogateescape"))
     command = [sys.executable, "-I", str(source), str(tmp_path / "c.json")]
     run = subprocess.run(command, capture_output=True, text=True, timeout=20)

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from teleopdesign.passivity import polynomials as by_sympy
-from teleopdesign.passivity.fraction_polynomials import (
+from teleopdesign.passivity.checker.polynomials import (
     add,
     derivative,
     divide,

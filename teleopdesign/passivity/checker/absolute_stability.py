@@ -1,4 +1,4 @@
-"""Absolute stability of a rational two-port: Llewellyn's criterion with what it leaves out, exact.
+"""Absolute stability: Llewellyn's criterion with what it leaves out, for rational two-ports.
 
 Z(s) is a 2x2 matrix of rational functions with real coefficients, k_ij the residue of z_ij at a
 pole on the axis (at infinity: the coefficient of s), L = z12 z21. The claim: no pair of
@@ -37,7 +37,7 @@ s0 of L in the open half plane is a pole of z_in, which takes every value near i
 there and L has none, the inverse has it. 3: where it fails at w, a reactance and a damper at port 2
 give Re z_in < 0 beside j w. 4: where it fails at j w0, s = j w0 + d and Z2 of the size c/d, c
 small, give z_in ~ (k11 - k12 k21/(k22 + c))/d < 0. Then Z1 = -z_in(s), which a damper with a mass
-or a spring can be wherever abs(arg) <= arg s, so near the axis. `growing_mode.py` finds them.
+or a spring can be wherever abs(arg) <= arg s, so near the axis.
 Where 2 fails by a multiple pole on the axis alone, what passes through grows like time or faster,
 but no pole need lie in the open half plane: then nothing is claimed.
 """
@@ -48,8 +48,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isnan
+from typing import Any
 
-from .fraction_polynomials import (
+from .algebra import Quotient
+from .effort import bounded, need
+from .fields import expect_fields, read_matrix
+from .polynomials import (
     Polynomial,
     add,
     derivative,
@@ -60,6 +64,7 @@ from .fraction_polynomials import (
     is_free_of_growth,
     is_non_negative,
     is_positive_real,
+    listed,
     multiply,
     odd_part,
     real_part,
@@ -86,6 +91,24 @@ class Condition:
 
     def __str__(self) -> str:
         return self.name if self.holds else f"not so: {self.name}{self.where and ', ' + self.where}"
+
+
+def state_absolute_stability(c: dict[str, Any]) -> str:
+    """The statement of a certificate of this kind; Refused where a condition does not hold."""
+    expect_fields(c, "kind", "title", "digest", "impedance")
+    algebra, rows, text = read_matrix(c["impedance"], (2,))
+    one = Quotient(algebra.number(1), {})
+    below = [[algebra.over(one, e.below, {}) for e in row] for row in rows]
+    with bounded(algebra.left):
+        z11, z12, z21, z22 = (
+            coprime(listed(rows[i][j].above), listed(below[i][j])) for i in (0, 1) for j in (0, 1)
+        )
+        for condition in conditions((z11, z12, z21, z22)):
+            need(condition.holds, f"not shown to be absolutely stable: {condition}")
+    return (
+        f"Z(s) = [{text}] is absolutely stable: no positive-real Z1 and Z2 for which the inverse "
+        "(Z + diag(Z1, Z2))^-1 exists give it a pole with Re s > 0"
+    )
 
 
 def conditions(z: Entries) -> tuple[Condition, ...]:
@@ -233,41 +256,3 @@ def _at_infinity(z: Ratio) -> Fraction:
 
 def _balanced(k: Sequence[Fraction]) -> bool:
     return 2 * k[0] * k[3] - k[1] * k[2] >= abs(k[1] * k[2])
-
-
-def grows_between(z: Entries, held: tuple[Ratio, Ratio]) -> bool:
-    """Whether (Z + diag(held))^-1 has a pole in the open right half plane, by Routh's scheme.
-
-    False also where the inverse does not exist.
-    """
-    det, (z11, z22) = _closed(z, held)
-    if not det[0]:
-        return False
-    closed = (_product(one, (det[1], det[0])) for one in (z11, z[1], z[2], z22))
-    return not all(is_free_of_growth(q) for _, q in closed)
-
-
-def hidden_poles(z: Entries, held: tuple[Ratio, Ratio], k: int) -> Polynomial:
-    """Polynomial whose zeros are poles of z[k] (k = 1 or 2) and of that entry of the closed loop.
-
-    Those at which the loop's determinant is finite: the other port rests. Without a determinant: 1
-    """
-    det, _ = _closed(z, held)
-    if not det[0] or len(greatest_common_divisor(det[1], z[k][1])) > 1:
-        return _ONE
-    return greatest_common_divisor(_product(z[k], (det[1], det[0]))[1], z[k][1])
-
-
-def _closed(z: Entries, held: tuple[Ratio, Ratio]) -> tuple[Ratio, tuple[Ratio, Ratio]]:
-    """Determinant and diagonal of Z + diag(held)."""
-    z11, z22 = (_sum(one, end) for one, end in zip((z[0], z[3]), held, strict=True))
-    loop = _product(z[1], z[2])
-    return _sum(_product(z11, z22), ([-c for c in loop[0]], loop[1])), (z11, z22)
-
-
-def _sum(a: Ratio, b: Ratio) -> Ratio:
-    return coprime(add(multiply(a[0], b[1]), multiply(b[0], a[1])), multiply(a[1], b[1]))
-
-
-def _product(a: Ratio, b: Ratio) -> Ratio:
-    return coprime(multiply(a[0], b[0]), multiply(a[1], b[1]))

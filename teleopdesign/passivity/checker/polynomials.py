@@ -1,14 +1,16 @@
 """Polynomials as lists of Fractions, lowest power first: exact answers without any library.
 
-Each function stands on the Fractions of Python alone, so that a checker may carry this file. The
-zero polynomial is []. On the axis s = j w polynomials in s become polynomials in x = w^2.
+The zero polynomial is []. On the axis s = j w polynomials in s become polynomials in x = w^2. What
+is spent on products counts where `effort.bounded` says so.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from math import gcd, lcm
+
+from .effort import spend
 
 Polynomial = list[Fraction]
 #: relative error of a root that is written down for people; no decision rests on it
@@ -23,6 +25,12 @@ def polynomial(coefficients: Iterable[Fraction | int]) -> Polynomial:
     return p
 
 
+def listed(powers: Mapping[tuple[int, ...], Fraction]) -> Polynomial:
+    """From (power,) -> coefficient."""
+    highest = max(powers, default=(-1,))[0]
+    return polynomial(powers.get((k,), Fraction(0)) for k in range(highest + 1))
+
+
 def add(p: Polynomial, q: Polynomial, factor: Fraction | int = 1) -> Polynomial:
     """p + factor q."""
     n = max(len(p), len(q))
@@ -34,11 +42,12 @@ def multiply(*factors: Polynomial) -> Polynomial:
     """The product of all factors."""
     product = [Fraction(1)]
     for q in factors:
-        found = [Fraction(0)] * max(len(product) + len(q) - 1, 0)
+        spend(len(product) * len(q), product, q)
+        sums = [Fraction(0)] * max(len(product) + len(q) - 1, 0)
         for i, a in enumerate(product):
             for j, b in enumerate(q):
-                found[i + j] += a * b
-        product = polynomial(found)
+                sums[i + j] += a * b
+        product = polynomial(sums)
     return product
 
 
@@ -48,6 +57,7 @@ def divide(p: Polynomial, q: Polynomial) -> tuple[Polynomial, Polynomial]:
     for k in range(len(p) - len(q), -1, -1):
         ratio = quotient[k] = rest[k + len(q) - 1] / q[-1]
         if ratio:
+            spend(len(q), [ratio], q)
             for i, b in enumerate(q):
                 rest[k + i] -= ratio * b
     return polynomial(quotient), polynomial(rest[: len(q) - 1])
@@ -57,6 +67,7 @@ def small(p: Polynomial) -> Polynomial:
     """p times a positive number that makes its coefficients coprime integers: same signs."""
     if not p:
         return p
+    spend(len(p), p, p)
     below = lcm(*(c.denominator for c in p))
     whole = [(c * below).numerator for c in p]
     common = gcd(*whole)
@@ -78,6 +89,7 @@ def derivative(p: Polynomial) -> Polynomial:
 def value(p: Polynomial, at: Fraction | int) -> Fraction:
     """p at a rational point."""
     total = Fraction(0)
+    spend(len(p) * len(p), p, [Fraction(at)])
     for c in reversed(p):
         total = total * at + c
     return total
@@ -105,6 +117,7 @@ def is_hurwitz(p: Polynomial) -> bool:
         if not lower or lower[0] <= 0:
             return False
         ratio = upper[0] / lower[0]
+        spend(len(lower), [ratio], lower)
         below = lower + [Fraction(0)] * (len(upper) - len(lower))
         upper, lower = lower, [u - ratio * v for u, v in zip(upper[1:], below[1:], strict=True)]
     return True

@@ -1,0 +1,76 @@
+"""What a certificate proves, whatever its kind: the digest, then the rules of that kind."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable
+from typing import Any
+
+from .absolute_stability import state_absolute_stability
+from .effort import FILE, Refused, need
+from .fields import expect
+from .positive_real import state_positive_real
+from .storage import Storage
+
+#: kinds that are decided from the fields alone; a storage brings its proofs along
+_DECIDED: dict[str, Callable[[dict[str, Any]], str]] = {
+    "positive real": state_positive_real,
+    "absolute stability": state_absolute_stability,
+}
+KINDS = ("storage", *_DECIDED)
+
+
+def read(content: object) -> tuple[dict[str, Any], Storage | None]:
+    """A certificate without its proofs: its fields, and what it means if it is a storage."""
+    c: dict[str, Any] = expect(dict, content, "certificate")
+    for field in ("kind", "title", "digest"):
+        expect(str, c.get(field), field)
+    try:
+        body = {k: v for k, v in c.items() if k != "digest"}
+        text = json.dumps(body, sort_keys=True, allow_nan=False)
+    except (TypeError, ValueError, RecursionError):
+        raise Refused("refused: not plain data, or nested too deeply") from None
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    need(len(text) <= FILE and digest == c["digest"], "changed since it was written, or too long")
+    need(c["kind"] in KINDS, f"kind: expected {', '.join(KINDS[:-1])} or {KINDS[-1]}")
+    return c, Storage(c) if c["kind"] == "storage" else None
+
+
+def check(content: object) -> str:
+    """The statement that a certificate (data as read from JSON) proves; Refused where none."""
+    c, storage = read(content)
+    if storage is None:
+        return _DECIDED[c["kind"]](c)
+    storage.check_proofs()
+    return storage.statement()
+
+
+def load(path: str) -> object:
+    """The data of a JSON file; Refused where it is none."""
+
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        need(len(dict(pairs)) == len(pairs), "a field twice")
+        return dict(pairs)
+
+    try:
+        with open(path, "rb") as file:
+            data = file.read(FILE + 1)
+        need(len(data) <= FILE, "too long")
+        return json.loads(data.decode("utf-8"), object_pairs_hook=once)
+    except Refused:
+        raise
+    except (OSError, ValueError, RecursionError) as problem:
+        raise Refused(f"refused: no certificate: {type(problem).__name__}") from None
+
+
+def main(paths: list[str]) -> int:
+    """Print a line for each file; 1 if any proves nothing, 2 without files."""
+    status = 0 if paths else 2
+    for path in paths:
+        try:
+            line = f"proved: {check(load(path))}"
+        except Refused as problem:
+            line, status = str(problem), 1
+        print(f"{ascii(path)[1:-1]}: {line}")
+    return status

@@ -1,0 +1,52 @@
+"""Fields of a certificate: their types, names, numbers and texts, refused where they do not fit."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from typing import Any
+
+from .algebra import Algebra, Quotient
+from .effort import DIGITS, EFFORT, NAMES, need
+
+_NUMBER = re.compile(r"-?\d+(/0*[1-9]\d*)?", re.ASCII)
+
+
+def expect(kind: type, value: Any, what: str) -> Any:
+    need(type(value) is kind, f"{what}: expected {kind.__name__}, found {type(value).__name__}")
+    return value
+
+
+def read_words(value: Any, what: str) -> list[str]:
+    """Names that may be declared: plain ASCII words, each once."""
+    names: list[str] = expect(list, value, what)
+    for n in names:
+        fits = type(n) is str and len(n) <= NAMES and re.fullmatch(r"[A-Za-z]\w*", n, re.ASCII)
+        need(fits and "__" not in n, f"{what}: a name that is no plain word")
+    need(len(set(names)) == len(names) <= NAMES, f"{what}: a name twice, or too many")
+    return names
+
+
+def read_number(text: Any, what: str) -> Fraction:
+    fits = type(text) is str and len(text) <= DIGITS and _NUMBER.fullmatch(text)
+    need(fits, f"{what}: expected a fraction such as -1/2")
+    return Fraction(text)
+
+
+def expect_fields(c: dict[str, Any], *names: str) -> None:
+    need({*c} == {*names}, f"expected exactly the fields {', '.join(sorted(names))}")
+
+
+def flat(text: str) -> str:
+    return " ".join(text.split())
+
+
+def read_matrix(value: Any, sizes: tuple[int, ...]) -> tuple[Algebra, list[list[Quotient]], str]:
+    """The algebra in s, the entries of a square matrix of texts, and its text for a statement."""
+    rows = [expect(list, row, "impedance") for row in expect(list, value, "impedance")]
+    shape = " or ".join(f"{n}x{n}" for n in sizes)
+    fits = len(rows) in sizes and all(len(row) == len(rows) for row in rows)
+    need(fits, f"impedance: not {shape}")
+    algebra = Algebra(["s"], [EFFORT], divides=True)
+    z = [[algebra.read(e) for e in row] for row in rows]
+    return algebra, z, ", ".join("[" + ", ".join(map(flat, row)) + "]" for row in rows)
