@@ -14,7 +14,7 @@ nothing of any change that could be made: they begin anew wherever a small diffe
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -26,7 +26,7 @@ from ..measurement.filtering import Array
 from .compiled import compiled
 from .exponentials import head
 from .laws import Names, assignments, indented, source_of
-from .traced import Traced
+from .traced import Along, Traced
 
 #: part of a radian of the fastest mode that one sub-step may cover (at half a radian it swings
 #: 0.05 % too slowly, at one 0.8 %), the most sub-steps, and how much one may cover then
@@ -213,10 +213,10 @@ def _stiffness(effect: Effect) -> tuple[list[str], Any]:
     return names, sp.lambdify([[SIGNALS[n] for n in names], _parameters(effect)], matrix, "numpy")
 
 
-def _fastest(effect: Effect, given: Mapping[Any, Traced], parameters: Array) -> float:
+def _fastest(effect: Effect, along: Along, parameters: Array) -> float:
     """Largest rate (rad/s) of the states among themselves, at the ends of the measured motion."""
     names, slopes = _stiffness(effect)
-    signals = [given[SIGNALS[n]].value for n in names]
+    signals = [along.signals[SIGNALS[n]].value for n in names]
     ends = {int(end(row)) for row in signals for end in (np.argmin, np.argmax)} or {0}
     fastest = 0.0
     for end in ends:
@@ -230,10 +230,10 @@ def _fastest(effect: Effect, given: Mapping[Any, Traced], parameters: Array) -> 
 _RATES = {"position": "velocity", "velocity": "acceleration"}
 
 
-def _slope_of(name: str, given: Mapping[Any, Traced]) -> Array | None:
+def _slope_of(name: str, along: Along) -> Array | None:
     """Rate of a driving signal at the rows; None where a straight line is all that is known."""
     if name in _RATES:
-        return given[SIGNALS[_RATES[name]]].value
+        return along.signals[SIGNALS[_RATES[name]]].value
     return None
 
 
@@ -248,31 +248,24 @@ def _bends(drive: Array, slopes: Sequence[Array | None], step: float) -> Array:
     return bends
 
 
-def ode_scan(
-    effect: Effect,
-    given: Mapping[Any, Traced],
-    values: Mapping[Any, float],
-    columns: list[Any],
-    step: float,
-    rest: Sequence[Traced] = (),
-) -> dict[sp.Symbol, Traced]:
+def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[sp.Symbol, Traced]:
     """The effect's hidden states at the rows, with tangents, driven by the measured signals.
 
-    given: signals at the rows, which carry no tangents themselves;  step: s between rows
+    along: signals at the rows, which carry no tangents themselves
     rest: what corrections need: force at the rows that the effect and friction have to take up,
         and the least and largest that friction can; with tangents
     """
-    own = _parameters(effect)
-    parameters = np.array([values[s] for s in own], dtype=float)
+    own, given, step, columns = _parameters(effect), along.signals, along.step, along.columns
+    parameters = np.array([along.values[s] for s in own], dtype=float)
     symbols = [getattr(c, "symbol", c) for c in columns]  # of a probe: its strength
     places = np.array([symbols.index(s) if s in symbols else -1 for s in own], dtype=int)
-    fastest = _fastest(effect, given, parameters)
+    fastest = _fastest(effect, along, parameters)
     covered = step * fastest
     steps = int(np.clip(np.ceil(covered / MODE_STEP), 1, MOST_STEPS))
     corrected = rest if effect.corrections() else ()
     drivers = [given[SIGNALS[n]].value for n in _drivers(effect)]
     drive = np.ascontiguousarray([*drivers, *(r.value for r in corrected)])
-    bends = _bends(drive, [_slope_of(n, given) for n in _drivers(effect)], step)
+    bends = _bends(drive, [_slope_of(n, along) for n in _drivers(effect)], step)
     n, count = drive.shape[1], len(effect.states)
     moving = np.zeros((len(corrected), n, len(columns)))
     for i, r in enumerate(corrected):

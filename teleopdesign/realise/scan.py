@@ -7,7 +7,7 @@ phi_1(x) z + h phi_2(x) B. Tangents follow by differentiating the same expressio
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -21,7 +21,7 @@ from ..measurement.motion import Motion
 from .compiled import compiled
 from .exponentials import PHI, head
 from .laws import Names, assignments, indented
-from .traced import Traced
+from .traced import Along, Traced
 
 _HEAD = head("Generated from an effect's law; do not edit.") + PHI
 #: private name of the effect's one state
@@ -108,7 +108,7 @@ def stage(h, columns, {", ".join([*parameters, *(f"{n}_" for n in used)])}, dcom
 """
 
 
-def columns_of(effect: Effect, columns: list[Any]) -> Array:
+def columns_of(effect: Effect, columns: Sequence[Any]) -> Array:
     """Row of the tangents that belongs to each parameter of the effect; -1 where none does."""
     own = effect.symbols()
     return np.array(
@@ -116,53 +116,34 @@ def columns_of(effect: Effect, columns: list[Any]) -> Array:
     )
 
 
-def stage_scan(
-    effect: Effect,
-    given: Mapping[Any, Traced],
-    values: Mapping[Any, float],
-    columns: list[Any],
-    step: float,
-) -> dict[sp.Symbol, Traced]:
+def stage_scan(effect: Effect, along: Along) -> dict[sp.Symbol, Traced]:
     """State of an actuation stage, as its average over the hold of each row, with tangents."""
-    (_, mean) = _advanced(effect, given, given[SIGNALS["command"]], values, columns, step)
+    _, mean = _advanced(effect, along, along.signals[SIGNALS["command"]])
     (symbol,) = effect.state_symbols().values()
     return {symbol: mean}
 
 
-def driven_scan(
-    effect: Effect,
-    given: Mapping[Any, Traced],
-    values: Mapping[Any, float],
-    columns: list[Any],
-    step: float,
-) -> dict[sp.Symbol, Traced]:
+def driven_scan(effect: Effect, along: Along) -> dict[sp.Symbol, Traced]:
     """State that the measured motion drives, at the rows, with tangents.
 
     The motion at a row stands for the sample before it: without a lag the state is in step with it.
     """
-    (end, _) = _advanced(effect, given, given[SIGNALS["velocity"]], values, columns, step)
+    end, _ = _advanced(effect, along, along.signals[SIGNALS["velocity"]])
     (symbol,) = effect.state_symbols().values()
     later = np.minimum(np.arange(1, len(end.value) + 1), len(end.value) - 1)
     return {symbol: Traced(end.value[later], end.tangent[:, later])}
 
 
-def _advanced(
-    effect: Effect,
-    given: Mapping[Any, Traced],
-    command: Traced,
-    values: Mapping[Any, float],
-    columns: list[Any],
-    step: float,
-) -> tuple[Traced, Traced]:
+def _advanced(effect: Effect, along: Along, command: Traced) -> tuple[Traced, Traced]:
     """The effect's state at the rows and its average over the hold of each."""
     scan = compiled(_stage_source(effect), "stage")
     end, dend = np.empty_like(command.value), np.empty_like(command.tangent)
     mean, dmean = np.empty_like(command.value), np.empty_like(command.tangent)
     scan(
-        step,
-        columns_of(effect, columns),
-        *[values[s] for s in effect.symbols().values()],
-        *[given[SIGNALS[n]].value for n in _used(effect)],
+        along.step,
+        columns_of(effect, along.columns),
+        *[along.values[s] for s in effect.symbols().values()],
+        *[along.signals[SIGNALS[n]].value for n in _used(effect)],
         command.tangent,
         end,
         dend,
@@ -228,16 +209,11 @@ def shape(h, half_step, columns, position, velocity, direction, {", ".join(argum
 
 
 def shape_bounds(
-    effect: Effect,
-    motion: Motion,
-    given: Mapping[Any, Traced],
-    forward: Traced,
-    backward: Traced,
-    values: Mapping[Any, float],
-    columns: list[Any],
+    effect: Effect, motion: Motion, along: Along, *, forward: Traced, backward: Traced
 ) -> tuple[Traced, Traced]:
     """Bounds of the friction of a shape with one hidden state, driven by the measured motion.
 
+    forward, backward: friction level that way
     They coincide where the motion is told; where it is not, they lie apart by what half a step of
     the position means to the bristle, and no further than the level.
     """
@@ -246,14 +222,14 @@ def shape_bounds(
     low, high = np.empty_like(forward.value), np.empty_like(forward.value)
     dlow, dhigh = np.empty_like(forward.tangent), np.empty_like(forward.tangent)
     scan(
-        motion.sample_time,
+        along.step,
         0.5 * motion.step,
-        columns_of(effect, columns),
+        columns_of(effect, along.columns),
         motion.position,
         motion.velocity,
         motion.direction,
-        *[values[s] for s in effect.symbols().values()],
-        *[given[SIGNALS[n]].value for n in used],
+        *[along.values[s] for s in effect.symbols().values()],
+        *[along.signals[SIGNALS[n]].value for n in used],
         forward.value,
         forward.tangent,
         backward.value,

@@ -15,7 +15,7 @@ The residual is divided by both. Where a gain is next to none the command has no
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -27,8 +27,10 @@ from ..blocks import Body
 from ..effects import SIGNALS, Effect
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
-from .along_motion import Residual, Stage, level_along, residual_along, stages_along
-from .traced import Traced
+from .along_motion import Residual, measured_along, residual_along
+from .friction_along import level_along
+from .stages_along import Stage, stages_along
+from .traced import Along
 
 #: part of the gain that a law has where it has most, below which a sample is blind. A command ten
 #: times as uncertain as elsewhere is not told; of a larger part a ripple or a soft limit would be
@@ -86,34 +88,20 @@ def seen_at_command(body: Body, motion: Motion, along: Residual | None = None) -
 
     along: what `residual_along` says of this body and motion, if it is known already
     """
-    along = along or residual_along(body, motion)
-    values = body.numbers()
-    residual, blind = along.residual.value.copy(), np.zeros(len(motion.time), dtype=bool)
-    given = _signals(motion, along)
-    stages = stages_along(body, motion, _plain(motion.command), values, [])
-    ways = [_net(body, motion, given, values, _ACTING)]
-    ways += [_of_stage(stage, motion, values) for stage in reversed(stages)]
+    model = along or residual_along(body, motion)
+    residual, blind = model.residual.value.copy(), np.zeros(len(motion.time), dtype=bool)
+    known = measured_along(body, motion)
+    stages = stages_along(body, motion, known)
+    known = known.with_signals({_ACTING: known.constant(model.acting.value)})
+    ways = [_net(body, motion, known, _ACTING)]
+    ways += [_of_stage(stage, motion, known) for stage in reversed(stages)]
     for way in ways:
         residual, blind = _back(residual, blind, way, motion)
     passed = motion.interaction
     if passed.any():
-        passed = _through(passed, _net(body, motion, given, values, _INTERACTION), motion)
-    weak = bool(blind.any()) and _is_weak(body, motion, along, values)
+        passed = _through(passed, _net(body, motion, known, _INTERACTION), motion)
+    weak = bool(blind.any()) and _is_weak(body, motion, model, known)
     return SeenAtCommand(residual, blind, passed, weak)
-
-
-def _plain(y: Array) -> Traced:
-    return Traced(y, np.zeros((0, len(y))))
-
-
-def _signals(motion: Motion, along: Residual) -> dict[sp.Symbol, Array]:
-    names = ("time", "position", "velocity", "acceleration")
-    given = {SIGNALS[n]: np.asarray(getattr(motion, n), dtype=float) for n in names}
-    return given | {
-        SIGNALS["direction"]: motion.direction.astype(float),
-        _ACTING: along.acting.value,
-        _INTERACTION: motion.interaction,
-    }
 
 
 def _taking(body: Body, signal: sp.Symbol) -> list[Effect]:
@@ -142,16 +130,14 @@ def _function(expression: sp.Expr) -> tuple[tuple[sp.Symbol, ...], Any]:
     return symbols, sp.lambdify(symbols, expression, "numpy", cse=True)
 
 
-def _evaluated(
-    expression: sp.Expr, given: Mapping[sp.Symbol, Array], values: Mapping[Any, float], n: int
-) -> Array:
+def _evaluate(expression: sp.Expr, along: Along, n: int) -> Array:
     """An expression along the motion (n,); a hidden state that is not given is at rest."""
+    given, values = along.signals, along.values
     symbols, call = _function(expression)
     # arrays all: what is printed for a Max of a number and an array stacks the two
-    numbers = [given[s] if s in given else np.full(n, values.get(s, 0.0)) for s in symbols]
+    numbers = [given[s].value if s in given else np.full(n, values.get(s, 0.0)) for s in symbols]
     with np.errstate(all="ignore"):
-        found = np.broadcast_to(np.asarray(call(*numbers), dtype=float), (n,))
-    return np.asarray(found)
+        return np.asarray(np.broadcast_to(np.asarray(call(*numbers), dtype=float), (n,)))
 
 
 def _way(
@@ -159,28 +145,27 @@ def _way(
     law: sp.Expr,
     signal: sp.Symbol,
     delays: Mapping[sp.Symbol, float],
-    given: Mapping[sp.Symbol, Array],
-    values: Mapping[Any, float],
+    along: Along,
     motion: Motion,
     parts: int = 1,
 ) -> _Way:
     """The way from a signal through a law, with its hidden states and delayed copies."""
     n = len(motion.time)
 
-    def along(expression: sp.Expr) -> Array:
-        whole = _evaluated(expression, given, values, n * parts)
+    def at_rows(expression: sp.Expr) -> Array:
+        whole = _evaluate(expression, along, n * parts)
         return np.asarray(whole.reshape(n, parts).mean(axis=1))
 
     direct, by_state, between, driven = _slopes(effect, law, (signal, *delays))
-    now = np.array([along(e) for e in direct])
+    now = np.array([at_rows(e) for e in direct])
     late = np.array([0.0, *delays.values()])
     gain = now.sum(axis=0)
     omega = 2.0 * np.pi * motion.spectrum.frequency
     over = (now.mean(axis=1)[:, None] * np.exp(-1j * late[:, None] * omega)).sum(axis=0)
     if by_state:
-        out = np.array([along(e) for e in by_state])
-        rates = np.array([[along(e) for e in row] for row in between])
-        into = np.array([along(e) for e in driven])
+        out = np.array([at_rows(e) for e in by_state])
+        rates = np.array([[at_rows(e) for e in row] for row in between])
+        into = np.array([at_rows(e) for e in driven])
         gain = gain - np.einsum("in,ni->n", out, _solved(np.moveaxis(rates, 2, 0), into.T))
         frozen = 1j * omega[:, None, None] * np.eye(len(by_state)) - rates.mean(axis=2)
         reached = _solved(frozen, np.broadcast_to(into.mean(axis=1), frozen.shape[:2]))
@@ -197,35 +182,24 @@ def _solved(matrices: Array | NDArray[np.complex128], right: Array) -> Any:
         return np.full(right.shape, np.nan)
 
 
-def _of_stage(stage: Stage, motion: Motion, values: Mapping[Any, float]) -> _Way:
-    given = {symbol: signal.value for symbol, signal in stage.given.items()}
-    return _way(stage.effect, stage.law, _COMMAND, stage.delays, given, values, motion, stage.parts)
+def _of_stage(stage: Stage, motion: Motion, along: Along) -> _Way:
+    own = replace(along, signals=stage.given)
+    return _way(stage.effect, stage.law, _COMMAND, stage.delays, own, motion, stage.parts)
 
 
-def _net(
-    body: Body,
-    motion: Motion,
-    given: Mapping[sp.Symbol, Array],
-    values: Mapping[Any, float],
-    signal: sp.Symbol,
-) -> _Way:
+def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
     """From a force to what is left of it to move the body, less what it makes laws take away."""
     gain, over = np.ones(len(motion.time)), np.ones(len(motion.spectrum.frequency), dtype=complex)
     for effect in _taking(body, signal):
-        if effect.states and effect.is_absent(values):
+        if effect.states and effect.is_absent(along.values):
             continue
-        taken = _way(effect, effect.expression(), signal, {}, given, values, motion)
+        taken = _way(effect, effect.expression(), signal, {}, along, motion)
         gain, over = gain - taken.gain, over - taken.dynamics
     if body.level().has(signal):
-        level, speeds = level_along(body, motion, _plain_all(given), values)
-        hidden = {symbol: speed.value for symbol, speed in speeds.items()}
-        slope = _evaluated(sp.diff(level, signal), {**given, **hidden}, values, len(gain))
-        gain = gain - given[SIGNALS["direction"]] * slope
+        level, with_speeds = level_along(body, along)
+        slope = _evaluate(sp.diff(level, signal), with_speeds, len(gain))
+        gain = gain - along.signals[SIGNALS["direction"]].value * slope
     return _Way(gain, over, 0.0)
-
-
-def _plain_all(given: Mapping[sp.Symbol, Array]) -> dict[Any, Traced]:
-    return {symbol: _plain(signal) for symbol, signal in given.items()}
 
 
 def _back(
@@ -271,13 +245,13 @@ def _through(force: Array, way: _Way, motion: Motion) -> Array:
     return np.asarray(force * np.clip(varying, -1.0, 1.0))
 
 
-def _is_weak(body: Body, motion: Motion, along: Residual, values: Mapping[Any, float]) -> bool:
+def _is_weak(body: Body, motion: Motion, model: Residual, along: Along) -> bool:
     """Whether no command would slide the body as the model says it slid, most of the time.
 
     What it needs to slide is what friction and other forces take, without what accelerates it.
     """
     inertia = body.parameters["inertia"].value * motion.acceleration
-    needed = along.acting.value - along.residual.value - inertia
+    needed = model.acting.value - model.residual.value - inertia
     short: list[Array] = []
     largest = float(np.max(np.abs(motion.command)))
     for way in (1.0, -1.0):
@@ -285,8 +259,8 @@ def _is_weak(body: Body, motion: Motion, along: Residual, values: Mapping[Any, f
         best = np.full(len(motion.time), -np.inf)
         for part in COMMANDS:
             for sign in (1.0, -1.0):
-                held = _plain(np.full(len(motion.time), sign * part * largest))
-                stages = stages_along(body, motion, held, values, [])
+                held = along.constant(np.full(len(motion.time), sign * part * largest))
+                stages = stages_along(body, motion, along.with_signals({_COMMAND: held}))
                 force = stages[-1].output.value if stages else held.value
                 best = np.maximum(best, way * motion.at_rows(force))
         short.append((way * needed - best)[rows])

@@ -1,16 +1,19 @@
-"""Signals with their derivatives by parameters, and laws that carry both."""
+"""Signals with their derivatives by parameters, and laws that carry both.
+
+`Along` holds what laws are evaluated on along one motion, and what their tangents are by.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from ..effects import SIGNALS
+from ..effects import SIGNALS, Effect, Role, ordered
 from ..measurement.filtering import Array
 
 
@@ -54,29 +57,58 @@ class Probe:
 
 
 @dataclass(frozen=True)
-class Law:
+class Along:
+    """What laws are evaluated on along one motion of n samples.
+
+    signals: symbol -> signal with its tangents;  values: parameter symbol -> value (SI)
+    columns: the p parameters and probes that the tangents (p, n) are by;  step: s between samples
+    """
+
+    signals: Mapping[sp.Symbol, Traced]
+    values: Mapping[sp.Symbol, float]
+    columns: tuple[sp.Symbol | Probe, ...]
+    step: float
+
+    def with_signals(self, signals: Mapping[sp.Symbol, Traced]) -> Along:
+        """The same with signals more, or others."""
+        return replace(self, signals={**self.signals, **signals})
+
+    def constant(self, signal: Array) -> Traced:
+        """A signal (n,) that no parameter changes."""
+        return Traced(signal, np.zeros((len(self.columns), len(signal))))
+
+    def evaluate(self, law: sp.Expr) -> Traced:
+        """A law on these signals and values; hidden states carry tangents besides `TRACED`."""
+        more = tuple(s for s in self.signals if s not in _SIGNALS)
+        return law_of(law, (*_SIGNALS, *more), TRACED | set(more))(self)
+
+    def present(self, effects: Sequence[Effect], role: Role) -> list[Effect]:
+        """Effects of a role, without absent ones that have states: their laws may divide by 0."""
+        return [
+            e for e in ordered(tuple(effects), role) if not (e.states and e.is_absent(self.values))
+        ]
+
+
+@dataclass(frozen=True)
+class NumericLaw:
     """A sympy expression as a numpy function of signals and parameters, with its derivatives."""
 
     signals: tuple[sp.Symbol, ...]
     parameters: tuple[sp.Symbol, ...]
     call: Callable[..., Any]
 
-    def __call__(
-        self,
-        given: Mapping[sp.Symbol, Traced],
-        values: Mapping[sp.Symbol, float],
-        wrt: Sequence[Any],
-    ) -> Traced:
+    def __call__(self, along: Along) -> Traced:
+        given, values, columns = along.signals, along.values, along.columns
         arrays = [given[s].value for s in self.signals]
         n = len(next(iter(given.values())).value)
         with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
             out = self.call(*arrays, *[np.float64(values[p]) for p in self.parameters])
         value = np.broadcast_to(np.asarray(out[0], dtype=float), (n,))
-        tangent = np.zeros((len(wrt), n))
+        tangent = np.zeros((len(columns), n))
         for p, d in zip(self.parameters, out[1 + len(arrays) :], strict=True):
-            if p in wrt:
-                tangent[list(wrt).index(p)] += d
-        for j, column in enumerate(wrt):
+            if p in columns:
+                tangent[columns.index(p)] += d
+        for j, column in enumerate(columns):
             if isinstance(column, Probe) and column.symbol in self.parameters:
                 tangent[j] += self._slope(column, arrays, values)
         for s, d in zip(self.signals, out[1 : 1 + len(arrays)], strict=True):
@@ -94,6 +126,7 @@ class Law:
         return out[1 + len(arrays) + self.parameters.index(probe.symbol)]
 
 
+_SIGNALS = tuple(SIGNALS.values())
 #: signals that depend on parameters themselves
 TRACED = frozenset({SIGNALS["command"], SIGNALS["acting_force"], SIGNALS["level"]})
 
@@ -101,10 +134,10 @@ TRACED = frozenset({SIGNALS["command"], SIGNALS["acting_force"], SIGNALS["level"
 @lru_cache(maxsize=512)
 def law_of(
     expression: sp.Expr,
-    signals: tuple[sp.Symbol, ...] = tuple(SIGNALS.values()),
-    traced: frozenset[sp.Symbol] = TRACED,
-) -> Law:
-    """The expression as a Law; every symbol that is no signal is a parameter.
+    signals: tuple[sp.Symbol, ...],
+    traced: frozenset[sp.Symbol],
+) -> NumericLaw:
+    """The expression as a numpy function; every symbol that is no signal is a parameter.
 
     traced: the signals that carry tangents; the motion is given and carries none
     """
@@ -113,4 +146,4 @@ def law_of(
     gradients = [sp.diff(expression, s) if s in traced else sp.S(0) for s in used]
     gradients += [sp.diff(expression, p) for p in parameters]
     call = sp.lambdify([*used, *parameters], [expression, *gradients], "numpy", cse=True)
-    return Law(used, parameters, call)
+    return NumericLaw(used, parameters, call)

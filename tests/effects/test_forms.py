@@ -25,7 +25,7 @@ from teleopdesign.blocks import Body, Value
 from teleopdesign.effects import EFFECTS, SIGNALS, load_effect
 from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.ode_scan import ode_scan
-from teleopdesign.realise.traced import Traced
+from teleopdesign.realise.traced import Along, Traced
 
 STEP = 1e-6  # m, of the encoder
 RATE = 1000.0
@@ -148,7 +148,7 @@ def test_a_tip_swings_as_its_transfer_function_says_at_ten_samples_a_cycle(frequ
     none = np.zeros((0, len(t)))
     given = {SIGNALS[n]: Traced(y.real, none) for n, y in motion.items()}
     given[SIGNALS["interaction_force"]] = Traced(np.zeros(len(t)), none)
-    hidden = ode_scan(effect, given, values, [], 1 / rate)
+    hidden = ode_scan(effect, Along(given, values, (), 1 / rate))
     found = hidden[effect.state_symbols()["tip_position"]].value
     expected = ((k + 1j * w * c) / (k + 1j * w * c - m * w**2) * wave).real
     settled = slice(1000, None)  # 2 s; the resonance rings for 0.1 s

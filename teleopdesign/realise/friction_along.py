@@ -1,0 +1,90 @@
+"""Friction along a measured motion: its level, its bounds, and what balances between them.
+
+friction = shape(level, motion); where the position cannot tell a motion it is what balances
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from ..blocks import Body
+from ..effects import SIGNALS, ordered
+from ..measurement.motion import Motion
+from .balance import balanced
+from .scan import driven_scan, shape_bounds
+from .traced import Along, Traced
+
+_DIRECTION, _ACTING = SIGNALS["direction"], SIGNALS["acting_force"]
+
+
+def level_along(body: Body, along: Along) -> tuple[sp.Expr, Along]:
+    """The friction level on symbols; along: with the hidden speeds that the level follows."""
+    level = body.level()
+    for effect in ordered(body.effects, "friction_speed"):
+        if effect.is_absent(along.values):
+            level = level.subs(effect.expression(), sp.Abs(SIGNALS["velocity"]))
+        else:
+            along = along.with_signals(driven_scan(effect, along))
+    return level, along
+
+
+def bound_friction(
+    body: Body, level: sp.Expr, motion: Motion, along: Along
+) -> tuple[Traced, Traced]:
+    """Least and largest friction at each row; they coincide where the motion tells it."""
+    n = len(motion.time)
+    if level == 0:
+        none = along.constant(np.zeros(n))
+        return none, none
+
+    def towards(way: float) -> Traced:
+        this_way = along.with_signals({_DIRECTION: along.constant(np.full(n, way))})
+        size = this_way.evaluate(level)
+        size.tangent[:, size.value < 0] = 0.0
+        return Traced(np.maximum(size.value, 0.0), size.tangent)
+
+    forward = towards(1.0)
+    backward = towards(-1.0) if level.has(_DIRECTION) else forward
+    shapes = along.present(body.effects, "friction_shape")
+    if shapes:
+        return shape_bounds(shapes[0], motion, along, forward=forward, backward=backward)
+    return _bound_sliding(motion, forward, backward)
+
+
+def _bound_sliding(motion: Motion, forward: Traced, backward: Traced) -> tuple[Traced, Traced]:
+    """sgn v times the level where the motion is told, anything up to it where it is not."""
+    ahead, back = motion.direction > 0, motion.direction < 0
+    low = Traced(
+        np.where(ahead, forward.value, -backward.value),
+        np.where(ahead, forward.tangent, -backward.tangent),
+    )
+    high = Traced(
+        np.where(back, -backward.value, forward.value),
+        np.where(back, -backward.tangent, forward.tangent),
+    )
+    return low, high
+
+
+def balance_friction(motion: Motion, needed: Traced, low: Traced, high: Traced) -> Traced:
+    """Friction within its bounds that balances what is needed."""
+    if low is high:
+        return low
+    both = balanced(
+        needed.rows(),
+        low.rows(),
+        high.rows(),
+        bandwidth=motion.bandwidth,
+        sample_time=motion.sample_time,
+    )
+    return Traced(both[0], both[1:])
+
+
+def own_friction(level: sp.Expr, friction: Traced, along: Along) -> Traced:
+    """The part of the friction that the acting force itself makes."""
+    if not level.has(_ACTING):
+        return Traced(np.zeros_like(friction.value), np.zeros_like(friction.tangent))
+    rest = level.subs(_ACTING, 0)
+    share = along.evaluate(sp.Piecewise((1 - rest / level, level > 0), (0, True)))
+    tangent = friction.tangent * share.value + friction.value * share.tangent
+    return Traced(friction.value * share.value, tangent)

@@ -1,0 +1,100 @@
+"""The actuation along a measured motion: from the recorded command to the force that acts.
+
+Each stage turns averages over the hold of a row into averages, over parts of it where a command
+acts late: that turns edges of the staircase into something between the rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import sympy as sp
+
+from ..blocks import Body
+from ..effects import SIGNALS, Effect, delayed
+from ..measurement.motion import Motion
+from .scan import stage_scan
+from .traced import Along, Traced, through
+
+#: what a stage may use of the motion
+_MOTION = ("time", "position", "velocity", "acceleration")
+_COMMAND = SIGNALS["command"]
+#: parts of a row over which a command that acts late is averaged
+PARTS = 4
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A stage of the actuation along a motion: what goes in, what comes out, hidden states between.
+
+    law: on symbols, its delayed signals as symbols of their own;  delays: those symbols -> s
+    given: symbols -> signals over `parts` equal parts of each row;  output: as long
+    """
+
+    effect: Effect
+    law: sp.Expr
+    delays: Mapping[sp.Symbol, float]
+    given: Mapping[sp.Symbol, Traced]
+    parts: int
+    output: Traced
+
+
+def acting_along(body: Body, motion: Motion, along: Along) -> Traced:
+    """Acting force at the rows; along: at the rows, the command among its signals."""
+    stages = stages_along(body, motion, along)
+    return through(motion.at_rows, stages[-1].output if stages else along.signals[_COMMAND])
+
+
+def stages_along(body: Body, motion: Motion, along: Along) -> list[Stage]:
+    """Each stage of the actuation, on averages over the hold of a row, or over parts of it.
+
+    along: at the rows, the command among its signals
+    """
+    effects = along.present(body.effects, "actuation")
+    parts = PARTS if any(e.states or e.expression().has(delayed) for e in effects) else 1
+    command = along.signals[_COMMAND]
+    signal = Traced(np.repeat(command.value, parts), np.repeat(command.tangent, parts, axis=1))
+    signals = {
+        SIGNALS[name]: along.constant(np.repeat(getattr(motion, name), parts)) for name in _MOTION
+    }
+    fine = replace(along, signals=signals, step=along.step / parts)
+    stages: list[Stage] = []
+    for effect in effects:
+        stages.append(_stage(effect, fine.with_signals({_COMMAND: signal}), parts))
+        signal = stages[-1].output
+    return stages
+
+
+def _stage(effect: Effect, along: Along, parts: int) -> Stage:
+    """A stage of the actuation, as averages over each step of its command."""
+    law = effect.expression()
+    delays: dict[sp.Symbol, float] = {}
+    late: dict[sp.Symbol, Traced] = {}
+    for i, call in enumerate(sorted(law.atoms(delayed), key=str)):
+        symbol = sp.Symbol(f"delayed_{i}", real=True)
+        law = law.subs(call, symbol)
+        late[symbol] = _shift(along, call.args[1])
+        delays[symbol] = max(float(call.args[1].subs(along.values)), 0.0)
+    along = along.with_signals(late)
+    if effect.states:
+        along = along.with_signals(stage_scan(effect, along))
+    return Stage(effect, law, delays, along.signals, parts, along.evaluate(law))
+
+
+def _shift(along: Along, delay: sp.Expr) -> Traced:
+    """The held command some time earlier, averaged over each hold: exact, linear between rows."""
+    signal, step = along.signals[_COMMAND], along.step
+    tau = float(delay.subs(along.values))
+    whole, part = divmod(max(tau, 0.0) / step, 1.0)
+    n = signal.value.shape[-1]
+    late = np.clip(np.arange(n) - int(whole), 0, None)
+    later = np.clip(late - 1, 0, None)
+    value = (1 - part) * signal.value[late] + part * signal.value[later]
+    tangent = (1 - part) * signal.tangent[:, late] + part * signal.tangent[:, later]
+    slope = (signal.value[later] - signal.value[late]) / step
+    for i, column in enumerate(along.columns):
+        if isinstance(column, sp.Symbol) and delay.has(column):
+            tangent[i] += slope * float(sp.diff(delay, column).subs(along.values))
+    return Traced(value, tangent)
