@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..passivity import Claim
 from ..plain_data import plain
@@ -11,7 +11,9 @@ from ..quantity import unit_of
 from .chosen import Chosen
 from .felt_impedance import FeltImpedance
 from .force_feedback import Loop
-from .outcome import Design
+
+if TYPE_CHECKING:
+    from .outcome import Design  # a design writes itself through this module
 
 
 def design_data(design: Design) -> dict[str, Any]:
@@ -48,8 +50,8 @@ def design_data(design: Design) -> dict[str, Any]:
         "notes": list(design.notes),
         "diagram_toml": design.to_toml(),
     }
-    found: dict[str, Any] = plain(content)
-    return found
+    data: dict[str, Any] = plain(content)
+    return data
 
 
 def _friction(design: Design) -> dict[str, Any] | None:
@@ -62,20 +64,20 @@ def _friction(design: Design) -> dict[str, Any] | None:
 
 def _impedance(felt: FeltImpedance) -> dict[str, Any]:
     """Size (dB) and phase (deg) by case over frequency (Hz), by how they are known."""
-    found: dict[str, Any] = {"missing": list(felt.missing)}
+    data: dict[str, Any] = {"missing": list(felt.missing)}
     for how, one in (("simulated", felt.simulated), ("predicted", felt.predicted)):
         if one is None:
             continue
-        found["frequency"] = one.data["frequency"].values.tolist()
-        found["amplitude"] = one.data["amplitude"].values.tolist()
-        found[how] = {
+        data["frequency"] = one.data["frequency"].values.tolist()
+        data["amplitude"] = one.data["amplitude"].values.tolist()
+        data[how] = {
             str(case): {
                 "decibel": one.decibel.sel(case=case).values.tolist(),
                 "phase": one.phase.sel(case=case).values.tolist(),
             }
             for case in one.data["case"].values
         }
-    return found
+    return data
 
 
 def _chosen(chosen: Chosen | None) -> dict[str, Any] | None:

@@ -20,11 +20,13 @@ from ..realise.reach import Reach
 from ..simulate import Sampling
 from .assumptions import Assumptions
 from .chosen import Chosen
+from .design_data import design_data
 from .felt_impedance import FeltImpedance
 from .force_feedback import Loop
 from .prediction import Prediction
 from .residual_friction import ResidualFriction
 from .sampling import sampling_of
+from .sentences import design_text
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -106,8 +108,6 @@ class Design(ByValue):
 
     def as_dict(self) -> dict[str, Any]:
         """The design as plain data; SI units."""
-        from .design_data import design_data
-
         return design_data(self)
 
     def to_json(self, path: str | Path) -> None:
@@ -115,8 +115,6 @@ class Design(ByValue):
         write_json(path, self.as_dict())
 
     def __repr__(self) -> str:
-        from .sentences import design_text
-
         return design_text(self)
 
 

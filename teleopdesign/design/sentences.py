@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 import textwrap
+from typing import TYPE_CHECKING
 
 from ..quantity import unit_of
-from .outcome import Design
+
+if TYPE_CHECKING:
+    from .outcome import Design  # a design prints itself through this module
 
 WIDTH = 100
 #: every so many of the residual's speeds are printed: half a decade apart
@@ -131,10 +134,10 @@ def _impedance(design: Design) -> list[str]:
 def _residuals(design: Design) -> list[str]:
     """Residual friction of the four cases in slow motion, at some speeds."""
     unit, speed = unit_of("force", design.body.axis), unit_of("velocity", design.body.axis)
-    found = design.residual
-    head = "".join(f"{v:>11.3g}" for v in found.speeds[::SHOWN])
+    residual = design.residual
+    head = "".join(f"{v:>11.3g}" for v in residual.speeds[::SHOWN])
     lines = [f"friction left in slow steady motion, {unit}", f"  at {speed:<6}{head}"]
-    for case, row in found.rows.items():
+    for case, row in residual.rows.items():
         lines.append(f"  {case:<9}" + "".join(f"{x:>11.3g}" for x in row[::SHOWN]))
     return lines
 

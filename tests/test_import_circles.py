@@ -1,0 +1,106 @@
+"""No module of the package imports itself by way of others, at its top or inside a function."""
+
+import ast
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import teleopdesign as td
+
+ROOT = Path(td.__file__).parent
+PACKAGE = ROOT.name
+#: what every folder may ask to draw its results, from inside a method named `plot`
+PLOT = f"{PACKAGE}.plot"
+#: (module, module that it must stop importing): circles that still stand; to be emptied as they are
+#: opened, never to be added to
+KNOWN: set[tuple[str, str]] = {
+    ("teleopdesign.diagnose.answer", "teleopdesign.diagnose.diagnosis"),
+    ("teleopdesign.diagnose.probability", "teleopdesign.diagnose.diagnosis"),
+    ("teleopdesign.diagnose.support", "teleopdesign.diagnose.diagnosis"),
+    ("teleopdesign.diagnose.open_questions", "teleopdesign.diagnose.diagnosis"),
+}
+
+
+def module_name(path, root):
+    parts = [root.name, *path.relative_to(root).with_suffix("").parts]
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def runtime_nodes(node):
+    """Every node below, without the blocks that only type checkers read."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.dump(child.test):
+            continue
+        yield child
+        yield from runtime_nodes(child)
+
+
+def targets(node, module, is_package):
+    """Full names that an import statement may stand for."""
+    if isinstance(node, ast.Import):
+        return [a.name for a in node.names]
+    if not isinstance(node, ast.ImportFrom):
+        return []
+    base = node.module or ""
+    if node.level:
+        parts = module.split(".")
+        kept = parts[: len(parts) - node.level + is_package]
+        base = ".".join([*kept, *([node.module] if node.module else [])])
+    return [f"{base}.{a.name}" for a in node.names]
+
+
+def imports_of(root):
+    """Module -> modules of the same package that it imports, at any depth of its code."""
+    paths = {module_name(p, root): p for p in root.rglob("*.py")}
+    graph = {}
+    for module, path in paths.items():
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        names = [
+            name
+            for node in runtime_nodes(tree)
+            for name in targets(node, module, path.name == "__init__.py")
+        ]
+        # `from .folder import name` needs the module `name`, or the folder that defines `name`
+        modules = {n if n in paths else n.rpartition(".")[0] for n in names}
+        graph[module] = (modules & paths.keys()) - {module}
+    return graph
+
+
+def is_drawing(module):
+    return module == PLOT or module.startswith(f"{PLOT}.")
+
+
+def is_plot_method(module, imported):
+    """A result's `plot` method: the one import that may go against the direction."""
+    return is_drawing(imported) and not is_drawing(module)
+
+
+def circle_in(graph):
+    """One circle of imports, first module = last module; [] where there is none."""
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return error.args[1]
+    return []
+
+
+def test_no_module_imports_itself_by_way_of_others():
+    graph = {
+        module: {m for m in modules if (module, m) not in KNOWN and not is_plot_method(module, m)}
+        for module, modules in imports_of(ROOT).items()
+    }
+    assert len(graph) > 100
+    assert circle_in(graph) == []
+
+
+def test_an_import_inside_a_function_counts_and_one_for_type_checkers_does_not(tmp_path):
+    root = tmp_path / "package"
+    root.mkdir()
+    (root / "__init__.py").write_text("from .first import one\n")
+    (root / "first.py").write_text("from . import second\n\ndef one(): pass\n")
+    second = root / "second.py"
+    second.write_text("def two():\n    from .first import one\n    return one()\n")
+    assert set(circle_in(imports_of(root))) == {"package.first", "package.second"}
+    second.write_text(
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from .first import one\n"
+    )
+    assert circle_in(imports_of(root)) == []

@@ -1,0 +1,161 @@
+"""To add an effect, a control law, a diagram or a command is to add one file, nothing else."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import teleopdesign as td
+
+ROOT = Path(td.__file__).parent
+
+EFFECT = '''"""Throw-away: a force in proportion to the cube of velocity.
+
+    F = c v^3
+
+Holds nowhere; a test adds it.
+"""
+
+from ._effect import Effect, Parameter
+
+
+def law(now, p):
+    return p.cubic_damping * now.velocity**3
+
+
+EFFECT = Effect(
+    role="force",
+    energy="dissipates",
+    law=law,
+    linear=True,
+    parameters={"cubic_damping": Parameter("damping", "c: force per velocity cubed")},
+    absent={"cubic_damping": 0.0},
+    source="a test",
+)
+'''
+
+CONTROLLER = '''"""Throw-away: a force in proportion to velocity."""
+
+from ..effects import Parameter
+from ._controller import ControlLaw
+
+
+def law(now, p):
+    return p.gain * now.velocity
+
+
+CONTROLLER = ControlLaw(
+    law=law,
+    linear=True,
+    parameters={"gain": Parameter("damping", "force per velocity")},
+    source="a test",
+)
+'''
+
+WITH_CONTROLLER = """[diagram]
+kind = "haptic interface"
+
+[blocks.Z_M]
+
+[blocks.C]
+law = "throw_away"
+parameters = { gain = 1.5 }
+"""
+
+DIAGRAM = '''"""Throw-away: a haptic interface in free space."""
+
+from ..haptic_interface import haptic_interface
+from ..wiring import Diagram
+
+
+def diagram() -> Diagram:
+    return haptic_interface()
+'''
+
+COMMAND = '''"""greet whoever runs a test"""
+
+
+def add(parser):
+    """Arguments of the command."""
+    parser.add_argument("--loudly", action="store_true", help="greet in capitals")
+
+
+def run(options):
+    """Greet."""
+    print("HELLO" if options.loudly else "hello")
+    return 0
+'''
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory):
+    """A folder that holds a copy of the package."""
+    folder = tmp_path_factory.mktemp("one_file_each")
+    shutil.copytree(ROOT, folder / ROOT.name, ignore=shutil.ignore_patterns("__pycache__"))
+    return folder
+
+
+@pytest.fixture
+def add_file(copy):
+    """Adds one file to the copy; the file goes again after the test."""
+    added = []
+
+    def add(path, text):
+        added.append(copy / ROOT.name / path)
+        assert not added[-1].exists()
+        added[-1].write_text(text, encoding="utf-8")
+
+    yield add
+    for path in added:
+        path.unlink()
+
+
+def run(copy, *arguments):
+    """What `teleopdesign` of the copy prints for these arguments; it must succeed."""
+    done = finished(copy, *arguments)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def finished(copy, *arguments):
+    """The finished process of `teleopdesign` of the copy with these arguments."""
+    return subprocess.run(
+        [sys.executable, "-m", "teleopdesign.cli", *arguments],
+        cwd=copy,
+        env=os.environ | {"PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+    )
+
+
+def test_an_effect_is_one_file(copy, add_file):
+    add_file("effects/throw_away.py", EFFECT)
+    page = run(copy, "effects", "throw_away")
+    assert page.startswith("throw_away  (force)")
+    assert "cubic_damping" in page
+    assert "throw_away" in run(copy, "effects")
+
+
+def test_a_control_law_is_one_file(copy, add_file, tmp_path):
+    path = tmp_path / "diagram.toml"
+    path.write_text(WITH_CONTROLLER, encoding="utf-8")
+    assert "throw_away" in finished(copy, "derive", str(path)).stderr  # no such law yet
+    add_file("controllers/throw_away.py", CONTROLLER)
+    assert "R_MBC = C L" in run(copy, "derive", str(path))
+
+
+def test_a_diagram_is_one_file(copy, add_file):
+    add_file("diagrams/shipped/throw_away.py", DIAGRAM)
+    assert "Z_M" in run(copy, "derive", "throw-away")
+
+
+def test_a_command_is_one_file(copy, add_file):
+    add_file("commands/throw_away.py", COMMAND)
+    assert "--loudly" in run(copy, "throw-away", "--help")
+    assert run(copy, "throw-away", "--loudly") == "HELLO\n"
+
+
+# Theorems become one file each in passivity/theorems; a test like those above belongs here then.
