@@ -95,7 +95,7 @@ def dahl_cancellation(
         why = f"{STIFFNESS_FRACTION:g} of the stiffest with sigma_D^2/f_D <= sigma_p^2/f_C over "
         why += f"the whole interval, sigma_p >= {softest:.4g}, f_C <= {most:.4g} (P43, P44)"
         limits = {why: STIFFNESS_FRACTION * passive}
-        from ..passivity.delayed_compensation import SINC_LEAST
+        from ..passivity.theorems.delayed_compensation import SINC_LEAST
 
         if late > 0:
             needed = damping / (float(SINC_LEAST) * late)

@@ -21,7 +21,7 @@ from ..passivity import (
     positive_real,
 )
 from ..passivity.identified import effects_left_open, of_whole_device
-from ..passivity.lugre import beside_bristle_damping
+from ..passivity.theorems.lugre import beside_bristle_damping
 from ..realise.damping_interval import damping_interval, small_motion_damping
 from ..realise.friction_interval import FrictionInterval, value_interval
 from ..realise.reach import Reach

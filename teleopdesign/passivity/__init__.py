@@ -11,32 +11,15 @@ A refuted claim holds a motion that gives out energy: `claim.record.replay()`.
 
 from ..arguments import check_arguments
 from .available_storage import AvailableStorage, available_storage
-from .certificate import Certificate, read_certificate
-from .claim import Claim, Evidence, Proof, Refutation, Unknown
-from .compliant_transmission import any_environment, free_motion, free_motion_margin
-from .counterexample import (
-    Given,
-    SimulatedMotion,
-    confirmed_motion,
-    given_out,
-    search_counterexample,
-)
-from .delayed_compensation import delayed_small_motion, given_out_late, inertia_given_out
-from .delayed_coupling import delayed_spring
-from .delayed_inertia import cancelled_inertia, damping_given_out, largest_passive_inertia
+from .claims.certificate import Certificate, read_certificate
+from .claims.claim import Claim, Evidence, Proof, Refutation, Unknown
+from .claims.counterexample_files import read_record, write_record
+from .claims.second_opinion import SecondOpinion, second_opinion
 from .diagram_claims import DiagramClaims, Search, diagram_claims
-from .friction_compensation import (
-    bounded_compensation,
-    dahl_compensation,
-    largest_passive_level,
-    largest_ratio,
-    onset_amplitude,
-    self_motion_speed,
-)
-from .hand_port import hand_port
-from .impedance import Impedance, impedance
-from .kyp import Kyp, kyp, storage_function
-from .lugre import lugre_passivity
+from .linear.hand_port import hand_port
+from .linear.impedance import Impedance, impedance
+from .linear.kyp import Kyp, kyp, storage_function
+from .linear.positive_real import Excess, damping_excess, mobility_excess, positive_real
 from .observer import (
     PassivityControlled,
     PortEnergy,
@@ -46,18 +29,42 @@ from .observer import (
     passivity_controlled,
 )
 from .ports import Port, ports
-from .positive_real import Excess, damping_excess, mobility_excess, positive_real
-from .quantised_spring import quantised_spring, stiffest_spring
-from .rate_independent import Coulomb, Cycle, Dahl, DahlBehindSpring, Spring, symmetric_cycle
-from .record import read_record, write_record
+from .rate_independent import (
+    Coulomb,
+    Cycle,
+    Dahl,
+    DahlBehindSpring,
+    Spring,
+    symmetric_cycle,
+)
 from .regions import Region, region
-from .sampled_compensation import Trembling, sampled_compensation
-from .sampled_data import required_damping, sampled_coupling, sampled_passivity
-from .second_opinion import SecondOpinion, second_opinion
-from .stroke_motion import Strokes
-from .two_port import FrequencyMargins, TwoPort, over_frequency, teleoperator, two_port
-from .two_port_claims import absolutely_stable, passive
-from .velocity_compensation import SteadyStrokes, velocity_compensation
+from .search.by_simulation import (
+    Given,
+    SimulatedMotion,
+    confirmed_motion,
+    given_out,
+    search_counterexample,
+)
+from .search.stroke_motion import Strokes
+from .theorems.compliant_transmission import any_environment, free_motion, free_motion_margin
+from .theorems.delayed_compensation import delayed_small_motion, given_out_late, inertia_given_out
+from .theorems.delayed_coupling import delayed_spring
+from .theorems.delayed_inertia import cancelled_inertia, damping_given_out, largest_passive_inertia
+from .theorems.friction_compensation import (
+    bounded_compensation,
+    dahl_compensation,
+    largest_passive_level,
+    largest_ratio,
+    onset_amplitude,
+    self_motion_speed,
+)
+from .theorems.lugre import lugre_passivity
+from .theorems.quantised_spring import quantised_spring, stiffest_spring
+from .theorems.sampled_compensation import Trembling, sampled_compensation
+from .theorems.sampled_data import required_damping, sampled_coupling, sampled_passivity
+from .theorems.velocity_compensation import SteadyStrokes, velocity_compensation
+from .two_port.claims import absolutely_stable, passive
+from .two_port.two_port import FrequencyMargins, TwoPort, over_frequency, teleoperator, two_port
 from .z_width import WALL_DAMPING, WALL_STIFFNESS, ZWidth, z_width
 
 __all__ = [

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from ..by_value import ByValue
 from ..errors import ModelError
-from .claim import Evidence
+from .claims.claim import Evidence
 from .rate_independent import Coulomb, Dahl, Element
 
 Array = NDArray[np.float64]

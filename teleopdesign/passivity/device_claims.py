@@ -15,16 +15,16 @@ from ..diagrams import haptic_interface
 from ..effects import EFFECTS
 from ..errors import ModelError
 from ..simulate import Sampling
-from .claim import Claim, Evidence, Refutation, Unknown
-from .counterexample import SimulatedMotion, confirmed_motion, search_counterexample
-from .friction_compensation import bounded_compensation, dahl_compensation
+from .claims.claim import Claim, Evidence, Refutation, Unknown
 from .identified import IdentifiedDevice, of_whole_device
-from .lugre import beside_bristle_damping, lugre_passivity
-from .quantised_spring import quantised_spring
 from .rate_independent import Coulomb, Cycle, Dahl
-from .sampled_compensation import sampled_compensation
-from .sampled_data import Z, sampled_passivity
-from .stroke_motion import Strokes
+from .search.by_simulation import SimulatedMotion, confirmed_motion, search_counterexample
+from .search.stroke_motion import Strokes
+from .theorems.friction_compensation import bounded_compensation, dahl_compensation
+from .theorems.lugre import beside_bristle_damping, lugre_passivity
+from .theorems.quantised_spring import quantised_spring
+from .theorems.sampled_compensation import sampled_compensation
+from .theorems.sampled_data import Z, sampled_passivity
 
 #: N/m; gives a scale of length to friction that was identified as ideal
 _RIGID = 1e5

@@ -17,10 +17,10 @@ from ..arguments import checked
 from ..diagrams import Diagram
 from ..errors import ModelError
 from ..notebook import html_table
-from .claim import Claim, Proof, Refutation, Unknown
-from .counterexample import Computer, SimulatedMotion, search_counterexample
+from .claims.claim import Claim, Proof, Refutation, Unknown
 from .device_claims import Settled, device_claims, replay_cycle
 from .friction_pairs import FrictionPair, friction_pairs, pair_claims
+from .linear.positive_real import positive_real
 from .ports import (
     Port,
     impedance_matrix,
@@ -31,10 +31,10 @@ from .ports import (
     without_friction,
     without_holding,
 )
-from .positive_real import positive_real
 from .rate_independent import Cycle
-from .two_port import two_port
-from .two_port_claims import absolutely_stable, passive
+from .search.by_simulation import Computer, SimulatedMotion, search_counterexample
+from .two_port.claims import absolutely_stable, passive
+from .two_port.two_port import two_port
 
 #: topics that settle all ports at once
 WHOLE = ("all ports, any motion", "the port, any motion", "both ports, any motion")

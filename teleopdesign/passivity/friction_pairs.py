@@ -8,10 +8,10 @@ from ..blocks import Body, Value
 from ..controllers import Controller, Stage
 from ..diagrams import Control, Diagram, Moving
 from ..errors import ModelError
-from .claim import Claim, Unknown
+from .claims.claim import Claim, Unknown
 from .device_claims import about_device, dahl_claim
-from .friction_compensation import bounded_compensation
 from .identified import IdentifiedDevice, identified
+from .theorems.friction_compensation import bounded_compensation
 
 #: laws whose force is never more than their `level`, whatever the motion
 BOUNDED = ("coulomb", "dahl", "smoothed_coulomb")

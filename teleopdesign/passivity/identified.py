@@ -24,7 +24,7 @@ from ..realise.friction_interval import (
 )
 from ..realise.reach import ANY_MOTION, Reach
 from ..realise.simulated import without_absent
-from .claim import Claim, Unknown
+from .claims.claim import Claim, Unknown
 
 _PRESLIDING = EFFECTS["presliding"]
 #: roles of the friction level: their laws are in the interval of the level, whatever they do

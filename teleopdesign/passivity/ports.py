@@ -20,7 +20,7 @@ from ..errors import ModelError
 from ..realise.lti import S, linear_blocks
 from ..realise.simulated import without_absent
 from ..realise.tips import with_tips
-from .impedance import exact
+from .linear.impedance import exact
 
 #: blocks that hold a port, by the names that the package gives them: not part of what is judged
 HOLDING = ("Z_H", "Z_E")

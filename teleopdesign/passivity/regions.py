@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..by_value import ByValue
-from .claim import Claim
+from .claims.claim import Claim
 
 
 @dataclass(frozen=True, eq=False)

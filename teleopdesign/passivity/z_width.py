@@ -19,9 +19,9 @@ import sympy as sp
 from ..by_value import ByValue
 from ..errors import ModelError
 from ..finding import Graph, Series
-from .impedance import exact
-from .positive_real import is_positive_real
-from .sampled_data import Z, travel_operator
+from .linear.impedance import exact
+from .linear.positive_real import is_positive_real
+from .theorems.sampled_data import Z, travel_operator
 
 WALL_STIFFNESS = sp.Symbol("K")
 WALL_DAMPING = sp.Symbol("B")

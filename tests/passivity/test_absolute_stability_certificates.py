@@ -10,8 +10,8 @@ import pytest
 import sympy as sp
 from passivity.random_two_ports import KINDS, attack, random_two_port
 
-from teleopdesign.passivity.certificate import absolute_stability_certificate
 from teleopdesign.passivity.checker import Refused, check
+from teleopdesign.passivity.claims.certificate import absolute_stability_certificate
 
 TANK = "s/(s**2 + 2)"
 TRIES = 60  # as in test_two_port_attack

@@ -301,7 +301,7 @@ def test_a_certificate_cannot_run_code(text, certificates):
 def test_z3_confirms_what_the_identities_show(certificates):
     """The same inequalities without the identities; see `second_opinion`."""
     pytest.importorskip("z3", reason="the extra `proof` is not installed")
-    from teleopdesign.passivity.second_opinion import second_opinion
+    from teleopdesign.passivity.claims.second_opinion import second_opinion
 
     for name, certificate in certificates.items():
         if certificate.kind == "storage":
@@ -310,7 +310,7 @@ def test_z3_confirms_what_the_identities_show(certificates):
 
 def test_z3_finds_values_that_break_a_claim_without_its_condition(certificates):
     pytest.importorskip("z3", reason="the extra `proof` is not installed")
-    from teleopdesign.passivity.second_opinion import second_opinion
+    from teleopdesign.passivity.claims.second_opinion import second_opinion
 
     for condition in ("covered", "soft_enough"):
         forged = copy.deepcopy(dict(certificates["presliding 0"].content))
@@ -322,7 +322,7 @@ def test_z3_finds_values_that_break_a_claim_without_its_condition(certificates):
 
 @pytest.mark.parametrize("expression", [sp.Float(0.5), sp.sqrt(2), sp.exp(S), 0.1 * S, sp.oo])
 def test_only_rational_expressions_are_written(expression):
-    from teleopdesign.passivity.certificate import positive_real_certificate
+    from teleopdesign.passivity.claims.certificate import positive_real_certificate
 
     with pytest.raises(ModelError, match="expected a rational expression"):
         positive_real_certificate("not rational", [[expression]])

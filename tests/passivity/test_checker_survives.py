@@ -31,9 +31,9 @@ from teleopdesign.passivity import (
     quantised_spring,
     read_record,
 )
-from teleopdesign.passivity.certificate import Certificate
 from teleopdesign.passivity.checker import Refused, check
-from teleopdesign.passivity.second_opinion import second_opinion
+from teleopdesign.passivity.claims.certificate import Certificate
+from teleopdesign.passivity.claims.second_opinion import second_opinion
 from teleopdesign.realise.lti import S
 
 

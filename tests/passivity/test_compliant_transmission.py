@@ -13,7 +13,13 @@ from teleopdesign.passivity import (
     read_record,
     write_record,
 )
-from teleopdesign.passivity.rate_independent import Coulomb, Cycle, Dahl, Spring, symmetric_cycle
+from teleopdesign.passivity.rate_independent import (
+    Coulomb,
+    Cycle,
+    Dahl,
+    Spring,
+    symmetric_cycle,
+)
 
 JOINT = {"motor_level": 1.0, "link_level": 2.0, "transmission_stiffness": 1e4}
 

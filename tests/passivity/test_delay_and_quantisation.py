@@ -98,7 +98,7 @@ def test_small_motion_with_a_late_compensator(damping, compensator, status):
 def test_the_constant_is_minus_the_least_value_of_sinc():
     from scipy.optimize import minimize_scalar
 
-    from teleopdesign.passivity.delayed_compensation import SINC_LEAST
+    from teleopdesign.passivity.theorems.delayed_compensation import SINC_LEAST
 
     least = minimize_scalar(lambda y: math.sin(y) / y, bounds=(4, 5), method="bounded").fun
     assert 0 < float(SINC_LEAST) + least < 1e-5

@@ -7,7 +7,6 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.passivity import polynomials as by_sympy
 from teleopdesign.passivity.checker.polynomials import (
     add,
     derivative,
@@ -25,9 +24,12 @@ from teleopdesign.passivity.checker.polynomials import (
     square_free,
     value,
 )
-from teleopdesign.passivity.growing_mode import rising
-from teleopdesign.passivity.impedance import impedance
-from teleopdesign.passivity.positive_real import is_positive_real as is_positive_real_by_sympy
+from teleopdesign.passivity.linear import polynomials as by_sympy
+from teleopdesign.passivity.linear.impedance import impedance
+from teleopdesign.passivity.linear.positive_real import (
+    is_positive_real as is_positive_real_by_sympy,
+)
+from teleopdesign.passivity.two_port.growing_mode import rising
 
 small = st.fractions(min_value=-4, max_value=4, max_denominator=3)
 rows = st.lists(small, max_size=5).map(polynomial)

@@ -7,8 +7,8 @@ from passivity.random_impedances import KINDS, random_impedance
 
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity import damping_excess, impedance, kyp, positive_real, storage_function
-from teleopdesign.passivity.polynomials import fraction
-from teleopdesign.passivity.squares import sum_of_squares
+from teleopdesign.passivity.linear.polynomials import fraction
+from teleopdesign.passivity.linear.squares import sum_of_squares
 from teleopdesign.realise.lti import S
 
 

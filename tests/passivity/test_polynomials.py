@@ -7,7 +7,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.passivity.polynomials import (
+from teleopdesign.passivity.linear.polynomials import (
     X,
     is_hurwitz,
     is_non_negative,

@@ -17,7 +17,7 @@ from teleopdesign.passivity import (
     write_record,
     z_width,
 )
-from teleopdesign.passivity.sampled_data import Z
+from teleopdesign.passivity.theorems.sampled_data import Z
 
 T, K, B = sp.Rational(1, 1000), 1000, sp.Rational(3, 10)
 DIFFERENCE = (Z - 1) / (T * Z)

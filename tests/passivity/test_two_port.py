@@ -18,7 +18,7 @@ from teleopdesign.passivity import (
     two_port,
     write_record,
 )
-from teleopdesign.passivity.delayed_two_port import obstacles
+from teleopdesign.passivity.two_port.delayed_two_port import obstacles
 from teleopdesign.realise.lti import S
 
 MASTER, SLAVE = 0.2 * S + 1, 0.5 * S + 1

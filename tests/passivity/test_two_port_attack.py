@@ -12,7 +12,7 @@ from passivity.random_two_ports import KINDS, attack, is_free_motion, random_two
 
 from teleopdesign.passivity import absolutely_stable, passive, two_port
 from teleopdesign.passivity.checker.absolute_stability import conditions
-from teleopdesign.passivity.growing_mode import entries_of, growing_mode
+from teleopdesign.passivity.two_port.growing_mode import entries_of, growing_mode
 
 TRIES = 60  # pairs of terminations, and half as many steps from the worst of them
 

@@ -1,0 +1,150 @@
+"""A claim and how it is settled: proved, refuted, evidence, or unknown.
+
+A proof is exact and carries a certificate that `checker` verifies without the package.
+A refutation is a motion that gives out energy, kept so that anyone can replay it. Evidence says
+what was computed or searched, and with what margin; it is never called a proof.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+from ...by_value import ByValue
+from ...errors import ModelError
+from ...notebook import html_table
+from .certificate import Certificate
+
+
+class Record(Protocol):
+    """A motion that gives out energy."""
+
+    @property
+    def energy(self) -> float:
+        """Energy given out, J, > 0."""
+        ...
+
+    def replay(self) -> float:
+        """That energy, J, computed anew along the motion."""
+        ...
+
+    def as_dict(self) -> dict[str, object]:
+        """Plain data, to be written as JSON."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Proof(ByValue):
+    """An exact proof.
+
+    method: in words;  certificates: what it rests on, each verified by `checker`
+    margin: how far the statement is from failing, in `unit`, NaN where none was computed
+    equality: where the inequality holds with equality, "" where nowhere or not computed
+    """
+
+    method: str
+    certificates: tuple[Certificate, ...]
+    margin: float = float("nan")
+    unit: str = ""
+    equality: str = ""
+
+    status = "proved"
+    holds = True
+
+    def __str__(self) -> str:
+        number = len(self.certificates)
+        lines = [f"by {self.method}; {number} certificate{'s' * (number > 1)}"]
+        if not math.isnan(self.margin):
+            lines.append(f"margin {self.margin:.6g} {self.unit}".rstrip())
+        if self.equality:
+            lines.append(f"with equality {self.equality}")
+        return "; ".join(lines)
+
+
+@dataclass(frozen=True, eq=False)
+class Refutation(ByValue):
+    """A motion that gives out `record.energy` > 0 J; `record.replay()` computes it anew."""
+
+    method: str
+    record: Record
+
+    status = "refuted"
+    holds = False
+
+    def __str__(self) -> str:
+        return f"{self.method}: gives out {self.record.energy:.6g} J"
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence(ByValue):
+    """A numerical result, for or against.
+
+    holds: what the numbers say;  searched: what was computed, and over which range
+    margin: distance from failing in `unit`, negative where it fails
+    """
+
+    holds: bool
+    searched: str
+    margin: float
+    unit: str = ""
+
+    status = "evidence"
+
+    def __str__(self) -> str:
+        side = "for" if self.holds else "against"
+        margin = "" if math.isnan(self.margin) else f"; margin {self.margin:.6g} {self.unit}"
+        return f"{side} it: {self.searched}{margin}".rstrip()
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """Not settled, and why."""
+
+    why: str
+
+    status = "unknown"
+    holds = None
+
+    def __str__(self) -> str:
+        return self.why
+
+
+Verdict = Proof | Refutation | Evidence | Unknown
+
+
+@dataclass(frozen=True, eq=False)
+class Claim(ByValue):
+    """A statement about passivity at a port, with what settles it."""
+
+    statement: str
+    verdict: Verdict
+
+    @property
+    def status(self) -> str:
+        """ "proved", "refuted", "evidence" or "unknown"."""
+        return self.verdict.status
+
+    @property
+    def holds(self) -> bool | None:
+        """True or False as the verdict says; None where it is unknown."""
+        return self.verdict.holds
+
+    @property
+    def certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of a proved claim; none otherwise."""
+        return self.verdict.certificates if isinstance(self.verdict, Proof) else ()
+
+    @property
+    def record(self) -> Record:
+        """The motion that refutes the claim; ModelError where there is none."""
+        if not isinstance(self.verdict, Refutation):
+            raise ModelError(f"claim: {self.status}, so no motion refutes it: {self.statement}")
+        return self.verdict.record
+
+    def _repr_html_(self) -> str:
+        rows = [("statement", self.statement), ("status", self.status), ("by", self.verdict)]
+        return html_table("Claim", ("", ""), rows)
+
+    def __repr__(self) -> str:
+        return f"{self.status}: {self.statement}\n    {self.verdict}"

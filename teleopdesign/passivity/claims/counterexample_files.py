@@ -1,0 +1,128 @@
+"""Refuting motions as files: written as JSON, read and replayed by anyone."""
+
+from __future__ import annotations
+
+import json
+import re
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from ...diagrams.expressions import read_expression
+from ...diagrams.parts import position_symbol
+from ...errors import ExperimentError, ModelError
+from ...plain_data import write_json
+from ...realise.lti import S
+from ..rate_independent import Coulomb, Cycle, Dahl, Spring
+from ..search.growing_wave import GrowingWave
+from ..theorems.lugre import Jumps
+from ..theorems.quantised_spring import Flip
+from ..theorems.sampled_compensation import Trembling
+from ..theorems.sampled_data import Z, sampled_wave
+from ..theorems.velocity_compensation import SteadyStrokes
+from ..two_port.growing_mode import CLAMPED, GrowingMode, Termination
+from .claim import Record
+
+_ELEMENTS = {"coulomb": Coulomb, "dahl": Dahl, "spring": Spring}
+#: longer than any that a search writes, short enough to be read at once
+_FRACTION = re.compile(r"-?[0-9]{1,2000}(/[0-9]{1,2000})?")
+#: strokes of a motion that are replayed: searches write at most 40 000, a million take seconds
+MOST_STROKES = 1_000_000
+
+
+def write_record(record: Record, path: str | Path) -> None:
+    """Write a refuting motion as JSON."""
+    write_json(path, record.as_dict())
+
+
+def read_record(path: str | Path) -> Record:
+    """Read a refuting motion; `replay()` then computes what it gives out, in J.
+
+    raises ModelError: not such a file, or one whose stated energy its replay does not confirm
+    """
+    try:
+        content = json.loads(Path(path).read_text(encoding="utf-8"))
+        record = _made(content)
+        with np.errstate(over="raise", invalid="raise"):
+            stated, found = float(content["energy"]), record.energy
+    except (OSError, ValueError, KeyError, TypeError, ArithmeticError, RecursionError) as problem:
+        raise ModelError(f"{path}: no record of a motion: {problem}"[:300]) from problem
+    if abs(found - stated) > 1e-6 * abs(stated) or found <= 0:
+        raise ModelError(f"{path}: states {stated:g} J, the replay gives out {found:g} J")
+    return record
+
+
+def _made(c: dict[str, Any]) -> Record:
+    kind = c["kind"]
+    strokes = int(c.get("rounds", 1)) * max(len(c.get(n, ())) for n in ("turning_points", "legs"))
+    if not 0 <= strokes <= MOST_STROKES:
+        raise ValueError(f"found {strokes} strokes, expected at most {MOST_STROKES}")
+    if kind == "growing wave":
+        z = sp.ImmutableMatrix([[_read(e, S) for e in row] for row in c["impedance"]])
+        velocity = tuple(complex(*v) for v in c["velocity"])
+        return GrowingWave(z, _fraction(c["rate"]), _fraction(c["frequency"]), velocity)
+    if kind == "growing mode":
+        return _growing_mode(c)
+    if kind == "sampled wave":
+        law = _read(c["law"], Z)
+        b, late, k = (_read(c[n]) for n in ("damping", "sample_time", "stiffness"))
+        return sampled_wave(law, b, late, k, _fraction(c["rate"]), _fraction(c["frequency"]))
+    if kind == "cycle":
+        helps, *against = (_ELEMENTS[n](*v) for n, *v in [c["compensator"], *c["friction"]])
+        return Cycle(helps, tuple(against), tuple(c["turning_points"]), int(c["rounds"]))
+    if kind in ("steady strokes", "trembling"):
+        moved = {k: v for k, v in c.items() if k not in ("kind", "energy")}
+        for name in {"friction", "compensator"} & set(moved):
+            element, *values = moved[name]
+            moved[name] = _ELEMENTS[element](*values)
+        return (Trembling if kind == "trembling" else SteadyStrokes)(**moved)
+    fields = {k: _tuples(v) for k, v in c.items() if k not in ("kind", "energy")}
+    if kind == "jumps":
+        return Jumps(**fields)
+    if kind == "flip":
+        return Flip(**fields)
+    raise ModelError(f'record: no kind "{kind}"')
+
+
+def _fraction(text: str) -> Fraction:
+    """A fraction such as "-3/4"; a power of ten would cost time and memory without end."""
+    if not (isinstance(text, str) and _FRACTION.fullmatch(text)):
+        raise ValueError(f"expected a fraction such as 3/4, found {str(text)[:60]!r}")
+    return Fraction(text)
+
+
+def _read(text: str, *names: sp.Symbol) -> sp.Expr:
+    """An expression of these names, read without running anything."""
+    try:
+        e = read_expression(text, where="record")
+    except ExperimentError as error:
+        raise ValueError(str(error)) from None
+    e = e.subs({position_symbol(n.name): n for n in names})
+    if e.free_symbols - {*names}:
+        raise ValueError(f"record: unknown names in {text[:60]}")
+    return e
+
+
+def _growing_mode(c: dict[str, Any]) -> GrowingMode:
+    z = sp.ImmutableMatrix([[_read(e, S) for e in row] for row in c["impedance"]])
+    first, second = (
+        CLAMPED if held == "clamped" else _held(*(_fraction(x) for x in held))
+        for held in c["terminations"]
+    )
+    one, other = (complex(*v) for v in c["velocity"])
+    at = _fraction(c["rate"]), _fraction(c["frequency"])
+    mode = GrowingMode(z, (first, second), *at, (one, other))
+    if not mode.is_confirmed():
+        raise ValueError("the two-port does not grow between these terminations")
+    return mode
+
+
+def _held(damping: Fraction, inertia: Fraction, stiffness: Fraction) -> Termination:
+    return Termination(damping, inertia, stiffness)
+
+
+def _tuples(value: Any) -> Any:
+    return tuple(_tuples(v) for v in value) if isinstance(value, list) else value

@@ -1,0 +1,1 @@
+"""Linear ports: impedances, the positive-real test and storage functions."""

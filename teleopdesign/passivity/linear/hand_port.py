@@ -1,0 +1,32 @@
+"""The impedance that a hand feels at a haptic interface, from its diagram, in exact numbers.
+
+With R_D = 0 the hand's force on the device is Zhat_M L, so force over velocity is Zhat_M/s; of a
+device with a compliant transmission the motion is the tip's. Blocks are linear forms: what has none
+(Coulomb friction among them) is left out, and named.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from ...derive import block_symbol, transfer
+from ...diagrams import Diagram
+from ...realise.lti import linear_blocks
+from ...realise.tips import led, linear_tips
+from .impedance import Impedance, impedance
+
+
+def hand_port(diagram: Diagram, *, speed: float = 0.0) -> tuple[Impedance, tuple[str, ...]]:
+    """Force over velocity at the hand (N s/m), and the names of what has no linear form.
+
+    diagram: a haptic interface without position loop;  speed: where smoothed friction and schedules
+    are frozen, m/s: what holds there is a statement about that linear system only
+    raises ModelError: a block without values, or with a dead time
+    """
+    apart, motion = linear_tips(diagram), led(diagram, "L")
+    motion = motion if motion in apart.signals else "L"
+    linear = linear_blocks(apart, speed=speed)
+    form = transfer(apart.opened("K"), "E", (motion,), given=motion)[motion]
+    values = {block_symbol(n): e for n, e in linear.blocks.items()}
+    values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
+    return impedance(sp.sympify(form).subs(values), motion="position"), linear.left_out

@@ -1,0 +1,200 @@
+"""Impedances as exact rational functions of s.
+
+A float is taken for the shortest decimal number that prints like it: 0.1 is 1/10. What is judged is
+then exactly what was written down, and cases on the boundary stay on the boundary. Pi is taken to
+the sixteen digits of a float.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Literal
+
+import numpy as np
+import sympy as sp
+
+from ...arguments import described
+from ...errors import ModelError
+from ...realise.lti import S
+from .polynomials import fraction
+
+Motion = Literal["velocity", "position"]
+_LONGEST = 9  # characters of a fraction that is printed as such
+
+
+@dataclass(frozen=True)
+class Impedance:
+    """Force over velocity, p(s)/q(s), coprime, with rational coefficients; improper ones too."""
+
+    p: sp.Poly
+    q: sp.Poly
+
+    @property
+    def expression(self) -> sp.Expr:
+        """p/q as a sympy expression in `realise.lti.S`."""
+        return self.p.as_expr() / self.q.as_expr()
+
+    def at(self, rate: Fraction, frequency: Fraction) -> tuple[Fraction, Fraction] | None:
+        """Exact real and imaginary part at s = rate + j frequency; None at a pole."""
+        a, b = (gaussian(poly, rate, frequency) for poly in (self.p, self.q))
+        size = b[0] ** 2 + b[1] ** 2
+        if size == 0:
+            return None
+        return (a[0] * b[0] + a[1] * b[1]) / size, (a[1] * b[0] - a[0] * b[1]) / size
+
+    def __call__(self, s: Any) -> Any:
+        """Numerical value at complex s (array or number)."""
+        p, q = ([float(c) for c in poly.all_coeffs()] for poly in (self.p, self.q))
+        return np.polyval(p, s) / np.polyval(q, s)
+
+    def __str__(self) -> str:
+        return readable(self.expression)
+
+
+def decimal(number: sp.Expr) -> str:
+    """A number as text for people: up to twelve digits."""
+    return f"{float(number):.12g}"
+
+
+def readable(expression: sp.Expr) -> str:
+    """The expression as text, fractions of many digits as decimals; only for people to read."""
+    long = {x for x in expression.atoms(sp.Rational) if len(str(x)) > _LONGEST}
+    return str(expression.xreplace({x: sp.Float(x, 6) for x in long}))
+
+
+def gaussian(poly: sp.Poly, rate: Fraction, frequency: Fraction) -> tuple[Fraction, Fraction]:
+    """Exact value of a polynomial at rate + j frequency."""
+    re, im = Fraction(0), Fraction(0)
+    for c in poly.all_coeffs():
+        re, im = re * rate - im * frequency + fraction(c), re * frequency + im * rate
+    return re, im
+
+
+def impedance(system: Any, *, motion: Motion = "velocity") -> Impedance:
+    """A one-port as an exact rational function.
+
+    system: sympy expression in s, number, python-control TransferFunction or StateSpace
+        (continuous, one input, one output), or an Impedance
+    motion: what the force is divided by in `system`; with "position" (as the blocks of a diagram
+        are, N/m) it is divided by s
+    raises ModelError: anything else, with what was found
+    """
+    if motion not in ("velocity", "position"):
+        raise ModelError(f'impedance: motion "velocity" or "position", found "{motion}"')
+    if isinstance(system, Impedance):
+        made = system
+    elif hasattr(system, "isdtime"):
+        made = _from_control(system)
+    else:
+        made = _from_sympy(system)
+    if motion == "position":
+        return _coprime(made.p, made.q * sp.Poly(S, S))
+    return made
+
+
+def exact(number: Any) -> sp.Rational:
+    """A number, or a text of one, as the rational that it is written as; floats as their shortest.
+
+    raises ModelError: no finite real number; True is none
+    """
+    if isinstance(number, sp.Expr) and number.is_Rational:
+        return number
+    try:
+        if isinstance(number, bool | bytes):
+            raise TypeError("no number")
+        if isinstance(number, int | Fraction | np.integer):
+            return sp.Rational(number)
+        value = float(number)
+        return sp.Rational(repr(value))
+    except (TypeError, ValueError, OverflowError):
+        raise ModelError(
+            f"passivity: expected a finite real number, found {described(number)}"
+        ) from None
+
+
+def _from_sympy(system: Any) -> Impedance:
+    try:
+        e = sp.sympify(system)
+    except (sp.SympifyError, TypeError, AttributeError):
+        raise ModelError(
+            f"impedance: expected an expression in s, found {described(system)}"
+        ) from None
+    if not isinstance(e, sp.Expr) or e.is_Matrix:
+        raise ModelError(f"impedance: expected an expression in s, found {described(system)}")
+    e = e.xreplace({x: S for x in e.free_symbols if x.name == "s"})
+    if others := {x.name for x in e.free_symbols - {S}}:
+        raise ModelError(f"impedance: values are needed for {', '.join(sorted(others))}")
+    if e.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
+        raise ModelError(f"impedance: not finite: {e}")
+    e = e.xreplace({x: exact(x) for x in e.atoms(sp.Float, sp.NumberSymbol)})
+    above, below = sp.fraction(sp.together(e))
+    try:
+        p, q = (sp.Poly(part, S, domain="QQ") for part in (above, below))
+    except sp.PolynomialError:
+        p = q = None
+    except sp.CoercionFailed:
+        raise ModelError(f"impedance: coefficients are not rational numbers: {e}") from None
+    if p is None:
+        raise ModelError(f"impedance: not a rational function of s: {e}")
+    return _coprime(p, q)
+
+
+def _coprime(p: sp.Poly, q: sp.Poly) -> Impedance:
+    if q.is_zero:
+        raise ModelError("impedance: division by zero")
+    common = sp.gcd(p, q)
+    p, q = p.quo(common), q.quo(common)
+    lead = q.LC()
+    return Impedance(p.quo_ground(lead), q.quo_ground(lead))
+
+
+def _from_control(system: Any) -> Impedance:
+    if system.isdtime(strict=True):
+        raise ModelError("impedance: a discrete system; see sampled_data for sampled controllers")
+    if (system.ninputs, system.noutputs) != (1, 1):
+        raise ModelError(
+            f"impedance: expected one input and one output, found {system.ninputs} and "
+            f"{system.noutputs}; see two_port"
+        )
+    if hasattr(system, "num"):
+        p, q = ([exact(c) for c in row[0][0]] for row in (system.num, system.den))
+        return _coprime(sp.Poly(p, S, domain="QQ"), sp.Poly(q, S, domain="QQ"))
+    if not hasattr(system, "A"):
+        raise ModelError(f"impedance: no linear system: {type(system).__name__}")
+    return from_state_space(system.A, system.B, system.C, system.D)
+
+
+def from_state_space(a: Any, b: Any, c: Any, d: Any) -> Impedance:
+    """C (s I - A)^-1 B + D, exactly; modes that the port does not see drop out.
+
+    a: (n, n), b: (n, 1), c: (1, n), d: (1, 1)
+    """
+    a, b, c, d = ([[exact(x) for x in row] for row in np.atleast_2d(m)] for m in (a, b, c, d))
+    below, above = _resolvent([[fraction(x) for x in row] for row in a], b, c)
+    q = sp.Poly(below, S, domain="QQ")
+    p = sp.Poly(above or [0], S, domain="QQ") + q.mul_ground(d[0][0])
+    return _coprime(p, q)
+
+
+def _resolvent(
+    a: list[list[Fraction]], b: Sequence[Sequence[Any]], c: Sequence[Sequence[Any]]
+) -> tuple[list[Any], list[Any]]:
+    """Coefficients of det(s I - A) and of C adj(s I - A) B (Faddeev, Leverrier)."""
+    n = len(a)
+    power = [[Fraction(i == j) for j in range(n)] for i in range(n)]
+    below, above = [sp.Integer(1)], []
+    for k in range(1, n + 1):
+        gain = sum(
+            c[0][i] * power[i][j] * b[j][0] for i in range(n) for j in range(n) if power[i][j]
+        )
+        above.append(sp.Rational(gain))
+        moved = [
+            [sum((a[i][m] * power[m][j] for m in range(n)), Fraction(0)) for j in range(n)]
+            for i in range(n)
+        ]
+        coefficient = -sum((moved[i][i] for i in range(n)), Fraction(0)) / k
+        below.append(sp.Rational(coefficient))
+        power = [[moved[i][j] + (i == j) * coefficient for j in range(n)] for i in range(n)]
+    return below, above

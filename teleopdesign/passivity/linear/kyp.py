@@ -1,0 +1,238 @@
+"""The inequality of Kalman, Yakubovich and Popov: a quadratic storage function, by semidefinite
+programming (extra `lmi`), and exactly where rounding it to fractions leaves it valid.
+
+    Z = m s + C (s I - A)^-1 B + D:    V = (m v^2 + x^T P x)/2,   P >= 0,   m >= 0,
+    [[-A^T P - P A, C^T - P B], [C - B^T P, 2 D]] >= 0
+
+Controllable canonical form; time is scaled by a power of two so that the poles lie around 1.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from fractions import Fraction
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from ...by_value import ByValue
+from ...errors import ModelError
+from ..claims.certificate import Term, storage_certificate
+from ..claims.claim import Claim, Proof, Unknown
+from .impedance import Impedance, Motion, impedance
+from .polynomials import fraction
+from .squares import sum_of_squares
+
+Rows = list[list[Fraction]]
+#: a double pole on the axis is infeasible by so little that the solver goes on for ever; a shortage
+#: of this many times the size of Z is taken for it
+_LARGEST_SHORTAGE = 1e4
+
+
+@dataclass(frozen=True)
+class Realisation:
+    """m, A, B, C, D of an impedance in exact numbers, in time scaled by `scale` (1/s)."""
+
+    mass: Fraction
+    a: Rows
+    c: list[Fraction]
+    d: Fraction
+    scale: Fraction
+
+    @property
+    def order(self) -> int:
+        """Number of states; B is the last unit vector."""
+        return len(self.a)
+
+
+@dataclass(frozen=True, eq=False)
+class Kyp(ByValue):
+    """Numerical solution of the inequality for Z - c with the largest c.
+
+    damping_excess: that c, N s/m; -inf where the inequality has no solution for any
+    p: (n, n) of the scaled realisation, None where there is none
+    status: what the solver says
+    """
+
+    damping_excess: float
+    p: np.ndarray | None
+    status: str
+
+
+def realisation(z: Impedance) -> Realisation | None:
+    """Controllable canonical form; None where Z grows faster than s, or as -s."""
+    quotient, rest = z.p.div(z.q)
+    if quotient.degree() > 1:
+        return None
+    rising = [fraction(x) for x in quotient.all_coeffs()[::-1]]
+    mass = rising[1] if len(rising) > 1 else Fraction(0)
+    if mass < 0:
+        return None
+    n = z.q.degree()
+    scale = _scale(z.q)
+    q = [fraction(x) * scale**-k for k, x in enumerate(z.q.all_coeffs())]  # of s/scale, monic
+    top = [fraction(x) for x in rest.all_coeffs()[::-1]] + [Fraction(0)] * n
+    c = [top[k] * scale ** (k - n) for k in range(n)]
+    shift = [[Fraction(j == i + 1) for j in range(n)] for i in range(n - 1)]
+    a = [*shift, [-x for x in q[1:][::-1]]] if n else []
+    return Realisation(mass, a, c, rising[0] if rising else Fraction(0), scale)
+
+
+def _scale(q: sp.Poly) -> Fraction:
+    """Power of two near the geometric mean of the poles that are not at 0."""
+    rising = [fraction(x) for x in q.all_coeffs()[::-1]]
+    first = next(k for k, x in enumerate(rising) if x)
+    degree = len(rising) - 1 - first
+    if degree == 0:
+        return Fraction(1)
+    size = float(np.log2(float(abs(rising[first] / rising[-1])))) / degree
+    return Fraction(2) ** round(size)
+
+
+def kyp(system: Any, *, motion: Motion = "velocity") -> Kyp:
+    """Solve the inequality for the largest c with which Z - c has a storage function.
+
+    system, motion: see `impedance`
+    raises ModelError: cvxpy (extra `lmi`) is not installed
+    """
+    made = realisation(impedance(system, motion=motion))
+    if made is None:
+        return Kyp(float("-inf"), None, "improper")
+    if made.order == 0:
+        return Kyp(float(made.d), np.zeros((0, 0)), "optimal")
+    size = max(abs(float(x)) for x in [*made.c, made.d]) or 1.0
+    solved = _solve(made, size, slack=False)
+    if solved is None or solved[0] < -_LARGEST_SHORTAGE:
+        return Kyp(float("-inf"), None, "infeasible")
+    value, p, status = solved
+    return Kyp(value * size, p * size, status)
+
+
+def _solve(made: Realisation, size: float, *, slack: bool) -> tuple[float, np.ndarray, str] | None:
+    """Largest c, or with `slack` the largest margin of the whole inequality at c = 0."""
+    try:
+        cp: Any = import_module("cvxpy")
+    except ModuleNotFoundError as missing:
+        raise ModelError("kyp: needs cvxpy: pip install 'teleopdesign[lmi]'") from missing
+    n = made.order
+    a = np.array([[float(x) for x in row] for row in made.a])
+    c = np.array([[float(x) for x in made.c]]) / size
+    b, d = np.eye(n)[:, -1:], float(made.d) / size
+    p, value = cp.Variable((n, n), symmetric=True), cp.Variable()
+    off = c.T - p @ b
+    corner = np.array([[2 * d]]) if slack else cp.reshape(2 * (d - value), (1, 1), order="C")
+    block = cp.bmat([[-a.T @ p - p @ a, off], [off.T, corner]])
+    if slack and made.d == 0:  # then P B = C^T, and what is left is the first block
+        limits = [off == 0, (-a.T @ p - p @ a) >> value * np.eye(n), p >> value * np.eye(n)]
+    elif slack:
+        limits = [block >> value * np.eye(n + 1), p >> value * np.eye(n)]
+    else:
+        limits = [block >> 0, p >> 0]
+    problem = cp.Problem(cp.Maximize(value), [*limits, value <= 1e3])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # that a solution is inaccurate is in its status
+        try:
+            problem.solve(solver=cp.CLARABEL)
+        except cp.error.SolverError:
+            return None
+    if p.value is None or not np.isfinite(value.value):
+        return None
+    return float(value.value), np.asarray(p.value), str(problem.status)
+
+
+def storage_function(system: Any, *, motion: Motion = "velocity") -> Claim:
+    """Prove passivity by a quadratic storage function in exact numbers.
+
+    returns: proved, with V in the certificate; unknown where no rounding of the numerical
+    solution stays valid (`positive_real` settles that case too, without a storage function)
+    """
+    z = impedance(system, motion=motion)
+    statement = f"Z(s) = {z} is passive at its port (force, velocity)"
+    made = realisation(z)
+    if made is None:
+        return Claim(statement, Unknown("grows faster than s, or as -s: no storage function"))
+    for p in _candidates(made):
+        storage, loss = _matrices(made, p)
+        squares = sum_of_squares(storage), sum_of_squares(loss)
+        if squares[0] is not None and squares[1] is not None:
+            return Claim(statement, _proof(statement, made, storage, squares[0], squares[1]))
+    return Claim(statement, Unknown("no rounding of the solution of the inequality is valid"))
+
+
+def _candidates(made: Realisation) -> list[Rows]:
+    """P rounded to fractions, coarse first; where D = 0 its last column is C, exactly."""
+    n = made.order
+    if n == 0:
+        return [[]]
+    size = max(abs(float(x)) for x in [*made.c, made.d]) or 1.0
+    found = []
+    for slack in (True, False):
+        solved = _solve(made, size, slack=slack)
+        if solved is None:
+            continue
+        for digits in (1, 2, 3, 4, 6, 9, 12):
+            upper = np.triu(solved[1] * size)
+            p = [
+                [_rounded(upper[min(i, j), max(i, j)], digits) for j in range(n)] for i in range(n)
+            ]
+            if made.d == 0:
+                for k, x in enumerate(made.c):
+                    p[k][-1] = p[-1][k] = x
+            found.append(p)
+    return found
+
+
+def _rounded(x: float, digits: int) -> Fraction:
+    return Fraction(float(x)).limit_denominator(10**digits)
+
+
+def _matrices(made: Realisation, p: Rows) -> tuple[Rows, Rows]:
+    """P, and the matrix of twice the power that is lost, in (x, v)."""
+    n = made.order
+    pa = [[sum((p[i][k] * made.a[k][j] for k in range(n)), Fraction(0)) for j in range(n)]
+          for i in range(n)]  # fmt: skip
+    loss = [[-pa[i][j] - pa[j][i] for j in range(n)] for i in range(n)]
+    edge = [made.c[i] - p[i][-1] for i in range(n)]
+    return p, [*([*loss[i], edge[i]] for i in range(n)), [*edge, 2 * made.d]]
+
+
+def _proof(
+    statement: str,
+    made: Realisation,
+    storage: Rows,
+    stored: list[tuple[Fraction, list[Fraction]]],
+    lost: list[tuple[Fraction, list[Fraction]]],
+) -> Proof:
+    """The certificate, back in seconds: x' = scale (A x + B v)."""
+    n = made.order
+    x = [sp.Symbol(f"x{k}", real=True) for k in range(n)]
+    v, acceleration = sp.symbols("v acceleration", real=True)
+    scale, mass = _rational(made.scale), _rational(made.mass)
+    rates = {f"x{i}": scale * (_dot(made.a[i], x) + (v if i == n - 1 else 0)) for i in range(n)} | {
+        "v": acceleration
+    }
+    force = _dot(made.c, x) + _rational(made.d) * v + mass * acceleration
+    energy = sum((x[i] * _dot(storage[i], x) for i in range(n)), sp.S(0)) / (2 * scale)
+    half = sp.Rational(1, 2)
+    kept: list[Term] = [(_rational(w) / (2 * scale), {}, _dot(e, x)) for w, e in stored]
+    taken: list[Term] = [(_rational(w) * half, {}, _dot(e, [*x, v])) for w, e in lost]
+    certificate = storage_certificate(
+        statement,
+        supply=sp.expand(force * v),
+        storage=sp.expand(energy + mass * v**2 / 2),
+        rates=rates,
+        proofs={"supply": {"": taken}, "storage": {"": [*kept, (mass * half, {}, v)]}},
+        example={},
+    )
+    return Proof("a quadratic storage function, exact", (certificate,))
+
+
+def _rational(x: Fraction) -> sp.Rational:
+    return sp.Rational(x.numerator, x.denominator)
+
+
+def _dot(row: list[Fraction], x: list[sp.Symbol]) -> sp.Expr:
+    return sum((_rational(r) * e for r, e in zip(row, x, strict=True)), sp.S(0))

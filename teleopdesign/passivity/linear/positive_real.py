@@ -1,0 +1,150 @@
+"""Positive-real test of an impedance, exact.
+
+Z = p/q (coprime, real) is positive real iff p + q has all its zeros in the open left half plane and
+Re p(j w) conj q(j w) >= 0 for every w: then (Z - 1)/(Z + 1) is bounded real. This covers improper
+impedances such as m s + b, and poles on the imaginary axis, without a word about them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from ..claims.certificate import positive_real_certificate
+from ..claims.claim import Claim, Proof, Refutation
+from ..search.growing_wave import growing_wave
+from .impedance import Impedance, Motion, exact, impedance
+from .polynomials import X, even_part, is_hurwitz, is_non_negative, positive_roots, value
+
+
+def is_positive_real(z: Impedance) -> bool:
+    """Whether Z is positive real, exactly; equality Re Z(j w) = 0 allowed."""
+    total = z.p + z.q
+    if total.is_zero or not is_hurwitz(total):
+        return False
+    return is_non_negative(even_part(z.p, z.q))
+
+
+def positive_real(system: Any, *, motion: Motion = "velocity") -> Claim:
+    """Is this impedance passive: does it never give out more energy than it took in?
+
+    system, motion: see `impedance`
+    returns: proved, with the excess of damping as margin (N s/m: what could be taken away), or
+    refuted by a growing wave; never unknown
+    raises ModelError: not a rational function of s with given coefficients
+    """
+    z = impedance(system, motion=motion)
+    statement = f"Z(s) = {z} is passive at its port (force, velocity)"
+    if not is_positive_real(z):
+        wave = growing_wave(z)
+        if wave is None:
+            raise AssertionError(f"not positive real, but no wave found: {z}")
+        w, a = float(wave.frequency), float(wave.rate)
+        method = (
+            f"Re Z = {wave.value[0, 0].real:.6g} N s/m at s = {a:.6g} + {w:.6g} j, a growing wave"
+        )
+        return Claim(statement, Refutation(method, wave))
+    certificate = positive_real_certificate(statement, [[z.expression]])
+    margin = damping_excess(z)
+    method = "the positive-real test"
+    proof = Proof(method, (certificate,), float(margin.lower), "N s/m", _equality(z, margin))
+    return Claim(statement, proof)
+
+
+def _equality(z: Impedance, margin: Excess) -> str:
+    """Where Re Z = 0, decided exactly."""
+    real, size = real_part(z)
+    if real.is_zero:
+        return "at every frequency: it stores, and loses nothing"
+    if real.eval(0) == 0 or int(real.count_roots(0, None)):
+        return f"at {margin.frequency:.6g} rad/s"
+    return "in the limit of high frequency" if real.degree() < size.degree() else ""
+
+
+@dataclass(frozen=True)
+class Excess:
+    """Largest c for which Z - c is still passive, within exact bounds; negative: a shortage.
+
+    frequency: rad/s, where the real part is smallest; inf where that is the limit. lower = upper =
+    -inf where no damping at the port helps (a pole that grows, a double pole on the axis).
+    """
+
+    lower: Fraction | float
+    upper: Fraction | float
+    frequency: float
+
+    def __float__(self) -> float:
+        return float(self.lower)
+
+
+def damping_excess(system: Any, *, motion: Motion = "velocity") -> Excess:
+    """Damping (N s/m) that may be taken from an impedance, or that it lacks (< 0), to be passive.
+
+    This is the infimum of Re Z over frequency (the index of input passivity, velocity being the
+    input), or -inf. Its bounds are verified by the exact test and differ by 1e-12 of its size.
+    """
+    z = impedance(system, motion=motion)
+    at, lowest = _infimum(*real_part(z))
+    lower, upper = _verified(z, lowest)
+    return Excess(lower, upper, float(np.sqrt(at)))
+
+
+def mobility_excess(system: Any, *, motion: Motion = "velocity") -> Excess:
+    """The same of the mobility 1/Z (m/(N s)): index of output passivity; +inf where Z = 0."""
+    z = impedance(system, motion=motion)
+    if z.p.is_zero:
+        return Excess(float("inf"), float("inf"), 0.0)
+    lead = z.p.LC()
+    return damping_excess(Impedance(z.q.quo_ground(lead), z.p.quo_ground(lead)))
+
+
+def _infimum(real: sp.Poly, size: sp.Poly) -> tuple[float, float]:
+    """(x, value) where real/size is smallest over x >= 0, to rounding; inf for a limit."""
+    slope = real.diff(X) * size - real * size.diff(X)
+    found = []
+    for x in (Fraction(0), *positive_roots(slope)):
+        below = value(size, x)
+        if below != 0:
+            found.append((float(x), float(value(real, x) / below)))
+    if real.degree() <= size.degree():
+        limit = real.LC() / size.LC() if real.degree() == size.degree() else 0
+        found.append((float("inf"), float(limit)))
+    elif real.LC() < 0:
+        found.append((float("inf"), float("-inf")))
+    return min(found, key=lambda pair: pair[1]) if found else (0.0, float("-inf"))
+
+
+def _verified(z: Impedance, lowest: float) -> tuple[Fraction | float, Fraction | float]:
+    """Bounds c- <= lowest <= c+ with Z - c- passive and Z - c+ not, by the exact test."""
+    infinite = float("-inf"), float("-inf")
+    if not np.isfinite(lowest):
+        return infinite
+    middle = Fraction(str(exact(lowest)))
+    if _passive_without(z, middle) and not _passive_without(z, middle + _step(middle, 1e-12)):
+        return middle, middle + _step(middle, 1e-12)
+    for relative in (1e-12, 1e-9, 1e-6):
+        step = _step(middle, relative)
+        if _passive_without(z, middle - step):
+            upper = middle if not _passive_without(z, middle) else middle + step
+            return middle - step, upper
+    return infinite
+
+
+def _step(middle: Fraction, relative: float) -> Fraction:
+    return abs(middle) * Fraction(relative) or Fraction(relative) ** 2
+
+
+def _passive_without(z: Impedance, c: Fraction) -> bool:
+    p = z.p - z.q.mul_ground(sp.Rational(c.numerator, c.denominator))
+    return is_positive_real(Impedance(p, z.q))
+
+
+def real_part(z: Impedance) -> tuple[sp.Poly, sp.Poly]:
+    """Re Z(j w) as a ratio of coprime polynomials in x = w^2."""
+    real, size = even_part(z.p, z.q), even_part(z.q, z.q)
+    common = sp.gcd(real, size)
+    return real.quo(common), size.quo(common)

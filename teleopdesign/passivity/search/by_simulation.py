@@ -1,0 +1,223 @@
+"""Search a diagram for a motion over which a port gives out energy, from rest back to rest.
+
+The motion of the port is prescribed, what that takes of force is simulated with the compiled
+kernel, and the energy given out is -integral of force times velocity. A motion that gives out
+energy refutes passivity; that none was found proves nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+
+from ...diagrams import Diagram
+from ...errors import ModelError
+from ...simulate import Sampling, simulate
+from ..claims.claim import Claim, Evidence, Refutation
+from .stroke_motion import Strokes, families
+
+Computer = Sampling | Literal["continuous"]
+#: steps in the shortest stroke, as long as one simulation has no more than so many
+_FINE, _MOST = 100, 40_000
+_LONGEST = 2_000_000  # steps of one simulation
+_ROUNDS = 300  # at most, of a motion that is repeated until it gives out what the first round took
+
+
+@dataclass(frozen=True)
+class Given:
+    """Energy that one simulation gave out, J.
+
+    total: from rest back to rest;  last_round: over its last closed round
+    turned: integral of abs(force times velocity), the scale of both
+    """
+
+    total: float
+    last_round: float
+    turned: float
+
+
+@dataclass(frozen=True)
+class SimulatedMotion:
+    """A motion of a diagram's port that gives out energy; `replay()` simulates it anew.
+
+    port: (motion, force on the device that moves it);  computer, step, give: as in `simulate`
+    """
+
+    diagram: Diagram = field(repr=False)
+    port: tuple[str, str]
+    strokes: Strokes
+    computer: Computer
+    give: float
+    energy: float
+
+    def replay(self) -> float:
+        """Energy given out, J, from rest back to rest, simulated anew."""
+        return given_out(
+            self.diagram, self.strokes, port=self.port, computer=self.computer, give=self.give
+        ).total
+
+    def as_dict(self) -> dict[str, object]:
+        """Plain data, to be written as JSON; the diagram by its wiring and its values."""
+        sampling = self.computer if isinstance(self.computer, str) else vars(self.computer)
+        return {
+            "kind": "simulated motion",
+            "diagram": repr(self.diagram),
+            "values": dict(self.diagram.values),
+            "port": list(self.port),
+            "turning_points": list(self.strokes.points),
+            "speed": self.strokes.speed,
+            "rounds": self.strokes.rounds,
+            "pause": self.strokes.pause,
+            "computer": sampling,
+            "give": self.give,
+            "energy": self.energy,
+        }
+
+
+def given_out(
+    diagram: Diagram,
+    strokes: Strokes,
+    *,
+    port: tuple[str, str] = ("L", "R_V"),
+    computer: Computer = "continuous",
+    give: float = 1e-7,
+    finer: int = 1,
+) -> Given:
+    """Energy that the port gives out along these strokes; hidden states start at zero.
+
+    port: (motion, force ON the device along it);  finer: steps are shorter by this factor
+    raises ModelError: the port is not one whose motion can be prescribed, or a motion too long
+    """
+    shortest = float(np.diff(strokes.times).min())
+    period = 1e-3 if isinstance(computer, str) else computer.period
+    duration = np.ceil(strokes.duration / period) * period
+    step = min(max(min(shortest / _FINE, 1e-4), duration / _MOST), period) / finer
+    if duration / step > _LONGEST:
+        raise ModelError(
+            f"given_out: {duration / step:.3g} steps of simulation, at most {_LONGEST:g}: "
+            "ask for fewer rounds or more speed"
+        )
+    motion, force = port
+    found = simulate(
+        diagram,
+        duration=duration,
+        motion={motion: strokes.motion()},
+        computer=computer,
+        step=step,
+        give=give,
+        every_step=True,
+    )
+    t, power = found.data["time"].values, -found[force].values * found[f"{motion}_velocity"].values
+    parts = np.diff(t) * (power[1:] + power[:-1]) / 2
+    begin, end = strokes.last_round
+    middle = (t[1:] + t[:-1]) / 2
+    return Given(
+        float(parts.sum()),
+        float(parts[(middle > begin) & (middle < end)].sum()),
+        float(np.abs(parts).sum()),
+    )
+
+
+def confirmed_motion(
+    diagram: Diagram,
+    strokes: Strokes,
+    *,
+    port: tuple[str, str] = ("L", "R_V"),
+    computer: Computer = "continuous",
+    give: float = 1e-7,
+) -> SimulatedMotion | None:
+    """These strokes, repeated as often as it takes, if they give out energy beyond numerical doubt.
+
+    From rest, with hidden states at zero, to rest: so what comes out was never put in. It must come
+    out with half the step, and with a tenth of the give too, and be thrice what these change.
+    """
+
+    def run(strokes: Strokes, *, finer: int = 1, give: float = give) -> Given:
+        return given_out(diagram, strokes, port=port, computer=computer, give=give, finer=finer)
+
+    first = run(strokes)
+    if first.last_round <= 0:
+        return None
+    lacking = max(first.last_round - first.total, 0.0)
+    rounds = strokes.rounds + int(min(2 * lacking / first.last_round, _ROUNDS + 1))
+    if rounds > _ROUNDS:
+        return None
+    strokes = replace(strokes, rounds=rounds)
+    try:
+        whole, finer = run(strokes), run(strokes, finer=2)
+        firmer = run(strokes, finer=2, give=give / 10)
+    except ModelError:  # too long, or the firmer contact too stiff to resolve: not confirmed
+        return None
+    doubt = 3 * max(abs(whole.total - finer.total), abs(finer.total - firmer.total))
+    if min(whole.total, finer.total, firmer.total) <= max(doubt, 1e-9 * whole.turned):
+        return None
+    return SimulatedMotion(diagram, port, strokes, computer, give, whole.total)
+
+
+def search_counterexample(
+    diagram: Diagram,
+    *,
+    stroke: float,
+    speed: float,
+    rng: np.random.Generator,
+    port: tuple[str, str] = ("L", "R_V"),
+    computer: Computer = "continuous",
+    give: float = 1e-7,
+    tries: int = 60,
+) -> Claim:
+    """Does any motion within stroke and speed take energy out of the port?
+
+    stroke: largest position, m or rad;  speed: largest speed, SI;  tries: how many motions
+    give: m or rad, of ideal Coulomb friction; the shortest motions tried are a thousandth of
+        `stroke`, so keep it far below that and below any bristle length
+    returns: refuted by a motion that was confirmed with half the step and a tenth of the give; else
+        evidence, which is no proof
+    """
+    if stroke <= 0 or speed <= 0:
+        raise ModelError(f"search_counterexample: stroke and speed > 0, found {stroke}, {speed}")
+    statement = (
+        f"the port {port[0]}, {port[1]} of the {diagram.name} gives out no energy over any motion "
+        f"within {stroke:g} and {speed:g} (SI)"
+    )
+
+    def score(strokes: Strokes) -> float:
+        found = given_out(diagram, strokes, port=port, computer=computer, give=give)
+        return found.last_round / found.turned if found.turned else 0.0
+
+    tried = [
+        (score(s), name, s) for name, s in families(rng, stroke=stroke, speed=speed, tries=tries)
+    ]
+    for _, name, strokes in sorted(tried, key=lambda found: -found[0])[:3]:
+        better = _refined(strokes, score, stroke=stroke, speed=speed)
+        confirmed = confirmed_motion(diagram, better, port=port, computer=computer, give=give)
+        if confirmed is not None:
+            return Claim(statement, Refutation(f"a motion found by search, {name}", confirmed))
+    best = max(s for s, _, _ in tried)
+    searched = (
+        f"{len(tried)} motions (sinusoids, stops and reversals, random paths), none gives out "
+        "energy; which is no proof"
+    )
+    return Claim(statement, Evidence(True, searched, -best, "of the energy turned over"))
+
+
+def _refined(
+    strokes: Strokes, score: Callable[[Strokes], float], *, stroke: float, speed: float
+) -> Strokes:
+    """The strokes with size and speed changed so that a larger share comes out."""
+    from scipy.optimize import minimize
+
+    largest = max(abs(x) for x in strokes.points)
+
+    def at(x: np.ndarray) -> Strokes:
+        size = min(float(np.exp(x[0])), stroke / largest)
+        faster = min(float(np.exp(x[1])) * strokes.speed, speed)
+        return replace(strokes, points=tuple(size * p for p in strokes.points), speed=faster)
+
+    def lacking(x: np.ndarray) -> float:
+        return -score(at(x))
+
+    found = minimize(lacking, np.zeros(2), method="Nelder-Mead", options={"maxfev": 20})
+    return at(found.x)

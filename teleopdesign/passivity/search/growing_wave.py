@@ -1,0 +1,188 @@
+"""A motion that takes energy out of a linear system that is not passive: a growing wave.
+
+    v(t) = Re(V e^(s t)) for t <= 0,   s = a + j w,   a > 0
+
+Along it the force is Re(Z(s) V e^(s t)), also with dead times. With V at its best phase the energy
+that flows in is (Re V^* Z V/a - abs(V^T Z V/s))/4: negative wherever Re V^* Z V < 0. The start lies
+arbitrarily near to rest, so no stored energy can have paid for it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from typing import cast
+
+import numpy as np
+import sympy as sp
+
+from ...realise.lti import S
+from ..linear.impedance import Impedance
+from ..linear.polynomials import even_part, where_negative
+
+LONGEST = 500  # periods of a wave that are sampled; each of them gives out energy
+_DIGITS = 40  # of numerical values: poles and zeros of badly scaled systems lie close together
+
+
+@dataclass(frozen=True)
+class GrowingWave:
+    """A wave at s = rate + j frequency (1/s, rad/s; exact), velocities V at t = 0 (m/s, complex).
+
+    impedance: (n, n) forces over velocities, in `realise.lti.S`;  energy: given out to t = 0, J
+    """
+
+    impedance: sp.ImmutableMatrix
+    rate: Fraction
+    frequency: Fraction
+    velocity: tuple[complex, ...]
+
+    @property
+    def s(self) -> complex:
+        """rate + j frequency."""
+        return complex(float(self.rate), float(self.frequency))
+
+    @property
+    def value(self) -> np.ndarray:
+        """Z(s), (n, n), N s/m."""
+        return value_at(self.impedance, self.rate, self.frequency)
+
+    @property
+    def energy(self) -> float:
+        """Energy given out from the distant past up to t = 0, J, in closed form."""
+        z, v = self.value, np.array(self.velocity)
+        return float(-((v.conj() @ z @ v).real / self.s.real + (v @ z @ v / self.s).real) / 4)
+
+    def samples(self, number: int = 20001) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Time (n,), s; velocities and forces (n, ports), over the last part of the wave.
+
+        It spans twelve time constants of growth, or LONGEST periods where those are shorter. Where
+        all poles decay, or grow slower than the wave, this is also the force after a start
+        from rest, once its transient is gone.
+        """
+        span = 12.0 / self.s.real
+        if self.frequency:
+            span = min(span, LONGEST * 2 * math.pi / self.s.imag)
+        t = np.linspace(-span, 0.0, number)
+        wave = np.exp(self.s * t)[:, None] * np.array(self.velocity)
+        return t, wave.real, (wave @ self.value.T).real
+
+    def replay(self) -> float:
+        """Energy given out, J: minus the integral of force times velocity over `samples`."""
+        periods = min(12.0 * self.s.imag / self.s.real / (2 * math.pi), LONGEST)
+        t, v, f = self.samples(2 * int(500 * (1 + periods)) + 1)
+        power = (f * v).sum(axis=1)
+        weights = np.ones(len(t))  # Simpson's rule
+        weights[1:-1:2], weights[2:-1:2] = 4, 2
+        return float(-(t[1] - t[0]) / 3 * (weights @ power))
+
+    def as_dict(self) -> dict[str, object]:
+        """Plain data, to be written as JSON."""
+        return {
+            "kind": "growing wave",
+            "impedance": [[str(e) for e in row] for row in self.impedance.tolist()],
+            "rate": str(self.rate),
+            "frequency": str(self.frequency),
+            "velocity": [[v.real, v.imag] for v in self.velocity],
+            "energy": self.energy,
+        }
+
+
+def value_at(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> np.ndarray:
+    """Z at rate + j frequency, (n, n), to double precision."""
+    if z.has(sp.exp):
+        return np.array(_numerical(z)(complex(float(rate), float(frequency))), dtype=complex)
+    s = sp.Rational(str(rate)) + sp.I * sp.Rational(str(frequency))
+    return np.array([[complex(e.subs(S, s).evalf(_DIGITS)) for e in row] for row in z.tolist()])
+
+
+@lru_cache(maxsize=8)
+def _numerical(z: sp.ImmutableMatrix) -> Callable[[complex], list[list[complex]]]:
+    return cast("Callable[[complex], list[list[complex]]]", sp.lambdify(S, z.tolist(), "numpy"))
+
+
+def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> GrowingWave | None:
+    """The wave there that gives out most energy; None where it gives out none.
+
+    To double precision, with a dead time to 1e-9 of Z; `growing_wave` checks exactly.
+    """
+    value = value_at(z, rate, frequency)
+    if not np.all(np.isfinite(value)):
+        return None
+    real = (value + value.conj().T) / 2
+    sizes, vectors = np.linalg.eigh(real)
+    if sizes[0] >= (-1e-9 * np.abs(value).max() if z.has(sp.exp) else 0):
+        return None
+    v = vectors[:, 0]
+    if frequency == 0:
+        v = v.real  # there is no phase to choose: the wave is one exponential
+    else:
+        s = complex(float(rate), float(frequency))
+        v = v * np.exp(1j * (math.pi - np.angle(v @ value @ v / s)) / 2)
+    return GrowingWave(z, rate, frequency, tuple(complex(x) for x in v))
+
+
+def growing_wave(z: Impedance) -> GrowingWave | None:
+    """A wave that takes energy out of an impedance; None only where it is positive real.
+
+    Re Z < 0 at its s is verified exactly.
+    """
+    waves = [_beside_the_axis(z, x) for x in where_negative(even_part(z.p, z.q))]
+    found = [w for w in waves if w is not None]
+    # the one that grows fastest against its frequency is the plainest to look at
+    return max(found, key=lambda w: w.rate / w.frequency) if found else _at_a_growing_mode(z)
+
+
+def square_root(x: Fraction, digits: int) -> Fraction:
+    """A rational number within 10^-digits, relative, of the square root of x."""
+    ten = 10**digits
+    return Fraction(math.isqrt(x.numerator * x.denominator * ten**2), x.denominator * ten)
+
+
+def halvings(start: Fraction, number: int) -> Iterable[Fraction]:
+    """start/2, start/4, ..."""
+    return (start / 2**k for k in range(1, number + 1))
+
+
+def _beside_the_axis(z: Impedance, x: Fraction) -> GrowingWave | None:
+    """At about sqrt(x), with the fastest growth of a halving sequence for which Re Z < 0."""
+    for digits in (20, 60, 200):  # enough for a dip in frequency that narrow, relative
+        frequency = square_root(x, digits)
+        for rate in halvings(frequency, 4 * digits):
+            wave = _checked(z, rate, frequency)
+            if wave is not None:
+                return wave
+    return None
+
+
+def _at_a_growing_mode(z: Impedance) -> GrowingWave | None:
+    """Near a zero of Z + c in the right half plane: there Re Z = -c.
+
+    The port held by a damper c > 0 moves with that growing mode by itself.
+    """
+    for c in (sp.Rational(10) ** k for k in (0, -2, 2, -4, 4, -6, 6)):
+        closed = sp.Poly(z.p + z.q.mul_ground(c), S)
+        for digits in (30, 60, 120):
+            try:
+                roots = closed.nroots(n=digits, maxsteps=500)
+            except sp.polys.polyerrors.PolynomialError:
+                continue
+            waves = []
+            for root in roots:
+                rate, frequency = (Fraction(str(sp.Float(x, digits))) for x in root.as_real_imag())
+                if rate > 0 and frequency >= 0:
+                    waves.append(_checked(z, rate, frequency))
+            found = [w for w in waves if w is not None]
+            if found:
+                return max(found, key=lambda w: w.rate)
+    return None
+
+
+def _checked(z: Impedance, rate: Fraction, frequency: Fraction) -> GrowingWave | None:
+    """The wave if Re Z < 0 there, exactly."""
+    found = z.at(rate, frequency)
+    if found is None or found[0] >= 0:
+        return None
+    return wave_of(sp.ImmutableMatrix([[z.expression]]), rate, frequency)

@@ -1,0 +1,1 @@
+"""Theorems about friction, its cancellation and computers: one file each."""

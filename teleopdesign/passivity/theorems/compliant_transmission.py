@@ -1,0 +1,233 @@
+"""Compensation at the motor where friction also sits behind a compliant transmission.
+
+    m_1 x_1'' = u + f_dahl(x_1) - f_1 sgn x_1' - k (x_1 - x_2) - c (x_1' - x_2')     motor
+    m_2 x_2'' = k (x_1 - x_2) + c (x_1' - x_2') - f_2 sgn x_2' + f_env               link
+
+Two questions with two answers: passive beside any environment (also one that clamps the link), and
+no energy out of slow free motion, where friction f_2 alone holds the link.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from ...errors import ModelError
+from ..claims.certificate import Certificate, Term, storage_certificate
+from ..claims.claim import Claim, Evidence, Proof, Refutation
+from ..linear.impedance import decimal, exact
+from ..rate_independent import Coulomb, Cycle, Dahl, Element, Spring, lost_share, symmetric_cycle
+from ._dahl_certificates import Values, d, f_D
+from .friction_compensation import dahl_compensation
+
+
+def any_environment(
+    *,
+    motor_level: Any,
+    link_level: Any,
+    transmission_stiffness: Any,
+    compensator_level: Any,
+    compensator_stiffness: Any,
+    motor_inertia: Any = 1,
+    link_inertia: Any = 1,
+    transmission_damping: Any = 0,
+) -> Claim:
+    """Is the joint passive for any environment and any stroke: iff f_D <= f_1, whatever k and f_2.
+
+    f_1, f_2, N;  k, N/m;  f_D, N;  sigma_D, N/m;  kg, kg, N s/m
+    refuted, where it is, with the link clamped and the spring's force left to the environment
+    """
+    f_1, f_d = exact(motor_level), exact(compensator_level)
+    statement = (
+        f"a joint with motor friction {decimal(f_1)} N, compensated there by {decimal(f_d)} N, is "
+        "passive beside any environment"
+    )
+    if f_d <= f_1:
+        values = {
+            "f_1": f_1,
+            "f_2": exact(link_level),
+            "k": exact(transmission_stiffness),
+            "c": exact(transmission_damping),
+            "m_1": exact(motor_inertia),
+            "m_2": exact(link_inertia),
+            "f_D": f_d,
+        }
+        if min(values["k"], values["m_1"], values["m_2"]) <= 0 or min(values.values()) < 0:
+            raise ModelError(
+                "any_environment: expected stiffness and inertias > 0 and nothing negative, found "
+                + ", ".join(f"{n} = {decimal(x)}" for n, x in values.items())
+            )
+        certificate = _certificate(values)
+        equality = "while the motor slides" if f_d == f_1 else ""
+        method = "V = kinetic energies + k (x_1 - x_2)^2/2"
+        proof = Proof(method, (certificate,), float(f_1 - f_d), "N", equality)
+        return Claim(statement, proof)
+    clamped = dahl_compensation(
+        coulomb_level=motor_level,
+        compensator_level=compensator_level,
+        compensator_stiffness=compensator_stiffness,
+    )
+    return Claim(statement, clamped.verdict)
+
+
+def free_motion(
+    *,
+    motor_level: float,
+    link_level: float,
+    transmission_stiffness: float,
+    compensator_level: float,
+    compensator_stiffness: float,
+    rng: np.random.Generator,
+    paths: int = 2000,
+) -> Claim:
+    """Does slow free motion never give out energy?
+
+    For plain symmetric cycles of the motor exactly where f_D <= f_1 + f_2 and
+    f_D (1 - tanh(u)/u) <= f_1, u = sigma_D f_2/(k f_D). Where that fails, a cycle refutes. Where it
+    holds, cycles with a small step back and forth at each reversal, which give out more (the
+    bristle forgets the last stroke, at the cost of little friction), and random closed paths are
+    searched: evidence, for these are not all motions.
+
+    f_1, f_2, N;  k, N/m;  f_D, N;  sigma_D, N/m;  paths: how many are searched
+    """
+    values = motor_level, link_level, transmission_stiffness, compensator_level
+    if min(*values, compensator_stiffness) <= 0:
+        raise ModelError(f"free_motion: expected numbers > 0, found {values}")
+    helps = Dahl(compensator_level, compensator_stiffness)
+    against: list[Element] = [Coulomb(motor_level), Spring(link_level, transmission_stiffness)]
+    statement = (
+        f"slow free motion of a joint (motor {motor_level:g} N, link {link_level:g} N behind "
+        f"{transmission_stiffness:g} N/m) with compensator ({compensator_level:g} N, "
+        f"{compensator_stiffness:g} N/m) gives out no energy"
+    )
+    margin = free_motion_margin(
+        motor_level=motor_level,
+        link_level=link_level,
+        transmission_stiffness=transmission_stiffness,
+        compensator_level=compensator_level,
+        compensator_stiffness=compensator_stiffness,
+    )
+    found = _worst_cycle(helps, against) if margin < 0 else _searched(helps, against, rng, paths)
+    if found is not None and found.energy > 0:
+        return Claim(statement, Refutation("a closed path of the motor", found))
+    searched = (
+        "all symmetric cycles by formula, cycles with a step back and forth at each reversal, and "
+        f"{paths} random closed paths of up to ten strokes"
+    )
+    return Claim(statement, Evidence(margin >= 0, searched, margin, "N"))
+
+
+def free_motion_margin(
+    *,
+    motor_level: float,
+    link_level: float,
+    transmission_stiffness: float,
+    compensator_level: float,
+    compensator_stiffness: float,
+) -> float:
+    """min(f_1 + f_2 - f_D, f_1 - f_D (1 - tanh(u)/u)), N: >= 0 where no symmetric cycle gives."""
+    stuck = compensator_level * lost_share(
+        compensator_stiffness * link_level / (transmission_stiffness * compensator_level)
+    )
+    return min(motor_level + link_level - compensator_level, motor_level - stuck)
+
+
+def _worst_cycle(helps: Dahl, against: Sequence[Element]) -> Cycle | None:
+    """The symmetric cycle that gives out most per travel; sliding cycles get long strokes."""
+    stuck = against[1]
+    give = stuck.level / stuck.stiffness if isinstance(stuck, Spring) else 1.0
+    amplitudes = [
+        give,
+        *np.geomspace(1e-2 * give, 1e6 * max(give, helps.level / helps.stiffness), 200),
+    ]
+    cycles = [symmetric_cycle(helps, against, float(a)) for a in amplitudes]
+    return max(cycles, key=lambda c: c.energy / c.turning_points[0])
+
+
+def _searched(
+    helps: Dahl, against: Sequence[Element], rng: np.random.Generator, paths: int
+) -> Cycle | None:
+    """The closed path that gives out most, of those with steps and random ones; None if none."""
+    lengths = [helps.level / helps.stiffness]
+    lengths += [e.level / e.stiffness for e in against if isinstance(e, Dahl | Spring)]
+    best = _stepped(helps, against, lengths)
+    for _ in range(paths):
+        scale = np.exp(rng.uniform(np.log(0.1 * min(lengths)), np.log(10 * max(lengths))))
+        points = scale * rng.standard_normal(rng.integers(2, 11))
+        cycle = Cycle(helps, tuple(against), tuple(float(x) for x in points), rounds=30)
+        if cycle.energy > (best.energy if best else 0.0):
+            best = cycle
+    return best
+
+
+def _stepped(helps: Dahl, against: Sequence[Element], lengths: Sequence[float]) -> Cycle | None:
+    """The cycle with a step back and forth at each reversal that gives out most; None if none does.
+
+    lengths: of the bristle and of what gives beside it, m
+    """
+    best: Cycle | None = None
+    for a in np.geomspace(0.3 * min(lengths), 3.0 * max(lengths), 24):
+        for step in a * np.geomspace(0.003, 0.5, 8):
+            points = (a, a - step, a, -a, step - a, -a)
+            cycle = Cycle(helps, tuple(against), tuple(map(float, points)), rounds=30)
+            if cycle.energy > (best.energy if best else 0.0):
+                best = cycle
+    return best
+
+
+def _certificate(values: Values) -> Certificate:
+    """Coulomb friction f_1 at the motor, f_2 at the link, spring k and damper c between them, and
+    any compensator at the motor with abs(d) <= f_D <= f_1; forces u on motor and f_env on link.
+
+    values: f_1, f_2, k, c, m_1, m_2, f_D
+    """
+    v1, v2, stretch, u, f_env = sp.symbols("v1 v2 stretch u f_env", real=True)
+    sign_v1, sign_v2 = sp.symbols("sign_v1 sign_v2", real=True)
+    f_1, f_2, k, c, m_1, m_2 = sp.symbols("f_1 f_2 k c m_1 m_2", real=True)
+    between = k * stretch + c * (v1 - v2)
+    half = sp.Rational(1, 2)
+    forward: list[Term] = [
+        (1, {"abs_v1": 1, "enough": 1}, 1),
+        (1, {"abs_v2": 1, "f_2": 1}, 1),
+        (1, {"c": 1}, v1 - v2),
+    ]
+    by_sign = {
+        f"{a} {b}": [*forward, (1, {"abs_v1": 1, "below" if a > 0 else "above": 1}, 1)]
+        for a in (1, -1)
+        for b in (1, -1)
+    }
+    return storage_certificate(
+        "motor and link with a compliance between them, and a compensator at the motor with abs(d) "
+        "<= f_D <= f_1, are passive at both ends; V = kinetic energies + k (x_1 - x_2)^2/2",
+        supply=u * v1 + f_env * v2,
+        storage=m_1 * v1**2 / 2 + m_2 * v2**2 / 2 + k * stretch**2 / 2,
+        rates={
+            "v1": (u + d - f_1 * sign_v1 - between) / m_1,
+            "v2": (between - f_2 * sign_v2 + f_env) / m_2,
+            "stretch": v1 - v2,
+        },
+        constants=["k", "m_1", "m_2"],
+        positive={"m_1": m_1, "m_2": m_2, "k": k},
+        nonnegative={
+            "f_2": f_2,
+            "c": c,
+            "enough": f_1 - f_D,
+            "above": f_D + d,
+            "below": f_D - d,
+        },
+        signs=["v1", "v2"],
+        proofs={
+            "supply": by_sign,
+            "storage": {
+                "": [
+                    (half, {"m_1": 1}, v1),
+                    (half, {"m_2": 1}, v2),
+                    (half, {"k": 1}, stretch),
+                ]
+            },
+        },
+        example={**values, "d": 0, "v1": 1, "v2": 1},
+    )

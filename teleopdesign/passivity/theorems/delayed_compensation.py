@@ -1,0 +1,120 @@
+"""A compensator that acts late: what it gives out, and when small motion stays passive.
+
+Along x = A sin(w t) a Dahl compensator of describing function N that sees the position tau late
+gives out
+
+    W = pi A^2 Im(N e^(-j w tau))
+
+per cycle: for w tau < pi less than without delay. A delayed cancellation of inertia gives out
+energy for any delay with w tau < pi.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from ...errors import ModelError
+from ...frequency.closed_forms import dahl
+from ...realise.lti import S
+from ..claims.certificate import Certificate, storage_certificate
+from ..claims.claim import Claim, Proof, Refutation, Unknown
+from ..linear.impedance import decimal, exact
+from ..search.growing_wave import GrowingWave, halvings, wave_of
+from ._dahl_certificates import Values, sigma_D
+
+#: just above 0.2172336, minus the least value of sin(y)/y (at tan y = y, y = 4.4934)
+SINC_LEAST = sp.Rational(21724, 100000)
+
+
+def given_out_late(*, level: float, stiffness: float, amplitude: float, phase: float) -> float:
+    """Energy that a delayed Dahl compensator gives out per cycle, J.
+
+    N, N/m, m;  phase: w tau, rad
+    """
+    # in numbers of any size: I_1(u)/cosh(u) overflows in those of the machine
+    first = complex(sp.N(dahl(level, stiffness, amplitude)))
+    return float(np.pi * amplitude**2 * (first * np.exp(-1j * phase)).imag)
+
+
+def inertia_given_out(*, inertia: float, amplitude: float, frequency: float, delay: float) -> float:
+    """Energy that a delayed cancellation of inertia gives out per cycle, J.
+
+    pi m A^2 w^2 sin(w tau);  kg, m, Hz, s
+    """
+    w = 2 * np.pi * frequency
+    return float(np.pi * inertia * amplitude**2 * w**2 * np.sin(w * delay))
+
+
+def delayed_small_motion(
+    *, damping: Any, compensator_stiffness: Any, delay: Any, presliding_stiffness: Any
+) -> Claim:
+    """Is small motion passive, where friction is a spring and the compensator a late negative one?
+
+        Z = B + (sigma_p - sigma_D e^(-s tau))/s
+
+    passive iff sigma_D <= sigma_p and B >= 0.21723.. sigma_D tau (minus the least sin(y)/y).
+    N s/m, N/m, s
+    """
+    b, tau = exact(damping), exact(delay)
+    sigma_d, sigma_p = exact(compensator_stiffness), exact(presliding_stiffness)
+    if min(b, tau, sigma_d, sigma_p) < 0:
+        raise ModelError("delayed_small_motion: no value may be negative")
+    statement = (
+        f"small motion with damping {decimal(b)} N s/m, presliding {decimal(sigma_p)} N/m and a "
+        f"compensator {decimal(sigma_d)} N/m that is {decimal(tau)} s late is passive"
+    )
+    if sigma_d <= sigma_p and b >= SINC_LEAST * sigma_d * tau:
+        certificate = _certificate({"B": b, "sigma_D": sigma_d, "tau": tau})
+        method = "Re Z >= 0 at every frequency, pole at 0 with residue sigma_p - sigma_D >= 0"
+        margin = float(b - SINC_LEAST * sigma_d * tau)
+        return Claim(statement, Proof(method, (certificate,), margin, "N s/m"))
+    late = sp.exp(-S * tau) if tau else sp.S(1)
+    z = sp.ImmutableMatrix([[b + (sigma_p - sigma_d * late) / S]])
+    wave = _wave(z, float(tau))
+    if wave is None:
+        return Claim(statement, Unknown("the condition fails, but no wave was found"))
+    f = float(wave.frequency) / (2 * np.pi)
+    return Claim(statement, Refutation(f"a growing wave at {f:.6g} Hz", wave))
+
+
+def _wave(z: sp.ImmutableMatrix, tau: float) -> GrowingWave | None:
+    """A wave near the first dip of sin(w tau)/(w tau), or a slow exponential."""
+    for y in (4.4934, 4.0, 5.0, 3.5, 5.5):
+        if tau:
+            w = Fraction(y / tau)
+            for rate in halvings(w, 24):
+                found = wave_of(z, rate, w)
+                if found is not None:
+                    return found
+    for k in range(40, -41, -1):
+        found = wave_of(z, Fraction(2) ** k, Fraction(0))
+        if found is not None:
+            return found
+    return None
+
+
+def _certificate(values: Values) -> Certificate:
+    """B + sigma_D tau q >= 0 for q = sin(y)/y: small motion with a delayed compensator.
+
+    values: B, sigma_D, tau
+    """
+    b, tau, q = sp.symbols("B tau q", real=True)
+    return storage_certificate(
+        "Re Z = B + sigma_D tau q >= 0 for q >= -21724/100000 where B >= 21724/100000 sigma_D tau",
+        supply=b + sigma_D * tau * q,
+        nonnegative={
+            "enough": b - SINC_LEAST * sigma_D * tau,
+            "q": q + SINC_LEAST,
+            "sigma_D": sigma_D,
+            "tau": tau,
+        },
+        proofs={
+            "supply": {"": [(1, {"enough": 1}, 1), (1, {"sigma_D": 1, "tau": 1, "q": 1}, 1)]},
+            "storage": {"": ()},
+        },
+        example={**values, "q": 1},
+    )

@@ -1,0 +1,77 @@
+"""A spring between master and slave with a dead time each way: absolutely stable, and until when.
+
+With dampings b_m, b_s of master and slave, stiffness P and one-way delay T the criterion of
+Llewellyn reads b_m b_s >= (P T)^2 q(w), q = (sin(w T)/(w T))^2 <= 1, with equality for w -> 0.
+The other conditions (`checker/absolute_stability.py`) hold for every coupling: the entries have no
+pole but s = 0, with residues P, P and -P, for e^(-s T) is 1 there, so k11 k22 = k12 k21; at
+infinity the masses grow like s and nothing between the ports does; z12 z21 is bounded far out.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy as sp
+
+from ...errors import ModelError
+from ..claims.certificate import Certificate, storage_certificate
+from ..claims.claim import Claim, Proof
+from ..linear.impedance import decimal, exact
+from ..two_port.claims import absolutely_stable
+from ..two_port.two_port import teleoperator
+from ._dahl_certificates import Values
+
+
+def delayed_spring(
+    *,
+    master_inertia: Any,
+    master_damping: Any,
+    slave_inertia: Any,
+    slave_damping: Any,
+    stiffness: Any,
+    delay: Any,
+) -> Claim:
+    """Is the teleoperator absolutely stable: iff b_m b_s >= (P T)^2.
+
+    inertias: kg;  dampings: N s/m, at each side;  stiffness: P, N/m;  delay: one way, s
+    returns: proved (equality allowed), or refuted by a wave with port 2 held by a spring or mass
+    """
+    b_m, b_s, k, late = map(exact, (master_damping, slave_damping, stiffness, delay))
+    if min(exact(master_inertia), exact(slave_inertia), k, late) < 0:
+        raise ModelError("delayed_spring: inertias, stiffness and delay must not be negative")
+    master, slave = (
+        exact(m) * sp.Symbol("s") + b for m, b in ((master_inertia, b_m), (slave_inertia, b_s))
+    )
+    statement = (
+        f"the teleoperator with dampings {decimal(b_m)}, {decimal(b_s)} N s/m, spring "
+        f"{decimal(k)} N/m and delay {decimal(late)} s each way is absolutely stable"
+    )
+    if min(b_m, b_s) >= 0 and b_m * b_s >= (k * late) ** 2:
+        method = (
+            "Llewellyn's criterion with the exact delay, b_m b_s >= (P T)^2, and residues at s = 0 "
+            "that meet it with equality"
+        )
+        margin = float(b_m * b_s - (k * late) ** 2)
+        equality = "for w -> 0" if margin == 0 else ""
+        certificate = _certificate({"b_m": b_m, "b_s": b_s, "P": k, "T": late})
+        return Claim(statement, Proof(method, (certificate,), margin, "(N s/m)^2", equality))
+    found = absolutely_stable(
+        teleoperator(master=master, slave=slave, stiffness=k, damping=0, delay=late)
+    )
+    return Claim(statement, found.verdict)
+
+
+def _certificate(values: Values) -> Certificate:
+    """Llewellyn's inequality; values: b_m, b_s, P, T."""
+    b_m, b_s, k, late, q = sp.symbols("b_m b_s P T q", real=True)
+    enough = b_m * b_s - (k * late) ** 2
+    return storage_certificate(
+        "b_m b_s - (P T)^2 q >= 0 for 0 <= q <= 1: Llewellyn's inequality at every frequency",
+        supply=b_m * b_s - (k * late) ** 2 * q,
+        nonnegative={"enough": enough, "below_one": 1 - q, "q": q},
+        proofs={
+            "supply": {"": [(1, {"enough": 1}, 1), (1, {"below_one": 1}, k * late)]},
+            "storage": {"": ()},
+        },
+        example={**values, "q": 1},
+    )

@@ -1,0 +1,168 @@
+"""How much inertia may be cancelled from an acceleration that is late and low-passed.
+
+    Z = m s + B - mhat s F(s) e^(-s tau),   F = 1/(T s + 1)^r
+
+Along x = A sin(w t) the cancellation gives out pi mhat A^2 w g(w) per cycle, and the damping takes
+pi B A^2 w:
+
+    g = Re[j w F(j w) e^(-j w tau)] = w abs(F) sin(lag),   lag = w tau + r atan(w T)
+
+Without low-pass g = w sin(w tau) (P48) has no bound: no damping is enough. With one,
+abs(g) < 1/T for r = 1, approached at high frequency whatever the delay; abs(g) <= 1/(2 T) for
+r = 2, reached at w T = 1 without delay.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any, Literal
+
+import numpy as np
+import sympy as sp
+
+from ...errors import ModelError
+from ...realise.lti import S
+from ..claims.certificate import Certificate, storage_certificate
+from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown
+from ..linear.impedance import decimal, exact
+from ..linear.positive_real import positive_real
+from ..search.growing_wave import GrowingWave, halvings, wave_of
+
+Order = Literal[1, 2]
+_PER_TURN = 200  # samples of g per turn of its phase: its maxima within 1e-4, then refined
+
+
+def damping_given_out(
+    frequency: np.ndarray, *, delay: float, time_constant: float = 0.0, order: Order = 2
+) -> np.ndarray:
+    """g at each frequency (Hz): negative damping for each kg that is cancelled, N s/m/kg.
+
+    delay: tau, s;  time_constant: T of the low-pass, s, 0: none;  order: r
+    """
+    s = 2j * np.pi * np.asarray(frequency, dtype=float)
+    return np.asarray((s * np.exp(-s * delay) / (1 + s * time_constant) ** order).real)
+
+
+def largest_passive_inertia(
+    *, damping: float, delay: float, time_constant: float = 0.0, order: Order = 2
+) -> float:
+    """Most inertia (kg) that damping B pays for at every frequency; inertia of the device aside.
+
+    B T for r = 1; for r = 2 B over the maximum of g, at least 2 B T; without low-pass 0 with
+    any delay, and without delay inf (the device's own inertia is then the bound)
+    """
+    _check(damping, 0.0, delay, time_constant, order)
+    if time_constant == 0:
+        return 0.0 if delay else float("inf")
+    if order == 1:
+        return damping * time_constant
+    if delay == 0:
+        return 2 * damping * time_constant
+    return damping / _maximum(delay, time_constant)[1]
+
+
+def cancelled_inertia(
+    *,
+    inertia: Any,
+    damping: Any,
+    cancelled: Any,
+    delay: Any,
+    time_constant: Any = 0,
+    order: int = 2,
+) -> Claim:
+    """Is a device passive where part of its inertia is cancelled, late and low-passed?
+
+    inertia: m, kg;  damping: B, N s/m;  cancelled: mhat, kg;  delay: tau, s
+    time_constant: T of the low-pass, s, 0: none;  order: r, 1 or 2
+    returns: proved where mhat <= r B T, for any delay, g <= 1/(r T) being taken as known; without
+    delay exact; refuted by a growing wave; between 2 B T and the limit of a late r = 2, evidence
+    """
+    m, b, c = exact(inertia), exact(damping), exact(cancelled)
+    tau, t = exact(delay), exact(time_constant)
+    _check(b, c, tau, t, order)
+    filtered = f", low-passed of order {order} with {decimal(t)} s" if t else ""
+    statement = (
+        f"a device of {decimal(m)} kg and {decimal(b)} N s/m with {decimal(c)} kg cancelled "
+        f"{decimal(tau)} s late{filtered} is passive"
+    )
+    late = sp.exp(-S * tau) if tau else sp.S(1)
+    z = m * S + b - c * S * late / (t * S + 1) ** order
+    if t and c <= order * b * t:
+        method = "Re Z >= B - mhat/(r T) >= 0 at every frequency, for any delay"
+        certificate = _certificate(order, {"B": b, "T": t, "m": c})
+        return Claim(statement, Proof(method, (certificate,), float(b - c / (order * t)), "N s/m"))
+    if not tau:
+        return Claim(statement, positive_real(z).verdict)
+    if not c:
+        return Claim(statement, positive_real(m * S + b).verdict)
+    if t and order == 2:
+        w, most = _maximum(float(tau), float(t))
+        margin = float(b) - float(c) * most
+        if margin >= 0:
+            searched = f"least Re Z over frequency, at {w / (2 * np.pi):.6g} Hz"
+            return Claim(statement, Evidence(True, searched, margin, "N s/m"))
+        where = [w]
+    else:  # the phase of jw at the peaks; far enough up for a margin of 1e-3
+        where = [(2 * np.pi * n + np.pi / 2 * (not t)) / float(tau) for n in 2 ** np.arange(0, 14)]
+    wave = _wave(sp.ImmutableMatrix([[z]]), where)
+    if wave is None:
+        return Claim(statement, Unknown("the condition fails, but no wave was found"))
+    f = float(wave.frequency) / (2 * np.pi)
+    return Claim(statement, Refutation(f"a growing wave at {f:.6g} Hz", wave))
+
+
+def _check(damping: Any, cancelled: Any, delay: Any, time_constant: Any, order: int) -> None:
+    if min(damping, cancelled, delay, time_constant) < 0:
+        raise ModelError("cancelled_inertia: no value may be negative")
+    if order not in (1, 2):
+        raise ModelError(f"cancelled_inertia: order of the low-pass is 1 or 2, found {order}")
+
+
+def _maximum(delay: float, time_constant: float) -> tuple[float, float]:
+    """(w, g) where g of order 2 is largest, looked for until its bound w/(1 + (w T)^2) is below."""
+    from scipy.optimize import minimize_scalar
+
+    def g(w: Any) -> np.ndarray:
+        f = np.atleast_1d(w) / (2 * np.pi)
+        return damping_given_out(f, delay=delay, time_constant=time_constant)
+
+    # up to w T = 8 the bound falls to a quarter of its peak; g reaches that within the first turns
+    turns = 2 + 8 * delay / time_constant / (2 * np.pi)
+    grid = np.linspace(0, 8 / time_constant, int(_PER_TURN * turns) + 1)
+    values = g(grid)
+    k = int(np.argmax(values))
+    if values[k] < grid[-1] / (1 + (grid[-1] * time_constant) ** 2):
+        raise AssertionError(f"g is larger beyond {grid[-1]} rad/s")
+    near = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
+    found = minimize_scalar(
+        lambda w: -float(g(w)[0]), bounds=near, method="bounded", options={"xatol": 1e-9 * near[1]}
+    )
+    return float(found.x), -float(found.fun)
+
+
+def _wave(z: sp.ImmutableMatrix, where: list[float]) -> GrowingWave | None:
+    for w in where:
+        frequency = Fraction(w)
+        for rate in halvings(frequency, 30):
+            found = wave_of(z, rate, frequency)
+            if found is not None:
+                return found
+    return None
+
+
+def _certificate(order: int, values: dict[str, sp.Expr]) -> Certificate:
+    """T times Re Z = B - mhat g >= 0 where g <= 1/(r T) and mhat <= r B T.
+
+    values: B, T, m
+    """
+    b, t, m, g = sp.symbols("B T m g", real=True)
+    return storage_certificate(
+        f"r T Re Z = r T (B - m g) >= 0 for g <= 1/(r T) where m <= r B T, r = {order}",
+        supply=order * t * (b - m * g),
+        nonnegative={"enough": order * b * t - m, "bounded": 1 - order * t * g, "m": m},
+        proofs={
+            "supply": {"": [(1, {"enough": 1}, 1), (1, {"m": 1, "bounded": 1}, 1)]},
+            "storage": {"": ()},
+        },
+        example={**values, "g": 0},
+    )

@@ -1,0 +1,238 @@
+"""How much friction a Dahl compensator may cancel before the pair can give out energy.
+
+True friction: Coulomb, or Dahl with presliding stiffness sigma_p, its level within a range.
+Compensator: Dahl, level f_D, stiffness sigma_D, on the same position. Mahvash, Okamura, ICRA 2006
+prove f_D <= f_C for Coulomb friction.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import numpy as np
+import sympy as sp
+
+from ...errors import ModelError
+from ..claims.claim import Claim, Proof, Refutation, Unknown
+from ..linear.impedance import decimal, exact
+from ..rate_independent import (
+    Coulomb,
+    Cycle,
+    Dahl,
+    Element,
+    dahl_loss,
+    lost_share,
+    symmetric_cycle,
+)
+from . import _dahl_certificates as shown
+
+
+def bounded_compensation(*, coulomb_level: Any, bound: Any) -> Claim:
+    """Is Coulomb friction passive beside any compensator whose force stays within `bound`?
+
+    It needs nothing but the bound: so it also holds for a compensator that is sampled, delayed,
+    quantised or driven by noise, whatever its stiffness. N.
+    """
+    f_c, f_d = _levels(coulomb_level=coulomb_level, bound=bound)
+    statement = (
+        f"Coulomb friction {decimal(f_c)} N with any compensator within {decimal(f_d)} N is passive"
+    )
+    if f_d <= f_c:
+        certificate = shown.bounded_compensator({"f_C": f_c, "f_D": f_d})
+        return Claim(statement, _proof("storage 0, abs(d) <= f_D <= f_C", f_d, f_c, certificate))
+    stiffest = Dahl(float(f_d), 1e3 * float(f_d))
+    cycle = symmetric_cycle(stiffest, [Coulomb(float(f_c))], _beyond_onset(stiffest, float(f_c)))
+    return Claim(statement, Refutation("a Dahl compensator of that level in a cycle", cycle))
+
+
+def dahl_compensation(
+    *,
+    coulomb_level: Any,
+    compensator_level: Any,
+    compensator_stiffness: Any,
+    presliding_stiffness: Any = None,
+    highest_level: Any = None,
+) -> Claim:
+    """Is the pair of true friction and Dahl compensator passive?
+
+    coulomb_level: f_C, N; with `highest_level` the least level that can occur
+    compensator_level, compensator_stiffness: f_D, N, and sigma_D, N/m
+    presliding_stiffness: sigma_p, N/m, of true friction that is Dahl; None: ideal Coulomb friction
+    highest_level: where the true level changes in any way between f_C and this one, N
+    returns: proved iff f_D <= f_C and, with presliding, sigma_D^2/f_D <= sigma_p^2/f_max; else
+    refuted by a cycle. Decided in exact numbers, equality included
+    """
+    f_c, f_d, stiffness = _levels(
+        coulomb_level=coulomb_level,
+        compensator_level=compensator_level,
+        compensator_stiffness=compensator_stiffness,
+    )
+    top = f_c if highest_level is None else _levels(highest_level=highest_level)[0]
+    if top < f_c:
+        raise ModelError(
+            f"highest_level: {decimal(top)} N is below coulomb_level, {decimal(f_c)} N"
+        )
+    helps = Dahl(float(f_d), float(stiffness))
+    if presliding_stiffness is None:
+        return _ideal(f_c, f_d, stiffness, helps)
+    (own,) = _levels(presliding_stiffness=presliding_stiffness)
+    levels = f"{decimal(f_c)} N" if top == f_c else f"{decimal(f_c)} to {decimal(top)} N"
+    statement = (
+        f"Dahl friction ({levels}, {decimal(own)} N/m) with a Dahl compensator "
+        f"({decimal(f_d)} N, {decimal(stiffness)} N/m) is passive"
+    )
+    if f_d <= f_c and stiffness**2 * top <= own**2 * f_d:
+        return Claim(statement, _pair_proof(f_c, top, f_d, stiffness, own))
+    against = Dahl(float(f_c if f_d > f_c else top), float(own))
+    found = _best_cycle(helps, against)
+    if found is None:
+        why = "the condition fails, but by so little that no cycle shows it in double precision"
+        return Claim(statement, Unknown(why))
+    reason = "large motion: f_D > f_C" if f_d > f_c else "small motion: sigma_D^2/f_D too large"
+    return Claim(statement, Refutation(f"a cycle of {reason}", found))
+
+
+def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: float) -> float:
+    """Level f_D at which cycles of that amplitude neither give out nor take energy, N.
+
+    f_D (1 - tanh(u)/u) = f_C, u = sigma_D A/f_D: above f_C for every amplitude, and the higher the
+    softer the compensator; inf where no level does. stiffness: sigma_D, N/m;  amplitude: m
+    """
+    from scipy.optimize import brentq
+
+    if min(coulomb_level, stiffness, amplitude) <= 0:
+        raise ModelError(
+            "largest_passive_level: expected levels, stiffness and amplitude > 0, found "
+            f"{coulomb_level:g}, {stiffness:g}, {amplitude:g}"
+        )
+
+    def out(level: float) -> float:
+        return dahl_loss(level, stiffness, amplitude) / (4 * amplitude) - coulomb_level
+
+    # for a level without limit the compensator is a spring, which gives out nothing
+    levels = coulomb_level * np.geomspace(1.0, 1e6, 4001)
+    above = [f for f in levels if out(float(f)) > 0]
+    if not above:
+        return float("inf")
+    k = int(np.searchsorted(levels, above[0]))
+    return float(brentq(out, levels[max(k - 1, 0)], above[0], xtol=1e-12 * coulomb_level))
+
+
+def largest_ratio(u: float, *, motion: Literal["cycles", "any"] = "cycles") -> float:
+    """Largest f_D/f_C that gives out no energy within u = sigma_D A/f_D bristle lengths either way.
+
+    motion: "cycles": exact for plain cycles of that amplitude, 1/(1 - tanh(u)/u);
+        "any": enough for every motion that stays within it, 1/(1 - e^(-2 u))^2 (P56)
+    """
+    if u <= 0:
+        raise ModelError(f"largest_ratio: expected an amplitude > 0, found u = {u:g}")
+    return 1 / lost_share(u) if motion == "cycles" else 1 / math.expm1(-2 * u) ** 2
+
+
+def onset_amplitude(
+    *, coulomb_level: float, compensator_level: float, compensator_stiffness: float
+) -> float:
+    """Amplitude from which a cycle gives out energy, m; inf where none does.
+
+    Searched: bisection on the energy of one period, integrated exactly along the path, to 1e-9.
+    N and N/m
+    """
+    f_c, f_d, stiffness = map(float, (coulomb_level, compensator_level, compensator_stiffness))
+    if f_d <= f_c:
+        return float("inf")
+    helps, against = Dahl(f_d, stiffness), [Coulomb(f_c)]
+    low, high = 0.0, f_d / stiffness
+    while symmetric_cycle(helps, against, high).energy <= 0:
+        low, high = high, 2 * high
+    while high - low > 1e-9 * high:
+        middle = (low + high) / 2
+        if symmetric_cycle(helps, against, middle).energy > 0:
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+def self_motion_speed(*, coulomb_level: float, compensator_level: float, damping: float) -> float:
+    """Speed at which motion driven by over-compensation settles, m/s: (f_D - f_C)/B; 0 if none.
+
+    N and N s/m: viscous damping bounds the speed, the pair is not passive all the same.
+    """
+    excess = max(compensator_level - coulomb_level, 0.0)
+    if damping <= 0:
+        return math.inf if excess else 0.0
+    return excess / damping
+
+
+def _ideal(f_c: sp.Expr, f_d: sp.Expr, stiffness: sp.Expr, helps: Dahl) -> Claim:
+    statement = (
+        f"Coulomb friction {decimal(f_c)} N with a Dahl compensator "
+        f"({decimal(f_d)} N, {decimal(stiffness)} N/m) is passive"
+    )
+    values = {"f_C": f_c, "f_D": f_d, "sigma_D": stiffness}
+    if f_d <= f_c:
+        certificates = shown.dahl_bound(values), shown.sampled_bound({"f_D": f_d})
+        return Claim(statement, _proof("storage 0, abs(d) <= f_D <= f_C", f_d, f_c, *certificates))
+    against: list[Element] = [Coulomb(float(f_c))]
+    cycle = symmetric_cycle(helps, against, _beyond_onset(helps, float(f_c)))
+    return Claim(statement, Refutation("a cycle beyond the onset amplitude", cycle))
+
+
+def _beyond_onset(helps: Dahl, f_c: float) -> float:
+    """An amplitude at which cycles give out energy, m: 1 - 1/u = f_C/f_D, doubled."""
+    length = helps.level / helps.stiffness
+    return length + 2 * length / (1 - f_c / helps.level)
+
+
+def _pair_proof(
+    f_c: sp.Expr, top: sp.Expr, f_d: sp.Expr, stiffness: sp.Expr, own: sp.Expr
+) -> Proof:
+    equality = ["small motion"] if stiffness**2 * top == own**2 * f_d else []
+    if stiffness == own:  # then the conditions leave f_D = f_C = f_max
+        certificate = shown.identical_pair({"f_D": f_d, "sigma_D": stiffness})
+        return _proof("V = f abs(p - d)/sigma", f_d, f_c, certificate, also=equality)
+    values = {"f_D": f_d, "sigma_D": stiffness, "sigma_p": own, "F_min": f_c, "F_max": top}
+    certificate = shown.presliding_pair(values)
+    return _proof("a quadratic storage function", f_d, f_c, certificate, also=equality)
+
+
+def _proof(
+    method: str, f_d: sp.Expr, f_c: sp.Expr, *certificates: Any, also: Sequence[str] = ()
+) -> Proof:
+    """The margin is that of the level; equality also where small motion just stores."""
+    equality = " and ".join([*(["sliding"] if f_d == f_c else []), *also])
+    text = f"in {equality}" if equality else ""
+    return Proof(method, tuple(certificates), float(f_c - f_d), "N of level", text)
+
+
+def _best_cycle(helps: Dahl, against: Dahl) -> Cycle | None:
+    """A symmetric cycle that gives out a good share of what the compensator gives.
+
+    The one nearest to the bristle lengths among those with half of the largest share.
+    """
+    lengths = [e.level / e.stiffness for e in (helps, against)]
+    middle = math.sqrt(lengths[0] * lengths[1])
+    amplitudes = np.geomspace(1e-2 * min(lengths), 1e12 * max(lengths), 600)
+    shares = np.array([_share(helps, against, float(a)) for a in amplitudes])
+    if shares.max() < 1e-12:  # within rounding
+        return None
+    good = amplitudes[shares >= shares.max() / 2]
+    best = good[np.argmin(np.abs(np.log(good / middle)))]
+    return symmetric_cycle(helps, [against], float(best))
+
+
+def _share(helps: Dahl, against: Dahl, amplitude: float) -> float:
+    given = dahl_loss(helps.level, helps.stiffness, amplitude)
+    return 1 - dahl_loss(against.level, against.stiffness, amplitude) / given
+
+
+def _levels(**values: Any) -> list[sp.Expr]:
+    found = []
+    for name, value in values.items():
+        number = exact(value)
+        if number <= 0:
+            raise ModelError(f"{name}: expected a number > 0, found {number}")
+        found.append(number)
+    return found

@@ -1,0 +1,238 @@
+"""LuGre friction alone: passive iff its viscous damping outweighs the bristle's.
+
+    y = sigma_0 z,   z' = v - abs(v) y/g,   F = y + s1 z' + s2 v
+    g = F_C + (F_S - F_C) e^-(v/v_S)^2
+
+s2 >= s1 (F_S/F_C - 1) is sufficient by V = y^2/(2 sigma_0). It is necessary: slow motion loads the
+bristle to F_S, and a jump to high speed then lets it recoil, against the motion's own damping.
+Barabanov and Ortega, IEEE TAC 45 (2000) 830.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from ...effects import EFFECTS, SIGNALS
+from ...errors import ModelError
+from ..claims.certificate import Certificate, Term, storage_certificate
+from ..claims.claim import Claim, Proof, Refutation, Unknown
+from ..linear.impedance import decimal, exact
+from ..rate_independent import Dahl
+from ._dahl_certificates import Values, abs_v, dahl_rate, v
+
+_STRIBECK = EFFECTS["stribeck"]
+#: (velocity, F_S - F_C, v_S) -> extra level: the law of the effect `stribeck`
+_EXTRA = sp.lambdify(
+    [
+        SIGNALS["velocity"],
+        *(_STRIBECK.symbols()[n] for n in ("extra_static_level", "stribeck_velocity")),
+    ],
+    _STRIBECK.expression(),
+    "math",
+)
+
+
+@dataclass(frozen=True)
+class Jumps:
+    """A closed path in legs of constant speed that takes energy out of LuGre friction.
+
+    levels: F_C, F_S, N;  stiffness: sigma_0, N/m;  dampings: s1, s2, N s/m;  stribeck_velocity: m/s
+    legs: (velocity m/s, travel m > 0) of one round, travelled `rounds` times; the last one counts
+    """
+
+    levels: tuple[float, float]
+    stiffness: float
+    dampings: tuple[float, float]
+    stribeck_velocity: float
+    legs: tuple[tuple[float, float], ...]
+    rounds: int = 4
+
+    def level(self, velocity: float) -> float:
+        """g(v), N."""
+        low, high = self.levels
+        return low + float(_EXTRA(velocity, high - low, self.stribeck_velocity))
+
+    @property
+    def energy(self) -> float:
+        """Energy given out in the last round, J."""
+        return self.replay()
+
+    def replay(self) -> float:
+        """Energy given out in the last round, J: each leg has an exact solution."""
+        y, out = 0.0, 0.0
+        s1, s2 = self.dampings
+        for _ in range(self.rounds):
+            out = 0.0
+            for velocity, travel in self.legs:
+                bristle = Dahl(self.level(velocity), self.stiffness)
+                after, work = bristle.leg(y, math.copysign(travel, velocity))
+                work += s1 * velocity * (after - y) / self.stiffness + s2 * abs(velocity) * travel
+                y, out = after, out - work
+        return out
+
+    def as_dict(self) -> dict[str, object]:
+        """Plain data, to be written as JSON."""
+        return {"kind": "jumps", **vars(self), "energy": self.energy}
+
+
+def lugre_passivity(
+    *,
+    coulomb_level: Any,
+    static_level: Any,
+    stiffness: Any,
+    bristle_damping: Any,
+    viscous_damping: Any,
+    stribeck_velocity: Any,
+) -> Claim:
+    """Is LuGre friction passive: iff s2 >= s1 (F_S/F_C - 1), in exact numbers, equality included.
+
+    F_C and F_S, N;  sigma_0, N/m;  s1 and s2, N s/m;  v_S, m/s
+    """
+    f_c, f_s, sigma = exact(coulomb_level), exact(static_level), exact(stiffness)
+    s1, s2, v_s = exact(bristle_damping), exact(viscous_damping), exact(stribeck_velocity)
+    if not (0 < f_c <= f_s and sigma > 0 and s1 >= 0 and s2 >= 0 and v_s > 0):
+        raise ModelError(
+            "lugre_passivity: expected 0 < F_C <= F_S, stiffness and Stribeck velocity > 0, "
+            f"dampings >= 0, found {f_c}, {f_s}, {sigma}, {v_s}, {s1}, {s2}"
+        )
+    statement = (
+        f"LuGre friction (F_C {decimal(f_c)}, F_S {decimal(f_s)} N, "
+        f"s1 {decimal(s1)}, s2 {decimal(s2)} N s/m) is passive"
+    )
+    margin = s2 - s1 * (f_s / f_c - 1)
+    if margin >= 0:
+        values = {"sigma_0": sigma, "s1": s1, "s2": s2, "F_C": f_c, "F_S": f_s}
+        proof = Proof("V = y^2/(2 sigma_0)", (_certificate(values),), float(margin), "N s/m")
+        return Claim(statement, proof)
+    found = _recoil((float(f_c), float(f_s)), float(sigma), (float(s1), float(s2)), float(v_s))
+    if found is None:
+        return Claim(statement, Unknown("the condition fails, but no motion on the grid shows it"))
+    return Claim(statement, Refutation("slow motion, then a jump to high speed, to and fro", found))
+
+
+def beside_bristle_damping(
+    pair: Claim,
+    *,
+    coulomb_level: Any,
+    highest_level: Any,
+    stiffness: Any,
+    bristle_damping: Any,
+    viscous_damping: Any,
+) -> Claim:
+    """A claim about Dahl friction and its compensator, bristle and viscous damping counted.
+
+    Energies add, and both dampings together take some at every instant where s2 F_min >= s1 (F_max
+    - F_min): then what is proved without them holds with them. Without it nothing is known: a jump
+    of speed at a level that fell lets the bristle recoil. A motion that refutes the pair does so as
+    slowly as one likes, so that dampings take nothing; it stays.
+    coulomb_level, highest_level: F_min and F_max, N, as in the pair;  s1, s2: N s/m
+    """
+    low, high, sigma = exact(coulomb_level), exact(highest_level), exact(stiffness)
+    s1, s2 = exact(bristle_damping), exact(viscous_damping)
+    if s1 == 0 or not isinstance(pair.verdict, Proof):
+        return pair
+    statement = (
+        f"{pair.statement}, bristle damping {decimal(s1)} and viscous damping {decimal(s2)} N s/m "
+        "counted"
+    )
+    if s2 * low < s1 * (high - low):
+        why = (
+            f"bristle damping may give out energy where the level falls from {decimal(high)} to "
+            f"{decimal(low)} N, unless viscous damping is {float(s1 * (high / low - 1)):.4g} N s/m "
+            "or more; the pair without both is proved"
+        )
+        return Claim(statement, Unknown(why))
+    values = {"sigma_0": sigma, "s1": s1, "s2": s2, "F_C": low, "F_S": high}
+    certificates = (*pair.verdict.certificates, _damping_certificate(values))
+    return Claim(statement, replace(pair.verdict, certificates=certificates))
+
+
+def _recoil(
+    levels: tuple[float, float], stiffness: float, dampings: tuple[float, float], v_s: float
+) -> Jumps | None:
+    """Of a grid of jumps, the slowest fast leg that gives out energy."""
+    length = levels[1] / stiffness
+    for fast in v_s * np.geomspace(1.0, 1e9, 91):
+        best: Jumps | None = None
+        for travel in length * np.geomspace(1e-6, 3.0, 60):
+            half = ((1e-3 * v_s, 30 * length), (float(fast), float(travel)))
+            legs = (*half, *((-v, x) for v, x in half))
+            made = Jumps(levels, stiffness, dampings, v_s, legs)
+            if made.energy > (best.energy if best else 0.0):
+                best = made
+        if best is not None:
+            return best
+    return None
+
+
+def _certificate(values: Values) -> Certificate:
+    """LuGre friction with a level g anywhere within F_C..F_S: V = y^2/(2 sigma_0), y = sigma_0 z.
+
+    values: sigma_0, s1 (bristle damping), s2 (viscous damping), F_C, F_S
+    """
+    return _level_within(
+        "LuGre friction, level within F_C..F_S, is passive where s2 F_C >= s1 (F_S - F_C), from "
+        "any start with abs(y) <= F_S",
+        values,
+        spring=True,
+    )
+
+
+def _damping_certificate(values: Values) -> Certificate:
+    """Bristle and viscous damping of LuGre friction alone: power is lost at every instant."""
+    return _level_within(
+        "bristle and viscous damping of LuGre friction, level within F_C..F_S, take energy at "
+        "every instant where s2 F_C >= s1 (F_S - F_C), from any start with abs(y) <= F_S",
+        values,
+        spring=False,
+    )
+
+
+def _level_within(claim: str, values: Values, *, spring: bool) -> Certificate:
+    """Dampings of LuGre friction, and with `spring` the force y of the bristle as well."""
+    y, g, sigma_0, s1, s2 = sp.symbols("y g sigma_0 s1 s2", real=True)
+    low, high = sp.symbols("F_C F_S", real=True)
+    rate = dahl_rate(y, g, sigma_0)
+    decay = sigma_0 * abs_v / g
+    lost: list[Term] = [(1, {"abs_v": 1, "g": -1}, y)] if spring else []
+    lost += [
+        (1, {"g": -1, "dampings": 1, "above_low": 1}, v),
+        (1, {"g": -1, "enough": 1}, v),
+    ]
+    towards: list[Term] = [(1, {"abs_v": 1, "sigma_0": 1, "g": -1, "below_high": 1}, 1)]
+    away: list[Term] = [
+        (1, {"abs_v": 1, "sigma_0": 1}, 1),
+        (1, {"abs_v": 1, "sigma_0": 1, "F_S": 1, "g": -1}, 1),
+    ]
+    return storage_certificate(
+        claim,
+        supply=((y if spring else 0) + s1 * rate / sigma_0 + s2 * v) * v,
+        storage=y**2 / (2 * sigma_0) if spring else 0,
+        rates={"y": rate},
+        constants=["sigma_0", "F_S"],
+        positive={"g": g, "sigma_0": sigma_0, "F_S": high},
+        nonnegative={
+            "s1": s1,
+            "dampings": s1 + s2,
+            "enough": s2 * low - s1 * (high - low),
+            "above_low": g - low,
+            "below_high": high - g,
+        },
+        invariant={"below": (high - y, decay), "above": (high + y, decay)},
+        signs=["v"],
+        proofs={
+            "supply": {
+                "1": [*lost, (1, {"g": -1, "s1": 1, "below": 1}, v)],
+                "-1": [*lost, (1, {"g": -1, "s1": 1, "above": 1}, v)],
+            },
+            "storage": {"": [(sp.Rational(1, 2), {"sigma_0": -1}, y)] if spring else ()},
+            "below": {"1": towards, "-1": away},
+            "above": {"1": away, "-1": towards},
+        },
+        example={**values, "g": values["F_S"], "v": 1},
+    )

@@ -1,0 +1,186 @@
+"""A Dahl compensator in a computer, beside friction that gives before it slides.
+
+In continuous time the pair has a wedge of passive parameters (`dahl_compensation`). In a computer
+it has none. Dahl friction relaxes under a motion to and fro: over n small strokes of length L about
+one place its force falls by e^(-n L/lambda), and that costs next to no work. A hand that trembles
+once a sample and drifts by a share r of its path meets the mean force r f_C, whatever the level;
+the compensator sees the drift alone, and helps with f_D. So
+
+    energy given out per sample  ->  r L (f_D - r f_C) - B L^2/T,    r < f_D/f_C, L small,
+
+is positive for every f_D, sigma_D, damping B and sample period T. It is little: no law within f_D
+gives out more power than f_D^2/(4 B), and trembling in step with the clock is no likely motion. A
+contact whose small loops close on themselves, as those of many real ones do, does not relax so.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ...errors import ModelError
+from ..claims.claim import Claim, Refutation, Unknown
+from ..linear.impedance import decimal, exact
+from ..rate_independent import Dahl
+from ..search.stroke_motion import Strokes
+from .friction_compensation import bounded_compensation
+
+#: most samples one way of a motion that is written down
+LONGEST = 10_000_000
+
+
+@dataclass(frozen=True)
+class Trembling:
+    """To and fro along a drift, a stroke forth and one back each sample; then the same way back.
+
+    compensator: its law, which sees the drift alone;  friction: what resists;  damping: B, N s/m
+    sample_time: s;  forth, back: m, the two strokes of a sample at one speed;  samples: one way
+    late: samples by which the compensator's force is late
+    """
+
+    compensator: Dahl
+    friction: Dahl
+    damping: float
+    sample_time: float
+    forth: float
+    back: float
+    samples: int
+    late: int = 0
+
+    @property
+    def energy(self) -> float:
+        """Energy given out, J, from rest without preload to the same place."""
+        return self.replay()
+
+    @property
+    def power(self) -> float:
+        """Power given out while it drifts on, W."""
+        return self._settled()[0] / self.sample_time
+
+    @property
+    def path(self) -> float:
+        """Length of the way of one sample, m."""
+        return self.forth + self.back
+
+    def replay(self) -> float:
+        """Energy given out, J, each stroke exactly, summed over all samples."""
+        force, seen, out = 0.0, [0.0] * (self.late + 1), 0.0
+        for _ in range(2):  # the way back is the way there with all signs turned
+            settled, forgets, by_force = self._settled()[1:]
+            k = np.arange(self.samples)
+            forces = settled + (force - settled) * forgets**k
+            work = self._work(0.0) * self.samples + by_force * float(forces.sum())
+            level, net = self.compensator.level, self.forth - self.back
+            length = level / self.compensator.stiffness
+            helped = level + (seen[-1] - level) * np.exp(-net / length * np.arange(1, k[-1] + 2))
+            helped = np.concatenate([seen, helped])
+            out += net * float(helped[: self.samples].sum()) - work
+            out -= self.damping * self.path**2 / self.sample_time * self.samples
+            force = -float(settled + (force - settled) * forgets**self.samples)
+            seen = [-float(d) for d in helped[self.samples : self.samples + self.late + 1]]
+        return out
+
+    def strokes(self) -> Strokes:
+        """The motion with strokes that begin and end at rest, in step with the samples."""
+        there = np.cumsum(np.tile([self.forth, -self.back], self.samples))
+        points = np.concatenate([there, there[-1] - there])[:-1]
+        speed = math.pi * self.path / (2 * self.sample_time)
+        return Strokes(tuple(map(float, points)), speed, rounds=1)
+
+    def as_dict(self) -> dict[str, object]:
+        """Plain data, to be written as JSON."""
+        pair = {n: ["dahl", *vars(getattr(self, n)).values()] for n in ("compensator", "friction")}
+        return {"kind": "trembling", **vars(self), **pair, "energy": self.energy}
+
+    def _settled(self) -> tuple[float, float, float, float]:
+        """Energy of a sample in the long run; force at its begin; what is left of a force after it;
+        and work for each newton of that force.
+        """
+        length, level = self.friction.level / self.friction.stiffness, self.friction.level
+        forth, back = -math.expm1(-self.forth / length), -math.expm1(-self.back / length)
+        lost = -math.expm1(-self.path / length)
+        force = level * (forth * (1 - back) - back) / lost
+        by_force = length * (forth - (1 - forth) * back)
+        work = self._work(0.0) + by_force * force
+        helped = self.compensator.level * (self.forth - self.back)
+        energy = helped - work - self.damping * self.path**2 / self.sample_time
+        return energy, force, 1 - lost, by_force
+
+    def _work(self, force: float) -> float:
+        """Work that friction takes over one sample, J."""
+        there, first = self.friction.leg(force, self.forth)
+        return first + self.friction.leg(there, -self.back)[1]
+
+
+def sampled_compensation(
+    *,
+    coulomb_level: Any,
+    compensator_level: Any,
+    compensator_stiffness: Any,
+    sample_time: Any,
+    presliding_stiffness: Any = None,
+    viscous_damping: Any = 0,
+    late: int = 0,
+) -> Claim:
+    """Is friction passive beside a Dahl compensator in a computer?
+
+    coulomb_level: f_C, N: of ideal friction the lowest that can occur, of Dahl friction the highest
+    compensator_level, compensator_stiffness: f_D, N, and sigma_D, N/m
+    sample_time: T, s;  viscous_damping: B, N s/m
+    presliding_stiffness: N/m, of Dahl friction; None: ideal Coulomb friction
+    late: whole samples by which the compensator's force is late
+    returns: for ideal friction proved iff f_D <= f_C; beside Dahl friction refuted by a motion
+        that trembles once a sample, whatever the numbers; unknown where that motion would take more
+        than `LONGEST` samples to give out what its start takes
+    """
+    if presliding_stiffness is None:
+        return bounded_compensation(coulomb_level=coulomb_level, bound=compensator_level)
+    given = (coulomb_level, compensator_level, compensator_stiffness, sample_time)
+    f_c, f_d, stiffness, period, own, b = map(
+        exact, (*given, presliding_stiffness, viscous_damping)
+    )
+    if min(f_c, f_d, stiffness, period, own) <= 0 or min(b, late) < 0:
+        raise ModelError(
+            "sampled_compensation: expected levels, stiffnesses and sample time > 0, damping and "
+            f"late >= 0, found {f_c}, {f_d}, {stiffness}, {own}, {period}, {b}, {late}"
+        )
+    statement = (
+        f"Dahl friction {decimal(f_c)} N, {decimal(own)} N/m and damping {decimal(b)} N s/m with a "
+        f"Dahl compensator ({decimal(f_d)} N, {decimal(stiffness)} N/m) in a computer, each "
+        f"{decimal(period)} s, is passive"
+    )
+    helps, against = Dahl(float(f_d), float(stiffness)), Dahl(float(f_c), float(own))
+    found = _best(helps, against, float(b), float(period), late)
+    if found is None:
+        why = f"a motion gives out energy, but one of more than {LONGEST:g} samples"
+        return Claim(statement, Unknown(why))
+    how = (
+        f"trembling {found.path:.3g} m a sample, {found.power:.3g} W: friction relaxes, and "
+        "readings do not show it"
+    )
+    return Claim(statement, Refutation(how, found))
+
+
+def _best(helps: Dahl, against: Dahl, damping: float, period: float, late: int) -> Trembling | None:
+    """The trembling that gives out most power, of a length that can be written down."""
+    bristle = against.level / against.stiffness
+    longest = bristle
+    if damping:
+        longest = min(longest, period * helps.level**2 / (against.level * damping))
+    best = None
+    for path in longest * np.geomspace(1e-3, 1.0, 61):
+        for drift in np.linspace(0.05, 0.95, 19) * min(helps.level / against.level, 1.0):
+            forth, back = path * (1 + drift) / 2, path * (1 - drift) / 2
+            one = Trembling(helps, against, damping, period, float(forth), float(back), 1, late)
+            gain = one.power * period
+            if gain <= 0:
+                continue
+            # its bristle has to be led over first, and forces of the samples before push back
+            lost = 2 * helps.level * (helps.level / helps.stiffness + (1 + late) * (forth - back))
+            samples = 2 * math.ceil(lost / gain) + 2
+            if samples <= LONGEST and (best is None or gain > best[0]):
+                best = gain, replace(one, samples=samples)
+    return None if best is None or best[1].energy <= 0 else best[1]

@@ -1,0 +1,215 @@
+"""Passivity of a body driven by a sampled controller through a zero-order hold.
+
+The position is sampled with period T; the force -H(z) times it is held until the next sample. Over
+a sample of travel d the held force takes f d, and the damping b at least b d^2/T (least at constant
+speed); a spring K_0 of the body gives K_0 (x d + d^2/2). So the body is passive iff the operator
+
+    G(z) = (H(z) + K_0)/(z - 1) + K_0/2 + b/T      from travel to force
+
+is positive real in the discrete sense, whatever the inertia. On the unit circle that reads
+
+    b >= T/2 / (1 - cos wT)  Re[(1 - e^(-j w T)) H(e^(j w T))],    and at z = 1: H(1) + K_0 >= 0
+
+(Colgate and Schenkel, J. Robotic Systems 14 (1997) 37). With z = (1 + s)/(1 - s) it becomes the
+positive-real test of a rational function, which is exact; equality is passive too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from ...arguments import described
+from ...by_value import ByValue
+from ...errors import ModelError
+from ...realise.lti import S
+from ..claims.certificate import positive_real_certificate
+from ..claims.claim import Claim, Proof, Refutation
+from ..linear.impedance import Impedance, decimal, exact, impedance, readable
+from ..linear.positive_real import damping_excess, is_positive_real
+from ..search.growing_wave import growing_wave
+
+#: forward shift by one sample
+Z = sp.Symbol("z")
+_SAMPLES = 4000  # of a replayed motion, at most
+
+
+def sampled_passivity(
+    controller: Any, *, damping: Any, sample_time: Any, stiffness: Any = 0
+) -> Claim:
+    """Is the body with this sampled controller passive at the hand?
+
+    controller: H(z), rational in z: held force against the motion (N) over position (m); delays
+        are factors z^-1
+    damping: b of the body, N s/m;  sample_time: T, s;  stiffness: spring K_0 of the body, N/m
+    raises ModelError: not rational in z, or a sample time that is not positive
+    """
+    late = _positive(sample_time)
+    law = _law(controller)
+    b, k = exact(damping), exact(stiffness)
+    operator = travel_operator(law, b, late, k)
+    statement = (
+        f"a body with damping {decimal(b)} N s/m and the sampled force -({readable(law)}) x, "
+        f"held for {decimal(late)} s, is passive"
+    )
+    if is_positive_real(operator):
+        text = f"{statement}: G((1 + s)/(1 - s)) is positive real"
+        certificate = positive_real_certificate(text, [[operator.expression]])
+        margin = float(late) * float(damping_excess(operator))
+        method = "the discrete positive-real test, by bilinear transformation"
+        equality = "" if margin > 0 else "in the damping"
+        return Claim(statement, Proof(method, (certificate,), margin, "N s/m", equality))
+    wave = growing_wave(operator)
+    if wave is None:
+        raise AssertionError(f"not positive real, but no wave found: {operator}")
+    motion = sampled_wave(law, b, late, k, wave.rate, wave.frequency)
+    z = motion.factor
+    method = f"travel that grows by {abs(z):.6g} a sample and turns by {np.angle(z):.6g} rad"
+    return Claim(statement, Refutation(method, motion))
+
+
+def required_damping(controller: Any, *, sample_time: Any, stiffness: Any = 0) -> float:
+    """Least damping (N s/m) with which the body is passive; inf where none is enough.
+
+    Negative: the controller damps more than sampling costs. Arguments as in `sampled_passivity`.
+    """
+    late = _positive(sample_time)
+    operator = travel_operator(_law(controller), sp.S(0), late, exact(stiffness))
+    return -float(late) * float(damping_excess(operator))
+
+
+def sampled_coupling(
+    coupling: Any, *, master_damping: Any, slave_damping: Any, sample_time: Any
+) -> Claim:
+    """Is a teleoperator passive whose equal and opposite forces -H(z) (x_m - x_s) are sampled?
+
+    Of all ways to share a travel of x_m - x_s the cheapest has the damping b_m b_s/(b_m + b_s).
+    """
+    b_m, b_s = exact(master_damping), exact(slave_damping)
+    if b_m < 0 or b_s < 0:
+        raise ModelError(f"sampled_coupling: dampings must not be negative: {b_m}, {b_s}")
+    both = b_m * b_s / (b_m + b_s) if b_m + b_s else sp.S(0)
+    return sampled_passivity(coupling, damping=both, sample_time=sample_time)
+
+
+def travel_operator(law: sp.Expr, b: sp.Expr, late: sp.Expr, k: sp.Expr) -> Impedance:
+    """G(z) from travel over a sample to force (N/m), at z = (1 + s)/(1 - s)."""
+    g = (law + k) / (Z - 1) + k / 2 + b / late
+    return impedance(g.subs(Z, (1 + S) / (1 - S)))
+
+
+def _positive(sample_time: Any) -> sp.Expr:
+    late = exact(sample_time)
+    if late <= 0:
+        raise ModelError(f"sample_time: expected a time > 0 s, found {late}")
+    return late
+
+
+def _law(controller: Any) -> sp.Expr:
+    if isinstance(controller, bool | str) or controller is None:
+        found = described(controller)
+        raise ModelError(f"controller: found {found}, expected an expression of z, or a number")
+    e = sp.sympify(controller)
+    e = e.xreplace({x: Z for x in e.free_symbols if x.name == "z"})
+    if e.free_symbols - {Z}:
+        names = ", ".join(sorted(x.name for x in e.free_symbols - {Z}))
+        raise ModelError(f"controller: values are needed for {names}")
+    e = e.xreplace({x: exact(x) for x in e.atoms(sp.Float)})
+    above, below = sp.fraction(sp.together(e))
+    if not (above.is_polynomial(Z) and below.is_polynomial(Z)) or below == 0:
+        raise ModelError(f"controller: expected a rational function of z, found {e}")
+    e = sp.cancel(e)
+    above, below = (sp.Poly(part, Z) for part in sp.fraction(e))
+    if above.degree() > below.degree():
+        raise ModelError(f"controller: needs samples of the future: {e}")
+    return e
+
+
+@dataclass(frozen=True, eq=False)
+class SampledWave(ByValue):
+    """Positions at the samples that take energy out: the travel grows as Re(V z^k), k <= 0.
+
+    law: H(z);  damping, sample_time, stiffness: as in `sampled_passivity`
+    rate, frequency: s = rate + j frequency with z = (1 + s)/(1 - s)
+    travel: m over each sample, (n,), from (almost) rest on; the last ones are the largest
+    """
+
+    law: sp.Expr
+    damping: sp.Expr
+    sample_time: sp.Expr
+    stiffness: sp.Expr
+    rate: Fraction
+    frequency: Fraction
+    travel: np.ndarray = field(repr=False, compare=False)
+
+    @property
+    def factor(self) -> complex:
+        """z: factor of the travel from one sample to the next, abs(z) > 1."""
+        return _factor(self.rate, self.frequency)
+
+    @property
+    def energy(self) -> float:
+        """Energy given out by the whole motion, J."""
+        return self.replay()
+
+    def replay(self) -> float:
+        """Energy given out, J, simulated from rest by the controller's own difference equation."""
+        system = self.law, self.damping, self.sample_time, self.stiffness
+        return float(_given_out(self.travel, *system))
+
+    def as_dict(self) -> dict[str, object]:
+        """Plain data, to be written as JSON."""
+        return {
+            "kind": "sampled wave",
+            "law": str(self.law),
+            "damping": str(self.damping),
+            "sample_time": str(self.sample_time),
+            "stiffness": str(self.stiffness),
+            "rate": str(self.rate),
+            "frequency": str(self.frequency),
+            "energy": self.energy,
+        }
+
+
+def sampled_wave(
+    law: sp.Expr,
+    damping: sp.Expr,
+    sample_time: sp.Expr,
+    stiffness: sp.Expr,
+    rate: Fraction,
+    frequency: Fraction,
+) -> SampledWave:
+    """The growing travel at s = rate + j frequency, with the phase that gives out most."""
+    system = law, damping, sample_time, stiffness
+    z = _factor(rate, frequency)
+    number = int(min(np.ceil(16 / np.log(abs(z))), _SAMPLES))
+    phases = np.exp(1j * np.linspace(0, np.pi, 181))  # to a degree
+    waves = (phases[:, None] * z ** np.arange(-number, 1)).real
+    best = waves[int(np.argmax(_given_out(waves, *system)))]
+    return SampledWave(*system, rate, frequency, best)
+
+
+def _factor(rate: Fraction, frequency: Fraction) -> complex:
+    s = complex(float(rate), float(frequency))
+    return (1 + s) / (1 - s) if s != 1 else complex(1e12)  # a single travel
+
+
+def _given_out(
+    travel: np.ndarray, law: sp.Expr, damping: sp.Expr, sample_time: sp.Expr, stiffness: sp.Expr
+) -> np.ndarray:
+    """Energy given out, J, by each of the motions (..., n)."""
+    from scipy.signal import lfilter
+
+    position = np.cumsum(travel, axis=-1)
+    before = np.concatenate([np.zeros_like(position[..., :1]), position[..., :-1]], axis=-1)
+    above, below = (sp.Poly(part, Z) for part in sp.fraction(sp.cancel(law)))
+    a = [float(c) for c in below.all_coeffs()]
+    b = [0.0] * (below.degree() - above.degree()) + [float(c) for c in above.all_coeffs()]
+    held = lfilter(b, a, before)
+    lost = float(damping) / float(sample_time) * (travel**2).sum(axis=-1)
+    stored = float(stiffness) * position[..., -1] ** 2 / 2
+    return np.asarray(-((held * travel).sum(axis=-1) + lost + stored))

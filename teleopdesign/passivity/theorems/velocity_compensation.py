@@ -1,0 +1,197 @@
+"""Friction cancelled by velocity: how much may be added before the pair can give out energy.
+
+    c(v) = f_D v/(a + abs(v)),    a = 0: f_D sgn(v)
+
+beside viscous damping B, the pair is passive if and only if
+
+    sqrt(f_D) <= sqrt(f_0) + sqrt(a B)
+
+with f_0 = f_C for ideal Coulomb friction, whose contact does not give, and f_0 = 0 where it gives
+before it slides: there small motion meets a spring, which loses less than any negative damper adds,
+whatever the levels. The condition says abs(c(w)) <= f_0 + B abs(w) at every speed w, so it also
+covers a computer: over a sample of travel d, with the command of an earlier travel e,
+
+    f_0 abs(d) + B d^2/T - c d >= B (d^2 - e^2)/(2 T)
+
+by 2 abs(d e) <= d^2 + e^2, and the sum over all samples is not negative. Velocity is then the
+difference of readings, without a filter, and the delay a whole number of samples.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import sympy as sp
+
+from ...controllers import CONTROLLERS
+from ...errors import ModelError
+from ..claims.claim import Claim, Proof, Refutation, Unknown
+from ..linear.impedance import decimal, exact
+from ..rate_independent import Coulomb, Dahl
+from ._velocity_certificates import held_command, ideal_contact, yielding_contact
+
+_SYMBOLS = sp.symbols("velocity level smoothing", real=True)
+
+
+def _law() -> Any:
+    """(velocity, level, smoothing velocity) -> force of the control law `smoothed_coulomb`."""
+    v, level, smoothing = _SYMBOLS
+    now = SimpleNamespace(velocity=v, speed=sp.Abs(v))
+    values = SimpleNamespace(level=level, smoothing_velocity=smoothing)
+    return sp.lambdify(_SYMBOLS, CONTROLLERS["smoothed_coulomb"].law(now, values), "math")
+
+
+_COMMAND = _law()
+
+
+@dataclass(frozen=True)
+class SteadyStrokes:
+    """To and fro at one speed, from rest: a motion over which a law of velocity gives out energy.
+
+    level, smoothing: of the law, N and m/s (0: f_D sgn v);  damping: B, N s/m
+    friction: what resists beside it;  speed: m/s;  travel: of each stroke, m
+    sample_time: s, 0 in continuous time;  late: samples by which the force is late
+    """
+
+    level: float
+    smoothing: float
+    friction: Coulomb | Dahl
+    damping: float
+    speed: float
+    travel: float
+    sample_time: float = 0.0
+    late: int = 0
+    strokes: int = 8
+
+    @property
+    def energy(self) -> float:
+        """Energy given out, J, from rest without preload."""
+        return self.replay()
+
+    def replay(self) -> float:
+        """Energy given out, J, each stroke exactly.
+
+        In a computer the first samples of a stroke are still driven by the velocity before it.
+        """
+        command = _COMMAND(self.speed, self.level, self.smoothing)
+        behind = min((1 + self.late) * self.sample_time * self.speed, self.travel)
+        force, out, way = 0.0, 0.0, 1.0
+        for k in range(self.strokes):
+            force, work = self.friction.leg(force, way * self.travel)
+            helped = self.travel - behind * (2 if k else 1)
+            out += command * helped - work - self.damping * self.speed * self.travel
+            way = -way
+        return out
+
+    def as_dict(self) -> dict[str, object]:
+        """Plain data, to be written as JSON."""
+        friction = [type(self.friction).__name__.lower(), *vars(self.friction).values()]
+        return {
+            "kind": "steady strokes",
+            **vars(self),
+            "friction": friction,
+            "energy": self.energy,
+        }
+
+
+def velocity_compensation(
+    *,
+    coulomb_level: Any,
+    compensator_level: Any,
+    smoothing_velocity: Any = 0,
+    viscous_damping: Any = 0,
+    presliding_stiffness: Any = None,
+    sample_time: Any = None,
+    late: int = 0,
+) -> Claim:
+    """Is friction passive beside a law that cancels it by velocity?
+
+    coulomb_level: f_C, N, the lowest that can occur;  compensator_level: f_D, N
+    smoothing_velocity: a of `smoothed_coulomb`, m/s; 0: the law `coulomb`
+    viscous_damping: B, N s/m;  presliding_stiffness: N/m, of a contact that gives before it slides
+        (Dahl friction); None: ideal Coulomb friction
+    sample_time: s, of a computer that takes differences of readings; None: continuous time
+    late: whole samples by which its force is late
+    returns: proved iff sqrt(f_D) <= sqrt(f_0) + sqrt(a B), f_0 = f_C or, with presliding, 0; else
+        refuted by strokes at one speed. Decided in exact numbers, equality included
+    """
+    f_c, f_d = exact(coulomb_level), exact(compensator_level)
+    a, b = exact(smoothing_velocity), exact(viscous_damping)
+    own = None if presliding_stiffness is None else exact(presliding_stiffness)
+    period = sp.S(0) if sample_time is None else exact(sample_time)
+    if min(f_c, f_d) <= 0 or min(a, b, period, late) < 0 or (own is not None and own <= 0):
+        raise ModelError(
+            "velocity_compensation: expected levels and stiffness > 0, the rest >= 0, found "
+            f"{f_c}, {f_d}, {own}, {a}, {b}, {period}, {late}"
+        )
+    contact = "ideal" if own is None else f"presliding ({decimal(own)} N/m)"
+    computer = f", sampled each {decimal(period)} s, {late} late," if period else ""
+    statement = (
+        f"{contact} friction {decimal(f_c)} N and damping {decimal(b)} N s/m with a compensator of "
+        f"velocity ({decimal(f_d)} N, a = {decimal(a)} m/s){computer} is passive"
+    )
+    least = f_c if own is None else sp.S(0)
+    gap = f_d - least - a * b
+    if gap <= 0 or gap**2 <= 4 * least * a * b:
+        return Claim(statement, _proof(least, f_d, a, b, own, sampled=period > 0))
+    friction = Coulomb(float(f_c)) if own is None else Dahl(float(f_c), float(own))
+    found = _strokes((float(f_d), float(a)), friction, float(b), float(period), late)
+    if found is None:
+        why = "the condition fails, but by so little that no stroke shows it in double precision"
+        return Claim(statement, Unknown(why))
+    return Claim(statement, Refutation(f"strokes at {found.speed:.4g} m/s", found))
+
+
+def _proof(
+    least: sp.Expr, f_d: sp.Expr, a: sp.Expr, b: sp.Expr, own: sp.Expr | None, *, sampled: bool
+) -> Proof:
+    if own is None:
+        certificates = [ideal_contact(f_c=least, f_d=f_d, smoothing=a, b=b)]
+    else:
+        certificates = [yielding_contact(f_d=f_d, smoothing=a, b=b, stiffness=own)]
+    if sampled:
+        certificates.append(held_command(least=least, b=b))
+    tight = (f_d - least - a * b) ** 2 == 4 * least * a * b and f_d >= least + a * b
+    margin = 0.0 if tight else (math.sqrt(least) + math.sqrt(a * b)) ** 2 - float(f_d)
+    equality = "at one speed" if tight else ""
+    method = "abs(c(w)) <= f_0 + B abs(w) at every speed w"
+    return Proof(method, tuple(certificates), margin, "N of level", equality)
+
+
+def _strokes(
+    law: tuple[float, float], friction: Coulomb | Dahl, b: float, period: float, late: int
+) -> SteadyStrokes | None:
+    """Strokes that give out energy; slower and slower ones where the contact gives."""
+    f_d, a = law
+    least = friction.level if isinstance(friction, Coulomb) else 0.0
+    speed = _fastest_gain(f_d, a, least, b)
+    for _ in range(200 if isinstance(friction, Dahl) else 1):
+        command = _COMMAND(speed, f_d, a)
+        share = (command - least - b * speed) / command
+        if share <= 0:
+            return None
+        # behind a reversal the late force opposes: over an eighth of the gain, at most
+        one = period * speed
+        travel = math.ceil(8 * (1 + late) / share) * one
+        if isinstance(friction, Dahl):
+            length = friction.level / friction.stiffness
+            small = math.sqrt(min(share * command / friction.level, 1.0)) * length
+            if travel > small:
+                speed /= 2
+                continue
+            travel = math.floor(small / one) * one if one else small
+        made = SteadyStrokes(f_d, a, friction, b, speed, travel or 1e-3, period, late)
+        return made if made.energy > 1e-12 * command * made.travel else None
+    return None
+
+
+def _fastest_gain(f_d: float, a: float, least: float, b: float) -> float:
+    """The speed at which c(v) - f_0 - B v is largest; half way to its bound where there is none."""
+    if a and b:
+        return math.sqrt(a * f_d / b) - a
+    if a:
+        return a * (f_d + least) / (f_d - least)
+    return (f_d - least) / (2 * b) if b else 0.01

@@ -1,0 +1,1 @@
+"""Two-ports: passivity and absolute stability, and motions that grow between terminations."""

@@ -1,0 +1,143 @@
+"""Two-ports: a teleoperator between the hand (port 1) and the environment (port 2).
+
+    force_i = z_i1 velocity_1 + z_i2 velocity_2
+
+Forces act from outside on the device and velocities point the same way, so that power flows in at
+both ports. Passive (Raisbeck): no motion of the ports takes energy out. Absolutely stable
+(Llewellyn): no two passive terminations, one at each port, make it grow. Passive implies
+absolutely stable. Dead times are exact: e^(-s T) is evaluated, not approximated.
+
+Llewellyn, Proc. IRE 40 (1952) 271; his inequality on the axis is one of the conditions: all of them
+stand in `checker/absolute_stability.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from ...by_value import ByValue
+from ...errors import ModelError
+from ...finding import Graph, Series
+from ...realise.lti import S
+from ..linear.impedance import Impedance, exact, impedance
+
+
+@dataclass(frozen=True)
+class TwoPort:
+    """Impedance matrix (N s/m) in `realise.lti.S`, with exact numbers."""
+
+    z: sp.ImmutableMatrix
+
+    @property
+    def has_delay(self) -> bool:
+        """Whether a dead time is in it."""
+        return bool(self.z.has(sp.exp))
+
+    def entry(self, row: int, column: int) -> Impedance:
+        """One entry as rational function, row and column 1 or 2; ModelError with a dead time."""
+        return impedance(self.z[row - 1, column - 1])
+
+    def over(self, frequency: np.ndarray) -> np.ndarray:
+        """Values at frequency (Hz), (n, 2, 2)."""
+        return self.at(2j * np.pi * np.asarray(frequency, dtype=float))
+
+    def at(self, s: np.ndarray) -> np.ndarray:
+        """Values at complex s (1/s), (n, 2, 2)."""
+        s = np.asarray(s, dtype=complex)
+        out = np.empty((len(s), 2, 2), dtype=complex)
+        for i in range(2):
+            for j in range(2):
+                with np.errstate(all="ignore"):  # a pole is infinite, a late term far out is 0
+                    out[:, i, j] = sp.lambdify(S, self.z[i, j], "numpy")(s)
+        return out
+
+
+def two_port(entries: Sequence[Sequence[Any]]) -> TwoPort:
+    """A two-port from [[z11, z12], [z21, z22]].
+
+    entries: rational in s, with exp(-s T) for dead times; floats are read as decimals
+    raises ModelError: another shape, a free symbol, a dead time that is negative
+    """
+    if len(entries) != 2 or any(len(row) != 2 for row in entries):
+        raise ModelError("two_port: expected [[z11, z12], [z21, z22]]")
+    return TwoPort(sp.ImmutableMatrix([[_entry(e) for e in row] for row in entries]))
+
+
+def _entry(entry: Any) -> sp.Expr:
+    e = sp.sympify(entry.expression if isinstance(entry, Impedance) else entry)
+    e = e.xreplace({x: S for x in e.free_symbols if x.name == "s"})
+    if e.free_symbols - {S}:
+        names = ", ".join(sorted(x.name for x in e.free_symbols - {S}))
+        raise ModelError(f"two_port: values are needed for {names}")
+    e = e.xreplace({x: exact(x) for x in e.atoms(sp.Float)})
+    for power in e.atoms(sp.exp):
+        rate = sp.Poly(power.args[0], S).all_coeffs() if power.args[0].is_polynomial(S) else []
+        if len(rate) != 2 or rate[1] != 0 or rate[0] > 0:
+            raise ModelError(f"two_port: expected a dead time exp(-s T), found {power}")
+    return e
+
+
+def teleoperator(
+    *, master: Any, slave: Any, stiffness: float, damping: float = 0.0, delay: float = 0.0
+) -> TwoPort:
+    """Master and slave, coupled by spring and damper between their positions.
+
+    master, slave: impedances, force over velocity, see `impedance`
+    stiffness: N/m;  damping: N s/m;  delay: each way, s
+    """
+    link = exact(stiffness) / S + exact(damping)
+    late = sp.exp(-S * exact(delay)) if delay else sp.S(1)
+    z1, z2 = (impedance(x).expression + link for x in (master, slave))
+    return two_port([[z1, -link * late], [-link * late, z2]])
+
+
+@dataclass(frozen=True, eq=False)
+class FrequencyMargins(ByValue):
+    """Margins on the axis over frequency (Hz), (n,) each; numerical.
+
+    Needed, not enough: poles in the right half plane and residues at poles on the axis do not show.
+    `passive` and `absolutely_stable` settle the whole.
+
+    passive: smallest eigenvalue of the Hermitian part (N s/m): < 0 where a motion takes energy out
+    llewellyn: (2 Re z11 Re z22 - Re z12 z21)/abs(z12 z21) - 1, dimensionless; -inf where
+        Re z11 or Re z22 < 0; < 0 where some pair of terminations makes it unstable
+    """
+
+    frequency: np.ndarray
+    passive: np.ndarray
+    llewellyn: np.ndarray
+
+    def graph(self) -> Graph:
+        """Llewellyn's margin over frequency: below the limit unstable, above it not yet stable."""
+        f = self.frequency
+        series = (
+            Series("Llewellyn's margin", f, self.llewellyn, "model"),
+            Series("needed, not enough", f[[0, -1]], np.zeros(2), "limit"),
+        )
+        return Graph("frequency (Hz)", "Llewellyn's margin on the axis (1)", series)
+
+
+def over_frequency(system: TwoPort, frequency: np.ndarray | None = None) -> FrequencyMargins:
+    """Both margins over frequency (Hz), default 1e-4 to 1e4, 4001 points."""
+    f = np.geomspace(1e-4, 1e4, 4001) if frequency is None else np.asarray(frequency, dtype=float)
+    z = system.over(f)
+    return FrequencyMargins(f, passive_margin(z), stable_margin(z))
+
+
+def passive_margin(z: np.ndarray) -> np.ndarray:
+    """Smallest eigenvalue of the Hermitian part; z: (n, 2, 2)."""
+    return np.linalg.eigvalsh((z + z.conj().swapaxes(1, 2)) / 2)[:, 0]
+
+
+def stable_margin(z: np.ndarray) -> np.ndarray:
+    """Llewellyn's stability parameter minus 1; z: (n, 2, 2), on the axis."""
+    r1, r2, loop = z[:, 0, 0].real, z[:, 1, 1].real, z[:, 0, 1] * z[:, 1, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        margin = (2 * r1 * r2 - loop.real) / np.abs(loop) - 1
+    margin = np.where(loop == 0, np.inf, margin)
+    return np.where((r1 < 0) | (r2 < 0), -np.inf, margin)
