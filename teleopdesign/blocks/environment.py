@@ -10,15 +10,11 @@ behind its transmission touches it with the tip: x and v are the tip's.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
-from functools import lru_cache
-from types import SimpleNamespace
 from typing import Any
 
 import sympy as sp
 
 from ..effects import CONTACT_ROLES, SIGNALS, Effect, Parameter
-from ..recipes import remember
 
 NAME = "environment"
 
@@ -53,23 +49,3 @@ def contact_force(effects: Sequence[Effect]) -> sp.Expr:
     laws = (e.expression({"penetration": felt}) for e in effects if e.role == "contact")
     force = sp.Add(*laws)
     return sp.Piecewise((force, sp.And(penetration > 0, force > 0)), (0, True))
-
-
-@lru_cache(maxsize=64)
-def touching(structure: Effect, contact: sp.Expr) -> Effect:
-    """A structure whose tip, not its body, is what the contact force is taken from.
-
-    contact: as `contact_force` gives it, of the body's motion
-    """
-
-    def at_tip(rate: Any) -> Any:
-        def touched(now: Any, p: Any) -> sp.Expr:
-            motion = {"position": now.tip_position, "velocity": now.tip_velocity}
-            taken = contact.subs({SIGNALS[n]: tip for n, tip in motion.items()})
-            left = now.interaction_force - taken
-            return rate(SimpleNamespace(**{**vars(now), "interaction_force": left}), p)
-
-        return touched
-
-    states = {n: replace(state, rate=at_tip(state.rate)) for n, state in structure.states.items()}
-    return remember(replace(structure, states=states), touching, structure, contact)

@@ -32,6 +32,7 @@ from ._effect import (
     delayed,
     ordered,
 )
+from ._structure import make_structure, touching
 
 __all__ = [
     "CONTACT_ROLES",
@@ -47,7 +48,9 @@ __all__ = [
     "delayed",
     "find_effect",
     "load_effect",
+    "make_structure",
     "ordered",
+    "touching",
 ]
 
 
@@ -99,6 +102,8 @@ def _checked(module: ModuleType, path: Path) -> Effect:
     effect = getattr(module, "EFFECT", None)
     if not isinstance(effect, Effect):
         raise ModelError(f"{path}: found no EFFECT = Effect(...)")
+    if effect.role == "structure" and (effect.coupling is None or not effect.states):
+        raise ModelError(f"{path}: a structure is written EFFECT = make_structure(coupling=...)")
     for name in (*effect.parameters, *effect.states):
         check_name(name, where=f"{path}")
     if both := set(effect.parameters) & set(effect.states):

@@ -170,6 +170,8 @@ class Effect:
     absent: parameter values at which the effect is not there at all.
     canonical: of parameter values that mean the same, those to report.
     needs: effects that the model must have for this one to mean anything.
+    coupling: of a structure, coupling(now, p), which its law and states are made from
+        (`make_structure`)
     led: inertia(p) of a body among the hidden states whose position is corrected: the force that it
         would take to lead it so is left unexplained as well
     """
@@ -185,6 +187,7 @@ class Effect:
     always: frozenset[str] = frozenset()
     canonical: Callable[[Mapping[str, float]], dict[str, float]] = dict
     led: Callable[[Any], sp.Expr] | None = None
+    coupling: Callable[[Any, Any], sp.Expr] | None = None
     source: str = ""
     name: str = ""
     text: str = ""
@@ -364,6 +367,7 @@ def _without(effect: Effect, parameter: str) -> Effect:
     less = replace(
         effect,
         law=given(effect.law),
+        coupling=None if effect.coupling is None else given(effect.coupling),
         states={
             n: replace(s, rate=given(s.rate), correction=corrected(s))
             for n, s in effect.states.items()

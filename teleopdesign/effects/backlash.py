@@ -7,33 +7,30 @@ Gears and worn joints. Told from `transmission_compliance` by small motion, in w
 not follow at all.
 
 When the two meet next depends on the last time by more than sensors tell: along a measured motion
-the tip is led back to its course (`_tip.py`).
+the tip is led back to its course (`_structure.py`).
 """
 
 from sympy import Piecewise
 
-from ._effect import Effect, Parameter
-from ._tip import behind, led_back
+from ._effect import Parameter
+from ._structure import make_structure
 
 
 def coupling(now, p):
-    apart, closing = now.position - now.tip_position, now.velocity - now.tip_velocity
+    half, damping = p.gap / 2, p.damping * now.stretch_rate
     return Piecewise(
-        (p.stiffness * (apart - p.gap / 2) + p.damping * closing, apart > p.gap / 2),
-        (p.stiffness * (apart + p.gap / 2) + p.damping * closing, apart < -p.gap / 2),
+        (p.stiffness * (now.stretch - half) + damping, now.stretch > half),
+        (p.stiffness * (now.stretch + half) + damping, now.stretch < -half),
         (0, True),
     )
 
 
 #: how closely the tip is led: by less, courses of meetings fall out of step more often
 FOLLOWING = 3.0
-LAW, TIP = behind(coupling, led_back(FOLLOWING))
-EFFECT = Effect(
-    role="structure",
+EFFECT = make_structure(
+    coupling=coupling,
+    following=FOLLOWING,
     energy="dissipates",
-    law=LAW,
-    states=TIP,
-    led=lambda p: p.tip_inertia,
     parameters={
         "tip_inertia": Parameter("inertia", "m_t: inertia of the tip side", starts=(0.1, 0.3)),
         "stiffness": Parameter(
@@ -53,6 +50,5 @@ EFFECT = Effect(
             essential=True,
         ),
     },
-    absent={"tip_inertia": 0.0},
     source="two masses with lost motion",
 )

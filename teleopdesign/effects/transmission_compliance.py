@@ -8,29 +8,24 @@ interaction force acts on the tip. Below the resonance it looks like `added_iner
 nothing at all where the inertia is free.
 
 Noise of the readings swings a lightly damped tip, which swings on: along a measured motion the tip
-is led back to its course (`_tip.py`).
+is led back to its course (`_structure.py`).
 """
 
-from ._effect import Effect, Parameter
-from ._tip import behind, led_back
+from ._effect import Parameter
+from ._structure import make_structure
 
 
 def coupling(now, p):
-    return p.stiffness * (now.position - now.tip_position) + p.damping * (
-        now.velocity - now.tip_velocity
-    )
+    return p.stiffness * now.stretch + p.damping * now.stretch_rate
 
 
 #: how closely the tip is led: by more, what it takes to lead it counts more than what it saves
 FOLLOWING = 1.0
-LAW, TIP = behind(coupling, led_back(FOLLOWING))
-EFFECT = Effect(
-    role="structure",
+EFFECT = make_structure(
+    coupling=coupling,
+    following=FOLLOWING,
     energy="dissipates",
-    law=LAW,
     linear=True,
-    states=TIP,
-    led=lambda p: p.tip_inertia,
     parameters={
         "tip_inertia": Parameter("inertia", "m_t: inertia of the tip side", starts=(0.1, 0.5)),
         "stiffness": Parameter(
@@ -43,6 +38,5 @@ EFFECT = Effect(
             "damping", "C: damping of the transmission", starts=(0.01,), scale="resonance_damping"
         ),
     },
-    absent={"tip_inertia": 0.0},
     source="two masses on a spring; Mahvash, Okamura, IEEE CDC 2006",
 )

@@ -6,6 +6,8 @@ m_2 a_2 = coupling - f_2 sgn v_2 + f_env             link
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import sympy as sp
 
 from ..effects import EFFECTS
@@ -27,16 +29,10 @@ FREE = CLAMPED - 4 * f_2 * (A - f_2 / k)  # link sliding, A > f_2/k
 
 def coupling(x: tuple[sp.Expr, sp.Expr], v: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
     """Force of the effect `transmission_compliance` between motor and tip."""
-    signals = {
-        "position": x[0],
-        "velocity": v[0],
-        "tip_position": x[1],
-        "tip_velocity": v[1],
-        "acceleration": 0,
-        "interaction_force": 0,
-    }
-    values = {"stiffness": k, "damping": c, "tip_inertia": 0}
-    return EFFECTS["transmission_compliance"].expression(signals, values)
+    between = EFFECTS["transmission_compliance"].coupling
+    assert between is not None
+    stretch = SimpleNamespace(stretch=x[0] - x[1], stretch_rate=v[0] - v[1])
+    return sp.sympify(between(stretch, SimpleNamespace(stiffness=k, damping=c)))
 
 
 @shows(

@@ -19,8 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..blocks import Body
-from ..blocks.environment import touching
-from ..effects import SIGNALS, UNEXPLAINED, Effect
+from ..effects import SIGNALS, UNEXPLAINED, Effect, touching
 from ..measurement.motion import Motion
 from .friction_along import balance_friction, bound_friction, level_along, own_friction
 from .ode_scan import ode_scan

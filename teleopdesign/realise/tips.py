@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import lru_cache
+from types import SimpleNamespace
 from typing import Any
 
 import sympy as sp
@@ -141,9 +142,8 @@ def transmission(structure: Effect) -> ControlLaw:
     """The force of a structure from the difference of its two motions, as a law."""
 
     def force(now: Any, p: Any) -> sp.Expr:
-        here = {"position": now.input, "velocity": now.velocity, "acceleration": 0}
-        there = {"tip_position": 0, "tip_velocity": 0, "interaction_force": 0}
-        return structure.expression({**here, **there}, {**vars(p), "tip_inertia": 0})
+        assert structure.coupling is not None
+        return structure.coupling(SimpleNamespace(stretch=now.input, stretch_rate=now.velocity), p)
 
     parameters = {n: p for n, p in structure.parameters.items() if n != "tip_inertia"}
     law = ControlLaw(

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from devices import body
 
-from teleopdesign.blocks import spring_damper
+from teleopdesign.blocks import Body, spring_damper
 from teleopdesign.diagrams import haptic_interface
+from teleopdesign.effects import EFFECTS, SIGNALS, load_effect
 from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, measured_impedance, transfer_function
 from teleopdesign.frequency.matrix_response import matrix_response
@@ -217,3 +218,89 @@ def test_a_transmission_that_is_absent_is_the_rigid_body():
     assert left_out == ()
     s = 20j
     assert complex(system(s)) == pytest.approx(M * s**2 + B * s, rel=1e-9)
+
+
+OWN = '''"""A cable of a user's own, twice as hard where it is pulled."""
+
+from sympy import Piecewise
+
+from teleopdesign.effects import Parameter, make_structure
+
+
+def coupling(now, p):
+    pulled = Piecewise((2, now.stretch > 0), (1, True))
+    return p.stiffness * pulled * now.stretch + p.damping * now.stretch_rate
+
+
+EFFECT = make_structure(
+    coupling=coupling,
+    parameters={
+        "tip_inertia": Parameter("inertia", "of the tip"),
+        "stiffness": Parameter("stiffness", "of the cable"),
+        "damping": Parameter("damping", "of the cable"),
+    },
+    following=1.0,
+)
+'''
+VALUES = {"tip_inertia": TIP, "stiffness": K, "damping": C}
+
+
+def written(folder, text):
+    file = folder / "own_cable.py"
+    file.write_text(text)
+    return file
+
+
+def test_one_coupling_is_the_law_of_one_body_and_the_joint_of_two(tmp_path):
+    """The rates of the hidden tip are those of two bodies, whatever the coupling."""
+    own = load_effect(written(tmp_path, OWN))
+    made = Body("prismatic", {"inertia": M}).with_effect(own, VALUES)
+    run = simulate(
+        haptic_interface(made),
+        duration=0.05,
+        inputs={"R_D": lambda t: 3 * np.sin(200 * t)},
+        jit=False,
+    )
+    here = {
+        SIGNALS["position"]: "L",
+        SIGNALS["velocity"]: "L_velocity",
+        **dict(zip(own.state_symbols().values(), ("L_tip", "L_tip_velocity"), strict=True)),
+    }
+    acceleration = np.gradient(run["L_velocity"].values, run["time"].values)
+    hidden = made.numbers() | {SIGNALS["interaction_force"]: 0.0}
+    stretch = run["L"].values - run["L_tip"].values
+    assert stretch.max() > 2e-4 and stretch.min() < -2e-4  # pulled and pushed
+    for k in range(5, 45, 4):
+        at = hidden | {s: float(run[n][k]) for s, n in here.items()}
+        at |= {SIGNALS["acceleration"]: float(acceleration[k])}
+        joint = float(run["Z_M_transmission"][k])
+        tip = float(own.rates()["tip_velocity"].subs(at))
+        assert TIP * tip == pytest.approx(joint, rel=1e-9, abs=1e-12)
+        taken = float(own.expression().subs(at))
+        assert taken + TIP * at[SIGNALS["acceleration"]] == pytest.approx(joint, abs=1e-9)
+
+
+def test_a_tip_without_correction_runs_free(tmp_path):
+    free = load_effect(written(tmp_path, OWN.replace("following=1.0", "following=0.0")))
+    assert free.corrections() == {} and free.led_momentum() == 0
+    assert EFFECTS["backlash"].led_momentum() != 0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('"tip_inertia"', '"inertia"', 'no parameter "tip_inertia"'),
+        (
+            "make_structure(\n",
+            'Effect(role="structure", law=coupling,\n    absent={},\n',
+            "coupling",
+        ),
+    ],
+)
+def test_a_structure_that_says_too_little_is_refused_in_one_line(tmp_path, old, new, words):
+    text = OWN.replace(old, new).replace("import Parameter", "import Effect, Parameter")
+    if "Effect(" in new:
+        text = text.replace("    following=1.0,\n", "")
+    with pytest.raises(ModelError, match=words) as refusal:
+        load_effect(written(tmp_path, text))
+    assert "\n" not in str(refusal.value)
