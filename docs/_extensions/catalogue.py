@@ -7,7 +7,7 @@
 <!-- print: constants MODULE ... -->         constants with the comment that stands above them
 <!-- print: recordings -->                   public recordings
 <!-- print: api MODULE -->                   the public names of a module
-@{MODULE.NAME}                               the value of a constant
+@{MODULE.NAME}, @{MODULE.CLASS.NAME}          the value of a constant, of a field
 """
 
 from __future__ import annotations
@@ -260,16 +260,17 @@ def recordings() -> str:
 
 
 def constants(*modules: str) -> str:
-    """Every public constant of these modules that has a comment above it."""
+    """Every public constant, and field with a default, of these modules with a comment above it."""
     rows = []
     for module in modules:
         full = f"teleopdesign.{module}"
         found, comments = import_module(full), ModuleAnalyzer.for_module(full).find_attr_docs()
         for (owner, name), text in comments.items():
-            value = getattr(found, name, None)
-            if not owner and name.isupper() and isinstance(value, int | float):
+            value = getattr(getattr(found, owner) if owner else found, name, None)
+            if (owner or name.isupper()) and isinstance(value, int | float):
                 words = plain(" ".join(text).strip(" ."))
-                rows.append([f"`{module}.{name}`", number(value), words])
+                full_name = f"{owner}.{name}" if owner else name
+                rows.append([f"`{module}.{full_name}`", number(value), words])
     return table(["constant", "value", "what it is, in the words of the code"], rows)
 
 
@@ -307,8 +308,11 @@ _PRINTERS = {
 
 
 def _value(match: re.Match[str]) -> str:
-    module, _, name = match.group(1).rpartition(".")
-    return number(getattr(import_module(f"teleopdesign.{module}"), name))
+    path = match.group(1).split(".")
+    # a field with a default is named by its class, whose name begins with a capital
+    in_class = path[-2][:1].isupper()
+    module = import_module(".".join(["teleopdesign", *path[: -2 if in_class else -1]]))
+    return number(getattr(getattr(module, path[-2]) if in_class else module, path[-1]))
 
 
 def _printed(match: re.Match[str]) -> str:

@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 
 from ..diagnose.candidates import Candidate, candidates
-from ..diagnose.diagnosis import ADEQUATE
+from ..diagnose.criteria import CRITERIA
 from ..diagnose.fit import ROUGH, Fit, estimate
 from ..diagnose.force_error import Prepared
 from ..diagnose.noise_floor import noise_floor
@@ -95,7 +95,7 @@ def _summary(
         parts.append(f"cannot show {text}")
     if waiting := _waiting(base.model, place):
         parts.append("not judged, for the model lacks what they act on: " + ", ".join(waiting))
-    if base.fit_error > ADEQUATE * floor:
+    if base.fit_error > CRITERIA.adequate * floor:
         parts.append(
             f"all this above the noise floor, {100 * floor:.2g} % of the force; while the model "
             f"leaves {100 * base.fit_error:.2g} % unexplained, small effects hide in that"

@@ -17,10 +17,9 @@ from itertools import product
 import numpy as np
 
 from ..diagnose.candidates import Candidate
-from ..diagnose.diagnosis import ADEQUATE
+from ..diagnose.criteria import CRITERIA
 from ..diagnose.fit import Fit, weighted
 from ..diagnose.force_error import Prepared, Stretch, referred
-from ..diagnose.rank import TOLD
 from ..diagnose.scales import scales
 from ..measurement.filtering import Array
 from ..model import Model
@@ -104,8 +103,8 @@ def visibilities(
         residual,
         kept,
         math.sqrt(sum(s.measured for s in stretches)),
-        # an error of ADEQUATE floors is where a model stops being adequate
-        floor * math.sqrt(ADEQUATE**2 - 1.0),
+        # an error of `adequate` floors is where a model stops being adequate
+        floor * math.sqrt(CRITERIA.adequate**2 - 1.0),
     )
     unit = scales([s.motion for s in stretches], prepared.bandwidth)
     return [_visibility(c, scene, unit) for c in found]
@@ -114,11 +113,11 @@ def visibilities(
 def _visibility(candidate: Candidate, scene: _Scene, unit: dict[str, float]) -> Visibility:
     shapes = _shapes(candidate, scene.base.model, unit)
     best, shaped = _best(candidate, shapes, 1.0, scene)
-    if best.own < TOLD:
+    if best.own < CRITERIA.own_column:
         best, shaped = _best(candidate, shapes, STRONG, scene)
-    if best.own >= TOLD:
+    if best.own >= CRITERIA.own_column:
         best = _at_threshold(candidate, best, shaped, scene)
-    shows = best.own >= TOLD and best.part >= scene.threshold
+    shows = best.own >= CRITERIA.own_column and best.part >= scene.threshold
     strength, shape = _values(candidate, best.model)
     return Visibility(
         candidate,
@@ -137,7 +136,7 @@ def _best(
 ) -> tuple[_Trial, Model]:
     """The shape that shows most at equal strength; one that nothing imitates goes first."""
     trials = [(_trial(candidate, m, factor, scene), m) for m in shapes]
-    return max(trials, key=lambda t: (t[0].own >= TOLD, t[0].part))
+    return max(trials, key=lambda t: (t[0].own >= CRITERIA.own_column, t[0].part))
 
 
 def _shapes(candidate: Candidate, model: Model, unit: dict[str, float]) -> list[Model]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from ..diagnose.diagnosis import ADEQUATE
+from ..diagnose.criteria import CRITERIA
 from ..quantity import unit_of
 from ..realise.friction_interval import FrictionInterval
 from .from_answer import Diagnosed
@@ -25,7 +25,7 @@ def notes_on(design: Design, found: Diagnosed) -> tuple[str, ...]:
 
 def _model(design: Design, found: Diagnosed) -> list[str]:
     lines = []
-    if found.left > ADEQUATE:
+    if found.left > CRITERIA.adequate:
         lines.append(
             f"The model leaves {found.left:.3g} noise floors unexplained (verdict "
             f"{found.verdict}): standard errors hold within the model only, so the least level may "

@@ -6,11 +6,13 @@ from ..arguments import check_arguments
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .comparison import Comparison, compare
-from .diagnosis import Diagnosis, Rung
+from .diagnosis import Diagnosis
 from .fit import Fit
 from .force_error import prepare
 from .ladder import find_missing
-from .rank import Ranked, Ranking, rank_candidates
+from .rank import rank_candidates
+from .ranking import Ranked, Ranking
+from .rung import Rung
 from .search import estimate_from_starts
 
 __all__ = [

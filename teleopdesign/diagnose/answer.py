@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import gzip
-import math
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from io import TextIOWrapper
@@ -15,17 +14,17 @@ import numpy as np
 
 from ..model import Model
 from ..plain_data import plain, replacing, write_json
-from ..quantity import unit_of
 from ..realise.along_motion import residual_along
 from .answers.bodies import model_data
 from .answers.fingerprint import experiment_data
 from .diagnosis import Diagnosis
 from .fit import Fit
-from .force_error import along_own, own_groups
+from .force_error import along_own
+from .ladder_text import own_rows
 from .one_moment import Moment
 from .open_questions import open_questions
 from .probability import CandidateEvidence, evidence_of
-from .rank import REFUSALS
+from .ranking import REFUSALS
 
 
 def answer(diagnosis: Diagnosis) -> dict[str, Any]:
@@ -51,7 +50,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "bandwidth": {"value": diagnosis.prepared.bandwidth, "unit": "Hz"},
         "candidates": _candidates(diagnosis),
         "indistinguishable": [[_place(c.key) for c in g] for g in diagnosis.groups],
-        "own": _own(diagnosis),
+        "own": own_rows(diagnosis),
         "model_parameters": _parameters(diagnosis.after, _added(diagnosis)),
         "left_over_noise_floors": plain(diagnosis.left),
         "one_moment": _moment(diagnosis.moment),
@@ -91,23 +90,6 @@ def _moment(moment: Moment | None) -> dict[str, Any] | None:
         "end": {"value": moment.end, "unit": "s"},
         "left_over_noise_floors_without": moment.without,
     }
-
-
-def _own(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """What records have of their own by the model that the diagnosis ends with."""
-    stretches, rows = diagnosis.prepared.stretches, []
-    for group, own in own_groups(diagnosis.model, stretches):
-        motion = stretches[group[0]].motion
-        units = {
-            "position_zero": unit_of("position", own.body.axis),
-            "bias": unit_of("force", own.body.axis),
-            "friction_level": "of the model's",
-        }
-        rows += [
-            {"record": motion.file, "at": motion.body, "of": n, "value": v, "unit": units[n]}
-            for n, v in own.values.items()
-        ]
-    return rows
 
 
 def _place(key: tuple[str, str]) -> dict[str, str]:
@@ -241,115 +223,3 @@ def _predicted(diagnosis: Diagnosis, file: str) -> list[np.ndarray]:
                 out[motion.rows] = residual_along(*own[i]).residual.value
         columns += [measured, measured - before, measured - after, before, after]
     return columns
-
-
-def _number(value: float, error: float, unit: str) -> str:
-    if math.isfinite(error) and error > 0:
-        return f"{value:.4g} +- {error:.1g} {unit}"
-    return f"{value:.4g} {unit}"
-
-
-#: part of the error from which the one seen at the command is told beside it
-DIFFERENT = 0.02
-
-
-def seen_text(found: Fit) -> str | None:
-    """The error seen at the command and the blind share, where they say more than the error."""
-    seen = found.seen
-    alike = abs(seen.error - found.check_error) <= DIFFERENT * found.check_error
-    if alike and seen.blind == 0.0:
-        return None
-    blind = f", blind in {100 * seen.blind:.2g} % of the motion" if seen.blind else ""
-    return f"check error seen at the command: {_percent(seen.error)}{blind}"
-
-
-def _percent(error: float) -> str:
-    """An error in percent; that of a model that is blind everywhere is not told."""
-    return f"{100 * error:.2f} %" if math.isfinite(error) else "not told"
-
-
-def refused_lines(diagnosis: Diagnosis) -> list[str]:
-    """What left less force than the model that the ladder ends with, and why it does not count."""
-    after = diagnosis.after
-    return [
-        f"refused: {r.candidate} ({_percent(r.fit.check_error)}; seen at the command "
-        f"{_percent(r.fit.seen.error)}): {REFUSALS[r.refused]}"
-        for r in diagnosis.last.ranked
-        if r.refused and r.fit.check_error < after.check_error
-    ]
-
-
-def ladder_text(diagnosis: Diagnosis) -> str:
-    """The ladder as a table, with parameters, noise floor and verdict."""
-    lines = [f"{'added':<42}{'fit error':>10}{'check error':>13}"]
-    for rung in diagnosis.rungs:
-        name = "(your model, re-estimated)" if rung.added is None else f"+ {rung.added}"
-        lines.append(
-            f"{name:<42}{100 * rung.fit.fit_error:>9.2f}%{100 * rung.fit.check_error:>12.2f}%"
-        )
-        if rung.added is None:
-            continue
-        model = diagnosis.model
-        for p in rung.added.effect.parameters:
-            full = f"{rung.added.at}.{rung.added.effect.name}.{p}"
-            value = model.parameters[full]
-            bound = "  at its bound" if full in diagnosis.after.at_bound else ""
-            lines.append(
-                f"      {p} = {_number(value.value, value.stderr, model.unit(full))}{bound}"
-            )
-        if (seen := seen_text(rung.fit)) is not None:
-            lines.append(f"      {seen}")
-        if rung.equals:
-            others = ", ".join(map(str, rung.equals))
-            lines.append(f"      no different on these records: {others}")
-    lines += [
-        f"own of {o['record']}: {o['of'].replace('_', ' ')} {o['value']:.4g} {o['unit']}"
-        for o in _own(diagnosis)
-    ]
-    lines.append(
-        f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
-        f"  ({diagnosis.floor.source})"
-    )
-    lines += refused_lines(diagnosis)
-    lines.append("")
-    lines.append(sentence(diagnosis))
-    return "\n".join(lines)
-
-
-def sentence(diagnosis: Diagnosis) -> str:
-    """The verdict in words."""
-    left = diagnosis.left
-    more = f" What is left is {left:.1f} noise floors: more is missing."
-    rest = more if diagnosis.more_is_missing else ""
-    if (moment := diagnosis.moment) is not None:
-        rest = (
-            f" What is left is {left:.1f} noise floors, but {moment.without:.1f} without one "
-            f"moment ({moment})."
-        )
-    if diagnosis.verdict == "model_adequate":
-        noise = f" What is left is noise ({left:.2f} noise floors)."
-        return f"verdict: model_adequate.{rest or noise}"
-    if diagnosis.verdict == "effects_missing":
-        equals = {r.added: r.equals for r in diagnosis.rungs if r.added is not None}
-        names = ", ".join(" or ".join(map(str, (c, *equals[c]))) for c in diagnosis.missing)
-        less = [str(c) for c in equals if c not in diagnosis.missing]
-        others = f" {', '.join(less)}: less likely than not." if less else ""
-        return f"verdict: effects_missing: {names}.{others}{rest}"
-    if diagnosis.unlikely:
-        names = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)
-        return (
-            f"verdict: undecided. What helps most ({names}) is less likely than not what is "
-            f"missing: {left:.1f} noise floors are left."
-        )
-    if len(diagnosis.rungs) > 1 and any(r.added and not r.equals for r in diagnosis.rungs):
-        names = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)
-        return (
-            f"verdict: undecided. {names} help, but explain less than half of what is missing: "
-            f"{left:.1f} noise floors are left."
-        )
-    if diagnosis.groups:
-        names = "; ".join(" or ".join(map(str, g)) for g in diagnosis.groups)
-        return f"verdict: undecided between {names}: these records cannot tell.{rest}"
-    return (
-        f"verdict: undecided. No effect tried explains the {left:.1f} noise floors that are left."
-    )

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,35 +10,17 @@ from ..measurement.experiment import Experiment
 from ..model import Model
 from ..notebook import html_table
 from .candidates import Candidate
+from .decision import floors_left, is_adequate, verdict
 from .fit import Fit
 from .force_error import Prepared
+from .ladder_text import ladder_text, sentence
 from .noise_floor import NoiseFloor
-from .one_moment import Moment, worst_moment
-from .rank import BLIND, Ranking
+from .one_moment import Moment
+from .ranking import Ranking
+from .rung import Rung
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-#: what is left counts as noise up to this many noise floors
-ADEQUATE = 1.8
-#: what is named must explain this part of the squares above the noise floor
-MOSTLY = 0.5
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Rung(ByValue):
-    """One step of the ladder: what was added (None: the user's model), the fit, and the ranking.
-
-    ranking: the candidates that were compared on this step; equals: those as good as the added one
-    """
-
-    added: Candidate | None
-    fit: Fit
-    ranking: Ranking | None = None
-    equals: tuple[Candidate, ...] = ()
-
-    def __repr__(self) -> str:
-        return f"Rung {self.added or 'of the model'}: {self.fit!r}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,8 +107,6 @@ class Diagnosis(ByValue):
         return plot_diagnosis(self)
 
     def _repr_html_(self) -> str:
-        from .answer import sentence
-
         rows = [
             (
                 "(your model, re-estimated)" if r.added is None else f"+ {r.added}",
@@ -142,62 +120,4 @@ class Diagnosis(ByValue):
         return html_table("Diagnosis", head, rows, note=sentence(self))
 
     def __repr__(self) -> str:
-        from .answer import ladder_text
-
         return ladder_text(self)
-
-
-def floors_left(found: Fit, floor: NoiseFloor) -> float:
-    """Error that a model leaves on the check records, in noise floors, seen at the command too."""
-    if not (floor.value and math.isfinite(found.seen.error)):
-        return float("inf")
-    return max(found.check_error / floor.value, found.seen.error / floor.seen)
-
-
-def is_noise(check_error: float, floor: NoiseFloor) -> bool:
-    """Whether so large an error on the check records counts as noise."""
-    return check_error <= ADEQUATE * floor.value
-
-
-def is_adequate(found: Fit, floor: NoiseFloor) -> bool:
-    """Whether what a model leaves on the check records counts as noise, seen at the command too.
-
-    A model that is blind in much of the motion says too little to be adequate.
-    """
-    at_command = found.seen.error <= ADEQUATE * floor.seen and found.seen.blind <= BLIND
-    return is_noise(found.check_error, floor) and at_command
-
-
-def moment_above_noise(found: Fit, prepared: Prepared, floor: NoiseFloor) -> Moment | None:
-    """The one moment that holds all that a model leaves above noise; None where none does."""
-    if is_adequate(found, floor):
-        return None
-    moment = worst_moment(found, prepared, floor)
-    return moment if moment is not None and moment.without <= ADEQUATE else None
-
-
-def explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
-    """Part of the squares above the noise floor that the effects between the two explain.
-
-    Of the force or seen at the command, the smaller part.
-    """
-    of_force = _taken_away(before.check_error, after.check_error, floor.value)
-    return min(of_force, _taken_away(before.seen.error, after.seen.error, floor.seen))
-
-
-def _taken_away(before: float, after: float, floor: float) -> float:
-    return (before**2 - after**2) / max(before**2 - floor**2, 1e-300)
-
-
-def verdict(rungs: Sequence[Rung], floor: NoiseFloor, moment: Moment | None = None) -> str:
-    """ "effects_missing", "model_adequate" or "undecided".
-
-    moment: as `moment_above_noise` says; what is left at one moment only is no missing physics
-    """
-    added = [r for r in rungs if r.added is not None]
-    if not added:
-        adequate = is_adequate(rungs[-1].fit, floor) or moment is not None
-        return "model_adequate" if adequate else "undecided"
-    if explained(rungs[0].fit, rungs[-1].fit, floor) < MOSTLY or all(r.equals for r in added):
-        return "undecided"
-    return "effects_missing"

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from ..measurement.filtering import Array
+from .fit import Fit
 
 #: difference of two residuals, relative to the smaller, below which they count as the same
 SAME = 1e-3
@@ -35,3 +36,46 @@ def gain_score(before: Array, after: Array, blocks: NDArray[np.intp]) -> float:
 def chance(score: float) -> float:
     """Probability that chance alone brings a score of this size or more (one-sided, normal)."""
     return float(ndtr(-score))
+
+
+def check_squares(found: Fit) -> float:
+    """Sum of squares on the check records, relative to the force that acts by the model."""
+    return float(found.check_residual @ found.check_residual)
+
+
+def check_score(before: Fit, after: Fit) -> float:
+    """How surely `after` has the smaller error on the check records."""
+    return gain_score(before.check_residual, after.check_residual, after.check_blocks)
+
+
+def seen_score(before: Fit, after: Fit) -> float:
+    """How surely `after` has the smaller error on the check records, seen at the command.
+
+    On the rows that both can tell: what a model is blind to speaks for neither.
+    """
+    rows = before.seen.told & after.seen.told
+    return gain_score(
+        before.seen.residual[rows], after.seen.residual[rows], after.check_blocks[rows]
+    )
+
+
+def seen_gain(before: Fit, after: Fit) -> float:
+    """Part of the squares seen at the command that `after` takes away, on rows that both tell.
+
+    No more than the error itself says of each model on its own rows: to be blind to where most is
+    left is no gain.
+    """
+    rows = before.seen.told & after.seen.told
+    whole, left = (float(np.sum(f.seen.residual[rows] ** 2)) for f in (before, after))
+    own = 1.0 - (after.seen.error / before.seen.error) ** 2
+    return min(own, 1.0 - left / whole) if whole > 0.0 else 0.0
+
+
+def whole_score(before: Fit, after: Fit) -> float:
+    """How surely `after` has the smaller error on all records together."""
+    shift = int(after.fit_blocks.max()) + 1
+    return gain_score(
+        np.concatenate([before.fit_residual, before.check_residual]),
+        np.concatenate([after.fit_residual, after.check_residual]),
+        np.concatenate([after.fit_blocks, after.check_blocks + shift]),
+    )

@@ -8,6 +8,8 @@ import numpy as np
 
 from ..measurement.experiment import Experiment
 from ..measurement.record import Record
+from .force_error import Prepared, prepare
+from .search_plan import PLAN, SearchPlan
 
 #: samples of all records together above which windows are taken
 MOST = 100_000
@@ -26,6 +28,13 @@ def excerpt(experiment: Experiment, *, most: int = MOST) -> Experiment:
     part = most / total
     records = tuple(replace(r, segments=_windows(r, part)) for r in experiment.records)
     return replace(experiment, records=records)
+
+
+def on_windows(whole: Prepared, plan: SearchPlan = PLAN) -> Prepared:
+    """The windows of prepared records that are searched; the records themselves if not long."""
+    if sum(len(r.time) for r in whole.experiment.records) <= plan.long:
+        return whole
+    return prepare(excerpt(whole.experiment, most=plan.windows), bandwidth=whole.bandwidth)
 
 
 def _windows(record: Record, part: float) -> tuple[slice, ...]:

@@ -7,17 +7,20 @@ rivals that it beat when it was added are ranked in its place.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
 
-from ..errors import ModelError
-from ..model import Model
 from .candidates import Candidate
-from .fit import Fit, estimate
-from .force_error import Prepared
+from .criteria import CRITERIA, Criteria
+from .decision import equals_of, is_adequate, is_better, is_supported
+from .evidence import check_squares
+from .fit import Fit
+from .ladder_state import LadderSearch, LadderState
+from .moves import remove
 from .noise_floor import NoiseFloor
-from .rank import Ranked, Ranking, check_squares, rank_candidates
-from .support import is_better, is_supported
+from .ranking import Ranked, Ranking
+from .rung import Rung
+from .rungs import estimate_without, falling, refitted
 
 
 @dataclass(frozen=True)
@@ -34,41 +37,75 @@ class Exchange:
     ranking: Ranking
 
 
-def rivals_of(ranking: Ranking, there: Collection[Candidate], floor: NoiseFloor) -> list[Candidate]:
+def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
+    """The ladder with one effect exchanged for a better, less what that makes superfluous."""
+    criteria, prepared, floor = search.criteria, search.prepared, state.floor
+    if state.exchanges >= search.plan.exchanges or is_adequate(state.fit, floor, criteria=criteria):
+        return None
+    there = [r.added for r in state.rungs if r.added is not None]
+    # the last was ranked beside all the others already
+    rivals = {
+        r.added: rivals_of(r.ranking, there, floor, criteria=criteria)
+        for r in state.rungs[1:-1]
+        if r.added is not None and r.ranking is not None
+    }
+    best = best_exchange(search, state.fit, rivals, floor, step=state.step)
+    if best is None:
+        return None
+    taken, without = best.taken, best.without
+    equals = equals_of(taken, best.ranking, without, floor, criteria=criteria)
+    rung = Rung(taken.candidate, taken.fit, best.ranking, equals)
+    kept = [r for r in state.rungs if r.added is not best.dropped]
+    order = falling(refitted([*kept, rung], taken.fit, prepared), prepared)
+    if order is None:
+        return None
+    moved = replace(state.with_rungs(order), exchanges=state.exchanges + 1)
+    return remove(search, moved) or moved
+
+
+def rivals_of(
+    ranking: Ranking,
+    there: Collection[Candidate],
+    floor: NoiseFloor,
+    *,
+    criteria: Criteria = CRITERIA,
+) -> list[Candidate]:
     """What the records supported in a ranking besides the one that was added, and is not there."""
     keys = {c.key for c in there}
-    supported = [r.candidate for r in ranking.ranked if is_supported(ranking.base, r, floor)]
+    supported = [
+        r.candidate
+        for r in ranking.ranked
+        if is_supported(ranking.base, r, floor, criteria=criteria)
+    ]
     return [c for c in supported if c.key not in keys]
 
 
 def best_exchange(
-    found: Fit,
+    search: LadderSearch,
+    present: Fit,
     rivals: Mapping[Candidate, Collection[Candidate]],
-    prepared: Prepared,
     floor: NoiseFloor,
     *,
-    stated: Model | None = None,
-    progress: Callable[[str], None] | None = None,
+    step: int = 1,
 ) -> Exchange | None:
     """The exchange that lowers the error on the check records most; None where none does clearly.
 
-    found: the fit with all that was accepted;  rivals: accepted effect -> what may take its place
-    stated, progress: as for `rank_candidates`
+    present: the fit with all that was accepted
+    rivals: accepted effect -> what may take its place;  step: number of the rung that is sought
     """
-    exchanges = []
+    criteria, exchanges = search.criteria, []
     for dropped, among in rivals.items():
         if not among:
             continue
-        name, at = dropped.key
-        try:
-            without = estimate(found.model.without_effect(name, at=at), prepared)
-        except ModelError:
-            continue  # another effect needs it
-        ranking = rank_candidates(without, prepared, among=among, stated=stated, progress=progress)
+        without = estimate_without(present.model, dropped, search.prepared)
+        if without is None:
+            continue
+        ranking = search.rank(without, step=step, among=among)
         better = [
             r
             for r in ranking.ranked
-            if is_supported(without, r, floor) and is_better(found, r.fit, floor)
+            if is_supported(without, r, floor, criteria=criteria)
+            and is_better(present, r.fit, floor, criteria=criteria)
         ]
         if better:
             taken = min(better, key=lambda r: check_squares(r.fit))

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from .diagnosis import Diagnosis, OpenQuestion, Rung
-from .rank import Ranked
-from .support import is_supported
+from .criteria import CRITERIA
+from .decision import is_supported
+from .diagnosis import Diagnosis, OpenQuestion
+from .ranking import Ranked
+from .rung import Rung
 
-#: two models that the check records tell by less than this (noise floors, in quadrature) are left
-#: open: a right model's own error lies between one and about one and a half noise floors
-OPEN = 1.0
 #: most rivals of one question
 MOST = 4
 
@@ -44,5 +43,5 @@ def _is_open(ranked: Ranked, rung: Rung, diagnosis: Diagnosis) -> bool:
     assert rung.ranking is not None and rung.added is not None
     added = next(r for r in rung.ranking.ranked if r.candidate.key == rung.added.key)
     more = ranked.fit.check_error**2 - added.fit.check_error**2
-    near = more < (OPEN * diagnosis.floor.value) ** 2
+    near = more < (CRITERIA.open * diagnosis.floor.value) ** 2
     return near and is_supported(rung.ranking.base, ranked, diagnosis.floor)

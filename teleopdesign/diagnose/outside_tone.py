@@ -21,11 +21,10 @@ from scipy.optimize import minimize_scalar
 from ..effects import SIGNALS, Effect
 from ..measurement.filtering import Array
 from ..model import Model
-from .evidence import gain_score
+from .criteria import CRITERIA
+from .evidence import check_squares, gain_score
 from .fit import Fit, estimate
 from .force_error import Prepared, Stretch, residuals
-from .rank import check_squares
-from .support import CLOSE
 
 #: frequencies tried per inverse of the longest stretch
 FINENESS = 4
@@ -60,7 +59,7 @@ class Tone:
         """Whether a fit leaves less by more than chance."""
         if self.residual is None:
             return True
-        return gain_score(self.residual, found.check_residual, found.check_blocks) > CLOSE
+        return gain_score(self.residual, found.check_residual, found.check_blocks) > CRITERIA.close
 
 
 def best_tone(found: Fit, prepared: Prepared) -> Tone:

@@ -14,17 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from .candidates import Candidate
-from .diagnosis import ADEQUATE, Diagnosis, Rung
+from .criteria import CRITERIA, Criteria
+from .decision import displaced
+from .diagnosis import Diagnosis
 from .evidence import chance
-from .rank import Ranked, Ranking
-from .support import displaced
-
-#: of 74 effects that were accepted with nothing but noise left, 73 were true: (73 + 1)/(74 + 2)
-TRUE_OF_ACCEPTED = 0.97
-#: of 31 best candidates that were not accepted none was true: 1/33
-TRUE_OF_OTHERS = 0.03
-#: probability from which an effect is said to be missing: what is less likely than not is not named
-NAMED = 0.5
+from .ranking import Ranked, Ranking
+from .rung import Rung
 
 
 @dataclass(frozen=True)
@@ -44,15 +39,15 @@ class CandidateEvidence:
     explained: float
     left: float
 
-    def probability(self) -> float:
+    def probability(self, *, criteria: Criteria = CRITERIA) -> float:
         """Probability that the effect is missing, 0 to 1."""
         real = self.share * (1.0 - chance(self.ranked.score))
         if not (self.accepted or self.as_good):
-            return TRUE_OF_OTHERS * real * self.explained
+            return criteria.true_of_others * real * self.explained
         # none of 4 accepted effects was true that left 3.9 to 29 floors; squares: of what is left
         # unexplained, as much as noise is sure to be no effect
-        trusted = 1.0 if self.left <= ADEQUATE else (ADEQUATE / self.left) ** 2
-        return float(np.clip(TRUE_OF_ACCEPTED * real * trusted, 0.0, 1.0))
+        trusted = 1.0 if self.left <= criteria.adequate else (criteria.adequate / self.left) ** 2
+        return float(np.clip(criteria.true_of_accepted * real * trusted, 0.0, 1.0))
 
 
 def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
@@ -79,15 +74,15 @@ def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
     return found
 
 
-def probable(diagnosis: Diagnosis) -> tuple[Candidate, ...]:
+def probable(diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA) -> tuple[Candidate, ...]:
     """The accepted effects that are at least as likely as not, in the order added."""
     found = {
-        one.ranked.candidate.key: one.probability()
+        one.ranked.candidate.key: one.probability(criteria=criteria)
         for one in evidence_of(diagnosis)
         if one.accepted
     }
     added = [r.added for r in diagnosis.rungs if r.added is not None]
-    return tuple(c for c in added if found[c.key] >= NAMED)
+    return tuple(c for c in added if found[c.key] >= criteria.named)
 
 
 def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:

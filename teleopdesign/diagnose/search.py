@@ -18,26 +18,14 @@ from ..effects import Effect
 from ..measurement.filtering import Array
 from ..model import Model
 from .candidates import started
+from .criteria import CRITERIA
 from .fit import FINE, ROUGH, Effort, Fit, estimate, fit_squares, free_parameters, solve
 from .force_error import Prepared, referred
 from .linear_start import linear_starts
 from .scales import scales
+from .search_plan import PLAN
 
-#: gain in squares on the fit records from which a start is worth a step
-WORTH = 0.01
-#: starts kept after the prediction, and after the first steps; one step says less of an effect
-#: that is linear in no strength
-PREDICTED, STEPPED = 2, 1
-CURVED_PREDICTED, CURVED_STEPPED = 4, 2
-#: where hidden states are corrected they may still fall out of step, and squares are rugged
-CORRECTED_PREDICTED, CORRECTED_STEPPED = 6, 3
-#: part by which a user's value may be wrong: what moved further may have been led astray
-MOVED = 0.25
-#: factors on each parameter of such an effect from which a better place is sought, how often at
-#: most, and the part of the squares that it must take away to go on
-JOLTS, SWEEPS, ONWARD = (0.85, 1.18), 2, 0.1
-#: part of the squares before that it leaves at most where that is worth the time
-JOLTED = 0.5
+#: a few real steps from a start: enough to see which of many starts lead down
 FIRST_STEPS = Effort(1e-3, 4)
 
 
@@ -47,7 +35,7 @@ def estimate_from_starts(
     base: Fit | None = None,
     stated: Model | None = None,
     *,
-    worth: float = WORTH,
+    worth: float = CRITERIA.worth,
 ) -> Fit:
     """The best fit of a model, from every starting value of the effects that are still absent.
 
@@ -59,13 +47,13 @@ def estimate_from_starts(
     models = started(model, unit)
     absent = [model.body(at).effect(name) for name, at in model.absent]
     rugged = any(e.corrections() and not e.linear for e in absent)
-    kept = CORRECTED_STEPPED if rugged else CURVED_STEPPED
+    kept = PLAN.corrected_stepped if rugged else PLAN.curved_stepped
     if base is not None:
         curved = _with_strength(model, base) is None
-        kept = kept if curved else STEPPED
+        kept = kept if curved else PLAN.stepped
         if curved and stated is not None and _moved(base, stated):
             models += [at_stated(m, stated) for m in models]
-        most = CORRECTED_PREDICTED if rugged else CURVED_PREDICTED
+        most = PLAN.corrected_predicted if rugged else PLAN.curved_predicted
         models = _promising(model, models, prepared, base, unit, most, worth)
         if not models:
             return unchanged(model, base)
@@ -75,7 +63,7 @@ def estimate_from_starts(
         models = _best_stepped(models, prepared, kept, promised=base is not None)
     rough = [estimate(m, prepared, effort=ROUGH) for m in models]
     best = min(rough, key=fit_squares)
-    if rugged and base is not None and fit_squares(best) < JOLTED * fit_squares(base):
+    if rugged and base is not None and fit_squares(best) < PLAN.jolted * fit_squares(base):
         best = _jolted(best, model.absent, prepared)
     return best if base is not None else estimate(best.model, prepared, effort=FINE)
 
@@ -151,7 +139,7 @@ def _moved(base: Fit, stated: Model) -> bool:
         for n in base.free
         if n in stated.parameters
     ]
-    return any(abs(found - given) > MOVED * abs(given) for found, given in pairs)
+    return any(abs(found - given) > PLAN.moved * abs(given) for found, given in pairs)
 
 
 def _by_strength(
@@ -166,7 +154,7 @@ def _by_strength(
     starts = linear_starts(list(distinct.values()), effect, at, prepared, base)
     if starts[0].promised > (1.0 - worth) * fit_squares(base):
         return []
-    return [s.model for s in starts[:PREDICTED]]
+    return [s.model for s in starts[: PLAN.predicted]]
 
 
 def _promise(model: Model, prepared: Prepared, base: Fit, unit: dict[str, float]) -> float:
@@ -219,9 +207,9 @@ def _jolted(found: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> F
     stretches, free = prepared.of("fit"), free_parameters(found.model)
     names = [n for effect, at in new for n in free if n.startswith(f"{at}.{effect}.")]
     model, least = found.model, fit_squares(found)
-    for _ in range(SWEEPS):
+    for _ in range(PLAN.sweeps):
         before = least
-        for name, factor in product(names, JOLTS):
+        for name, factor in product(names, PLAN.jolts):
             jolted = model.with_values({name: model.parameters[name].value * factor})
             solution = solve(jolted, free, prepared, stretches, FIRST_STEPS)
             squares = float(solution.residual @ solution.residual)
@@ -229,6 +217,6 @@ def _jolted(found: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> F
                 least = squares
                 values = dict(zip(free, solution.values.tolist(), strict=True))
                 model = model.with_values(values)
-        if least > (1.0 - ONWARD) * before:
+        if least > (1.0 - PLAN.onward) * before:
             break
     return found if model is found.model else estimate(model, prepared, effort=ROUGH)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..diagnose import Diagnosis
-from ..diagnose.answer import answer, seen_text
-from ..diagnose.diagnosis import Rung
-from ..diagnose.rank import Ranked, Ranking
+from ..diagnose.answer import answer
+from ..diagnose.ladder_text import seen_text
+from ..diagnose.ranking import Ranked, Ranking
+from ..diagnose.rung import Rung
 from .words import step_name
 
 

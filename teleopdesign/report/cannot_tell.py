@@ -6,10 +6,12 @@ import math
 
 import numpy as np
 
-from ..diagnose.diagnosis import Diagnosis, Rung
+from ..diagnose.criteria import CRITERIA
+from ..diagnose.diagnosis import Diagnosis
+from ..diagnose.evidence import whole_score
 from ..diagnose.fit import Fit
-from ..diagnose.rank import Ranked, whole_score
-from ..diagnose.support import CLOSE
+from ..diagnose.ranking import Ranked
+from ..diagnose.rung import Rung
 from ..effects import CONTACT_ROLES
 from ..finding import Finding
 from .words import listed, number, percent, unit_text, with_error
@@ -50,8 +52,8 @@ def _group(rung: Rung) -> Finding:
         sentence=(
             f"{listed(names)} explain these records equally well: added at the same step they "
             f"leave {errors}, at most {number(apart, 2)} standard deviations of chance apart (from "
-            f"{CLOSE:g} on they would be told apart). Along this motion they change the model's "
-            f"force in the same way: the correlation is {number(likeness, 4)}."
+            f"{CRITERIA.close:g} on they would be told apart). Along this motion they change the "
+            f"model's force in the same way: the correlation is {number(likeness, 4)}."
         ),
         numbers=numbers | {"standard_deviations_apart": apart, "correlation": likeness},
     )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from ..diagnose.diagnosis import Diagnosis, Rung
+from ..diagnose.diagnosis import Diagnosis
+from ..diagnose.rung import Rung
 
 _SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 MINUS = "\u2212"

@@ -13,11 +13,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..diagnose.criteria import CRITERIA
 from ..diagnose.evidence import chance, gain_score
 from ..diagnose.force_error import FOLDS
 from ..diagnose.least_squares import solve_normal
-from ..diagnose.rank import RELEVANT
-from ..diagnose.support import OF_FLOOR, SURE
 from ..measurement.filtering import Array
 from .rows import Rows
 from .shapes import SHAPES, Shape, columns_of, knots_of, roughness
@@ -191,8 +190,8 @@ def is_real(dependence: Dependence, whole: float, floor_squares: float) -> bool:
     gain = float(dependence.before @ dependence.before) - dependence.squares
     return (
         dependence.probability < ALARM
-        and gain > RELEVANT * whole
-        and gain > (OF_FLOOR if dependence.score > SURE else 1.0) * floor_squares
+        and gain > CRITERIA.relevant * whole
+        and gain > (CRITERIA.of_floor if dependence.score > CRITERIA.sure else 1.0) * floor_squares
     )
 
 
@@ -231,5 +230,5 @@ def dependences(
 def _simplest(real: list[Dependence]) -> Dependence:
     """Of those that do as well as the best to all that matters, the first in `SHAPES`."""
     best = max(t.explained for t in real)
-    alike = [t for t in real if t.explained > (1.0 - RELEVANT) * best]
+    alike = [t for t in real if t.explained > (1.0 - CRITERIA.relevant) * best]
     return replace(alike[0], alike=tuple(t.shape.name for t in alike[1:]))

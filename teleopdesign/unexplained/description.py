@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..diagnose.diagnosis import ADEQUATE
+from ..diagnose.criteria import CRITERIA
 from ..diagnose.force_error import Prepared
 from ..diagnose.noise_floor import noise_floor
 from ..finding import Finding, Graph
@@ -77,7 +77,7 @@ class BodyUnexplained:
     @property
     def is_adequate(self) -> bool:
         """Whether nothing is left that sensors would not leave."""
-        return not self.found and self.floors <= ADEQUATE
+        return not self.found and self.floors <= CRITERIA.adequate
 
 
 def described(
@@ -144,7 +144,7 @@ def findings_of(part: BodyUnexplained, *, name_body: bool) -> tuple[Finding, ...
     found = [Finding("what is left", "warning", f"{said}.", numbers, where, time)]
     for one in part.found:
         found.append(_finding(one, where))
-    if part.floors > ADEQUATE:
+    if part.floors > CRITERIA.adequate:
         found += _rest(part, where)
     return tuple(found)
 
@@ -186,7 +186,7 @@ def _rest(part: BodyUnexplained, where: str) -> list[Finding]:
         velocity = part.views["velocity"]
         found.append(Finding("rest", "note", said, {"share": part.at_rest}, where, velocity))
     floors = part.after / part.floor if part.floor else float("inf")
-    if floors > ADEQUATE and part.after**2 > UNDESCRIBED * part.error**2:
+    if floors > CRITERIA.adequate and part.after**2 > UNDESCRIBED * part.error**2:
         what = "Beside that" if part.found else f"None of {len(SHAPES)} dependences is sure:"
         verb = f"{number(floors)} times the sensors' noise"
         said = (

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from ..diagnose.criteria import CRITERIA
 from ..diagnose.evidence import gain_score
 from ..diagnose.fit import standard_errors
-from ..diagnose.support import SURE
 from ..measurement.filtering import Array
 from .dependence import Columns, Dependence, held_out
 from .library import Term, terms_of
@@ -165,7 +165,7 @@ def _judged(
     after = held_out(rows, together)
     before = float(found.before @ found.before)
     share = (before - float(after @ after)) / (before - found.squares)
-    sure = gain_score(found.before, after, rows.blocks[rows.checked]) > SURE
+    sure = gain_score(found.before, after, rows.blocks[rows.checked]) > CRITERIA.sure
     learnt, k = rows.learnt, own.values.shape[1]
     target = rows.residual * rows.root
     value = together.solve(target, learnt)

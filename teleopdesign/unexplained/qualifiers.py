@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..diagnose.criteria import CRITERIA
 from ..diagnose.fit import standard_errors
-from ..diagnose.support import SURE
 from ..measurement.filtering import Array
 from .dependence import Dependence
 from .rows import RESTED, Rows
@@ -33,7 +33,7 @@ class Contrast:
     @property
     def differs(self) -> bool:
         """Whether the sides differ by more than chance."""
-        return bool(abs(np.diff(self.sizes)[0]) > SURE * np.hypot(*self.errors))
+        return bool(abs(np.diff(self.sizes)[0]) > CRITERIA.sure * np.hypot(*self.errors))
 
     @property
     def only(self) -> str:

@@ -166,7 +166,7 @@ def test_the_least_size_that_shows_is_where_the_error_reaches_the_bound(rod, few
     """Planted at that size, an effect raises a fitted model's error to 1.8 noise floors."""
     from teleopdesign.check.visibility import visibilities
     from teleopdesign.diagnose.candidates import candidates
-    from teleopdesign.diagnose.diagnosis import ADEQUATE
+    from teleopdesign.diagnose.criteria import CRITERIA
 
     model = Model.from_experiment(rod, few).with_effect("stribeck")
     prepared = prepare(rod)
@@ -192,7 +192,7 @@ def test_the_least_size_that_shows_is_where_the_error_reaches_the_bound(rod, few
     )
     after = estimate(model, prepare(planted), effort=ROUGH)
     # the size is found to 20 %, and what is left of Stribeck is in the floor used here
-    assert after.fit_error / floor == pytest.approx(ADEQUATE, rel=0.2)
+    assert after.fit_error / floor == pytest.approx(CRITERIA.adequate, rel=0.2)
 
 
 def one_way(experiment):

@@ -13,14 +13,13 @@ from diagnose.own_cases import FEW
 from teleopdesign import Model, compare, find_missing
 from teleopdesign.diagnose.answer import (
     answer,
-    ladder_text,
-    seen_text,
     write_answer,
     write_predictions,
 )
-from teleopdesign.diagnose.ladder import _first_rise, _without_rise
+from teleopdesign.diagnose.ladder_text import ladder_text, seen_text
 from teleopdesign.diagnose.probability import shares
-from teleopdesign.diagnose.rank import REFUSALS
+from teleopdesign.diagnose.ranking import REFUSALS
+from teleopdesign.diagnose.rungs import first_rise, without_rise
 
 EVERY_KEY = {
     "verdict", "missing", "ladder", "noise_floor", "candidates", "indistinguishable",
@@ -50,11 +49,11 @@ def test_what_is_less_likely_than_not_is_not_named(diagnosis):
 
 
 def test_a_ladder_ends_before_a_rung_that_leaves_more(diagnosis):
-    rungs = list(diagnosis.rungs)
+    rungs = diagnosis.rungs
     worse = replace(rungs[-1], fit=replace(rungs[-1].fit, check_error=2 * rungs[0].fit.check_error))
-    assert _first_rise(rungs) is None and _without_rise(rungs) == rungs
-    assert _first_rise([*rungs, worse]) == len(rungs)
-    assert _without_rise([*rungs, worse]) == rungs
+    assert first_rise(rungs) is None and without_rise(rungs) == rungs
+    assert first_rise((*rungs, worse)) == len(rungs)
+    assert without_rise((*rungs, worse)) == rungs
 
 
 def test_the_error_seen_at_the_command_is_told_where_it_differs(diagnosis):

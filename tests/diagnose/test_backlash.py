@@ -9,7 +9,8 @@ from diagnose.own_cases import truth_of, write_own
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.force_error import force_error, prepare, residuals
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.search import CORRECTED_PREDICTED, _varied
+from teleopdesign.diagnose.search import _varied
+from teleopdesign.diagnose.search_plan import PLAN
 from teleopdesign.effects import EFFECTS
 from teleopdesign.realise import ode_scan
 
@@ -61,7 +62,7 @@ def test_a_gap_is_sought_from_every_width_however_little_it_promises(case):
         for w in widths
         for m in inertias
     ]
-    tried = _varied(new, ordered)[:CORRECTED_PREDICTED]
+    tried = _varied(new, ordered)[: PLAN.corrected_predicted]
     values = [
         [start.parameters[f"device.backlash.{n}"].value for n in ("gap", "tip_inertia")]
         for start in tried

@@ -10,7 +10,7 @@ from teleopdesign import Model
 from teleopdesign.diagnose.candidates import candidates, started
 from teleopdesign.diagnose.fit import estimate, free_parameters
 from teleopdesign.diagnose.force_error import prepare
-from teleopdesign.diagnose.rank import is_told
+from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.scales import scales
 from teleopdesign.effects import CONTACT_ROLES, EFFECTS
 
@@ -151,12 +151,12 @@ def test_where_a_body_only_goes_on_no_effect_of_the_place_is_a_candidate(model, 
 def test_inertia_beside_a_free_inertia_cannot_be_told(model, prepared):
     base = estimate(model, prepared)
     twice = estimate(base.model.with_effect("added_inertia", values={"inertia": 1e-4}), prepared)
-    assert not is_told(twice, base)
+    assert not is_identifiable(twice, base)
     absent = estimate(base.model.with_effect("spring", values={"stiffness": 1e-4}), prepared)
-    assert not is_told(absent, base), "no spring is there: its stiffness is not determined"
+    assert not is_identifiable(absent, base), "no spring is there: its stiffness is not determined"
     less = estimate(base.model.without_effect("coulomb"), prepared)
     whole = estimate(less.model.with_effect("coulomb", values={"level": 0.1}), prepared)
-    assert is_told(whole, less)
+    assert is_identifiable(whole, less)
 
 
 def test_without_check_records_blocks_are_held_out(experiment, model):

@@ -9,6 +9,7 @@ from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.exchange import best_exchange
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.diagnose.ladder_state import LadderSearch
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
@@ -25,7 +26,8 @@ def scene(tmp_path_factory):
     experiment = load_experiment(folder)
     prepared, stated = prepare(experiment), Model.from_experiment(experiment)
     base = estimate(stated, prepared)
-    return prepared, base, noise_floor(base.model, prepared, np.random.default_rng(0))
+    search = LadderSearch(experiment, prepared, prepared, stated)
+    return search, base, noise_floor(base.model, prepared, np.random.default_rng(0))
 
 
 def fitted(base, prepared, *names):
@@ -37,10 +39,10 @@ def fitted(base, prepared, *names):
 
 
 def test_a_stand_in_gives_way_to_the_spring_that_it_stood_for(scene):
-    prepared, base, floor = scene
-    found = fitted(base, prepared, "hardening_spring", "quadratic_drag")
+    search, base, floor = scene
+    found = fitted(base, search.prepared, "hardening_spring", "quadratic_drag")
     rivals = {candidate("hardening_spring"): [candidate("spring"), candidate("added_inertia")]}
-    exchange = best_exchange(found, rivals, prepared, floor)
+    exchange = best_exchange(search, found, rivals, floor)
     assert exchange is not None
     assert exchange.dropped.key == ("hardening_spring", "device")
     assert exchange.taken.candidate.key == ("spring", "device")
@@ -48,12 +50,12 @@ def test_a_stand_in_gives_way_to_the_spring_that_it_stood_for(scene):
 
 
 def test_the_spring_gives_way_to_nothing(scene):
-    prepared, base, floor = scene
-    found = fitted(base, prepared, "spring")
+    search, base, floor = scene
+    found = fitted(base, search.prepared, "spring")
     rivals = {candidate("spring"): [candidate("hardening_spring"), candidate("quadratic_drag")]}
-    assert best_exchange(found, rivals, prepared, floor) is None
+    assert best_exchange(search, found, rivals, floor) is None
 
 
 def test_where_nothing_was_a_rival_nothing_is_tried(scene):
-    prepared, base, floor = scene
-    assert best_exchange(base, {candidate("spring"): []}, prepared, floor) is None
+    search, base, floor = scene
+    assert best_exchange(search, base, {candidate("spring"): []}, floor) is None

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.diagnose import ladder
+from teleopdesign.diagnose import ladder, ladder_state
+from teleopdesign.diagnose.decision import is_a_tone
+from teleopdesign.diagnose.evidence import check_squares
 from teleopdesign.diagnose.fit import estimate, weighted
 from teleopdesign.diagnose.force_error import prepare
-from teleopdesign.diagnose.ladder import _is_a_tone
 from teleopdesign.diagnose.noise_floor import NoiseFloor
 from teleopdesign.diagnose.outside_tone import Tone, _taken, acts_by_the_clock, best_tone
-from teleopdesign.diagnose.rank import Ranking, check_squares
+from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
 
@@ -133,17 +134,17 @@ def test_no_pair_is_sought_where_a_tone_leaves_only_noise(rod, monkeypatch):
     squares = check_squares(found) * (floor.value / found.check_error) ** 2
     noise = Tone(found.check_residual * floor.value / found.check_error)
     assert noise.squares == pytest.approx(squares)
-    assert _is_a_tone(found, Tone(1.5 * noise.residual), floor)
-    assert not _is_a_tone(found, Tone(2.5 * noise.residual), floor)
-    assert not _is_a_tone(found, Tone(), floor)
+    assert is_a_tone(found, Tone(1.5 * noise.residual), floor)
+    assert not is_a_tone(found, Tone(2.5 * noise.residual), floor)
+    assert not is_a_tone(found, Tone(), floor)
 
     def searched(*_, **__):
         raise AssertionError("a pair was sought")
 
-    monkeypatch.setattr(ladder, "rank_candidates", lambda base, *_, **__: Ranking(base, ()))
-    monkeypatch.setattr(ladder, "_pair", searched)
+    monkeypatch.setattr(ladder_state, "rank_candidates", lambda base, *_, **__: Ranking(base, ()))
+    monkeypatch.setattr(ladder, "add_pair", searched)
     with pytest.raises(AssertionError, match="sought"):
         ladder.find_missing(prepared.experiment)
-    monkeypatch.setattr(ladder, "best_tone", lambda *_: noise)
+    monkeypatch.setattr(ladder_state, "best_tone", lambda *_: noise)
     diagnosis = ladder.find_missing(prepared.experiment)
     assert diagnosis.verdict == "undecided" and diagnosis.missing == ()

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.diagnose.answer import answer, ladder_text, write_predictions
+from teleopdesign.diagnose.answer import answer, write_predictions
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.force_error import force_error, own_groups, prepare, residuals
+from teleopdesign.diagnose.ladder_text import ladder_text
 
 BIAS, LEVEL = 0.15, 0.8  # N, and of the rod's friction
 STRIBECK = {"extra_static_level": 0.2, "stribeck_velocity": 0.0225}

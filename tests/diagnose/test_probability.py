@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.diagnose.diagnosis import ADEQUATE
+from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.probability import CandidateEvidence, evidence_of, shares
 
 
@@ -32,7 +32,9 @@ def test_it_is_a_probability(left, share, score):
 
 
 def test_it_falls_as_more_is_left_and_never_rises():
-    said = [replace(EVIDENCE, left=x).probability() for x in (0.8, ADEQUATE, 2.5, 4.0, 30.0)]
+    said = [
+        replace(EVIDENCE, left=x).probability() for x in (0.8, CRITERIA.adequate, 2.5, 4.0, 30.0)
+    ]
     assert said == sorted(said, reverse=True)
     assert said[0] == said[1] > 0.9
     assert said[3] < 0.5

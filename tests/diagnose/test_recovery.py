@@ -10,7 +10,8 @@ from diagnose.own_cases import FEW, truth_of, write_own
 from truth_effects import TEN
 
 from teleopdesign import Model, find_missing, load_experiment
-from teleopdesign.diagnose.answer import answer, ladder_text
+from teleopdesign.diagnose.answer import answer
+from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.effects import EFFECTS
 

@@ -15,11 +15,12 @@ import teleopdesign as td
 from teleopdesign import EFFECTS, ExperimentError, Model, Value
 from teleopdesign.blocks import CONTACT, Body
 from teleopdesign.cli import main
-from teleopdesign.diagnose.answer import answer, ladder_text, write_answer
+from teleopdesign.diagnose.answer import answer, write_answer
 from teleopdesign.diagnose.answers import load_answer, restored
 from teleopdesign.diagnose.answers.bodies import model_data, model_from
 from teleopdesign.diagnose.answers.fingerprint import digest
 from teleopdesign.diagnose.answers.restored import steps_of
+from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.effects import catalogue
 from teleopdesign.errors import TeleopDesignError
 from teleopdesign.plain_data import write_json

@@ -11,11 +11,13 @@ from diagnose.unexplained_texture import write_slide as write
 from teleopdesign import Model, load_experiment
 from teleopdesign.blocks import Body, Value
 from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.criteria import CRITERIA
+from teleopdesign.diagnose.decision import is_better, is_supported, refusal
+from teleopdesign.diagnose.evidence import seen_gain
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.force_error import at_command, force_error, prepare
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.rank import RELEVANT, rank_candidates, refusal, seen_gain
-from teleopdesign.diagnose.support import is_better, is_supported
+from teleopdesign.diagnose.rank import rank_candidates
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.motion import motion_of
 from teleopdesign.realise.along_motion import residual_along
@@ -182,7 +184,7 @@ def test_the_figure_that_counts_does_not_fall_by_a_force_that_is_thrown_away(nam
         found = lowest(base, effect, {first: value, **others}, prepared)
         plain.append(found.check_error)
         # a texture drawn anew is matched by chance to a few percent, as any model's is
-        lower = seen_gain(base, found) > 2 * RELEVANT
+        lower = seen_gain(base, found) > 2 * CRITERIA.relevant
         assert refusal(base, found) in ("blind", "weak") or not lower, (value, found.seen)
         assert not is_better(base, found, floor)
     if name in ("actuator_saturation", "soft_limit", "feeds_back", "takes_up_what_acts"):

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.diagnose.rank import Ranking
+from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.report.words import listed, number, percent, short, unit_text, verdict, with_error
 
 FINITE = st.floats(-1e12, 1e12).filter(lambda x: x == 0 or abs(x) > 1e-12)

@@ -14,8 +14,8 @@ from teleopdesign.cli import main
 from teleopdesign.diagnose import find_missing
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.rank import is_told
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.errors import ModelError
 from teleopdesign.unexplained import unexplained, where_it_fails
@@ -347,7 +347,7 @@ def test_a_written_effect_loads_and_its_fit_reaches_the_noise_floor(
     fitted = estimate_from_starts(lacking.model.with_effect(effect, at="device"), rod, lacking)
     # the formula is the catalogue's own, so its error must be that of the model that is right
     assert fitted.check_error == pytest.approx(adequate.check_error, rel=0.02)
-    assert is_told(fitted, lacking)
+    assert is_identifiable(fitted, lacking)
 
 
 def test_without_a_formula_the_curve_itself_is_written(tmp_path, rod, lacking, adequate, failure):

@@ -12,14 +12,14 @@ from ...errors import ExperimentError, ModelError
 from ...measurement.experiment import Experiment
 from ...model import Model
 from ..candidates import Candidate
-from ..diagnosis import Diagnosis, OpenQuestion, Rung
-from ..excerpt import excerpt
+from ..diagnosis import Diagnosis, OpenQuestion
+from ..excerpt import on_windows
 from ..fit import Effort, Fit, estimate
 from ..force_error import Prepared, prepare
-from ..ladder import LONG, WINDOWS
 from ..noise_floor import NoiseFloor
 from ..one_moment import Moment
-from ..rank import Ranking
+from ..ranking import Ranking
+from ..rung import Rung
 from .bodies import known_effect, model_from
 from .saved import SavedAnswer
 
@@ -59,9 +59,7 @@ def restored(
     for model in (*steps.models, steps.estimated, *(m for _, o in steps.open for _, m in o)):
         saved.require_bodies(model, experiment)
     whole = prepare(experiment, bandwidth=float(content["bandwidth"]["value"]))
-    prepared = whole
-    if sum(len(r.time) for r in experiment.records) > LONG:
-        prepared = prepare(excerpt(experiment, most=WINDOWS), bandwidth=whole.bandwidth)
+    prepared = on_windows(whole)
     fits = [
         replace(
             evaluated(model, prepared),

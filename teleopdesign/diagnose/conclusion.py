@@ -1,0 +1,66 @@
+"""The end of a ladder: reading errors taken off, errors on the whole records, and the verdict."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from .decision import is_adequate, moment_above_noise, verdict
+from .diagnosis import Diagnosis
+from .fit import Fit
+from .force_error import Prepared, at_command, force_error
+from .ladder_state import LadderSearch, LadderState
+from .probability import probable
+from .reading_error import with_reading_error
+from .rung import Rung
+from .rungs import first_rise, without_rise
+
+
+def conclude(search: LadderSearch, state: LadderState) -> Diagnosis:
+    """The diagnosis that a ladder ends with."""
+    prepared, floor, criteria = search.prepared, state.floor, search.criteria
+    estimated = state.fit
+    rungs = _with_reading_error(search, state)
+    moment = moment_above_noise(rungs[-1].fit, prepared, floor, criteria=criteria)
+    if prepared is not search.whole:
+        search.progress("errors on the whole records")
+        rungs = tuple(replace(r, fit=_on_all(r.fit, search.whole)) for r in rungs)
+        if len(steady := without_rise(rungs)) < len(rungs):
+            rungs, estimated = steady, steady[-1].fit
+    diagnosis = Diagnosis(
+        experiment=search.experiment,
+        prepared=search.whole,
+        verdict=verdict(rungs, floor, moment, criteria=criteria),
+        rungs=rungs,
+        last=state.ranking,
+        estimated=estimated,
+        floor=floor,
+        moment=moment,
+    )
+    named = probable(diagnosis, criteria=criteria)
+    if diagnosis.verdict == "effects_missing" and not named:
+        return replace(diagnosis, verdict="undecided")
+    return replace(diagnosis, named=named)
+
+
+def _with_reading_error(search: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
+    """The rungs with what readings do taken off the last fit, unless it then leaves more."""
+    search.progress("reading the model's own motion")
+    corrected = with_reading_error(
+        state.fit,
+        search.prepared,
+        search.generator(),
+        adequate=lambda fit: is_adequate(fit, state.floor, criteria=search.criteria),
+    )
+    rungs = (*state.rungs[:-1], replace(state.rungs[-1], fit=corrected))
+    return rungs if first_rise(rungs) is None else state.rungs
+
+
+def _on_all(fit: Fit, whole: Prepared) -> Fit:
+    """A fit that was made on windows, with the errors that it has on the whole records."""
+    fit_error = force_error(fit.model, whole.of("fit"))
+    check = whole.of("check")
+    if not check:
+        return replace(fit, fit_error=fit_error)
+    error, seen = force_error(fit.model, check), at_command(fit.model, check)
+    there = replace(fit.seen, error=seen.error, blind=seen.blind, weak=seen.weak)
+    return replace(fit, fit_error=fit_error, check_error=error, seen=there)

@@ -1,0 +1,71 @@
+"""Every threshold by which a diagnosis decides, with its unit, its origin and what it trades.
+
+A stricter value misses more of what is there; a looser one names more of what is not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Criteria:
+    """Thresholds of a diagnosis; `CRITERIA` are those in use."""
+
+    #: noise floors up to which what is left counts as noise. Right models reach 1.0 to 1.5 on
+    #: simulated records. Lower: a right model is called incomplete; higher: a weak effect hides
+    adequate: float = 1.8
+    #: part of the squares above the noise floor that what is named must explain. Half: less is
+    #: rather something else. Lower: stand-ins are named; higher: one effect of two is not
+    mostly: float = 0.5
+    #: standard deviations of its chance part from which a gain counts (one in 30 000 by a normal
+    #: law; residuals are not quite normal). Lower: chance gains; higher: short records say nothing
+    sure: float = 4.0
+    #: probability of a gain by chance, over the whole catalogue, up to which it counts: one
+    #: catalogue in a hundred. It rules where an adequate model is made of one that is not
+    by_chance: float = 0.01
+    #: part of the noise floor's square from which a gain counts: while a body is stuck or turns,
+    #: its friction is known no better. Lower: the method's own errors count; higher: weak effects
+    #: are missed
+    of_floor: float = 0.5
+    #: part of the squares before from which a gain counts: less is no answer to where a model fails
+    relevant: float = 0.03
+    #: standard deviations of a difference below which two fits explain the records equally well.
+    #: Three: one in 700 by chance. Lower: look-alikes are told apart by chance; higher: more is
+    #: undecided
+    close: float = 3.0
+    #: relative difference of two check errors below which they may be equal (with `close`): what a
+    #: reader sees as the same figure
+    near: float = 0.02
+    #: noise floors (in quadrature) by which the check errors of two models must differ, or they are
+    #: left open: a right model's own error lies between one and about one and a half floors
+    open: float = 1.0
+    #: share of the samples where the body slides that may be blind. A quarter: of more, a model
+    #: says too little; less would refuse every saturation that was really reached
+    blind: float = 0.25
+    #: part of a new parameter's column that must lie outside the span of the model's own: below,
+    #: rounding and noise in the tangents make the difference
+    own_column: float = 0.02
+    #: standard errors by which a parameter that makes an effect what it is must differ from zero.
+    #: Lower: a gap is named that noise alone asks for; higher: a small one is missed
+    surely: float = 5.0
+    #: part of the squares that one linear step must promise, from which a start is worth a step.
+    #: Higher: faster, and effects that are linear in no strength are missed
+    worth: float = 0.01
+    #: times that an effect may make sensors count for more than in the user's model: above, what it
+    #: leaves would hide in their noise. As `adequate`: so much more would pass for noise
+    louder: float = 1.8
+    #: part of what the user's model leaves up to which the floor may rise nonetheless: so small a
+    #: rest is explained, whatever its source
+    hidden: float = 0.1
+    #: probability of an effect that was accepted with nothing but noise left: of 74 on simulated
+    #: cases 73 were true, (73 + 1)/(74 + 2)
+    true_of_accepted: float = 0.97
+    #: probability of a best candidate that was not accepted: of 31 none was true, 1/33
+    true_of_others: float = 0.03
+    #: probability from which an effect is said to be missing: less likely than not is not named
+    named: float = 0.5
+
+
+#: those in use; a change of one is a change of every answer
+CRITERIA = Criteria()

@@ -1,0 +1,273 @@
+"""What a diagnosis decides: what counts, which of several is taken, and the verdict.
+
+Every threshold is a field of `Criteria`. There is one order of candidates: those that count come
+first, then those that leave fewer squares on the check records (`rank_key`); among those that the
+records do not tell from the best, the simplest is taken (`preferred`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .candidates import Candidate
+from .criteria import CRITERIA, Criteria
+from .evidence import chance, check_score, check_squares, seen_gain, seen_score, whole_score
+from .fit import Fit
+from .force_error import Prepared
+from .noise_floor import NoiseFloor
+from .one_moment import Moment, worst_moment
+from .outside_tone import Tone
+from .ranking import Ranked, Ranking
+from .rung import Rung
+
+
+@dataclass(frozen=True)
+class Floors:
+    """The noise floor of a model, twice.
+
+    drawn: what its readings, drawn anew, leave
+    allowed: what counts as noise in decisions: never above what the records themselves leave, nor
+        far above the floor of the user's model
+    """
+
+    drawn: NoiseFloor
+    allowed: NoiseFloor
+
+
+def bounded_by_what_is_left(drawn: NoiseFloor, here: Fit, ranking: Ranking) -> NoiseFloor:
+    """The floor, no higher than what the model leaves, or any candidate that can be told.
+
+    Without what is missing a parameter may be led where sensor noise would ask for any force: what
+    the records themselves leave shows that it does not.
+    """
+    left = [here.check_error, *(r.fit.check_error for r in ranking.ranked if r.counts)]
+    return replace(drawn, value=min(drawn.value, *left))
+
+
+def allowed_floor(
+    bounded: NoiseFloor, first: NoiseFloor, stated: Fit, *, criteria: Criteria = CRITERIA
+) -> NoiseFloor:
+    """A floor, held at what the first, bounded floor and the user's model (fitted) allow.
+
+    An effect that makes sensors count for much more would hide what it leaves in their noise.
+    """
+    most = max(criteria.louder * first.value, criteria.hidden * stated.check_error)
+    return bounded.at_most(most)
+
+
+def is_noise(check_error: float, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
+    """Whether so large an error on the check records counts as noise."""
+    return check_error <= criteria.adequate * floor.value
+
+
+def is_a_tone(found: Fit, tone: Tone, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
+    """Whether a plain tone explains all but noise."""
+    squares = check_squares(found)
+    left = found.check_error * float(np.sqrt(tone.squares / squares)) if squares > 0.0 else 0.0
+    return is_noise(left, floor, criteria=criteria)
+
+
+def is_adequate(found: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
+    """Whether what a model leaves on the check records counts as noise, seen at the command too.
+
+    A model that is blind in much of the motion says too little to be adequate.
+    """
+    seen = found.seen
+    at_command = seen.error <= criteria.adequate * floor.seen and seen.blind <= criteria.blind
+    return is_noise(found.check_error, floor, criteria=criteria) and at_command
+
+
+def floors_left(found: Fit, floor: NoiseFloor) -> float:
+    """Error that a model leaves on the check records, in noise floors, seen at the command too."""
+    if not (floor.value and math.isfinite(found.seen.error)):
+        return float("inf")
+    return max(found.check_error / floor.value, found.seen.error / floor.seen)
+
+
+def explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
+    """Part of the squares above the noise floor that the effects between the two explain.
+
+    Of the force or seen at the command, the smaller part.
+    """
+    of_force = _taken_away(before.check_error, after.check_error, floor.value)
+    return min(of_force, _taken_away(before.seen.error, after.seen.error, floor.seen))
+
+
+def _taken_away(before: float, after: float, floor: float) -> float:
+    return (before**2 - after**2) / max(before**2 - floor**2, 1e-300)
+
+
+def refusal(base: Fit, other: Fit, *, criteria: Criteria = CRITERIA) -> str:
+    """Why what was added to `base` does not count (a key of `REFUSALS`); "" where nothing bars it.
+
+    What makes the recorded force unpredictable has not explained it.
+    """
+    already = base.seen.blind if base.seen.blind > criteria.blind else 0.0
+    if other.seen.blind - already > criteria.blind:
+        return "blind"
+    if other.seen.weak and not base.seen.weak:
+        return "weak"
+    less = check_squares(other) < (1.0 - criteria.relevant) * check_squares(base)
+    return "hides" if less and not seen_gain(base, other) > criteria.relevant else ""
+
+
+def is_better(base: Fit, other: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
+    """Whether `other` has the smaller check error by more than chance and by enough to matter.
+
+    In both figures: of the force, and seen at the command, where less force acting gains nothing.
+    A force that is only smaller relative to what acts is no gain either.
+    """
+    before = check_squares(base)
+    of_force = (before - check_squares(other)) / before
+
+    def is_enough(gain: float, score: float) -> bool:
+        """Whether so large a part of the squares, gained with this score, is more than chance."""
+        return (
+            (score > criteria.sure or _makes_adequate(base, other, floor, criteria))
+            and gain > criteria.relevant
+            and gain > criteria.of_floor * (floor.value / base.check_error) ** 2
+            and chance(score) * len(base.model.known) < criteria.by_chance
+        )
+
+    return (
+        not refusal(base, other, criteria=criteria)
+        and other.check_error < base.check_error
+        and is_enough(of_force, check_score(base, other))
+        and is_enough(seen_gain(base, other), seen_score(base, other))
+    )
+
+
+def _makes_adequate(base: Fit, other: Fit, floor: NoiseFloor, criteria: Criteria) -> bool:
+    """Whether `other` is an adequate model where the base was not."""
+    adequate = is_adequate(other, floor, criteria=criteria)
+    return adequate and not is_adequate(base, floor, criteria=criteria)
+
+
+def is_supported(
+    base: Fit, ranked: Ranked, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
+) -> bool:
+    """Whether a candidate can be told, lowers the check error enough, and leaves the rest in place.
+
+    One that drives a parameter of the model to its bound takes the place of an effect that is
+    there: it describes the records, but is no missing physics beside the model's own. One that
+    needs a parameter of its own at its bound is itself another effect, unless it leaves noise only.
+    """
+    driven = set(ranked.fit.at_bound) - set(base.at_bound)
+    own = [n for n in driven if n not in base.model.parameters]
+    return (
+        ranked.told
+        and not displaced(base, ranked.fit)
+        and (
+            all(ranked.fit.model.declared(n).optional for n in own)
+            or _makes_adequate(base, ranked.fit, floor, criteria)
+        )
+        and is_better(base, ranked.fit, floor, criteria=criteria)
+    )
+
+
+def displaced(base: Fit, found: Fit) -> list[str]:
+    """Parameters driven to a bound whose effect the records tell from its absence in the base."""
+    driven = set(found.at_bound) - set(base.at_bound)
+    return sorted(n for n in driven if n in base.model.parameters and _is_there(base, n))
+
+
+def _is_there(base: Fit, name: str) -> bool:
+    """Whether the records tell the effect that a parameter belongs to from its absence."""
+    effect = name.rpartition(".")[0]
+    values = {n: v for n, v in base.model.parameters.items() if n.rpartition(".")[0] == effect}
+    return all(v.fixed or not v.stderr >= base.model.from_absence(n) for n, v in values.items())
+
+
+def worth_pursuing(base: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> float:
+    """Part of the base's squares from which a gain by a first step is worth following up.
+
+    The floor is never above what a candidate leaves. So beside a base that leaves little more than
+    its floor, only what takes away of_floor / (1 + of_floor) of the squares can be better: a first
+    step that promises less than a third of that is not followed.
+    """
+    least = criteria.of_floor / (1.0 + criteria.of_floor)
+    only_noise = criteria.of_floor * floor.value**2 >= least * base.check_error**2
+    return least / 3.0 if only_noise else criteria.worth
+
+
+def rank_key(ranked: Ranked) -> tuple[bool, float]:
+    """By this a ranking is in order: what counts first, then by squares on the check records."""
+    return not ranked.counts, check_squares(ranked.fit)
+
+
+def alike(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> list[Ranked]:
+    """Those of the supported candidates, in order, that explain the records as well as the best."""
+    best = supported[:1]
+    return [r for r in supported if r is best[0] or _equal(r, best[0], criteria)]
+
+
+def _equal(one: Ranked, best: Ranked, criteria: Criteria) -> bool:
+    """Whether the records do not tell a candidate from the best one."""
+    near = abs(one.fit.check_error - best.fit.check_error) < criteria.near * best.fit.check_error
+    return near and whole_score(one.fit, best.fit) < criteria.close
+
+
+def preferred(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> Ranked:
+    """Of the supported candidates, in order, the simplest that explains as well as the best."""
+    return min(alike(supported, criteria=criteria), key=simplicity)
+
+
+def equals_of(
+    best: Ranked,
+    ranking: Ranking,
+    base: Fit,
+    floor: NoiseFloor,
+    *,
+    criteria: Criteria = CRITERIA,
+) -> tuple[Candidate, ...]:
+    """Candidates that the records do not tell from this one.
+
+    One that needs more parameters to do as well explains nothing that the simpler does not.
+    """
+    supported = [r for r in ranking.ranked if is_supported(base, r, floor, criteria=criteria)]
+    return tuple(
+        r.candidate
+        for r in alike(supported, criteria=criteria)
+        if r is not best and simplicity(r)[0] == simplicity(best)[0]
+    )
+
+
+def simplicity(ranked: Ranked) -> tuple[int, int]:
+    """Parameters that must be estimated, and effects that must be there: fewer is simpler."""
+    effect = ranked.candidate.effect
+    return sum(not p.optional for p in effect.parameters.values()), len(effect.needs)
+
+
+def moment_above_noise(
+    found: Fit, prepared: Prepared, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
+) -> Moment | None:
+    """The one moment that holds all that a model leaves above noise; None where none does."""
+    if is_adequate(found, floor, criteria=criteria):
+        return None
+    moment = worst_moment(found, prepared, floor)
+    return moment if moment is not None and moment.without <= criteria.adequate else None
+
+
+def verdict(
+    rungs: Sequence[Rung],
+    floor: NoiseFloor,
+    moment: Moment | None = None,
+    *,
+    criteria: Criteria = CRITERIA,
+) -> str:
+    """ "effects_missing", "model_adequate" or "undecided".
+
+    moment: as `moment_above_noise` says; what is left at one moment only is no missing physics
+    """
+    added = [r for r in rungs if r.added is not None]
+    if not added:
+        adequate = is_adequate(rungs[-1].fit, floor, criteria=criteria) or moment is not None
+        return "model_adequate" if adequate else "undecided"
+    part = explained(rungs[0].fit, rungs[-1].fit, floor)
+    if part < criteria.mostly or all(r.equals for r in added):
+        return "undecided"
+    return "effects_missing"

@@ -1,0 +1,167 @@
+"""Where a ladder stands, and what its moves need of the search that they belong to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..measurement.experiment import Experiment
+from ..model import Model
+from .candidates import Candidate
+from .criteria import CRITERIA, Criteria
+from .decision import (
+    Floors,
+    allowed_floor,
+    bounded_by_what_is_left,
+    is_supported,
+    worth_pursuing,
+)
+from .excerpt import on_windows
+from .fit import Fit
+from .force_error import Prepared, prepare
+from .noise_floor import NoiseFloor, noise_floor
+from .outside_tone import Tone, acts_by_the_clock, best_tone
+from .rank import rank_candidates
+from .ranking import Ranked, Ranking
+from .rung import Rung
+from .search import estimate_from_starts
+from .search_plan import PLAN, SearchPlan
+
+
+@dataclass(frozen=True)
+class LadderSearch:
+    """What stays the same during a diagnosis.
+
+    whole: the records, ready for comparison;  prepared: the windows of them that are searched
+    stated: the model as its user gave it;  seed: of the draws, the same ones for each noise floor
+    progress: called with a line of text at each step
+    """
+
+    experiment: Experiment
+    whole: Prepared
+    prepared: Prepared
+    stated: Model
+    seed: int = 0
+    criteria: Criteria = CRITERIA
+    plan: SearchPlan = PLAN
+    progress: Callable[[str], None] = lambda _: None
+
+    def generator(self) -> np.random.Generator:
+        """A generator that begins at the seed."""
+        return np.random.default_rng(self.seed)
+
+    def rank(
+        self,
+        base: Fit,
+        *,
+        step: int,
+        among: Collection[Candidate] | None = None,
+        worth: float | None = None,
+    ) -> Ranking:
+        """`rank_candidates` beside a fit; step: number of the rung that is sought."""
+        return rank_candidates(
+            base,
+            self.prepared,
+            among=among,
+            stated=self.stated,
+            worth=worth,
+            criteria=self.criteria,
+            progress=lambda text: self.progress(f"step {step}: {text}"),
+        )
+
+
+@dataclass(frozen=True)
+class LadderState:
+    """The rungs, and what `look` saw beside the last of them.
+
+    A move changes the rungs; what it was judged by stays until the next `look`.
+
+    rungs: the user's model first, then one rung an effect
+    floors: noise floors of the last rung;  first: the one of the user's model, bounded
+    ranking: all candidates beside the last rung;  tone: the best tone from outside there
+    supported: candidates that the records support, in the order of the ranking
+    exchanges: how many were made;  replaced: whether a pair took the place of all rungs once
+    """
+
+    rungs: tuple[Rung, ...]
+    floors: Floors
+    first: NoiseFloor
+    ranking: Ranking
+    tone: Tone
+    supported: tuple[Ranked, ...]
+    exchanges: int = 0
+    replaced: bool = False
+
+    @property
+    def fit(self) -> Fit:
+        """The last rung's fit."""
+        return self.rungs[-1].fit
+
+    @property
+    def floor(self) -> NoiseFloor:
+        """What counts as noise."""
+        return self.floors.allowed
+
+    @property
+    def step(self) -> int:
+        """Number of the rung that is sought."""
+        return len(self.rungs)
+
+    def with_rungs(self, rungs: Collection[Rung]) -> LadderState:
+        """The state with other rungs, judged by the same look."""
+        return replace(self, rungs=tuple(rungs))
+
+
+def search_for(
+    experiment: Experiment,
+    model: Model | None = None,
+    *,
+    progress: Callable[[str], None] | None = None,
+    seed: int = 0,
+) -> LadderSearch:
+    """The search for what a model lacks (default: the model that the experiment describes)."""
+    whole = prepare(experiment)
+    return LadderSearch(
+        experiment=experiment,
+        whole=whole,
+        prepared=on_windows(whole),
+        stated=model or Model.from_experiment(experiment),
+        seed=seed,
+        progress=progress or (lambda _: None),
+    )
+
+
+def begin(search: LadderSearch) -> LadderState:
+    """The ladder that holds the user's model alone, re-estimated."""
+    search.progress("re-estimating the model")
+    return look(search, (Rung(None, estimate_from_starts(search.stated, search.prepared)),))
+
+
+def look(
+    search: LadderSearch, rungs: tuple[Rung, ...], before: LadderState | None = None
+) -> LadderState:
+    """Draw the noise floor of the last rung and rank every candidate beside it.
+
+    before: the state that a move led to; None: the ladder begins
+    """
+    here, prepared, criteria = rungs[-1].fit, search.prepared, search.criteria
+    drawn = noise_floor(here.model, prepared, search.generator())
+    worth = worth_pursuing(here, drawn, criteria=criteria)
+    ranking = search.rank(here, step=len(rungs), worth=worth)
+    bounded = bounded_by_what_is_left(drawn, here, ranking)
+    first = bounded if before is None else before.first
+    floors = Floors(drawn, allowed_floor(bounded, first, rungs[0].fit, criteria=criteria))
+    tone = best_tone(here, prepared)
+    supported = tuple(
+        r
+        for r in ranking.ranked
+        if is_supported(here, r, floors.allowed, criteria=criteria)
+        and (tone.is_beaten_by(r.fit) or acts_by_the_clock(r.candidate.effect))
+    )
+    if before is None:
+        return LadderState(rungs, floors, first, ranking, tone, supported)
+    return replace(
+        before, rungs=rungs, floors=floors, ranking=ranking, tone=tone, supported=supported
+    )

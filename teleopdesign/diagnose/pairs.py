@@ -1,0 +1,100 @@
+"""Moves of a ladder by two effects at once: each of two can mask the other."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+
+from .candidates import Candidate
+from .decision import equals_of, explained, is_adequate, is_better, is_supported
+from .evidence import check_squares
+from .fit import Fit, fit_squares
+from .ladder_state import LadderSearch, LadderState
+from .noise_floor import NoiseFloor
+from .outside_tone import best_tone
+from .ranking import Ranking
+from .rung import Rung
+from .rungs import estimate_without, falling
+
+
+def add_pair(search: LadderSearch, state: LadderState) -> LadderState | None:
+    """Two effects that are supported together on the user's model though neither is alone.
+
+    Beside effects that are accepted already a pair costs more time than it is worth.
+    """
+    if state.step > 1:
+        return None
+    pair = _best_pair(search, state, state.ranking)
+    return state.with_rungs((*state.rungs, *pair)) if pair is not None else None
+
+
+def replace_by_pair(search: LadderSearch, state: LadderState) -> LadderState | None:
+    """Two effects that leave only noise, once, in place of rungs that leave more.
+
+    Where two are missing, a third can explain more than either does alone, and stand in their way.
+    They are sought among those that explained something of their own.
+    """
+    ranking = state.rungs[1].ranking if state.step > 1 else None
+    if state.replaced or ranking is None:
+        return None
+    if is_adequate(state.fit, state.floor, criteria=search.criteria):
+        return None
+    among = [r.candidate for r in ranking.ranked if r.counts]
+    pair = _best_pair(search, state, ranking, among)
+    if pair is None or not is_adequate(pair[-1].fit, state.floor, criteria=search.criteria):
+        return None
+    return replace(state.with_rungs((state.rungs[0], *pair)), replaced=True)
+
+
+def _best_pair(
+    search: LadderSearch,
+    state: LadderState,
+    ranking: Ranking,
+    among: Collection[Candidate] | None = None,
+) -> tuple[Rung, ...] | None:
+    """The two rungs on the user's model that leave least; None where no pair is supported.
+
+    The best few of the ranking beside the user's model are added on trial, and everything (or those
+    in `among`) is ranked anew beside each; a pair counts where it explains most of what is missing
+    and neither of the two can be left out.
+    """
+    base, floor, criteria = state.rungs[0], state.floor, search.criteria
+    here = base.fit
+    if is_adequate(here, floor, criteria=criteria):
+        return None
+    pairs: list[tuple[Rung, ...]] = []
+    trials = [r for r in ranking.ranked if r.counts and fit_squares(r.fit) < fit_squares(here)]
+    for first in trials[: search.plan.trials]:
+        beside = search.rank(first.fit, step=state.step, among=among)
+        supported = (
+            r for r in beside.ranked if is_supported(first.fit, r, floor, criteria=criteria)
+        )
+        second = next(supported, None)
+        if second is None:
+            continue
+        equals = equals_of(second, beside, first.fit, floor, criteria=criteria)
+        rungs = (
+            Rung(first.candidate, first.fit, ranking),
+            Rung(second.candidate, second.fit, beside, equals),
+        )
+        if _needs_both(search, here, rungs, floor):
+            order = falling((base, *rungs), search.prepared)
+            pairs += [order[1:]] if order is not None else []
+    return min(pairs, key=lambda rungs: check_squares(rungs[-1].fit), default=None)
+
+
+def _needs_both(
+    search: LadderSearch, base: Fit, rungs: tuple[Rung, ...], floor: NoiseFloor
+) -> bool:
+    """Whether two effects together explain most of what is missing and both are needed."""
+    both, first, criteria = rungs[-1].fit, rungs[0].added, search.criteria
+    assert first is not None
+    if not is_better(base, both, floor, criteria=criteria):
+        return False
+    if explained(base, both, floor) < criteria.mostly:
+        return False
+    if not best_tone(base, search.prepared).is_beaten_by(both):
+        return False
+    without = estimate_without(both.model, first, search.prepared)
+    # None: the second needs the first
+    return without is None or is_better(without, both, floor, criteria=criteria)

@@ -1,0 +1,53 @@
+"""How much a diagnosis searches: what each number costs in time, and what it may miss."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class SearchPlan:
+    """Sizes of a search; `PLAN` are those in use. More takes longer and misses less."""
+
+    #: most effects that one diagnosis adds: each takes one ranking of the whole catalogue
+    most_effects: int = 6
+    #: samples of all records together above which effects are sought on windows: longer records
+    #: tell no more of an effect, and a ranking takes time in proportion
+    long: int = 200_000
+    #: samples of the windows together
+    windows: int = 60_000
+    #: candidates that are added on trial where none is supported alone, for each may mask another:
+    #: one ranking each
+    trials: int = 3
+    #: most exchanges of an accepted effect for another: few, so that two effects cannot take turns
+    exchanges: int = 2
+    #: starts kept after the prediction by one linear step, of an effect linear in its strength
+    predicted: int = 2
+    #: of these, starts kept after the first real steps
+    stepped: int = 1
+    #: the same of an effect that is linear in no strength: one step says less of it
+    curved_predicted: int = 4
+    curved_stepped: int = 2
+    #: the same where hidden states are corrected: they may still fall out of step, and squares are
+    #: rugged
+    corrected_predicted: int = 6
+    corrected_stepped: int = 3
+    #: part by which a user's value may be wrong: what moved further may have been led astray, and
+    #: starts from the user's value too
+    moved: float = 0.25
+    #: factors on each parameter of an effect with rugged squares, from which a better place is
+    #: sought
+    jolts: tuple[float, ...] = (0.85, 1.18)
+    #: most sweeps of such jolts over the parameters
+    sweeps: int = 2
+    #: part of the squares that a sweep must take away for another to follow
+    onward: float = 0.1
+    #: part of the squares before that such an effect leaves at most where jolts are worth the time
+    jolted: float = 0.5
+    #: squares on the fit records above the best candidate's, as a part of these, up to which
+    #: another candidate is fitted finely too
+    contending: float = 0.5
+
+
+#: the sizes in use
+PLAN = SearchPlan()

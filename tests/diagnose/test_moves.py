@@ -1,0 +1,109 @@
+"""Each move of the ladder alone: what it leads to, and when it is none."""
+
+from dataclasses import replace
+
+import pytest
+from diagnose.own_cases import write_own
+
+from teleopdesign import Model, load_experiment
+from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.criteria import CRITERIA
+from teleopdesign.diagnose.decision import is_adequate
+from teleopdesign.diagnose.exchange import exchange
+from teleopdesign.diagnose.ladder_state import begin, look, search_for
+from teleopdesign.diagnose.moves import add, remove
+from teleopdesign.diagnose.pairs import add_pair, replace_by_pair
+from teleopdesign.diagnose.rank import ranked
+from teleopdesign.diagnose.ranking import Ranking
+from teleopdesign.diagnose.rung import Rung
+from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.effects import EFFECTS
+
+KNOWN = ("spring", "hardening_spring", "bias", "quadratic_drag", "viscous", "coulomb")
+
+
+@pytest.fixture(scope="module")
+def ladder(tmp_path_factory):
+    """The search on a machine whose model lacks a spring and a bias, and its first state."""
+    folder = write_own(tmp_path_factory.mktemp("moves") / "case", "bias+spring")
+    experiment = load_experiment(folder)
+    known = {name: EFFECTS[name] for name in KNOWN}
+    search = search_for(experiment, Model.from_experiment(experiment, known))
+    return search, begin(search)
+
+
+def added(state):
+    return [rung.added.key[0] for rung in state.rungs[1:]]
+
+
+def with_effects(search, state, *names):
+    """The state with these effects added one after the other, whatever the records say of them."""
+    for name in names:
+        candidate = Candidate(EFFECTS[name], "device")
+        model = state.fit.model.with_effect(candidate.effect, at=candidate.at)
+        fit = estimate_from_starts(model, search.prepared, state.fit)
+        ranking = Ranking(state.fit, (ranked(state.fit, candidate, fit),))
+        state = state.with_rungs((*state.rungs, Rung(candidate, fit, ranking)))
+    return state
+
+
+def test_what_is_added_is_the_first_that_the_records_support(ladder):
+    search, state = ladder
+    moved = add(search, state)
+    assert added(moved) == [state.supported[0].candidate.key[0]]
+    assert moved.fit.check_error < state.fit.check_error
+    assert moved.rungs[-1].ranking is state.ranking and state.step == 1
+
+
+def test_nothing_is_added_where_nothing_is_supported(ladder):
+    search, state = ladder
+    assert add(search, replace(state, supported=())) is None
+
+
+def test_stricter_criteria_support_nothing(ladder):
+    search, state = ladder
+    strict = replace(search, criteria=replace(CRITERIA, sure=1e9, adequate=0.0))
+    assert state.supported and not look(strict, state.rungs).supported
+
+
+def test_what_others_made_superfluous_is_removed(ladder):
+    search, state = ladder
+    full = with_effects(search, state, "quadratic_drag", "spring", "bias")
+    moved = remove(search, full)
+    assert added(moved) == ["spring", "bias"]
+    assert remove(search, moved) is None
+
+
+def test_a_stand_in_is_exchanged_for_what_it_stood_for(ladder):
+    search, state = ladder
+    stand_in = with_effects(search, state, "bias", "hardening_spring", "quadratic_drag")
+    ranking = search.rank(stand_in.rungs[1].fit, step=2)
+    second = replace(stand_in.rungs[2], ranking=ranking)
+    stand_in = stand_in.with_rungs((*stand_in.rungs[:2], second, stand_in.rungs[3]))
+    moved = exchange(search, stand_in)
+    # the drag that was there beside the stand-in explains nothing any more
+    assert set(added(moved)) == {"spring", "bias"} and moved.exchanges == 1
+    assert moved.fit.check_error < stand_in.fit.check_error
+    spent = replace(stand_in, exchanges=search.plan.exchanges)
+    assert exchange(search, spent) is None
+
+
+def test_a_pair_is_added_to_the_model_alone(ladder):
+    search, state = ladder
+    moved = add_pair(search, state)
+    assert set(added(moved)) == {"spring", "bias"}
+    errors = [rung.fit.check_error for rung in moved.rungs]
+    assert errors == sorted(errors, reverse=True)
+    assert is_adequate(moved.fit, moved.floor)
+    assert add_pair(search, moved) is None
+
+
+def test_a_pair_takes_the_place_of_rungs_that_leave_more_once(ladder):
+    search, state = ladder
+    stand_in = with_effects(search, state, "hardening_spring")
+    first = replace(stand_in.rungs[1], ranking=state.ranking)
+    stand_in = stand_in.with_rungs((stand_in.rungs[0], first))
+    moved = replace_by_pair(search, stand_in)
+    assert set(added(moved)) == {"spring", "bias"} and moved.replaced
+    assert replace_by_pair(search, replace(stand_in, replaced=True)) is None
+    assert replace_by_pair(search, state) is None  # the model alone: there is nothing to replace
