@@ -9,8 +9,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-#: relative difference that counts as rounding: where an optimiser stops, and elsewhere
-ROUNDING = {"answers": 1e-6, "recordings": 1e-6}
+#: relative difference that counts as rounding: where an optimiser stops, along a loop that grows by
+#: itself, and elsewhere
+ROUNDING = {"answers": 1e-6, "recordings": 1e-6, "simulations": 1e-9}
 PLAIN = 1e-12
 
 

@@ -71,8 +71,8 @@ def _stlsq(method: Any, columns: Array, y: Array, threshold: float) -> NDArray[n
         return np.zeros(0, dtype=np.intp)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # that nothing is left, which is an answer
-        found = method(threshold=threshold, alpha=1e-6).fit(columns, y[:, None])
-    return np.flatnonzero(np.asarray(found.coef_)[0])
+        fit = method(threshold=threshold, alpha=1e-6).fit(columns, y[:, None])
+    return np.flatnonzero(np.asarray(fit.coef_)[0])
 
 
 def sysidentpy_columns(lib: Library) -> NDArray[np.intp]:
@@ -126,12 +126,12 @@ def name_effects(lib: Library, columns: NDArray[np.intp]) -> list[Named]:
     blocks = np.arange(len(with_all)) // BLOCK
     if gain_score(lib.check_target, with_all, blocks) <= SURE:
         return []
-    found = []
+    effects_named = []
     for effect in effects:
         without = _left(lib, lib.of(*(e for e in effects if e != effect)))
         gain = float(without @ without - with_all @ with_all)
-        found.append(Named(_told_apart(lib, effect, effects), _place(lib, effect), gain))
-    return [n for n in found if n.gain > 0]
+        effects_named.append(Named(_told_apart(lib, effect, effects), _place(lib, effect), gain))
+    return [n for n in effects_named if n.gain > 0]
 
 
 def _place(lib: Library, effect: str) -> str:

@@ -50,12 +50,12 @@ def _pools() -> dict[tuple[str, str], tuple[str, ...]]:
     from truth_effects import CONTACT, OTHERS, OUTSIDE, TEN
 
     singles = (*TEN, *OTHERS)
-    found = {}
+    pools = {}
     for level in ("clear", "weak"):
-        found[level, "device"] = singles
-        found[level, "teleoperator"] = (*singles, *CONTACT)
-    found["outside", "device"] = found["outside", "teleoperator"] = tuple(OUTSIDE)
-    return found
+        pools[level, "device"] = singles
+        pools[level, "teleoperator"] = (*singles, *CONTACT)
+    pools["outside", "device"] = pools["outside", "teleoperator"] = tuple(OUTSIDE)
+    return pools
 
 
 def plan(
@@ -73,7 +73,7 @@ def plan(
     """
     pools = _pools()
     turns: Counter[tuple[str, str]] = Counter()
-    found = []
+    cases = []
     for index in range(number):
         level, kind = levels[index % len(levels)], kinds[index % len(kinds)]
         pool, effect = pools.get((level, kind)), None
@@ -82,7 +82,7 @@ def plan(
             order = np.random.default_rng([seed, *map(ord, level + kind), turn])
             effect = pool[order.permutation(len(pool))[place]]
             turns[level, kind] += 1
-        found.append(
+        cases.append(
             Planned(
                 index=index,
                 seed=seed,
@@ -93,7 +93,7 @@ def plan(
                 rate=rates[index % len(rates)],
             )
         )
-    return found
+    return cases
 
 
 def write_plan(folder: Path, cases: Sequence[Planned]) -> None:
@@ -104,14 +104,14 @@ def write_plan(folder: Path, cases: Sequence[Planned]) -> None:
     path = folder / "plan.json"
     planned = {c.name: asdict(c) for c in cases}
     if path.exists():
-        there = json.loads(path.read_text(encoding="utf-8"))["cases"]
-        for name in planned.keys() & there.keys():
-            if planned[name] != there[name]:
+        written = json.loads(path.read_text(encoding="utf-8"))["cases"]
+        for name in planned.keys() & written.keys():
+            if planned[name] != written[name]:
                 raise SystemExit(
-                    f"{path}: case {name}: found {there[name]}, expected {planned[name]}; "
+                    f"{path}: case {name}: found {written[name]}, expected {planned[name]}; "
                     "use another folder or the options that it was begun with"
                 )
-        planned = there | planned
+        planned = written | planned
     write_json(path, {"cases": planned})
 
 

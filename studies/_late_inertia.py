@@ -95,8 +95,8 @@ def growth(share: float, *, bandwidth: float, delay: float, hand: Body | None) -
     """Rate (1/s) at which free motion grows from a push; hand: None is the worst one."""
     held = hand or worst_hand(share, bandwidth=bandwidth, delay=delay)
     diagram = device(share, bandwidth=bandwidth, delay=delay, hand=held)
-    made = simulate(diagram, duration=6.0, initial={"L_velocity": 0.01}, computer="continuous")
-    speed = made["L_velocity"].values
+    motion = simulate(diagram, duration=6.0, initial={"L_velocity": 0.01}, computer="continuous")
+    speed = motion["L_velocity"].values
     half, tail = speed[len(speed) // 3 : 2 * len(speed) // 3], speed[2 * len(speed) // 3 :]
     return float(np.log(np.sqrt(np.mean(tail**2) / np.mean(half**2))) / 2.0)
 
@@ -104,14 +104,14 @@ def growth(share: float, *, bandwidth: float, delay: float, hand: Body | None) -
 def simulated_damping(share: float, frequency: float, *, bandwidth: float, delay: float) -> float:
     """Negative damping (N s/m) of the cancellation along a prescribed sinusoid (Hz), simulated."""
     count = max(round(0.1 * frequency), 1)  # cycles after the low-pass has settled
-    settled = np.ceil(0.1 * frequency) / frequency
-    made: Any = simulate(
+    transient = np.ceil(0.1 * frequency) / frequency
+    simulation: Any = simulate(
         device(share, bandwidth=bandwidth, delay=delay),
-        duration=settled + count / frequency,
+        duration=transient + count / frequency,
         motion={"L": sine(amplitude=_AMPLITUDE, frequency=frequency)},
         computer="continuous",
         every_step=True,
     )
-    steps = round(count / frequency / float(made["time"][1] - made["time"][0]))
-    force, speed = (made[name].values[-steps:] for name in ("R_V", "L_velocity"))
+    steps = round(count / frequency / float(simulation["time"][1] - simulation["time"][0]))
+    force, speed = (simulation[name].values[-steps:] for name in ("R_V", "L_velocity"))
     return float(DAMPING - np.mean(force * speed) / np.mean(speed**2))

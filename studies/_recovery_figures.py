@@ -42,8 +42,8 @@ def plot_confusion(rows: Sequence[Row]) -> Figure:
     """True effect against what was said: number of cases, shaded by its share of the line."""
     rows = [r for r in rows if r.level in (*SINGLE, "null", "outside")]
     order = [*sorted(EFFECTS), "nothing"]
-    there = {hidden(r) for r in rows}
-    lines = [n for n in order if n in there] + sorted(there - set(order))
+    effects = {hidden(r) for r in rows}
+    lines = [n for n in order if n in effects] + sorted(effects - set(order))
     columns = [n for n in lines if n in EFFECTS]
     columns += sorted({said(r) for r in rows} - set(columns) - set(OTHER))
     columns += [n for n in OTHER if any(said(r) == n for r in rows)]
@@ -70,13 +70,13 @@ def _draw_confusion(count: np.ndarray, lines: list[str], columns: list[str]) -> 
     return figure
 
 
-def plot_calibration(found: Mapping[str, Calibration]) -> Figure:
+def plot_calibration(calibrations: Mapping[str, Calibration]) -> Figure:
     """Share that was true against the probability that was said, with 95 % intervals."""
     with plt.style.context(STYLE):
         figure, axes = plt.subplots(figsize=(3.5, 3.0))
         axes.plot([0, 1], [0, 1], color="0.7", lw=0.8)
         # set a little apart, so that one interval does not hide the other
-        for shift, (name, one) in zip((-0.006, 0.006), found.items(), strict=True):
+        for shift, (name, one) in zip((-0.006, 0.006), calibrations.items(), strict=True):
             value = np.array([s.value for s in one.true])
             bounds = np.array([s.interval for s in one.true]).reshape(-1, 2)
             axes.errorbar(

@@ -127,7 +127,7 @@ def row_of(planned: Planned, truth: Truth, answer: Answer | None, method: str) -
 
 def collect(folder: Path, cases: Sequence[Planned], methods: Sequence[str]) -> Campaign:
     """Judge every answer of a campaign's folder; cases that were not made are left out."""
-    rows, told, best, every = [], [], [], []
+    rows, parameters, best, every = [], [], [], []
     missing = 0
     for planned in cases:
         if not (folder / "truth" / f"{planned.name}.json").exists():
@@ -141,12 +141,12 @@ def collect(folder: Path, cases: Sequence[Planned], methods: Sequence[str]) -> C
                 continue  # not done yet
             rows.append(row_of(planned, truth, answer, method))
             if method == "answers" and answer is not None:
-                told += estimates(truth, answer)
+                parameters += estimates(truth, answer)
                 pairs = [(p, k in truth.effects) for k, p in answer.probability.items()]
                 every.append(tuple(pairs))
                 if pairs:
                     best.append(max(pairs, key=lambda pair: pair[0]))
-    return Campaign(tuple(rows), tuple(told), tuple(best), tuple(every), missing)
+    return Campaign(tuple(rows), tuple(parameters), tuple(best), tuple(every), missing)
 
 
 def found(rows: Iterable[Row]) -> Share:
@@ -248,8 +248,8 @@ def effects_table(campaign: Campaign, cannot: dict[str, frozenset[str]]) -> str:
     for effect in sorted({r.true.partition("@")[0] for r in campaign.of("answers", *SINGLE)}):
         cells = []
         for m in methods:
-            own = [r for r in campaign.of(m, *SINGLE) if r.true.partition("@")[0] == effect]
-            cells.append("cannot express it" if effect in cannot.get(m, ()) else str(found(own)))
+            rows = [r for r in campaign.of(m, *SINGLE) if r.true.partition("@")[0] == effect]
+            cells.append("cannot express it" if effect in cannot.get(m, ()) else str(found(rows)))
         inside = share(e.inside for e in campaign.estimates if e.effect == effect)
         lines.append(line([f"`{effect}`", *cells, inside]))
     return "\n".join(lines)
@@ -278,5 +278,5 @@ def write_rows(campaign: Campaign, path: Path) -> None:
     data["seconds"].attrs["units"] = "s"
     data["rate"].attrs["units"] = "Hz"
     data.to_netcdf(path.with_suffix(".nc"))
-    told = pd.DataFrame([asdict(e) | {"inside": e.inside} for e in campaign.estimates])
-    told.to_csv(path.with_name(f"{path.name}_parameters.csv"), index=False)
+    parameters = pd.DataFrame([asdict(e) | {"inside": e.inside} for e in campaign.estimates])
+    parameters.to_csv(path.with_name(f"{path.name}_parameters.csv"), index=False)

@@ -182,8 +182,8 @@ class Share:
         """95 % interval; (0, 1) of none."""
         if not self.n:
             return 0.0, 1.0
-        found = binomtest(self.hits, self.n).proportion_ci(0.95, method="exact")
-        return float(found.low), float(found.high)
+        interval = binomtest(self.hits, self.n).proportion_ci(0.95, method="exact")
+        return float(interval.low), float(interval.high)
 
     def __str__(self) -> str:
         if not self.n:
@@ -201,13 +201,13 @@ def share(outcomes: Iterable[bool]) -> Share:
 
 def quantile_text(values: Sequence[float], q: float, digits: int = 2) -> str:
     """A quantile with its distribution-free 95 % interval and the number of values."""
-    told = np.array([v for v in values if math.isfinite(v)])
-    if not len(told):
+    finite = np.array([v for v in values if math.isfinite(v)])
+    if not len(finite):
         return "–"
-    found = quantile_test(told, q=np.quantile(told, q), p=q).confidence_interval(0.95)
+    bounds = quantile_test(finite, q=np.quantile(finite, q), p=q).confidence_interval(0.95)
     # an end that too few values leave open is not given a number
-    low, high = (f"{x:.{digits}f}" if math.isfinite(x) else "?" for x in (found.low, found.high))
-    return f"{np.quantile(told, q):.{digits}f} ({low} to {high}), n = {len(told)}"
+    low, high = (f"{x:.{digits}f}" if math.isfinite(x) else "?" for x in (bounds.low, bounds.high))
+    return f"{np.quantile(finite, q):.{digits}f} ({low} to {high}), n = {len(finite)}"
 
 
 @dataclass(frozen=True)
@@ -280,7 +280,7 @@ def estimates(truth: Truth, answer: Answer) -> list[Estimate]:
 
     A phase is compared on the circle.
     """
-    found = []
+    rows = []
     for effect in truth.content["effects"]:
         if key(effect) not in answer.named:
             continue
@@ -292,5 +292,5 @@ def estimates(truth: Truth, answer: Answer) -> list[Estimate]:
             value = float(said["value"])
             if name == "phase":
                 value = true + math.remainder(value - true, 2 * math.pi)
-            found.append(Estimate(effect["effect"], name, true, value, float(said["stderr"])))
-    return found
+            rows.append(Estimate(effect["effect"], name, true, value, float(said["stderr"])))
+    return rows

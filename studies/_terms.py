@@ -191,17 +191,17 @@ def _part(experiment: Experiment, body: str, use: str) -> _Part:
 def _own(experiment: Experiment, body: str, now: Signals) -> Columns:
     """Terms of the user's model, all coefficients free; a fixed inertia's force is no term."""
     described = experiment.bodies[body]
-    found = [] if described.inertia is not None and described.inertia.fixed else [now.acceleration]
+    terms = [] if described.inertia is not None and described.inertia.fixed else [now.acceleration]
     for effect in described.effects:
         if effect == "stribeck":
             # its speed is wrong or not stated: a few terms span what lies between
             speeds = float(np.sqrt(np.mean(now.velocity**2))) * np.geomspace(0.03, 0.5, 5)
-            found += [_falling(now, speed) for speed in speeds]
+            terms += [_falling(now, speed) for speed in speeds]
         elif effect in TERMS:  # one with a state of its own has no term to take out
-            found += TERMS[effect].columns(now, float("nan"))
+            terms += TERMS[effect].columns(now, float("nan"))
     if now.depth.any():
-        found += [now.depth, (now.depth > 0).astype(float)]
-    return found
+        terms += [now.depth, (now.depth > 0).astype(float)]
+    return terms
 
 
 def _absent(experiment: Experiment, body: str, now: Signals) -> list[str]:
@@ -219,26 +219,26 @@ def _absent(experiment: Experiment, body: str, now: Signals) -> list[str]:
 def library(experiment: Experiment, body: str) -> Library:
     """Target and terms of one body of an experiment with one fit and one check record."""
     fit, check = (_part(experiment, body, use) for use in ("fit", "check"))
-    own = fit.low(_own(experiment, body, fit.signals))
+    own_fit = fit.low(_own(experiment, body, fit.signals))
     own_check = check.low(_own(experiment, body, check.signals))
     fixed = experiment.bodies[body].inertia
     targets = [fit.target, check.target]
     if fixed is not None and fixed.fixed:
         for i, part in enumerate((fit, check)):
             targets[i] = targets[i] - fixed.value * part.low([part.signals.acceleration])[:, 0]
-    inverse = np.linalg.pinv(own)
-    target = targets[0] - own @ (inverse @ targets[0])
+    inverse = np.linalg.pinv(own_fit)
+    target = targets[0] - own_fit @ (inverse @ targets[0])
     effects: list[str] = []
     columns, on_check, sizes = [], [], []
     for name in _absent(experiment, body, fit.signals):
-        constant, free = _scanned(TERMS[name], fit, own, inverse, target)
-        there = check.low(TERMS[name].columns(check.signals, constant))
+        constant, free = _scanned(TERMS[name], fit, own_fit, inverse, target)
+        raw_check = check.low(TERMS[name].columns(check.signals, constant))
         raw = fit.low(TERMS[name].columns(fit.signals, constant))
         size = np.sqrt(np.mean(free**2, axis=0)) + 1e-300
         effects += [name] * free.shape[1]
         sizes.append(size)
         columns.append(free / size)
-        on_check.append((there - own_check @ (inverse @ raw)) / size)
+        on_check.append((raw_check - own_check @ (inverse @ raw)) / size)
     return Library(
         body=body,
         effect=tuple(effects),
@@ -251,7 +251,7 @@ def library(experiment: Experiment, body: str) -> Library:
 
 
 def _scanned(
-    term: Term, fit: _Part, own: Array, inverse: Array, target: Array
+    term: Term, fit: _Part, own_fit: Array, inverse: Array, target: Array
 ) -> tuple[float, Array]:
     """The constant whose columns leave least of the target, and these without the model's own.
 
@@ -260,7 +260,7 @@ def _scanned(
 
     def free(constant: float) -> Array:
         raw = fit.low(term.columns(fit.signals, constant))
-        return raw - own @ (inverse @ raw)
+        return raw - own_fit @ (inverse @ raw)
 
     def left(constant: float) -> float:
         columns = free(constant)
@@ -272,8 +272,8 @@ def _scanned(
         return grid[0], free(grid[0])
     best = int(np.argmin([left(c) for c in grid]))
     between = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
-    found = minimize_scalar(left, bounds=between, method="bounded", options={"maxiter": 12})
-    constant = float(found.x) if found.fun < left(grid[best]) else float(grid[best])
+    minimum = minimize_scalar(left, bounds=between, method="bounded", options={"maxiter": 12})
+    constant = float(minimum.x) if minimum.fun < left(grid[best]) else float(grid[best])
     return constant, free(constant)
 
 

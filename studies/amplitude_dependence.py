@@ -55,18 +55,18 @@ def main() -> None:
         run,
         quick="a coarse grid",
         said=said,
-        figures=lambda found: {
-            "": plot_spread(found[0], model=found[1]),
-            "_two_columns": plot_spread(found[0], model=found[1], columns=2),
+        figures=lambda maps: {
+            "": plot_spread(maps[0], model=maps[1]),
+            "_two_columns": plot_spread(maps[0], model=maps[1], columns=2),
         },
-        numbers=lambda found: found[0],
+        numbers=lambda maps: maps[0],
     )
 
 
-def said(found: tuple[ImpedanceMap, ImpedanceMap]) -> str:
+def said(maps: tuple[ImpedanceMap, ImpedanceMap]) -> str:
     """What was measured, and its spread."""
-    spread = found[0].spread()["size"].to_pandas().T.round(1)
-    return f"{found[0]!r}\nSpread over amplitude (dB), by frequency (Hz)\n{spread}"
+    spread = maps[0].spread()["size"].to_pandas().T.round(1)
+    return f"{maps[0]!r}\nSpread over amplitude (dB), by frequency (Hz)\n{spread}"
 
 
 if __name__ == "__main__":

@@ -74,9 +74,9 @@ class LateInertia:
         self.data.to_netcdf(path)
 
     def to_json(self, path: Path) -> None:
-        found = {"claims": self.claims, "trials": self.data["rate"].to_dataframe().reset_index()}
-        rows = found["trials"].to_dict("records")
-        path.write_text(json.dumps({**found, "trials": rows}, indent=2) + "\n", encoding="utf-8")
+        content = {"claims": self.claims, "trials": self.data["rate"].to_dataframe().reset_index()}
+        rows = content["trials"].to_dict("records")
+        path.write_text(json.dumps({**content, "trials": rows}, indent=2) + "\n", encoding="utf-8")
 
     @property
     def as_expected(self) -> float:
@@ -149,10 +149,10 @@ def felt() -> dict[str, xarray.DataArray]:
     response = bode(diagrams, output="E", input="L", given="L", frequency=frequency).data
     response = response.rename({"frequency": "felt_frequency"})
     size, phase = response["magnitude"], np.radians(response["phase"])
-    found = {"felt": size, "apparent_mass": size * np.cos(phase)}
+    curves = {"felt": size, "apparent_mass": size * np.cos(phase)}
     return {
         name: (x.sel(case=list(cases)) / x.sel(case="none", drop=True)).assign_attrs(units="1")
-        for name, x in found.items()
+        for name, x in curves.items()
     }
 
 
@@ -188,13 +188,13 @@ def passive_shares(bandwidths: np.ndarray) -> xarray.DataArray:
 
 def stable_shares(delays: np.ndarray) -> xarray.DataArray:
     """Largest stable share with known hands over delay."""
-    found = [
+    shares = [
         [late.stable_share(late.HANDS[name], bandwidth=b, delay=t) for t in delays]
         for name, b in KNOWN
     ]
     names = [known_as(name, b) for name, b in KNOWN]
     return xarray.DataArray(
-        found,
+        shares,
         {"known": names, "delay": ("delay", delays, {"units": "s"})},
         ("known", "delay"),
         attrs={"units": "1"},
@@ -232,10 +232,10 @@ def claims() -> dict[str, str]:
         {"cancelled": 0.01 * late.INERTIA, "delay": DELAY},
         *({"cancelled": round(c * 1e-2, 6), **low, "order": 2} for c in (1.0, 1.1)),
     ]
-    found = [
+    listed = [
         cancelled_inertia(inertia=late.INERTIA, damping=late.DAMPING, **values) for values in asked
     ]
-    return {claim.statement: claim.status for claim in found}
+    return {claim.statement: claim.status for claim in listed}
 
 
 def run(*, quick: bool = False) -> LateInertia:

@@ -119,7 +119,7 @@ def run(*, quick: bool = False) -> xarray.Dataset:
     across = np.geomspace(0.3, 30.0, 8 if quick else 28)
     levels = np.linspace(0.1, 3.5, 8 if quick else 35)
     steps, points = (5, 25) if quick else (9, 41)
-    found = np.array([cycles_found(CABLE * s, steps=steps) for s in softness])
+    limits = np.array([cycles_found(CABLE * s, steps=steps) for s in softness])
     stored = np.array([storage_found(CABLE * s, steps=steps, points=points) for s in softness])
     capstan = np.array(
         [
@@ -134,7 +134,7 @@ def run(*, quick: bool = False) -> xarray.Dataset:
             "plain": ("stiffness_curve", [plain_limit(CABLE * s) / MOTOR for s in fine], one),
             "cycles": (
                 "stiffness",
-                found / MOTOR,
+                limits / MOTOR,
                 {**one, "how": "searched"},
             ),
             "storage": ("stiffness", stored / MOTOR, {**one, "how": "available storage settles"}),
@@ -151,9 +151,9 @@ def run(*, quick: bool = False) -> xarray.Dataset:
             "together": 1 + LINK / MOTOR,
             "motor_presliding": MOTOR_PRESLIDING / CABLE,
             "capstan_coefficient": CAPSTAN,
-            "lowest_share_of_plain": float((found / plain).min()),
+            "lowest_share_of_plain": float((limits / plain).min()),
             "finding": "largest f_D/f_1 without a cycle that gives out energy: "
-            + ", ".join(f"{x:.3g}" for x in found)
+            + ", ".join(f"{x:.3g}" for x in limits)
             + "; storage settles up to "
             + ", ".join(f"{x:.3g}" for x in stored)
             + "; plain cycles alone allow "

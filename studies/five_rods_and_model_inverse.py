@@ -97,8 +97,8 @@ class Isotropy:
             for c, i in product(COMPENSATIONS, (False, True))
         }
         bands = {str(r): self.band(str(r)) for r in self.data["response"].values}
-        found = {"felt_N": self.felt, "band_to_20_Hz": bands, "worst_rms_error_N": errors}
-        path.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
+        content = {"felt_N": self.felt, "band_to_20_Hz": bands, "worst_rms_error_N": errors}
+        path.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
 
     @staticmethod
     def _name(compensation: str, inverse: bool) -> str:
@@ -135,17 +135,17 @@ def inverse(frequency: np.ndarray, gain: float) -> np.ndarray:
 def singular_values(frequency: np.ndarray) -> xarray.DataArray:
     """Of F_want -> G^T R_M, largest first: with and without inverse, and for unknown hands."""
     gains = {"no compensation": 0.0, "force feedback": five.GAIN}
-    found = {name: five.rod_response(frequency, gain=gain) for name, gain in gains.items()}
+    responses = {name: five.rod_response(frequency, gain=gain) for name, gain in gains.items()}
     ahead = inverse(frequency, five.GAIN)
-    found["inverse"] = found["force feedback"] @ ahead
+    responses["inverse"] = responses["force feedback"] @ ahead
     for firmness in OTHER_HANDS:
         rods = five.rod_response(frequency, gain=five.GAIN, firmness=firmness)
-        found[f"inverse, hand x {firmness:g}"] = rods @ ahead
-    values = [np.linalg.svd(five.at_hand(t), compute_uv=False) for t in found.values()]
+        responses[f"inverse, hand x {firmness:g}"] = rods @ ahead
+    values = [np.linalg.svd(five.at_hand(t), compute_uv=False) for t in responses.values()]
     return xarray.DataArray(
         np.array(values),
         {
-            "response": list(found),
+            "response": list(responses),
             "frequency": ("frequency", frequency, {"units": "Hz"}),
             "order": np.arange(1, five.RODS + 1),
         },
@@ -205,15 +205,15 @@ def force_error(simulation: Simulation, wanted: np.ndarray, frequency: float) ->
 def errors(frequencies: tuple[float, ...]) -> xarray.DataArray:
     """Rms force error for every compensation, without and with inverse, in each coordinate."""
     axes = (tuple(COMPENSATIONS), (False, True), tuple(range(five.RODS)), frequencies)
-    found = []
+    rows = []
     for compensation, inverted, k, f in product(*axes):
         gain, share = COMPENSATIONS[compensation]
         wanted = WANTED * np.eye(five.RODS)[k]
-        made = driven(wanted, f, gain=gain, share=share, inverted=inverted)
-        found.append(force_error(made, wanted, f))
+        simulation = driven(wanted, f, gain=gain, share=share, inverted=inverted)
+        rows.append(force_error(simulation, wanted, f))
     names = ("compensation", "inverse", "coordinate", "driven")
     return xarray.DataArray(
-        np.reshape(found, [len(a) for a in axes]),
+        np.reshape(rows, [len(a) for a in axes]),
         {
             **dict(zip(names[:2], map(list, axes[:2]), strict=True)),
             "coordinate": list(five.COORDINATES),
@@ -233,9 +233,9 @@ def friction_at_hand(share: float) -> np.ndarray:
     turning[0, PLANE[0]] = turning[1, PLANE[1]] = 4 * WANTED
     rods = (turning[0] + 1j * turning[1]) @ np.linalg.inv(five.G)
     inputs = {f"R_D{n + 1}": partial(_sinusoid, r, 1.0) for n, r in enumerate(rods)}
-    made = simulate(five.machine(share=share, gain=five.GAIN), duration=2.0, inputs=inputs)
-    _, friction = settled(made, "Z_M{}_friction", 1.0)
-    _, cancelled = settled(made, "R_MBC{}", 1.0)
+    simulation = simulate(five.machine(share=share, gain=five.GAIN), duration=2.0, inputs=inputs)
+    _, friction = settled(simulation, "Z_M{}_friction", 1.0)
+    _, cancelled = settled(simulation, "R_MBC{}", 1.0)
     return np.asarray((cancelled - friction) @ five.G)
 
 

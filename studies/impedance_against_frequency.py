@@ -59,12 +59,12 @@ def main() -> None:
         __doc__,
         run,
         quick="fewer frequencies",
-        said=lambda found: repr(found[0]),
-        figures=lambda found: {
-            "": found[0].plot(model=found[1]),
-            "_two_columns": found[0].plot(model=found[1], columns=2),
+        said=lambda maps: repr(maps[0]),
+        figures=lambda maps: {
+            "": maps[0].plot(model=maps[1]),
+            "_two_columns": maps[0].plot(model=maps[1], columns=2),
         },
-        numbers=lambda found: found[0],
+        numbers=lambda maps: maps[0],
     )
 
 

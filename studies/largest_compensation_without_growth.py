@@ -48,7 +48,7 @@ def growth(u: float, ratio: float) -> float:
     body = body.with_effect(td.EFFECTS["coulomb"], {"level": FRICTION})
     body = body.with_effect(td.EFFECTS["spring"], {"stiffness": STIFFNESS})
     law = controller("dahl", {"level": level, "stiffness": level / length})
-    found = simulate(
+    simulation = simulate(
         haptic_interface(body, cancellation=law),
         duration=1.25 * PERIOD,
         # at the turning point of the settled loop, where the Dahl force is f_D tanh(u)
@@ -62,8 +62,8 @@ def growth(u: float, ratio: float) -> float:
         give=GIVE,
         every_step=True,
     )
-    second_half = found.data["time"].values > 0.75 * PERIOD
-    return float(found["L"].values[second_half].max() / AMPLITUDE - 1)
+    second_half = simulation.data["time"].values > 0.75 * PERIOD
+    return float(simulation["L"].values[second_half].max() / AMPLITUDE - 1)
 
 
 def largest_without_growth(u: float, *, steps: int) -> float:

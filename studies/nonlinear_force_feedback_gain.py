@@ -133,10 +133,10 @@ def at_constant_velocity(diagram: Diagram, speed: float) -> float:
     """Force error (N) once everything has settled in motion at that speed (m/s)."""
     motion = Motion(lambda t: speed * t, lambda t: speed + 0 * t, lambda t: 0 * t)
     # 0.35 s: 44 time constants of the low-pass of 20 Hz, and 350 bristle lengths at 0.1 mm/s
-    found = simulate(
+    simulation = simulate(
         diagram, duration=0.35, motion={"L": motion}, give=1e-7, computer="continuous", step=1e-3
     )
-    return float(found["E"].values[-1])
+    return float(simulation["E"].values[-1])
 
 
 def run(*, quick: bool = False) -> TradeOff:
@@ -173,7 +173,7 @@ def run(*, quick: bool = False) -> TradeOff:
 def amplitude_spread(diagram: Diagram) -> float:
     """Spread of |Zhat_M| (dB) over 0.5 to 10 mm at 5 Hz."""
     amplitude = 1e-3 * np.geomspace(0.5, 10.0, 6)
-    found = measured_impedance(
+    impedance = measured_impedance(
         # a contact so soft moves sizes by 0.05 dB; the spread is 10 dB
         diagram,
         amplitude=amplitude,
@@ -181,7 +181,7 @@ def amplitude_spread(diagram: Diagram) -> float:
         computer="continuous",
         give=1e-4,
     )
-    return float(found.spread()["size"].item())
+    return float(impedance.spread()["size"].item())
 
 
 def labelled(

@@ -79,13 +79,13 @@ def side(k: int, masses: tuple[float, float]) -> td.Body:
 def coupled_late(late: float, stiffness: float, masses: tuple[float, float]) -> Diagram:
     """Each side on a spring of its own position, pulled by the other's as it was."""
     blocks = []
-    for k, (own, other) in enumerate((("m", "s"), ("s", "m"))):
+    for k, (here, other) in enumerate((("m", "s"), ("s", "m"))):
         body = side(k, masses).with_effect(td.EFFECTS["spring"], {"stiffness": stiffness})
         body = body.with_effect(td.EFFECTS["actuation_delay"], {"delay": late})
         pull = controller("spring_damper", {"stiffness": stiffness, "damping": 0.0})
         blocks += [
-            Moving(f"Z_{own}", body, f"X_{own}", f"U_{own}", {f"F_{own}": 1}, f"F_{own}"),
-            Control(f"P_{own}", pull, f"X_{other}", f"U_{own}", f"X_{other}"),
+            Moving(f"Z_{here}", body, f"X_{here}", f"U_{here}", {f"F_{here}": 1}, f"F_{here}"),
+            Control(f"P_{here}", pull, f"X_{other}", f"U_{here}", f"X_{other}"),
         ]
     error = Junction("X_e", {"X_m": 1, "X_s": -1})
     outside = {"F_m": "force", "F_s": "force"}
@@ -108,7 +108,7 @@ def grows(kind: str, late: float, stiffness: float, masses: tuple[float, float])
         coupled_by_computer(stiffness, masses) if sampled else coupled_late(late, stiffness, masses)
     )
     try:
-        found = simulate(
+        simulation = simulate(
             diagram,
             duration=max(SWINGS * swing, 60 * late),
             # about their common centre of mass
@@ -121,7 +121,7 @@ def grows(kind: str, late: float, stiffness: float, masses: tuple[float, float])
         if "beyond all bounds" in str(problem):
             return True
         raise
-    error = found["X_e"].values
+    error = simulation["X_e"].values
     parts = np.array_split(error, 3)
     return bool(np.square(parts[2]).mean() > np.square(parts[1]).mean())
 
@@ -159,15 +159,15 @@ def run(*, quick: bool = False) -> xarray.Dataset:
     for name, claim in (("delay", delayed), ("period", held)):
         grid, points = times[name]
         status = region(claim, grid, stiffness).status.astype(str)
-        found = np.full((2, m), np.nan)
+        onsets = np.full((2, m), np.nan)
         for i, masses in enumerate(ends(name)):
             for k, late in enumerate(points):
                 bound = limit(name, float(late))
                 within = (0.5 * bound, 8 * bound)
-                found[i, k] = onset(name, float(late), masses, within=within, steps=steps)
-        over = found / np.array([limit(name, float(t)) for t in points])
+                onsets[i, k] = onset(name, float(late), masses, within=within, steps=steps)
+        over = onsets / np.array([limit(name, float(t)) for t in points])
         data[f"status_over_{name}"] = (("stiffness", name), status)
-        data[f"onset_over_{name}"] = (("ends", f"{name}_simulated"), found, {"units": "N/m"})
+        data[f"onset_over_{name}"] = (("ends", f"{name}_simulated"), onsets, {"units": "N/m"})
         data[f"limit_over_{name}"] = ((name,), [limit(name, float(t)) for t in grid])
         statuses.append(status)
         contradictions += int((over < 1).sum())

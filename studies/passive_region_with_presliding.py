@@ -55,45 +55,45 @@ def joint(softness: float, share: float) -> Diagram:
 
 def motions(number: int) -> list[Strokes]:
     """Sinusoids of 0.1 to 300 bristle lengths, and the same with a step back at each reversal."""
-    found = []
+    strokes = []
     sizes = LENGTH * np.geomspace(0.1, 300.0, number)
     for a in sizes[np.argsort(-np.abs(np.log(sizes / LENGTH)))]:  # the extremes show most
         speed = 300 * a  # friction does not depend on it; a stroke then takes 10 ms
-        found.append(Strokes((a, -a), speed))
-        found.append(Strokes((a, 0.9 * a, a, -a, -0.9 * a, -a), speed))
-    return found
+        strokes.append(Strokes((a, -a), speed))
+        strokes.append(Strokes((a, 0.9 * a, a, -a, -0.9 * a, -a), speed))
+    return strokes
 
 
-def gives_out(softness: float, share: float, tried: list[Strokes]) -> bool:
+def gives_out(softness: float, share: float, tested: list[Strokes]) -> bool:
     """Whether one of those motions gives out energy, from rest to rest and beyond doubt."""
     diagram = joint(softness, share)
-    return any(confirmed_motion(diagram, motion) is not None for motion in tried)
+    return any(confirmed_motion(diagram, motion) is not None for motion in tested)
 
 
 def run(*, quick: bool = False) -> xarray.Dataset:
     """Both verdicts over the map; quick: 9 x 9 points."""
     n = 9 if quick else 31
     softness, share = np.linspace(0.05, 1.25, n), np.linspace(0.05, 1.25, n)
-    settled = region(claim, softness, share)
-    tried = motions(5 if quick else 8)
-    found = np.array([[gives_out(x, y, tried) for x in softness] for y in share])
-    proved = settled.status == "proved"
+    proofs = region(claim, softness, share)
+    tested = motions(5 if quick else 8)
+    gives = np.array([[gives_out(x, y, tested) for x in softness] for y in share])
+    proved = proofs.status == "proved"
     dims = ("share", "softness")
     return xarray.Dataset(
         {
-            "status": (dims, settled.status.astype(str)),
-            "found": (dims, found.astype(int), {"how": "searched by simulation"}),
+            "status": (dims, proofs.status.astype(str)),
+            "found": (dims, gives.astype(int), {"how": "searched by simulation"}),
         },
         {
             "softness": ("softness", softness, {"units": "1", "text": "sigma_D/sigma_p"}),
             "share": ("share", share, {"units": "1", "text": "f_D/f_C"}),
         },
         {
-            "contradictions": int((proved & found).sum()),
-            "missed": int((~proved & ~found).sum()),
+            "contradictions": int((proved & gives).sum()),
+            "missed": int((~proved & ~gives).sum()),
             "finding": f"{proved.size} points, {proved.sum()} proved; a motion that gives out "
-            f"energy found at {int((proved & found).sum())} of these and at "
-            f"{int((~proved & found).sum())} of the {int((~proved).sum())} others",
+            f"energy found at {int((proved & gives).sum())} of these and at "
+            f"{int((~proved & gives).sum())} of the {int((~proved).sum())} others",
         },
     )
 

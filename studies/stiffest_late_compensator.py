@@ -98,7 +98,7 @@ def grows(late: int, period: float, stiffness: float, *, free: bool = False) -> 
     turn = math.sqrt(PRESLIDING / MASS) * period if free else worst_turn(late)
     samples = max(math.ceil(SWINGS * 2 * math.pi / turn), 60)
     try:
-        found = simulate(
+        simulation = simulate(
             held(late, period, stiffness, free=free),
             duration=samples * period,
             initial={"L_velocity": SMALL * turn / period} if free else {"L": SMALL},
@@ -111,7 +111,7 @@ def grows(late: int, period: float, stiffness: float, *, free: bool = False) -> 
         if "beyond all bounds" in str(problem):
             return True
         raise
-    first, _, last = (np.sqrt(np.mean(p**2)) for p in np.array_split(found["L"].values, 3))
+    first, _, last = (np.sqrt(np.mean(p**2)) for p in np.array_split(simulation["L"].values, 3))
     return bool(last > first or last > 10 * SMALL)  # as large as the bristles let it become
 
 
@@ -129,25 +129,25 @@ def run(*, quick: bool = False) -> xarray.Dataset:
     n, m, steps = (6, 3, 7) if quick else (50, 14, 10)
     period, stiffness = np.geomspace(1e-4, 1e-2, n), np.geomspace(100.0, 3e4, n)
     simulated = np.geomspace(1e-4, 1e-2, m)
-    status, limits, found = [], [], np.full((2, len(LATE), m), np.nan)
+    status, limits, onsets = [], [], np.full((2, len(LATE), m), np.nan)
     for k, late in enumerate(LATE):
         status.append(region(partial(claim, late), period, stiffness).status.astype(str))
         limits.append([limit(late, float(t)) for t in period])
         for i, free in enumerate((True, False)):
-            found[i, k] = [onset(late, float(t), free=free, steps=steps) for t in simulated]
-    settled, bounds = np.array(status), np.array(limits)
+            onsets[i, k] = [onset(late, float(t), free=free, steps=steps) for t in simulated]
+    verdicts, bounds = np.array(status), np.array(limits)
     damped = np.array([[damping_limit(late, float(t)) for t in simulated] for late in LATE])
-    over = found / np.array([np.minimum(damped, PRESLIDING), damped])
+    over = onsets / np.array([np.minimum(damped, PRESLIDING), damped])
     inside = stiffness[None, :, None] <= bounds[:, None, :]
     # a step of the bisection of the free joint may end just below what it looks for
-    wrong = int(((settled == "proved") != inside).sum() + (over < 1 - 1e-3).sum())
+    wrong = int(((verdicts == "proved") != inside).sum() + (over < 1 - 1e-3).sum())
     simulations = ("ends", "late", "period_simulated")
     low, high = over.min(axis=2), over.max(axis=2)
     return xarray.Dataset(
         {
-            "status": (("late", "stiffness", "period"), settled),
+            "status": (("late", "stiffness", "period"), verdicts),
             "limit": (("late", "period"), bounds, {"units": "N/m"}),
-            "onset": (simulations, found, {"units": "N/m"}),
+            "onset": (simulations, onsets, {"units": "N/m"}),
             "over": (simulations, over),
         },
         {
@@ -159,8 +159,8 @@ def run(*, quick: bool = False) -> xarray.Dataset:
         },
         {
             "contradictions": wrong,
-            "finding": f"{settled.size} points: {int((settled == 'proved').sum())} proved, "
-            f"{int((settled == 'refuted').sum())} refuted; a free joint grows from "
+            "finding": f"{verdicts.size} points: {int((verdicts == 'proved').sum())} proved, "
+            f"{int((verdicts == 'refuted').sum())} refuted; a free joint grows from "
             f"{low[0].min():.3f} to {high[0].max():.3f} of both bounds on, in the worst hand from "
             f"{low[1, 0]:.3f} to {high[1, 0]:.3f} of the damping's bound on with one sample late, "
             f"{low[1, 1]:.3f} to {high[1, 1]:.3f} with two",

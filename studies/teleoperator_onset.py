@@ -77,7 +77,7 @@ def growth(share: float, *, damping: float, contact: float) -> float:
         return np.zeros_like(t)
 
     period = 2 * math.pi / swing(contact)
-    found = simulate(
+    simulation = simulate(
         machine(share, damping=damping, contact=contact),
         duration=1.25 * period,
         motion={"X_m": Motion(nothing, nothing, nothing)},
@@ -92,8 +92,8 @@ def growth(share: float, *, damping: float, contact: float) -> float:
         give=GIVE,
         every_step=True,
     )
-    second_half = found.data["time"].values > 0.75 * period
-    return float(found["X_s"].values[second_half].max() / AMPLITUDE - 1)
+    second_half = simulation.data["time"].values > 0.75 * period
+    return float(simulation["X_s"].values[second_half].max() / AMPLITUDE - 1)
 
 
 def balance(*, damping: float, contact: float) -> float:

@@ -277,10 +277,10 @@ __version__ = "0.1.0.dev0"
 
 def __getattr__(name: str) -> Any:
     if name in _HOMES:
-        home, _, own = _HOMES[name].partition(":")
-        found = getattr(import_module(f"{__name__}.{home}"), own or name)
-        globals()[name] = found
-        return found
+        home, _, local = _HOMES[name].partition(":")
+        value = getattr(import_module(f"{__name__}.{home}"), local or name)
+        globals()[name] = value
+        return value
     if name in _FOLDERS:
         return import_module(f"{__name__}.{name}")
     hint = ""

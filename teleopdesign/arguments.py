@@ -56,11 +56,11 @@ def checked(target: Target) -> Target:
         """Names by position, the name of what follows them, and the checks by name."""
         names = vars(sys.modules[target.__module__])
         parameters = inspect.signature(function).parameters.values()
-        found = {p.name: check_of(_resolved(p.annotation, names)) for p in parameters}
+        by_parameter = {p.name: check_of(_resolved(p.annotation, names)) for p in parameters}
         checks = {
             p.name: _or_default(check, p.default)
             for p in parameters
-            if (check := found[p.name]) is not None
+            if (check := by_parameter[p.name]) is not None
         }
         in_order = (p for p in parameters if p.kind not in (p.KEYWORD_ONLY, p.VAR_POSITIONAL))
         more = next((p.name for p in parameters if p.kind is p.VAR_POSITIONAL), "")
@@ -111,12 +111,12 @@ def matrix_of(value: Any, where: str) -> Any:
 
     expected = "a matrix of numbers, such as [[1, 0], [0, 1]]"
     try:
-        found = np.asarray(value)
+        matrix = np.asarray(value)
     except ValueError:  # rows of different lengths
-        found = np.empty(0, dtype=object)
-    if found.dtype.kind not in "iuf" or found.ndim != 2 or bool(np.any(found != found)):
+        matrix = np.empty(0, dtype=object)
+    if matrix.dtype.kind not in "iuf" or matrix.ndim != 2 or bool(np.any(matrix != matrix)):
         raise _error("", "", where, Refused("", value, expected))
-    return found.astype(float)
+    return matrix.astype(float)
 
 
 def _error(module: str, function: str, argument: str, wrong: Refused) -> Exception:

@@ -38,14 +38,14 @@ def _parser() -> argparse.ArgumentParser:
         description="Friction in haptic interfaces and teleoperators: find what a model lacks.",
     )
     parser.add_argument("--version", action="version", version=f"teleopdesign {__version__}")
-    found = parser.add_subparsers(required=True, metavar="COMMAND")
+    subparsers = parser.add_subparsers(required=True, metavar="COMMAND")
     for module in pkgutil.iter_modules(commands.__path__):
         if module.name.startswith("_"):
             continue
         command = import_module(f"{commands.__name__}.{module.name}")
-        own = found.add_parser(module.name.replace("_", "-"), help=command.__doc__)
-        command.add(own)
-        own.set_defaults(run=command.run)
+        subparser = subparsers.add_parser(module.name.replace("_", "-"), help=command.__doc__)
+        command.add(subparser)
+        subparser.set_defaults(run=command.run)
     return parser
 
 

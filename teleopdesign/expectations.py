@@ -157,10 +157,10 @@ def _any_of(parts: tuple[Any, ...]) -> Check | None:
     def check(value: Any) -> Refused | None:
         wrong = []
         for one in whole:
-            found = one(value)
-            if found is None:
+            refusal = one(value)
+            if refusal is None:
                 return None
-            wrong.append(found)
+            wrong.append(refusal)
         # a mistake within a mapping or sequence says more than that the whole is of no kind
         deeper = [w for w in wrong if w.place]
         if deeper:
@@ -245,8 +245,8 @@ def _of_class(kind: type[Any]) -> Check:
 
 
 def _is_from_outside(value: Any, kind: type[Any]) -> bool:
-    own = ((c.__module__.partition(".")[0], c.__name__) for c in type(value).__mro__)
-    return (kind.__module__, kind.__name__) in own
+    names = ((c.__module__.partition(".")[0], c.__name__) for c in type(value).__mro__)
+    return (kind.__module__, kind.__name__) in names
 
 
 def _is_array(value: Any) -> bool:

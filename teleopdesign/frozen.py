@@ -97,13 +97,13 @@ class Catalogue(Frozen[str, Content]):
         object.__setattr__(self, "see", see)
 
     def __getitem__(self, key: str) -> Content:
-        found: Any = self.get(key, self)
-        if found is self:
+        value: Any = self.get(key, self)
+        if value is self:
             near = did_you_mean(key, self) if isinstance(key, str) else ""
             name = f'"{key}"' if isinstance(key, str) else repr(key)
             end = f"{near}{self.see}" if self.see else f", has {', '.join(self)}{near}"
             raise UnknownName(f"{self.kind}s: no {self.kind} {name}{end}")
-        return found  # type: ignore[no-any-return]
+        return value  # type: ignore[no-any-return]
 
     def get(self, key: object, default: Any = None) -> Any:
         """The thing of that name, or the default."""

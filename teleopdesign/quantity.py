@@ -146,16 +146,16 @@ def si_factor(
             return 1.0
         raise ExperimentError(f"{_begin(where)}no unit, {expected}")
     try:
-        found = _parse(unit)
+        parsed = _parse(unit)
     except _NotAUnit as problem:
         hint = did_you_mean(unit, kind.units) or did_you_mean(problem.part, _SYMBOLS)
         raise ExperimentError(f"{_begin(where)}found {quoted(unit)}, {expected}{hint}") from None
     wanted = _parse(kind.units[0])
-    if found.powers[:3] != wanted.powers[:3]:
+    if parsed.powers[:3] != wanted.powers[:3]:
         raise ExperimentError(f"{_begin(where)}found {quoted(unit)}, {expected}")
-    if quantity == "frequency" and found.powers[3] == 1:
-        return found.scale / (2 * math.pi)  # an angular frequency in rad/s or rpm; Hz counts turns
-    return found.scale
+    if quantity == "frequency" and parsed.powers[3] == 1:
+        return parsed.scale / (2 * math.pi)  # an angular frequency in rad/s or rpm; Hz counts turns
+    return parsed.scale
 
 
 def _kind(quantity: str, axis: str, where: str) -> _Kind:

@@ -62,4 +62,4 @@ def _nameless(thing: Any, place: str = "") -> str:
     else:
         return ""
     inner = (_nameless(v, f"{place}.{n}" if place else n) for n, v in parts)
-    return next((found for found in inner if found), "")
+    return next((name for name in inner if name), "")

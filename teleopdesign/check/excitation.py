@@ -38,22 +38,22 @@ def check_excitation(
     every = candidates(base.model)
     judged = candidates(base.model, motions)
     seen = visibilities(base, prepared, judged, floor.value)
-    found: list[Finding] = []
+    findings: list[Finding] = []
     for place in base.model.places:
         body = base.model.holder(place)
-        own = [m for m in motions if m.body == body]
-        if not own:
+        body_motions = [m for m in motions if m.body == body]
+        if not body_motions:
             continue
-        poor = lacking(own, base.model, body)
+        poor = lacking(body_motions, base.model, body)
         if place == body:
-            found.append(describe_motion(own, place, poor, base.model.body(place).axis))
-            found += _own_parameters(base, place)
+            findings.append(describe_motion(body_motions, place, poor, base.model.body(place).axis))
+            findings += _own_parameters(base, place)
         never = [c for c in every if c.at == place and c not in judged]
         mine = [v for v in seen if v.candidate.at == place]
         if mine or never:
-            found.append(_summary(mine, never, poor, base, floor.value, place))
-            found += _look_alikes(mine, place)
-    return tuple(found)
+            findings.append(_summary(mine, never, poor, base, floor.value, place))
+            findings += _look_alikes(mine, place)
+    return tuple(findings)
 
 
 def _unfolded(prepared: Prepared) -> Prepared:
@@ -139,11 +139,11 @@ def _reason(v: Visibility, poor: Mapping[str, str], model: Model) -> str:
     if v.silent:
         why = "it makes no force here"
     elif v.own < RARE and v.imitated:
-        own = [n.partition(".")[2] for n in v.imitated]
-        why = "the same as " + " with ".join(own)
+        imitated = [n.partition(".")[2] for n in v.imitated]
+        why = "the same as " + " with ".join(imitated)
         body = model.body(v.candidate.at)
         for effect in body.effects:
-            if any(n.startswith(f"{effect.name}.") for n in own):
+            if any(n.startswith(f"{effect.name}.") for n in imitated):
                 signals += needed(effect)
     elif math.isinf(v.size):
         why = "drowned by noise"
@@ -168,9 +168,9 @@ def needed(effect: Effect) -> tuple[str, ...]:
 
 def _look_alikes(seen: Sequence[Visibility], place: str) -> list[Finding]:
     """Effects whose marks have the same shape: the record would not say which it is."""
-    told = [v for v in seen if v.size <= 1.0]
+    visible = [v for v in seen if v.size <= 1.0]
     groups: list[set[str]] = []
-    for a, b in combinations(told, 2):
+    for a, b in combinations(visible, 2):
         if abs(float(a.mark @ b.mark)) < ALIKE:
             continue
         pair = {a.candidate.effect.name, b.candidate.effect.name}

@@ -69,11 +69,11 @@ class ForceBalance:
 
 def strengths_of(body: Body) -> list[str]:
     """The inertia, and the parameters whose being zero takes a force away altogether."""
-    found = ["inertia"]
+    names = ["inertia"]
     for effect in body.effects:
         if effect.role in ("force", "friction_level"):
-            found += [f"{effect.name}.{p}" for p, zero in effect.absent.items() if zero == 0.0]
-    return [n for n in found if n in body.parameters]
+            names += [f"{effect.name}.{p}" for p, zero in effect.absent.items() if zero == 0.0]
+    return [n for n in names if n in body.parameters]
 
 
 def force_balance(
@@ -98,23 +98,23 @@ def force_balance(
     if not forces:
         return None
     measured = float(np.sqrt(np.mean((rows[0] + rows[1]) ** 2)))
-    plain = settled = settle(bands, forces, [], ON_TIME, BANDS[-1:])
+    plain = fit = settle(bands, forces, [], ON_TIME, BANDS[-1:])
     if timed:
-        settled = with_shifts(bands, forces, plain, measured)
+        fit = with_shifts(bands, forces, plain, measured)
     numbers = np.unique(_blocks(stretches, parts), return_inverse=True)[1]
-    errors = standard_errors(settled.jacobian, settled.left, numbers)
-    told = [Estimate(float(v), float(e)) for v, e in zip(settled.solution, errors, strict=True)]
-    strengths = dict(zip(names, told, strict=False))
+    errors = standard_errors(fit.jacobian, fit.left, numbers)
+    estimates = [Estimate(float(v), float(e)) for v, e in zip(fit.solution, errors, strict=True)]
+    strengths = dict(zip(names, estimates, strict=False))
     both = len(forces) > 1
     return ForceBalance(
         body=stretches[0].motion.body,
         lead=forces[0],
         other=forces[1] if both else "",
-        gain=told[len(names)] if both else Estimate(1.0, 0.0),
+        gain=estimates[len(names)] if both else Estimate(1.0, 0.0),
         strengths=strengths,
-        power=_power(parts, settled.rows[5:], strengths),
-        shifts=_named(settled, told[len(names) + both :]),
-        left=settled.size / measured,
+        power=_power(parts, fit.rows[5:], strengths),
+        shifts=_named(fit, estimates[len(names) + both :]),
+        left=fit.size / measured,
         unshifted=plain.size / measured,
         rows=counted / sum(len(s.keep) for s in stretches),
     )
@@ -124,30 +124,30 @@ def force_balances(
     model: Model, prepared: Prepared, *, timed: bool = True
 ) -> dict[str, ForceBalance]:
     """The balance of every body that has one, on the fit records."""
-    found = {}
+    balances = {}
     for place, body in model.bodies.items():
-        own = [s for s in prepared.of("fit") if s.motion.body == place]
-        balance = force_balance(body, own, timed=timed) if own else None
+        stretches = [s for s in prepared.of("fit") if s.motion.body == place]
+        balance = force_balance(body, stretches, timed=timed) if stretches else None
         if balance is not None:
-            found[place] = balance
-    return found
+            balances[place] = balance
+    return balances
 
 
-def _named(settled: Settled, steps: Sequence[Estimate]) -> dict[str, Estimate]:
+def _named(fit: Settled, steps: Sequence[Estimate]) -> dict[str, Estimate]:
     """The shifts by channel; one that both forces share is the position's, the other way."""
-    found: dict[str, Estimate] = {}
-    for group, step in zip(settled.groups, steps, strict=True):
-        late = settled.shifts[group[0]]
+    shifts: dict[str, Estimate] = {}
+    for group, step in zip(fit.groups, steps, strict=True):
+        late = fit.shifts[group[0]]
         if len(group) > 1:
-            found["position"] = Estimate(-late, step.error)
+            shifts["position"] = Estimate(-late, step.error)
         else:
-            found[group[0]] = Estimate(late, step.error)
-    return found
+            shifts[group[0]] = Estimate(late, step.error)
+    return shifts
 
 
 def _blocks(stretches: Sequence[Stretch], parts: Sequence[Along]) -> NDArray[np.intp]:
-    told = [np.isin(s.keep, p.keep) for s, p in zip(stretches, parts, strict=True)]
-    return block_numbers(stretches)[np.concatenate(told)]
+    is_part = [np.isin(s.keep, p.keep) for s, p in zip(stretches, parts, strict=True)]
+    return block_numbers(stretches)[np.concatenate(is_part)]
 
 
 def _power(

@@ -57,8 +57,8 @@ def along_in(body: Body, stretch: Stretch, names: Sequence[str], band: float) ->
     values = np.array([body.parameters[n].value for n in names])
     acting = along.acting.value
     rest = acting + motion.interaction - along.residual.value - values @ columns
-    told = motion.lowpassed(np.abs(motion.direction).astype(np.float64))
-    keep = stretch.keep[told[stretch.keep] > TOLD]
+    moving = motion.lowpassed(np.abs(motion.direction).astype(np.float64))
+    keep = stretch.keep[moving[stretch.keep] > TOLD]
     low = s.lowpass(band * motion.bandwidth)
     forces = {
         "actuator_force": s.transform(acting) * low,
@@ -72,14 +72,14 @@ def rows_of(parts: Sequence[Along], shifts: Mapping[str, float]) -> Array:
 
     shifts: s by which each force is late
     """
-    found = []
+    rows = []
     for part in parts:
         s = part.motion.spectrum
         both = [y * np.exp(2j * np.pi * s.frequency * shifts[n]) for n, y in part.forces.items()]
         signals = [s.back(y)[part.keep] for y in both]
         signals += [s.back(y * s.derivative(1))[part.keep] for y in both]
-        found.append(np.vstack([*signals, part.others]))
-    return np.hstack(found)
+        rows.append(np.vstack([*signals, part.others]))
+    return np.hstack(rows)
 
 
 @dataclass(frozen=True)
@@ -146,16 +146,16 @@ def settle(
     steps: Sequence[float] = BANDS,
 ) -> Settled:
     """Shifts after a step in each band, no further than an eighth of a second at once."""
-    found, gain = dict(shifts), 1.0
+    timing, gain = dict(shifts), 1.0
     for band in (*steps, steps[-1]):
-        rows = rows_of(bands[band], found)
+        rows = rows_of(bands[band], timing)
         solution, jacobian, left = _solve(rows, forces, groups, gain)
-        now = Settled(groups, dict(found), rows, solution, jacobian, left)
+        now = Settled(groups, dict(timing), rows, solution, jacobian, left)
         if len(forces) > 1:
             gain = float(solution[len(rows) - 5])
         for group, step in zip(groups, solution[len(solution) - len(groups) :], strict=True):
             for name in group:
-                found[name] += float(np.clip(step, -0.125, 0.125))
+                timing[name] += float(np.clip(step, -0.125, 0.125))
     return now
 
 

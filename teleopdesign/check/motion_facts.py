@@ -23,34 +23,34 @@ LIGHT = 0.1
 
 def lacking(motions: Sequence[Motion], model: Model, place: str) -> dict[str, str]:
     """What the motion of one body lacks: signal of a law -> in words, with the number."""
-    told = np.concatenate([m.direction for m in motions])
+    direction = np.concatenate([m.direction for m in motions])
     speed = np.abs(np.concatenate([m.velocity for m in motions]))
-    forth, back = (float(np.mean(told == way)) for way in (1, -1))
+    forth, back = (float(np.mean(direction == way)) for way in (1, -1))
     moving = forth + back
-    found: dict[str, str] = {}
+    reasons: dict[str, str] = {}
     if moving < RARE:
-        found["velocity"] = f"it is told to move {100 * moving:.2g} % of the time"
+        reasons["velocity"] = f"it is told to move {100 * moving:.2g} % of the time"
     elif min(forth, back) < RARE * moving:
-        found["velocity"] = "it only ever moves one way"
-    elif (spread := float(np.std(speed[told != 0]) / np.mean(speed[told != 0]))) < STEADY:
-        found["velocity"] = f"it moves at one speed, give or take {100 * spread:.2g} %"
+        reasons["velocity"] = "it only ever moves one way"
+    elif (spread := float(np.std(speed[direction != 0]) / np.mean(speed[direction != 0]))) < STEADY:
+        reasons["velocity"] = f"it moves at one speed, give or take {100 * spread:.2g} %"
     path = max(
         (float(np.sum(np.abs(np.diff(m.position))) / max(np.ptp(m.position), 1e-300)))
         for m in motions
     )
     if path < COMES_BACK:
-        found["position"] = "it never comes back to where it was"
+        reasons["position"] = "it never comes back to where it was"
     force = _rms([m.lowpassed(m.at_rows(m.command) + m.interaction) for m in motions])
     inertia = model.body(place).parameters["inertia"].value
     share = inertia * _rms([m.lowpassed(m.acceleration) for m in motions]) / force if force else 0.0
     if share < LIGHT:
-        found["acceleration"] = f"inertia makes only {100 * share:.2g} % of the force"
+        reasons["acceleration"] = f"inertia makes only {100 * share:.2g} % of the force"
     commands = np.concatenate([m.command for m in motions])
     if np.std(commands) < RARE * _rms([commands]) or not commands.any():
-        found["command"] = found["acting_force"] = "the commanded force hardly varies"
+        reasons["command"] = reasons["acting_force"] = "the commanded force hardly varies"
     if not any(m.interaction.any() for m in motions):
-        found["interaction_force"] = "no interaction force is measured"
-    return found
+        reasons["interaction_force"] = "no interaction force is measured"
+    return reasons
 
 
 def _rms(parts: Sequence[Array]) -> float:
@@ -62,10 +62,10 @@ def describe_motion(
 ) -> Finding:
     """How one body moves, in numbers."""
     x = np.concatenate([m.position for m in motions])
-    told = np.concatenate([m.direction for m in motions])
+    direction = np.concatenate([m.direction for m in motions])
     fastest = max(float(np.abs(m.velocity).max()) for m in motions)
     turns = sum(int(np.sum(np.diff(m.direction[m.direction != 0]) != 0)) for m in motions)
-    forth, back = (float(np.mean(told == way)) for way in (1, -1))
+    forth, back = (float(np.mean(direction == way)) for way in (1, -1))
     numbers = {
         "travel": float(np.ptp(x)),
         "fastest": fastest,

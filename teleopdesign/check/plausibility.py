@@ -33,13 +33,13 @@ def check_plausibility(model: Model, prepared: Prepared) -> tuple[Finding, ...]:
     swapped = list(check_swapped(model, prepared, balances))
     if swapped:
         return tuple(swapped)
-    found: list[Finding] = []
+    findings: list[Finding] = []
     for place, balance in balances.items():
-        own = [*_signs(prepared, balance), *_gain(model, prepared, balance)]
-        if not own:
-            own = [*_units(model, balance), *_shifts(prepared, balance)]
-        found += own or [_agreeing(model, place, balance)]
-    return tuple(found)
+        doubts = [*_signs(prepared, balance), *_gain(model, prepared, balance)]
+        if not doubts:
+            doubts = [*_units(model, balance), *_shifts(prepared, balance)]
+        findings += doubts or [_agreeing(model, place, balance)]
+    return tuple(findings)
 
 
 def _name(prepared: Prepared, body: str, quantity: str) -> str:

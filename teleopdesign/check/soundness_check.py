@@ -28,24 +28,24 @@ def check_experiment(
     raises ExperimentError: the model is incomplete, or the bandwidth does not suit the records
     """
     model = Model.from_experiment(experiment) if model is None else model
-    found = list(check_signals(experiment))
+    findings = list(check_signals(experiment))
     resting = _resting(experiment)
     if resting:
         names = " and ".join(resting)
         sentence = f"not asked what the record can show: {names} never moves."
-        return (*found, Finding("what the record can show", "note", sentence))
+        return (*findings, Finding("what the record can show", "note", sentence))
     part = excerpt(experiment)
     if part is not experiment:
-        found.append(_windows(experiment, part))
+        findings.append(_windows(experiment, part))
     prepared = prepare(part)
     agreement = check_plausibility(model, prepared)
-    found += agreement
+    findings += agreement
     against = [f for f in agreement if f.concern == "warning" and f.topic in _CONTRADICTIONS]
     if against:
         sentence = "not asked what the record can show: first make signs, units and columns agree."
-        return (*found, Finding("what the record can show", "note", sentence))
-    found += check_excitation(model, prepared, np.random.default_rng(seed))
-    return tuple(found)
+        return (*findings, Finding("what the record can show", "note", sentence))
+    findings += check_excitation(model, prepared, np.random.default_rng(seed))
+    return tuple(findings)
 
 
 def _resting(experiment: Experiment) -> list[str]:

@@ -41,22 +41,22 @@ def slips(axis: str, ratios: Mapping[str, float], quantities: Mapping[str, str])
     ratios: strength -> what the motion asks for over what the model says;  quantities: of each
     """
     position, force, inertia = (unit_of(q, axis) for q in ("position", "force", "inertia"))
-    tried: dict[str, dict[str, float]] = {}
+    alternatives: dict[str, dict[str, float]] = {}
     for unit, factor in _POSITION_SLIPS[axis].items():
-        tried[f"the position is in {unit}, given as {position}"] = {
+        alternatives[f"the position is in {unit}, given as {position}"] = {
             n: factor ** POWERS[q][1] for n, q in quantities.items()
         }
     for unit, factor in _FORCE_SLIPS[axis].items():
-        tried[f"the forces are in {unit}, given as {force}"] = {
+        alternatives[f"the forces are in {unit}, given as {force}"] = {
             n: factor ** POWERS[q][0] for n, q in quantities.items()
         }
     for unit, factor in _INERTIA_SLIPS[axis].items():
-        tried[f"the model's inertia is meant in {unit}, given as {inertia}"] = {
+        alternatives[f"the model's inertia is meant in {unit}, given as {inertia}"] = {
             n: factor if n == "inertia" else 1.0 for n in quantities
         }
     worst = {
         text: max(abs(math.log10(ratios[n] / expected[n])) for n in ratios)
-        for text, expected in tried.items()
+        for text, expected in alternatives.items()
     }
     near = [t for t in sorted(worst, key=lambda t: worst[t]) if worst[t] < NEAR]
     return [t for t in near if worst[t] < worst[near[0]] + 0.1]

@@ -86,7 +86,7 @@ class _Trial:
 
 
 def visibilities(
-    base: Fit, prepared: Prepared, found: Sequence[Candidate], floor: float
+    base: Fit, prepared: Prepared, candidates: Sequence[Candidate], floor: float
 ) -> list[Visibility]:
     """What it takes for each candidate to be seen on the fit records.
 
@@ -107,7 +107,7 @@ def visibilities(
         floor * math.sqrt(CRITERIA.adequate**2 - 1.0),
     )
     unit = scales([s.motion for s in stretches], prepared.bandwidth)
-    return [_visibility(c, scene, unit) for c in found]
+    return [_visibility(c, scene, unit) for c in candidates]
 
 
 def _visibility(candidate: Candidate, scene: _Scene, unit: dict[str, float]) -> Visibility:
@@ -214,8 +214,8 @@ def _slope(one: _Trial, two: _Trial, before: float) -> float:
     """Power of the strength with which what shows grows; linear to begin with."""
     if min(one.part, two.part) <= 0.0 or one.factor == two.factor or one.part == two.part:
         return before
-    found = math.log(two.part / one.part) / math.log(two.factor / one.factor)
-    return min(max(found, 0.3), 5.0)
+    exponent = math.log(two.part / one.part) / math.log(two.factor / one.factor)
+    return min(max(exponent, 0.3), 5.0)
 
 
 def _values(candidate: Candidate, model: Model) -> tuple[dict[str, float], dict[str, float]]:

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 WIDTH = 100
 
 
-def claim_lines(settled: Sequence[Settled]) -> list[str]:
+def claim_lines(claims: Sequence[Settled]) -> list[str]:
     """Status and topic of each claim, with its statement and how it is known."""
     lines = []
-    for one in settled:
+    for one in claims:
         lines += ["", f"{one.claim.status:<9} {one.topic}"]
         lines += _folded(one.claim.statement) + _folded(str(one.claim.verdict))
         if one.motion is not None:

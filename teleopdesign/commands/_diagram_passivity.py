@@ -35,22 +35,22 @@ def settle_diagram(options: argparse.Namespace, computer: Sampling | None) -> in
 
     search = Search(options.stroke, options.speed, computer=computer or "continuous")
     diagram = diagram_of(str(options.source), options.effect)
-    found = diagram_claims(diagram, rng=np.random.default_rng(1), search=search)
-    print(_text(found))
+    claims = diagram_claims(diagram, rng=np.random.default_rng(1), search=search)
+    print(_text(claims))
     if options.json is not None:
         content = {
-            "diagram": repr(found.diagram),
-            "ports": [str(port) for port in found.ports],
-            "nonlinear": list(found.nonlinear),
-            "claims": [plain(s) for s in found.settled],
+            "diagram": repr(claims.diagram),
+            "ports": [str(port) for port in claims.ports],
+            "nonlinear": list(claims.nonlinear),
+            "claims": [plain(s) for s in claims.settled],
         }
         write_json(options.json, content)
     return 0
 
 
-def _text(found: DiagramClaims) -> str:
-    lines = [f"{found.diagram.name}: ports (force, motion) {', '.join(map(str, found.ports))}"]
-    lines.append(f"not linear: {', '.join(found.nonlinear) or 'nothing'}")
-    if found.diagram.controls:
+def _text(claims: DiagramClaims) -> str:
+    lines = [f"{claims.diagram.name}: ports (force, motion) {', '.join(map(str, claims.ports))}"]
+    lines.append(f"not linear: {', '.join(claims.nonlinear) or 'nothing'}")
+    if claims.diagram.controls:
         lines.append("what is proved holds for controllers in continuous time")
-    return "\n".join([*lines, *claim_lines(found.settled)])
+    return "\n".join([*lines, *claim_lines(claims.settled)])

@@ -53,13 +53,13 @@ def _table(results: list[Result], width: int) -> str:
     lines = []
     for r in results:
         s = r.statement
-        told = [*textwrap.wrap(s.words, third)]
+        cell = [*textwrap.wrap(s.words, third)]
         for head, text in (("", s.formula), ("printed: ", s.printed), ("given: ", s.assumes)):
-            told += textwrap.wrap(f"{head}{text}", third, subsequent_indent="  ") if text else []
-        told += textwrap.wrap(f"{s.paper.short}, {s.place}; {_code(s)}", third)
-        named = [s.name, *[""] * len(told)]
-        known = textwrap.wrap(r.outcome, second - 1) + [""] * len(told)
-        rows = zip(named, known, told, strict=False)
+            cell += textwrap.wrap(f"{head}{text}", third, subsequent_indent="  ") if text else []
+        cell += textwrap.wrap(f"{s.paper.short}, {s.place}; {_code(s)}", third)
+        named = [s.name, *[""] * len(cell)]
+        known = textwrap.wrap(r.outcome, second - 1) + [""] * len(cell)
+        rows = zip(named, known, cell, strict=False)
         lines += [f"{a:<{first}}{b:<{second}}{c}".rstrip() for a, b, c in rows]
         lines += [f"{'':<{first + second}}{why}" for why in _why_failed(r)]
         lines.append("")
@@ -76,7 +76,7 @@ def _code(statement: Statement) -> str:
 def _why_failed(result: Result) -> list[str]:
     if result.outcome != "failed":
         return []
-    return [*result.found, *(str(f) for f in result.figures if not f.margin >= 0)]
+    return [*result.details, *(str(f) for f in result.figures if not f.margin >= 0)]
 
 
 def _full(result: Result, width: int) -> str:
@@ -93,7 +93,7 @@ def _full(result: Result, width: int) -> str:
         ("code:    ", f"teleopdesign.papers.{s.code}" if s.code else _code(s)),
     ):
         lines += textwrap.wrap(head + text, width, subsequent_indent=" " * 9) if text else []
-    for i, step in enumerate(result.found, 1):
+    for i, step in enumerate(result.details, 1):
         lines += textwrap.wrap(f"{i:>3}. {step}", width, subsequent_indent=" " * 5)
     for figure in result.figures:
         lines += textwrap.wrap(f"   - {figure}", width, subsequent_indent=" " * 5)
@@ -103,8 +103,8 @@ def _full(result: Result, width: int) -> str:
 def _summary(results: list[Result]) -> str:
     counts = Counter(r.outcome for r in results)
     seconds = sum(r.seconds for r in results)
-    told = ", ".join(f"{n} {outcome}" for outcome, n in counts.most_common())
-    return f"{len(results)} statements in {seconds:.0f} s: {told}."
+    counted = ", ".join(f"{n} {outcome}" for outcome, n in counts.most_common())
+    return f"{len(results)} statements in {seconds:.0f} s: {counted}."
 
 
 def as_json(result: Result) -> dict[str, Any]:
@@ -123,11 +123,11 @@ def as_json(result: Result) -> dict[str, Any]:
         "place": s.place,
         "code": s.code and f"teleopdesign.papers.{s.code}",
         "see": [f"P{n}" for n in s.see],
-        "found": list(result.found),
+        "found": list(result.details),
         "figures": [
             {
                 "what": f.what.strip(),
-                "found": f.found,
+                "found": f.value,
                 "low": f.low,
                 "high": f.high,
                 "unit": f.unit,

@@ -45,10 +45,10 @@ def run(options: argparse.Namespace) -> int:
     from ..realise.tips import linear_tips
 
     diagram = diagram_of(options.diagram, options.effect)
-    found = all_transfers(linear_tips(diagram))  # with the wiring that is simulated
-    print(found.latex() if options.latex else _page(found, options.speed))
+    transfers = all_transfers(linear_tips(diagram))  # with the wiring that is simulated
+    print(transfers.latex() if options.latex else _page(transfers, options.speed))
     if options.json is not None:
-        write_json(options.json, found.as_data(speed=options.speed))
+        write_json(options.json, transfers.as_data(speed=options.speed))
     if options.figure is not None:
         _draw(diagram, options.figure)
     return 0
@@ -84,19 +84,19 @@ def _draw(diagram: Diagram, path: Path) -> None:
         save_figure(drawing.plot(), path, suffixes=(path.suffix,))
 
 
-def _page(found: Transfers, speed: float) -> str:
-    lines = [repr(found.diagram), "", found.text()]
-    if found.has_values:
+def _page(transfers: Transfers, speed: float) -> str:
+    lines = [repr(transfers.diagram), "", transfers.text()]
+    if transfers.has_values:
         lines += ["", f"With values, one degree of freedom, SI, frozen at speed {abs(speed):g}:"]
-        lines += _numbers(found, speed)
+        lines += _numbers(transfers, speed)
     return "\n".join(lines)
 
 
-def _numbers(found: Transfers, speed: float) -> list[str]:
+def _numbers(transfers: Transfers, speed: float) -> list[str]:
     from ..derive.printing import polynomial_as_text
 
     lines, gone = [], set()
-    for name, one in found.found.items():
+    for name, one in transfers.transfers.items():
         try:
             system, left_out = one.system(speed=speed)
         except ModelError as error:

@@ -53,15 +53,15 @@ def run(options: argparse.Namespace) -> int:
 
     fit, prepared, floor, said = _fitted(options)
     print(f"{said}\n")
-    found = unexplained(fit, prepared, floor)
-    print(found)
+    description = unexplained(fit, prepared, floor)
+    print(description)
     if options.json is not None:
-        write_json(options.json, {"model": said, **found.as_data()})
+        write_json(options.json, {"model": said, **description.as_data()})
     if options.figure is not None:
         with replacing(options.figure) as part:
-            found.plot().savefig(part)
+            description.plot().savefig(part)
     if options.effect_file is not None:
-        _write(found, options.effect_file, options.folder)
+        _write(description, options.effect_file, options.folder)
     return 0
 
 
@@ -89,12 +89,12 @@ def _fitted(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor | No
     return before, prepared, None, f"Your model, re-estimated ({added} would {why}):"
 
 
-def _write(found: Unexplained, path: Path, folder: Path) -> None:
+def _write(description: Unexplained, path: Path, folder: Path) -> None:
     from ..unexplained.effect_file import write_effect
 
-    largest = found.largest
+    largest = description.largest
     if largest is None:
         raise ModelError(f"{path}: not written: what is left depends on nothing for sure")
     part, described = largest
-    write_effect(path, part, described, found.prepared)
+    write_effect(path, part, described, description.prepared)
     print(f"\nwritten: {path}; next: teleopdesign diagnose {folder} --effect {path}")

@@ -61,10 +61,10 @@ def run(options: argparse.Namespace) -> int:
     assumptions = _assumptions(options)
     experiment = experiment_of(options.folder)
     places = _places(options, experiment)
-    found = _diagnosed(experiment, options)
+    diagnosis = _diagnosed(experiment, options)
     designs = {}
     for place in places:
-        designs[place] = _design(found, place, assumptions)
+        designs[place] = _design(diagnosis, place, assumptions)
         print("" if len(designs) == 1 else "\n", end="")
         print(designs[place])
     _write(designs, options)
@@ -74,8 +74,8 @@ def run(options: argparse.Namespace) -> int:
 def _assumptions(options: argparse.Namespace) -> Assumptions:
     from ..design import Assumptions
 
-    own = {f.name for f in fields(Assumptions)}
-    given = {n: v for n in STATED if (v := getattr(options, n)) is not None and n in own}
+    names = {f.name for f in fields(Assumptions)}
+    given = {n: v for n in STATED if (v := getattr(options, n)) is not None and n in names}
     return Assumptions(**given)
 
 
@@ -106,13 +106,13 @@ def _diagnosed(experiment: Experiment, options: argparse.Namespace) -> Diagnosed
     return diagnosed(diagnosis)
 
 
-def _design(found: Diagnosed, place: str, assumptions: Assumptions) -> Design:
+def _design(diagnosis: Diagnosed, place: str, assumptions: Assumptions) -> Design:
     from ..design import design
 
     say(f"designing for {place}")
-    made = design(found, place=place, assumptions=assumptions)
+    proposal = design(diagnosis, place=place, assumptions=assumptions)
     say("")
-    return made
+    return proposal
 
 
 def _write(designs: dict[str, Design], options: argparse.Namespace) -> None:
@@ -127,9 +127,9 @@ def _write(designs: dict[str, Design], options: argparse.Namespace) -> None:
         )
     if options.output is None:
         return
-    for place, made in designs.items():
-        files = save_figure(made.plot(), options.output / f"{place}_design")
-        made.to_json(options.output / f"{place}_design.json")
+    for place, proposal in designs.items():
+        files = save_figure(proposal.plot(), options.output / f"{place}_design")
+        proposal.to_json(options.output / f"{place}_design.json")
         diagram = options.output / f"{place}_interface.toml"
-        write_text(diagram, made.to_toml())
+        write_text(diagram, proposal.to_toml())
         print(f"written: {', '.join(map(str, files))}, {diagram}")

@@ -130,20 +130,20 @@ def _asked(texts: Sequence[str], experiment: Experiment) -> dict[str, dict[str, 
     from ..quantity import to_si
 
     bodies = tuple(experiment.bodies)
-    found: dict[str, dict[str, float]] = {}
+    limits: dict[str, dict[str, float]] = {}
     for text in texts:
         name, _, value = text.partition("=")
-        body, _, own = name.rpartition(".")
+        body, _, name_of_limit = name.rpartition(".")
         body = body or bodies[0]
         if body not in bodies:
             raise ExperimentError(
                 f'--limit {text}: no body "{body}", has {", ".join(bodies)}'
                 f"{did_you_mean(body, bodies)}"
             )
-        if own not in QUANTITY:
+        if name_of_limit not in QUANTITY:
             raise ExperimentError(
-                f'--limit {text}: no limit "{own}", has {", ".join(QUANTITY)}'
-                f"{did_you_mean(own, QUANTITY)}"
+                f'--limit {text}: no limit "{name_of_limit}", has {", ".join(QUANTITY)}'
+                f"{did_you_mean(name_of_limit, QUANTITY)}"
             )
         number = re.match(r"\s*([-+]?[0-9.]+(?:[eE][-+]?\d+)?)\s*(.*)$", value)
         if number is None:
@@ -158,12 +158,12 @@ def _asked(texts: Sequence[str], experiment: Experiment) -> dict[str, dict[str, 
             size = to_si(
                 size,
                 number[2],
-                quantity=QUANTITY[own],
+                quantity=QUANTITY[name_of_limit],
                 axis=experiment.axis(body),
                 where=f"--limit {text}",
             )
-        found.setdefault(body, {})[own] = size
-    return found
+        limits.setdefault(body, {})[name_of_limit] = size
+    return limits
 
 
 def _limits(asked: dict[str, dict[str, float]], experiment: Experiment) -> dict[str, Limits]:

@@ -88,13 +88,13 @@ def run(options: argparse.Namespace) -> int:
 
     device = identified(*body_of_source(options.source, options))
     compensator = _compensator(options)
-    settled = _settled(options, device, compensator)
-    found = margins(device, compensator)
-    print(_text(device, settled, found))
+    claims = _settled(options, device, compensator)
+    limits = margins(device, compensator)
+    print(_text(device, claims, limits))
     if options.period is not None and device.damping.low > 0:
         print("\n" + _z_width(device, options.period, options.delay))
     if options.json is not None:
-        content = {"claims": [plain(s) for s in settled], "margins": [vars(m) for m in found]}
+        content = {"claims": [plain(s) for s in claims], "margins": [vars(m) for m in limits]}
         write_json(options.json, content)
     return 0
 
@@ -155,17 +155,17 @@ def _settled(
     from ..passivity.device_claims import compensation_claims, device_claims, wall_claims
 
     computer = _computer(options)
-    found = device_claims(device)
+    claims = device_claims(device)
     if compensator is not None:
         rng = np.random.default_rng(1)
-        found += compensation_claims(device, compensator, computer=computer, rng=rng)
+        claims += compensation_claims(device, compensator, computer=computer, rng=rng)
     if options.wall is not None and computer is not None:
         stiffness, damping = options.wall
         taken = compensator.level if compensator else 0.0
-        found += wall_claims(
+        claims += wall_claims(
             device, stiffness=stiffness, damping=damping, computer=computer, cancelled=taken
         )
-    return found
+    return claims
 
 
 def _computer(options: argparse.Namespace) -> Sampling | None:
@@ -176,7 +176,7 @@ def _computer(options: argparse.Namespace) -> Sampling | None:
     return Sampling(options.period, options.delay, options.encoder_step)
 
 
-def _text(device: IdentifiedDevice, settled: Sequence[Settled], found: Sequence[Margin]) -> str:
+def _text(device: IdentifiedDevice, claims: Sequence[Settled], limits: Sequence[Margin]) -> str:
     from ..quantity import unit_of
 
     force, stiff = device.force_unit, device.stiffness_unit
@@ -200,23 +200,23 @@ def _text(device: IdentifiedDevice, settled: Sequence[Settled], found: Sequence[
         )
     if device.unknown:
         lines.append(f"no standard error, taken as exact: {', '.join(device.unknown)}")
-    return "\n".join([*lines, *claim_lines(settled), "", *map(str, found)])
+    return "\n".join([*lines, *claim_lines(claims), "", *map(str, limits)])
 
 
 def _z_width(device: IdentifiedDevice, period: float, delay: float) -> str:
     from ..passivity import z_width
 
-    found = z_width(
+    width = z_width(
         damping=device.damping.low,
         sample_time=period,
         inertia=device.body.parameters["inertia"].value,
         delay=round(delay / period),
     )
-    k, b = found.stiffest
-    checked = "exact test agrees at each limit" if found.verified else "evidence"
+    k, b = width.stiffest
+    checked = "exact test agrees at each limit" if width.verified else "evidence"
     return (
         f"Z-width at {period:g} s: stiffest passive wall {k:.4g} with damping {b:.4g} (SI), "
-        f"{found.width(1.0):.1f} dB above the free device at 1 Hz ({checked})"
+        f"{width.width(1.0):.1f} dB above the free device at 1 Hz ({checked})"
     )
 
 
@@ -226,11 +226,11 @@ def _check(path: Path) -> int:
 
     try:
         claims = json.loads(path.read_text(encoding="utf-8"))["claims"]
-        found = [(str(c["statement"]), list(c["certificates"])) for c in claims]
+        certified = [(str(c["statement"]), list(c["certificates"])) for c in claims]
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as problem:
         raise ExperimentError(f"{path}: no file of claims: {problem!r}"[:300]) from problem
     count = 0
-    for statement, certificates in found:
+    for statement, certificates in certified:
         title = ascii(statement)[1:-1]
         for certificate in certificates:
             try:
@@ -242,5 +242,5 @@ def _check(path: Path) -> int:
         if certificates:
             lines = textwrap.wrap(f"title, not checked: {title}", WIDTH, subsequent_indent="    ")
             print("\n".join([*lines, ""]))
-    print(f"{count} certificate{'s' * (count != 1)} of {len(found)} claims verified")
+    print(f"{count} certificate{'s' * (count != 1)} of {len(certified)} claims verified")
     return 0

@@ -60,16 +60,19 @@ class Transfer:
 
 @dataclass(frozen=True)
 class Transfers:
-    """Transfer functions of a diagram by name;  undone: name -> why it was not derived."""
+    """The transfer functions of a diagram.
+
+    transfers: name -> transfer function;  undone: name -> why it was not derived
+    """
 
     diagram: Diagram
-    found: Mapping[str, Transfer]
+    transfers: Mapping[str, Transfer]
     undone: Mapping[str, str]
 
     def __getitem__(self, name: str) -> Transfer:
-        if name not in self.found:
-            raise ModelError(f'transfer functions: no "{name}"{did_you_mean(name, self.found)}')
-        return self.found[name]
+        if name not in self.transfers:
+            raise ModelError(f'transfer functions: no "{name}"{did_you_mean(name, self.transfers)}')
+        return self.transfers[name]
 
     @property
     def has_values(self) -> bool:
@@ -79,14 +82,14 @@ class Transfers:
 
     def text(self) -> str:
         """One line for each, with what it is."""
-        lines = [f"{t.text()}    ({t.case.text})" for t in self.found.values()]
+        lines = [f"{t.text()}    ({t.case.text})" for t in self.transfers.values()]
         if self._uses_gamma():
             lines.append("Gamma = I + H")
         return "\n".join([*lines, *(f"{n}: {why}" for n, why in self.undone.items())])
 
     def latex(self) -> str:
         """Body of an align environment."""
-        lines = [t.latex() for t in self.found.values()]
+        lines = [t.latex() for t in self.transfers.values()]
         if self._uses_gamma():
             lines.append(r"\Gamma &= I + H")
         return " \\\\\n".join(lines)
@@ -96,7 +99,7 @@ class Transfers:
         return {
             "diagram": self.diagram.name,
             "speed": abs(speed),
-            "transfers": [self._one(t, speed) for t in self.found.values()],
+            "transfers": [self._one(t, speed) for t in self.transfers.values()],
             "not_derived": dict(self.undone),
         }
 
@@ -124,7 +127,7 @@ class Transfers:
 
     def _uses_gamma(self) -> bool:
         gamma = block_symbol("Gamma")
-        return any(gamma in with_gamma(t.expression).free_symbols for t in self.found.values())
+        return any(gamma in with_gamma(t.expression).free_symbols for t in self.transfers.values())
 
     def __repr__(self) -> str:
         return self.text()
@@ -142,24 +145,24 @@ def all_transfers(diagram: Diagram, *, seconds: float = SECONDS) -> Transfers:
     `two_port_functions`). Blocks need not commute. What takes longer than `seconds`, or has no
     solution, is named in `undone`.
     """
-    found: dict[str, Transfer] = {}
+    transfers: dict[str, Transfer] = {}
     undone: dict[str, str] = {}
     named = {"haptic interface": named_cases, "teleoperator": two_port_cases}
     if (kind := kind_of(diagram)) is not None:
         for name, case in named[kind](diagram).items():
-            _derive(name, case, found, undone, seconds)
+            _derive(name, case, transfers, undone, seconds)
     outputs = [*diagram.measured]
     outputs += [b.force for b in diagram.blocks if isinstance(b, Attached)]
     for output in dict.fromkeys(outputs):
         for signal, case in _from_outside(diagram, output).items():
-            if f"{output}/{signal}" not in found:
-                _derive(f"{output}/{signal}", case, found, undone, seconds)
+            if f"{output}/{signal}" not in transfers:
+                _derive(f"{output}/{signal}", case, transfers, undone, seconds)
     for block in diagram.blocks:
         if isinstance(block, Moving) and block.driver in diagram.outside:
             text = f"impedance that {block.driver} works against, all else zero"
             case = Case(diagram, block.driver, block.motion, block.motion, text)
-            _derive(f"{block.driver}/{block.motion}", case, found, undone, seconds)
-    return Transfers(diagram, Frozen(found), Frozen(undone))
+            _derive(f"{block.driver}/{block.motion}", case, transfers, undone, seconds)
+    return Transfers(diagram, Frozen(transfers), Frozen(undone))
 
 
 def _from_outside(diagram: Diagram, output: str) -> dict[str, Case]:
@@ -169,9 +172,9 @@ def _from_outside(diagram: Diagram, output: str) -> dict[str, Case]:
 
 
 def _derive(
-    name: str, case: Case, found: dict[str, Transfer], undone: dict[str, str], seconds: float
+    name: str, case: Case, transfers: dict[str, Transfer], undone: dict[str, str], seconds: float
 ) -> None:
     try:
-        found[name] = Transfer(name, case, case.derived(seconds=seconds))
+        transfers[name] = Transfer(name, case, case.derived(seconds=seconds))
     except ModelError as error:
         undone[name] = str(error)

@@ -24,7 +24,7 @@ _OUTPUT = "output asked for"
 
 def rows(diagram: Diagram) -> list[Row]:
     """One equation (sum = 0) for each block and junction."""
-    found: list[Row] = []
+    equations: list[Row] = []
     for part in diagram.parts:
         if isinstance(part, Moving):
             command = -block_symbol(f"A_{part.name}") if has_actuation(part) else sp.S(-1)
@@ -33,7 +33,7 @@ def rows(diagram: Diagram) -> list[Row]:
         elif isinstance(part, Attached):
             terms = [(part.force, sp.S(1)), (part.motion, -part.sign * block_symbol(part.name))]
         elif isinstance(part, Linked):
-            found += _linked(part)
+            equations += _linked(part)
             continue
         elif isinstance(part, Control):
             terms = [(part.output, sp.S(1)), (part.input, -block_symbol(part.name))]
@@ -43,15 +43,15 @@ def rows(diagram: Diagram) -> list[Row]:
         else:
             weights = ((s, -diagram.here(g)) for s, g in part.terms.items())
             terms = [(part.output, sp.S(1)), *weights]
-        found.append(_row(terms))
-    return found
+        equations.append(_row(terms))
+    return equations
 
 
 def _linked(part: Linked) -> list[Row]:
-    found: list[Row] = [{force: sp.S(1)} for force in part.forces]
+    equations: list[Row] = [{force: sp.S(1)} for force in part.forces]
     for i, j in part.entries:
-        found[i][part.motions[j]] = -part.sign * block_symbol(part.entry_name(i, j))
-    return found
+        equations[i][part.motions[j]] = -part.sign * block_symbol(part.entry_name(i, j))
+    return equations
 
 
 def _row(terms: list[tuple[str, sp.Expr]]) -> Row:
@@ -126,8 +126,8 @@ def _eliminate(system: list[Row], signal: str, diagram: Diagram) -> None:
     if not able:
         raise ModelError(_undetermined(diagram, signal))
     plain = [r for r in able if r[signal] in (sp.S(1), sp.S(-1))]
-    own = [r for r in plain if next(iter(r)) == signal]  # the equation that makes the signal
-    pivot = (own or plain or able)[0]
+    defining = [r for r in plain if next(iter(r)) == signal]  # the equation that makes the signal
+    pivot = (defining or plain or able)[0]
     system[:] = [r for r in system if r is not pivot]
     sign = sp.S(-1 if _mostly_negative(pivot[signal]) else 1)
     inverse = sp.Pow(product(sign, pivot[signal]), -1)

@@ -64,9 +64,9 @@ def transfer_functions(diagram: Diagram) -> TransferFunctions:
     Bernstein, Lawrence, Pao, World Haptics 2005, eqs (2) to (5) and (7), figure 4.
     """
     cases = named_cases(diagram)
-    found = {name: case.derived() for name, case in cases.items()}
+    expressions = {name: case.derived() for name, case in cases.items()}
     texts = {name: case.text for name, case in cases.items()}
-    return TransferFunctions(diagram, Frozen(found), Frozen(texts))
+    return TransferFunctions(diagram, Frozen(expressions), Frozen(texts))
 
 
 @dataclass(frozen=True)
@@ -84,24 +84,26 @@ class Case:
 
     def derived(self, *, seconds: float = math.inf) -> sp.Expr:
         """The expression in the blocks; arguments and errors as of `transfer`."""
-        own = transfer(self.diagram, self.output, (self.input,), given=self.given, seconds=seconds)
-        return own[self.input]
+        transfers = transfer(
+            self.diagram, self.output, (self.input,), given=self.given, seconds=seconds
+        )
+        return transfers[self.input]
 
 
 def named_cases(diagram: Diagram) -> dict[str, Case]:
     """The transfer functions of a haptic interface that have a name, see `transfer_functions`."""
     force = diagram.opened("K")
-    found: dict[str, Case] = {}
+    by_name: dict[str, Case] = {}
     if diagram.has("Z_H"):
         cases = {"T_o": ("C", "H"), "T_MBC": ("H",), "T_FF": ("C",), "T_H": ()}
         for name, gone in cases.items():
             if all(diagram.has(b) for b in {"C", "H"} - set(gone)):
-                found[name] = Case(force.without(*gone), "R_M", "R_D", "", _TEXTS[name])
-    found["Zhat_M"] = Case(force, "E", "L", "L", _TEXTS["Zhat_M"])
+                by_name[name] = Case(force.without(*gone), "R_M", "R_D", "", _TEXTS[name])
+    by_name["Zhat_M"] = Case(force, "E", "L", "L", _TEXTS["Zhat_M"])
     if diagram.has("K"):
         for signal in ("L_D", "R_V"):
-            found[f"L/{signal}"] = Case(diagram, "L", signal, "", "position loop closed")
-    return found
+            by_name[f"L/{signal}"] = Case(diagram, "L", signal, "", "position loop closed")
+    return by_name
 
 
 _TEXTS = {

@@ -45,11 +45,11 @@ def two_port_cases(diagram: Diagram) -> dict[str, Case]:
     of = {f"Z_{i}{j}": (f"F_{i}", f"X_{j}", both) for i in "ms" for j in "ms"}
     for row, output in ((1, "F_m"), (2, "X_s")):
         of |= {f"h_{row}1": (output, "X_m", ("X_m",)), f"h_{row}2": (output, "F_d", ("X_m",))}
-    found = {n: Case(ports, *case, _TEXTS[n]) for n, case in of.items()}
+    cases = {n: Case(ports, *case, _TEXTS[n]) for n, case in of.items()}
     if diagram.has("Z_E"):
         touched = diagram.without("Z_H")
-        found["Z_t"] = Case(touched, "F_m", "X_m", ("X_m",), _TEXTS["Z_t"])
-    return found
+        cases["Z_t"] = Case(touched, "F_m", "X_m", ("X_m",), _TEXTS["Z_t"])
+    return cases
 
 
 def two_port_functions(diagram: Diagram) -> TransferFunctions:
@@ -57,8 +57,8 @@ def two_port_functions(diagram: Diagram) -> TransferFunctions:
 
     raises ModelError: the diagram has no master's X_m, F_m or no slave's X_s, F_s
     """
-    found = {name: case.derived() for name, case in two_port_cases(diagram).items()}
-    if "Z_t" in found:
-        found["Z_t - Z_E"] = found["Z_t"] - block_symbol("Z_E")
-    texts = {name: _TEXTS[name] for name in found}
-    return TransferFunctions(diagram, Frozen(found), Frozen(texts))
+    expressions = {name: case.derived() for name, case in two_port_cases(diagram).items()}
+    if "Z_t" in expressions:
+        expressions["Z_t - Z_E"] = expressions["Z_t"] - block_symbol("Z_E")
+    texts = {name: _TEXTS[name] for name in expressions}
+    return TransferFunctions(diagram, Frozen(expressions), Frozen(texts))

@@ -105,9 +105,9 @@ def dahl_cancellation(
             ] = needed
     why = min(limits, key=limits.__getitem__)
     stiffness = rounded_down(limits[why] / gain)
-    made = controller("dahl", {"level": level.value, "stiffness": stiffness})
+    law = controller("dahl", {"level": level.value, "stiffness": stiffness})
     reason = Reason("dahl.stiffness", stiffness, unit_of("stiffness", axis), why)
-    return Chosen(made, (_named("dahl", level), reason))
+    return Chosen(law, (_named("dahl", level), reason))
 
 
 def smoothed_cancellation(
@@ -135,9 +135,9 @@ def smoothed_cancellation(
         f"{count:.3g} {unit}: it moves the force by no more than {share:g} of the level"
     )
     values = {"level": level.value, "smoothing_velocity": value}
-    made = controller("smoothed_coulomb", values)
+    law = controller("smoothed_coulomb", values)
     reason = Reason("smoothed_coulomb.smoothing_velocity", value, unit, why)
-    return Chosen(made, (_named("smoothed_coulomb", level), reason))
+    return Chosen(law, (_named("smoothed_coulomb", level), reason))
 
 
 def _named(law: str, level: Reason) -> Reason:

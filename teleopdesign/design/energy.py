@@ -59,15 +59,15 @@ def energy_claim(
     diagram: Diagram, motion: StatedMotion, reach: Reach, sampling: Sampling, *, axis: str
 ) -> Claim:
     """Does the device take energy from the hand, whatever the motion? Evidence from those tried."""
-    tried = [energy_taken(diagram, m, sampling) for m in motions_around(motion, reach)]
-    gives = [t for t in tried if t.energy < 0]
+    trials = [energy_taken(diagram, m, sampling) for m in motions_around(motion, reach)]
+    gives = [t for t in trials if t.energy < 0]
     # where it gives energy out, the slowest such motion says from where on
-    shown = min(gives, key=lambda t: t.motion.frequency) if gives else _least(tried)
+    shown = min(gives, key=lambda t: t.motion.frequency) if gives else _least(trials)
     size, unit = shown.motion.amplitude, unit_of("position", axis)
-    frequencies = [t.motion.frequency for t in tried]
+    frequencies = [t.motion.frequency for t in trials]
     words = "gives energy out along" if gives else "takes least along"
     searched = (
-        f"{len(tried)} sinusoids, {min(frequencies):.3g} to {max(frequencies):.3g} Hz, simulated "
+        f"{len(trials)} sinusoids, {min(frequencies):.3g} to {max(frequencies):.3g} Hz, simulated "
         f"with sampling, delay and encoder; it {words} {size:.3g} {unit} at "
         f"{shown.motion.frequency:.3g} Hz"
     )
@@ -77,5 +77,5 @@ def energy_claim(
     return Claim(statement, Evidence(not gives, searched, shown.energy, "J a cycle"))
 
 
-def _least(tried: list[Taken]) -> Taken:
-    return min(tried, key=lambda t: t.energy / t.motion.amplitude)
+def _least(trials: list[Taken]) -> Taken:
+    return min(trials, key=lambda t: t.energy / t.motion.amplitude)

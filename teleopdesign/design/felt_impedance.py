@@ -35,13 +35,13 @@ class FeltImpedance:
 
     def lines(self) -> list[str]:
         """A table: case by frequency, size and phase, predicted in brackets."""
-        found = self.simulated or self.predicted
-        if found is None:
+        impedance = self.simulated or self.predicted
+        if impedance is None:
             return [f"  none: {why}" for why in self.missing]
-        frequency = found.data["frequency"].values
+        frequency = impedance.data["frequency"].values
         head = "".join(f"{f:>22.3g}" for f in frequency)
         rows = [f"  {'at Hz':<8}{head}"]
-        for case in map(str, found.data["case"].values):
+        for case in map(str, impedance.data["case"].values):
             cells = (self._cell(case, i) for i in range(len(frequency)))
             rows.append(f"  {case:<8}" + "".join(f"{cell:>22}" for cell in cells))
         return rows + [f"  without {why}" for why in self.missing]

@@ -115,7 +115,7 @@ def force_feedback(
     loop = Loop(gain * share, bandwidth, delay)
     least = smoothing_velocity * gain / (1 + gain)
     scheduling = rounded_up(max(SCHEDULE_MARGIN * least, reach.rms_speed), digits=2)
-    made = scheduled_force_feedback(gain=gain, scheduling_velocity=scheduling, bandwidth=bandwidth)
+    law = scheduled_force_feedback(gain=gain, scheduling_velocity=scheduling, bandwidth=bandwidth)
     kilo, speed = unit_of("inertia", body.axis), unit_of("velocity", body.axis)
     with_load = f"with a load of {load:.3g} {kilo} on {mass:.3g} {kilo} bears {factor:g} times"
     rigid = f"held rigidly bears {HELD_FACTOR:g} times"
@@ -130,4 +130,4 @@ def force_feedback(
         Reason("velocity_schedule.scheduling_velocity", scheduling, speed, above),
         Reason("low_pass.bandwidth", bandwidth, "Hz", "assumed; more bears less gain"),
     )
-    return Chosen(made, reasons), loop
+    return Chosen(law, reasons), loop

@@ -38,7 +38,7 @@ def mean_speed(motion: StatedMotion) -> float:
 def linear_error(hybrid: Diagram, motion: StatedMotion) -> tuple[Mapping[str, float], str]:
     """Rms force error of each case along the motion by abs(Zhat_M) A, and what was left out."""
     at = np.array([motion.frequency])
-    found = bode(
+    gains = bode(
         linear_cases(hybrid, motion),
         output="E",
         input="L",
@@ -46,9 +46,9 @@ def linear_error(hybrid: Diagram, motion: StatedMotion) -> tuple[Mapping[str, fl
         frequency=at,
         speed=mean_speed(motion),
     )
-    size = found.data["magnitude"].values[:, 0] * motion.amplitude / math.sqrt(2)
-    gone = sorted({name.partition(".")[2] or name for v in found.left_out.values() for name in v})
-    return dict(zip(found.left_out, map(float, size), strict=True)), ", ".join(gone)
+    size = gains.data["magnitude"].values[:, 0] * motion.amplitude / math.sqrt(2)
+    gone = sorted({name.partition(".")[2] or name for v in gains.left_out.values() for name in v})
+    return dict(zip(gains.left_out, map(float, size), strict=True)), ", ".join(gone)
 
 
 def transparency(hybrid: Diagram, motion: StatedMotion) -> FrequencyResponse:

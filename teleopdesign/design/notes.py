@@ -17,20 +17,20 @@ from .quasi_static import slow_body
 CLOSE = 0.1
 
 
-def notes_on(design: Design, found: Diagnosed) -> tuple[str, ...]:
+def notes_on(design: Design, answer: Diagnosed) -> tuple[str, ...]:
     """The notes of a design, those on its model first."""
     makers: tuple[Callable[[Design], list[str]], ...] = (_friction, _sensors, _left_out, _apart)
-    return (*_model(design, found), *(line for make in makers for line in make(design)))
+    return (*_model(design, answer), *(line for make in makers for line in make(design)))
 
 
-def _model(design: Design, found: Diagnosed) -> list[str]:
+def _model(design: Design, answer: Diagnosed) -> list[str]:
     lines = []
-    if found.left > CRITERIA.adequate:
+    if answer.left > CRITERIA.adequate:
         lines.append(
-            f"The model leaves {found.left:.3g} noise floors unexplained (verdict "
-            f"{found.verdict}): standard errors hold within the model only, so the least level may "
-            f"be lower than they say, and the fraction of {design.assumptions.fraction:g} is the "
-            "only margin against that."
+            f"The model leaves {answer.left:.3g} noise floors unexplained (verdict "
+            f"{answer.verdict}): standard errors hold within the model only, so the least level "
+            "may be lower than they say, and the fraction of "
+            f"{design.assumptions.fraction:g} is the only margin against that."
         )
     friction = design.friction
     if friction is not None and friction.unknown:

@@ -60,23 +60,23 @@ class Trial:
 
 
 def design(
-    found: Diagnosed | Diagnosis,
+    diagnosis: Diagnosed | Diagnosis,
     *,
     place: str | None = None,
     assumptions: Assumptions | None = None,
 ) -> Design:
     """Propose C and H for a body that a diagnosis identified, and predict what they do.
 
-    found: a diagnosis, or what one ended with, as `read_answer` gives it
+    diagnosis: a diagnosis, or what one ended with, as `read_answer` gives it
     place: which body; may be left out where there is one
     Of the laws of C that are sure to be passive, the one that leaves the smaller force error.
     raises ModelError: no such body, an assumption that cannot hold, a motion beyond the records
     """
-    if isinstance(found, Diagnosis):
-        found = diagnosed(found)
-    at = _place(found.model, place)
-    reach = reach_of(found.experiment, at)
-    body = free_body(found.model.body(at))
+    if isinstance(diagnosis, Diagnosis):
+        diagnosis = diagnosed(diagnosis)
+    at = _place(diagnosis.model, place)
+    reach = reach_of(diagnosis.experiment, at)
+    body = free_body(diagnosis.model.body(at))
     given = settled(assumptions or Assumptions(), body, reach)
     motion = stated_motion(reach, given, body.axis)
     friction = friction_interval(body, reach, errors=given.errors)
@@ -84,8 +84,8 @@ def design(
     trials = [_trial(body, one, motion, reach, given) for one in options or [None]]
     best = min(trials, key=lambda t: t.left)
     others = [t for t in trials if t is not best]
-    made = Design(
-        experiment=found.experiment.title or found.experiment.folder.name,
+    proposal = Design(
+        experiment=diagnosis.experiment.title or diagnosis.experiment.folder.name,
         place=at,
         body=body,
         assumptions=given,
@@ -109,7 +109,7 @@ def design(
         claims=_claims(best, body, friction, reach, given),
         notes=(),
     )
-    return replace(made, notes=notes_on(made, found))
+    return replace(proposal, notes=notes_on(proposal, diagnosis))
 
 
 def free_body(body: Body) -> Body:
@@ -144,10 +144,10 @@ def cancellations(
     dahl = dahl_cancellation(
         level, friction, reach, gain, given, axis=body.axis, late=late, damping=damping
     )
-    found = [] if dahl is None else [dahl]
+    laws = [] if dahl is None else [dahl]
     if friction.presliding is not None:
         # in small motion a smoothed cancellation is a negative damper that a bristle cannot stop
-        return found
+        return laws
     assert given.sample_period is not None and given.velocity_bandwidth is not None
     smoothed = smoothed_cancellation(
         level,
@@ -157,7 +157,7 @@ def cancellations(
         period=given.sample_period,
         filter_bandwidth=given.velocity_bandwidth,
     )
-    return [*found, smoothed]
+    return [*laws, smoothed]
 
 
 def _trial(
@@ -205,10 +205,10 @@ def _claims(
     best: Trial, body: Body, friction: FrictionInterval | None, reach: Reach, given: Assumptions
 ) -> Mapping[str, tuple[Claim, ...]]:
     """Claims by case."""
-    found: dict[str, list[Claim]] = {case: [] for case in four_cases(best.diagram)}
+    by_case: dict[str, list[Claim]] = {case: [] for case in four_cases(best.diagram)}
     if best.cancellation is not None and friction is not None:
         gain = acting_gain(body, reach, errors=given.errors)
-        found["MBC"] = cancellation_claims(
+        by_case["MBC"] = cancellation_claims(
             body,
             best.cancellation,
             friction,
@@ -218,10 +218,10 @@ def _claims(
             errors=given.errors,
         )
         compliant = compliant_claim(body, best.cancellation, friction, gain=gain)
-        found["MBC"] += [compliant] if compliant else []
-    found["FF"] = [feedback_claim(body, best.force_feedback.controller)]
+        by_case["MBC"] += [compliant] if compliant else []
+    by_case["FF"] = [feedback_claim(body, best.force_feedback.controller)]
     for case, diagram in four_cases(best.prediction.hybrid).items():
-        found[case].append(
+        by_case[case].append(
             energy_claim(
                 diagram,
                 best.prediction.motion,
@@ -231,7 +231,7 @@ def _claims(
             )
         )
     return {
-        case: tuple(in_units_of(body.axis, c) for c in claims) for case, claims in found.items()
+        case: tuple(in_units_of(body.axis, c) for c in claims) for case, claims in by_case.items()
     }
 
 

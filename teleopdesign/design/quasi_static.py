@@ -73,8 +73,8 @@ def slow_output(controller: Controller, force: Array, velocity: Array) -> Array:
         output = output.subs(state, sp.solve(here, state)[0])
     numbers = {parameter_symbol("slow", n): v for n, v in controller.names().items()}
     call = sp.lambdify([CONTROL_SIGNALS["input"], travel, speed], output.subs(numbers), "numpy")
-    found = call(force, velocity, np.abs(velocity))
-    return np.broadcast_to(np.asarray(found, dtype=float), velocity.shape)
+    force_out = call(force, velocity, np.abs(velocity))
+    return np.broadcast_to(np.asarray(force_out, dtype=float), velocity.shape)
 
 
 def quasi_static_error(diagram: Diagram, motion: StatedMotion, *, rows: int = 2000) -> Array:
@@ -95,5 +95,5 @@ def left_over(diagram: Diagram, force: Array, velocity: Array) -> Array:
             force = force - slow_output(block.controller, np.zeros_like(force), velocity)
         elif block.name == "H":
             gain = slow_output(block.controller, np.ones_like(force), velocity)
-    found: Array = force / (1 + gain)
-    return found
+    left: Array = force / (1 + gain)
+    return left

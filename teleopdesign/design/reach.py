@@ -22,7 +22,7 @@ def reach_of(experiment: Experiment, place: str) -> Reach:
     speed = np.abs(np.concatenate([m.velocity for m in motions]))
     if not speed.any():
         raise ExperimentError(f"{experiment.folder.name}: {place}.position: it never moves")
-    told = np.concatenate([m.direction for m in motions])
+    ways = np.concatenate([m.direction for m in motions])
     records, step = experiment.records, max(m.step for m in motions)
     acceleration = float(np.sqrt(np.mean(np.concatenate([m.acceleration**2 for m in motions]))))
     after_reversal = acceleration / (2 * motions[0].bandwidth) ** 2 / 2
@@ -36,6 +36,6 @@ def reach_of(experiment: Experiment, place: str) -> Reach:
         sample_period=records[0].sample_time,
         step=step,
         unresolved=max(TRAVEL * step, after_reversal),
-        both_ways=bool(min(np.sum(told > 0), np.sum(told < 0)) >= RARE * np.sum(told != 0)),
+        both_ways=bool(min(np.sum(ways > 0), np.sum(ways < 0)) >= RARE * np.sum(ways != 0)),
         measures_force=f"{place}.interaction_force" in experiment.channels,
     )

@@ -50,6 +50,6 @@ def residual_friction(
         SIGNALS["acting_force"]: np.zeros_like(speeds),
     }
     level, _ = law_along(body, body.level(), signals)
-    made = haptic_interface(body, cancellation=cancellation, force_feedback=force_feedback)
-    rows = {case: left_over(d, np.array(level), speeds) for case, d in four_cases(made).items()}
+    device = haptic_interface(body, cancellation=cancellation, force_feedback=force_feedback)
+    rows = {case: left_over(d, np.array(level), speeds) for case, d in four_cases(device).items()}
     return ResidualFriction(speeds, rows)

@@ -68,16 +68,16 @@ def stated_motion(reach: Reach, assumptions: Assumptions, axis: str) -> StatedMo
         amplitude = rounded_down(min(amplitude, speed / (2 * math.pi * slow)), digits=2)
     if frequency is None:
         frequency = rounded_down(speed / (2 * math.pi * amplitude), digits=2)
-    found = StatedMotion((reach.low + reach.high) / 2, amplitude, frequency)
+    motion = StatedMotion((reach.low + reach.high) / 2, amplitude, frequency)
     if 2 * amplitude > reach.travel:
         raise ModelError(
             f"design: amplitude: {amplitude:g} {unit_of('position', axis)} leaves the recorded "
             f"travel of {reach.travel:.3g}, expected at most {reach.travel / 2:.3g}"
         )
-    if found.peak_speed > reach.peak_speed:
+    if motion.peak_speed > reach.peak_speed:
         unit = unit_of("velocity", axis)
         raise ModelError(
             f"design: frequency: {frequency:g} Hz at {amplitude:g} {unit_of('position', axis)} is "
-            f"{found.peak_speed:.3g} {unit}, recorded are at most {reach.peak_speed:.3g} {unit}"
+            f"{motion.peak_speed:.3g} {unit}, recorded are at most {reach.peak_speed:.3g} {unit}"
         )
-    return found
+    return motion

@@ -86,28 +86,28 @@ def tune(design: Design, *, simulations: int = 60) -> Tuned:
     # a simplex that reaches into the range from the proposal, which lies on some of its bounds
     steps = np.where(at - low > high - at, -1.0, 1.0) * np.minimum(0.4, (high - low) / 2)
     simplex = np.vstack([at, at + np.diag(steps)])
-    found = minimize(
+    minimum = minimize(
         error,
         at,
         method="Nelder-Mead",
         bounds=list(zip(low, high, strict=True)),
         options={"maxfev": simulations, "initial_simplex": simplex, "xatol": 0.01, "fatol": 1e-6},
     )
-    best = _falling(dict(zip(names, np.exp(np.clip(found.x, low, high)).tolist(), strict=True)))
-    made = diagram.with_values(best)
+    best = _falling(dict(zip(names, np.exp(np.clip(minimum.x, low, high)).tolist(), strict=True)))
+    best_diagram = diagram.with_values(best)
     held = [
         n.partition(".")[2]
         for n in names
         if min(abs(best[n] / end - 1) for end in bounds[n]) < AT_BOUND
     ]
-    controllers = {c.name: c.controller for c in made.controls}
+    controllers = {c.name: c.controller for c in best_diagram.controls}
     cancellation, feedback = controllers.get("C"), controllers["H"]
     assert isinstance(feedback, Controller)
     return Tuned(
         cancellation if isinstance(cancellation, Controller) else None,
         feedback,
         before,
-        float(found.fun),
+        float(minimum.fun),
         tuple(held),
         len(cost),
     )

@@ -43,14 +43,14 @@ def compliant_claim(
     motor = float(body.equation().inertia.subs(body.numbers()))
     if tip <= 0 or motor <= 0 or chosen.law != "dahl":
         return None
-    own = chosen.controller.names()
+    parameters = chosen.controller.names()
     return any_environment(
         motor_level=_decimal(rounded_down(friction.lowest.low, digits=4)),
         link_level=0,
         transmission_stiffness=_decimal(values["transmission_compliance.stiffness"]),
         transmission_damping=_decimal(values["transmission_compliance.damping"]),
-        compensator_level=_decimal(rounded_up(own["dahl.level"] * gain, digits=6)),
-        compensator_stiffness=_decimal(rounded_up(own["dahl.stiffness"] * gain, digits=6)),
+        compensator_level=_decimal(rounded_up(parameters["dahl.level"] * gain, digits=6)),
+        compensator_stiffness=_decimal(rounded_up(parameters["dahl.stiffness"] * gain, digits=6)),
         motor_inertia=_decimal(motor),
         link_inertia=_decimal(tip),
     )

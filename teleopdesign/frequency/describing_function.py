@@ -42,15 +42,15 @@ def describing_function(
         raise ModelError("describing function: amplitude and frequency must be positive")
     law = body_law(of) if isinstance(of, Body) else controller_law(of)
     amplitudes, frequencies = sizes.reshape(-1, 1), f.reshape(-1, 1)
-    found = np.empty(sizes.size, dtype=complex)
+    coefficients = np.empty(sizes.size, dtype=complex)
     for part in _parts(sizes.size, 1 if law.rates else _AT_ONCE):
         motion = along(amplitudes[part], frequencies[part])
         signals = motion if isinstance(of, Body) else controller_signals(motion)
         if law.rates:
             signals = {symbol: values.reshape(-1) for symbol, values in signals.items()}
-        found[part] = first_harmonic(law, signals, frequency=frequencies[part].item(0))
-    found = (found / sizes.reshape(-1)).reshape(sizes.shape)
-    return found if found.shape else complex(found)
+        coefficients[part] = first_harmonic(law, signals, frequency=frequencies[part].item(0))
+    coefficients = (coefficients / sizes.reshape(-1)).reshape(sizes.shape)
+    return coefficients if coefficients.shape else complex(coefficients)
 
 
 def _parts(size: int, at_once: int) -> Iterator[slice]:

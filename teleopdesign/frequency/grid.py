@@ -70,7 +70,7 @@ class Grid:
 
 
 def _positive(what: str, values: float | Sequence[float] | np.ndarray) -> np.ndarray:
-    found = np.atleast_1d(np.asarray(values, dtype=float))
-    if found.ndim != 1 or not found.size or not (np.isfinite(found) & (found > 0)).all():
+    array = np.atleast_1d(np.asarray(values, dtype=float))
+    if array.ndim != 1 or not array.size or not (np.isfinite(array) & (array > 0)).all():
         raise ModelError(f"impedance: {what} must be positive numbers, found {values}")
-    return found
+    return array

@@ -148,5 +148,5 @@ def _parts(z: xarray.DataArray) -> dict[str, xarray.DataArray]:
 def _rounded(values: np.ndarray) -> list[object]:
     """Five digits, more than any figure shows and the same on every machine; None: no number."""
     numbers = [float(f"{x:.5g}") if np.isfinite(x) else None for x in values.reshape(-1)]
-    found: list[object] = np.array(numbers, dtype=object).reshape(values.shape).tolist()
-    return found
+    entries: list[object] = np.array(numbers, dtype=object).reshape(values.shape).tolist()
+    return entries

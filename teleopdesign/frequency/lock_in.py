@@ -52,8 +52,8 @@ def whole_cycles(values: np.ndarray, *, step: float, frequency: float, points: i
     """
     count = int(np.floor(step * (len(values) - 1) * frequency + 1e-9))
     time = np.arange(count * points) / points / frequency
-    found = np.interp(time, step * np.arange(len(values)), values)
-    return np.asarray(found.reshape(count, points))
+    samples = np.interp(time, step * np.arange(len(values)), values)
+    return np.asarray(samples.reshape(count, points))
 
 
 def lock_in(values: np.ndarray, *, step: float, frequency: float, points: int) -> Harmonic:
@@ -64,8 +64,8 @@ def lock_in(values: np.ndarray, *, step: float, frequency: float, points: int) -
     """
     cycles = whole_cycles(values, step=step, frequency=frequency, points=points)
     each = phasors(cycles)
-    found = complex(each[-2:].mean())
+    phasor = complex(each[-2:].mean())
     # 1e-12 of the record: below it a first harmonic is rounding
-    size = max(abs(found), 1e-12 * float(np.abs(values).max()), float(np.finfo(float).tiny))
+    size = max(abs(phasor), 1e-12 * float(np.abs(values).max()), float(np.finfo(float).tiny))
     apart = np.abs(each[len(each) // 2 - 1 :] - each[-1]).max()
-    return Harmonic(found, float(distortion(cycles[-2:].mean(axis=0))), float(apart) / size)
+    return Harmonic(phasor, float(distortion(cycles[-2:].mean(axis=0))), float(apart) / size)

@@ -76,8 +76,8 @@ def simulated_response(
     for i, diagram in enumerate(cases.values()):
         for j, one in enumerate(f):
             drive = Sinusoid(input, amplitude, float(one), computer=computer, give=give)
-            found = settled_harmonics(diagram, drive, signals=(output, input))
-            rows[i, j] = found[output].phasor / found[input].phasor
+            harmonics = settled_harmonics(diagram, drive, signals=(output, input))
+            rows[i, j] = harmonics[output].phasor / harmonics[input].phasor
     unit = ratio_unit(next(iter(cases.values())), output, input)
     return _points(rows, list(cases), f, output, input, unit)
 

@@ -102,8 +102,8 @@ def _slopes_and_rest(law: Law, signals: list[sp.Symbol]) -> _Call:
         slopes.append(slope)
     rest = [rate.xreplace({state: sp.S(0)}) for state, rate in law.rates.items()]
     # plain numbers: arrays of one or two states would cost ten times as much
-    found: _Call = sp.lambdify([*law.rates, *signals], [*slopes, *rest], "math", cse=True)
-    return found
+    function: _Call = sp.lambdify([*law.rates, *signals], [*slopes, *rest], "math", cse=True)
+    return function
 
 
 def _cycle(
@@ -114,13 +114,17 @@ def _cycle(
     n = len(state)
     values, exponent = [], [0.0] * n
     for row in rows:
-        found = call(*state, *row)
+        derivatives = call(*state, *row)
         middle = [
-            _advanced(z, a, b, step / 2) for z, a, b in zip(state, found, found[n:], strict=False)
+            _advanced(z, a, b, step / 2)
+            for z, a, b in zip(state, derivatives, derivatives[n:], strict=False)
         ]
-        found = call(*middle, *row)
-        state = [_advanced(z, a, b, step) for z, a, b in zip(state, found, found[n:], strict=False)]
-        exponent = [e + a * step for e, a in zip(exponent, found, strict=False)]
+        derivatives = call(*middle, *row)
+        state = [
+            _advanced(z, a, b, step)
+            for z, a, b in zip(state, derivatives, derivatives[n:], strict=False)
+        ]
+        exponent = [e + a * step for e, a in zip(exponent, derivatives, strict=False)]
         values.append(middle)
     return np.array(values), np.exp(exponent), np.array(state)
 

@@ -74,8 +74,8 @@ class _Form:
         """What drives a controller, per motion; None: the motion itself."""
         if part.input == self.motion:
             return None
-        found = transfer(self.diagram, part.input, (self.motion,), given=self.motion)
-        return sp.sympify(found[self.motion])
+        transfers = transfer(self.diagram, part.input, (self.motion,), given=self.motion)
+        return sp.sympify(transfers[self.motion])
 
     def value(self, amplitude: float, frequency: float) -> complex:
         s = 2j * np.pi * frequency

@@ -62,7 +62,7 @@ def settled_harmonics(
         rows, timing = prepared.checked(long_step="refine", every_step=True)
         columns = dict(zip(prepared.program.layout.columns, rows.T, strict=True))
         columns = _outside(diagram, drive, len(rows), timing.step) | columns
-        found = {
+        harmonics = {
             name: lock_in(
                 _signal(diagram, columns, name),
                 step=timing.step,
@@ -71,9 +71,9 @@ def settled_harmonics(
             )
             for name in signals
         }
-        worst = max(h.unsettled for h in found.values())
+        worst = max(h.unsettled for h in harmonics.values())
         if worst <= drive.tolerance or cycles >= _CYCLES * _MOST_LONGER:
-            return found
+            return harmonics
         cycles *= 2
 
 
@@ -109,12 +109,12 @@ def _length(diagram: Diagram, drive: Sinusoid) -> float:
 
 def _outside(diagram: Diagram, drive: Sinusoid, rows: int, step: float) -> dict[str, np.ndarray]:
     """Signals from outside at the nodes: the drive, and zeros."""
-    found = {name: np.zeros(rows) for name in diagram.outside}
-    if drive.drive in found:
-        found[drive.drive] = sine(amplitude=drive.amplitude, frequency=drive.frequency).position(
+    inputs = {name: np.zeros(rows) for name in diagram.outside}
+    if drive.drive in inputs:
+        inputs[drive.drive] = sine(amplitude=drive.amplitude, frequency=drive.frequency).position(
             step * np.arange(rows)
         )
-    return found
+    return inputs
 
 
 def _signal(diagram: Diagram, columns: Mapping[str, np.ndarray], name: str) -> np.ndarray:

@@ -216,15 +216,15 @@ class _Pair:
 def _pairs(runs: Sequence[SteadyRun]) -> list[_Pair]:
     """Each forward run with the backward run nearest in time that fits it; each taken once."""
     free = [r for r in runs if r.direction < 0]
-    found = []
+    pairs = []
     for run in (r for r in runs if r.direction > 0):
         fitting = [other for other in free if _fit(run, other)]
         if not fitting:
             continue
         other = min(fitting, key=lambda r: (r.file != run.file, abs(r.start - run.start)))
         free.remove(other)
-        found.append(_pair(run, other))
-    return found
+        pairs.append(_pair(run, other))
+    return pairs
 
 
 def _common(one: SteadyRun, other: SteadyRun) -> tuple[float, float]:
@@ -262,14 +262,14 @@ def _level(group: Sequence[_Pair]) -> LevelAtSpeed:
     n = len(group)
     half = np.array([(p.forward - p.backward) / 2 for p in group])
     middle = np.array([(p.forward + p.backward) / 2 for p in group])
-    own = float(np.sqrt(np.mean([p.error**2 for p in group]) / n))
+    of_fits = float(np.sqrt(np.mean([p.error**2 for p in group]) / n))
     scatter = [float(np.std(x, ddof=1) / np.sqrt(n)) if n > 1 else 0.0 for x in (half, middle)]
     return LevelAtSpeed(
         speed=float(np.mean([p.speed for p in group])),
         friction=float(half.mean()),
-        friction_error=max(own, scatter[0]),
+        friction_error=max(of_fits, scatter[0]),
         middle=float(middle.mean()),
-        middle_error=max(own, scatter[1]),
+        middle_error=max(of_fits, scatter[1]),
         pairs=n,
     )
 

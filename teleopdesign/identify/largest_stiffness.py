@@ -78,11 +78,11 @@ def largest_stiffness_without_oscillation(
             f"largest_stiffness: smallest = {smallest:g} N/m, expected above 0 and below largest = "
             f"{largest:g} N/m"
         )
-    tried = 0
+    simulations = 0
 
     def oscillates(stiffness: float) -> bool:
-        nonlocal tried
-        tried += 1
+        nonlocal simulations
+        simulations += 1
         try:
             run = simulate(
                 diagram.with_values({name: stiffness}),
@@ -96,9 +96,9 @@ def largest_stiffness_without_oscillation(
             return True  # signals grow beyond all bounds
         return keeps_moving(run, decay=decay, floor=rest * abs(kick))
 
-    found = _bisect(oscillates, smallest, largest, precision)
+    bracket = _bisect(oscillates, smallest, largest, precision)
     axis = next(b.body.axis for b in diagram.bodies if isinstance(b.body, Body))
-    return LargestStiffness(*found, tried, kick, decay, axis)
+    return LargestStiffness(*bracket, simulations, kick, decay, axis)
 
 
 def keeps_moving(run: Simulation, *, decay: float, floor: float) -> bool:

@@ -64,7 +64,7 @@ def steady_runs(
     """
     inertia = Model.from_experiment(experiment).body(body).parameters["inertia"].value
     resolution = experiment.channels[f"{body}.position"].resolution
-    found: list[SteadyRun] = []
+    runs: list[SteadyRun] = []
     for record in experiment.records:
         bandwidth = min(experiment.bandwidth or BANDWIDTH, 0.2 / record.sample_time)
         for motion in motions(record, body, bandwidth=bandwidth, resolution=resolution):
@@ -73,8 +73,8 @@ def steady_runs(
             for first, last in _steady(motion.velocity, tolerance, least):
                 run = _run(motion, slice(first + rows, last - rows), inertia)
                 if np.ptp(run.position) >= STEPS * motion.step:
-                    found.append(run)
-    return tuple(found)
+                    runs.append(run)
+    return tuple(runs)
 
 
 def _run(motion: Motion, rows: slice, inertia: float) -> SteadyRun:
@@ -113,7 +113,7 @@ def _earliest(velocity: Array, tolerance: float) -> np.ndarray:
     values = velocity.tolist()
     high: deque[int] = deque()
     low: deque[int] = deque()
-    first, found = 0, np.zeros(len(values), dtype=np.int64)
+    first, starts = 0, np.zeros(len(values), dtype=np.int64)
     for k, v in enumerate(values):
         while high and values[high[-1]] <= v:
             high.pop()
@@ -127,8 +127,8 @@ def _earliest(velocity: Array, tolerance: float) -> np.ndarray:
                 high.popleft()
             if low[0] < first:
                 low.popleft()
-        found[k] = first
-    return found
+        starts[k] = first
+    return starts
 
 
 def _within(low: float, high: float, tolerance: float) -> bool:

@@ -73,9 +73,9 @@ def bodies_from(model: Table) -> dict[str, BodyDescription]:
     model.allow((*ONE_BODY, *TWO_BODIES, "environment"))
     names = tuple(name for name in (*ONE_BODY, *TWO_BODIES) if name in model.content)
     if names not in (ONE_BODY, TWO_BODIES):
-        found = ", ".join(names) or "none of them"
+        listed = ", ".join(names) or "none of them"
         raise ExperimentError(
-            f"{model.where()}: found {found}, "
+            f"{model.where()}: found {listed}, "
             "expected [model.device], or [model.master] and [model.slave]"
         )
     return {name: _moving(name, model.table(name)) for name in names}

@@ -147,8 +147,10 @@ def _record_entries(experiment: Table, folder: Path) -> list[tuple[str, str, fro
         if any(file == other for other, _, _ in entries):
             raise ExperimentError(f"{table.where('file')}: {quoted(file)} is listed twice")
         use = _choice(table, "use", ("fit", "check"))
-        own = {name for name in OWN if _choice(table, name, ("common", "own"), "common") == "own"}
-        entries.append((file, use, frozenset(own)))
+        separate = {
+            name for name in OWN if _choice(table, name, ("common", "own"), "common") == "own"
+        }
+        entries.append((file, use, frozenset(separate)))
     if not any(use == "fit" for _, use, _ in entries):
         raise ExperimentError(
             f'{experiment.where("records")}: found {len(entries)} records, none with use = "fit", '
@@ -173,7 +175,7 @@ def _check_path(table: Table, folder: Path, file: str) -> None:
     try:
         path = (folder / file).resolve()
         inside = path.is_relative_to(folder)
-        there = path.is_file()
+        exists = path.is_file()
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", None) or str(problem)
         raise ExperimentError(f"{where}: {quoted(file)} cannot be read: {reason}") from None
@@ -181,7 +183,7 @@ def _check_path(table: Table, folder: Path, file: str) -> None:
         raise ExperimentError(
             f"{where}: found {quoted(file)}, expected a file inside {folder.name}/"
         )
-    if not there:
+    if not exists:
         names = sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file())
         others = [name for name in names if name != _FILE]
         listed = ", ".join(others[:10]) + (", ..." if len(others) > 10 else "")

@@ -46,15 +46,15 @@ def read_columns(path: Path, file: str, wanted: Wanted) -> Columns:
     return columns
 
 
-def require_columns(found: Iterable[str], file: str, wanted: Wanted) -> None:
+def require_columns(columns: Iterable[str], file: str, wanted: Wanted) -> None:
     """Raise an ExperimentError for the first wanted column that is not among those found."""
-    found = list(found)
+    columns = list(columns)
     for column, channel in wanted.items():
-        if column not in found:
-            listed = ", ".join(found[:20]) + (", ..." if len(found) > 20 else "")
+        if column not in columns:
+            listed = ", ".join(columns[:20]) + (", ..." if len(columns) > 20 else "")
             raise ExperimentError(
                 f"{file}: {channel}: no column {quoted(column)}, found {listed or 'no column'}"
-                f"{did_you_mean(column, found)}"
+                f"{did_you_mean(column, columns)}"
             )
 
 

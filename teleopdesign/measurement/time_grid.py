@@ -85,16 +85,16 @@ def _check_steps(
     if abs(period - usual) > _EQUAL * usual and _only_rounded(stamps, segments, period):
         return
     row = int(np.argmax(np.abs(steps - usual)))
-    found = f"{where}: row {row + 2}: found a step of {steps[row]:.6g} s"
+    message = f"{where}: row {row + 2}: found a step of {steps[row]:.6g} s"
     if steps[row] < 0:
-        raise ExperimentError(f"{found}, expected time that increases by {usual:.6g} s a row")
+        raise ExperimentError(f"{message}, expected time that increases by {usual:.6g} s a row")
     if steps[row] > _GAP * usual:
         remedy = "a new value of `segment`" if labelled else "a column `segment` or two records"
         raise ExperimentError(
-            f"{found}, expected {usual:.6g} s; where samples are missing, {remedy}"
+            f"{message}, expected {usual:.6g} s; where samples are missing, {remedy}"
         )
     raise ExperimentError(
-        f"{found}, expected {usual:.6g} s give or take {_JITTER:.0%}; "
+        f"{message}, expected {usual:.6g} s give or take {_JITTER:.0%}; "
         "resample the record to a uniform time"
     )
 

@@ -93,8 +93,8 @@ class Table:
         return number
 
     def _wrong_type(self, key: str, expected: str) -> ExperimentError:
-        found = described(self.content.get(key))
-        return ExperimentError(f"{self.where(key)}: found {found}, expected {expected}")
+        observed = described(self.content.get(key))
+        return ExperimentError(f"{self.where(key)}: found {observed}, expected {expected}")
 
 
 def described(value: object) -> str:

@@ -31,7 +31,7 @@ def margin(n: int, sample_time: float) -> int:
 
 
 @njit(cache=True, nogil=True)  # type: ignore[untyped-decorator,unused-ignore]
-def one_way(y: Array, sos: Array, settled: Array, backward: bool) -> None:
+def one_way(y: Array, sos: Array, steady_state: Array, backward: bool) -> None:
     """Filter the columns of y (samples, signals) in place, from one end to the other."""
     n, r = y.shape
     states = np.empty((2, 2, r))
@@ -39,7 +39,7 @@ def one_way(y: Array, sos: Array, settled: Array, backward: bool) -> None:
     for s in range(2):
         for i in range(2):
             for j in range(r):
-                states[s, i, j] = settled[s, i] * y[first, j]
+                states[s, i, j] = steady_state[s, i] * y[first, j]
     for step in range(n):
         k = n - 1 - step if backward else step
         for s in range(2):
@@ -53,7 +53,7 @@ def one_way(y: Array, sos: Array, settled: Array, backward: bool) -> None:
 
 
 @njit(cache=True, nogil=True)  # type: ignore[untyped-decorator,unused-ignore]
-def both_ways(y: Array, extended: Array, sos: Array, settled: Array) -> None:
+def both_ways(y: Array, extended: Array, sos: Array, steady_state: Array) -> None:
     """Filter the columns of y (samples, signals) in place, zero phase; extended: work space."""
     n, r = y.shape
     m = (extended.shape[0] - n) // 2
@@ -62,8 +62,8 @@ def both_ways(y: Array, extended: Array, sos: Array, settled: Array) -> None:
             extended[k, j] = 2.0 * y[0, j] - y[m - k, j]
             extended[m + n + k, j] = 2.0 * y[n - 1, j] - y[n - 2 - k, j]
     extended[m : m + n] = y
-    one_way(extended, sos, settled, False)
-    one_way(extended, sos, settled, True)
+    one_way(extended, sos, steady_state, False)
+    one_way(extended, sos, steady_state, True)
     y[:] = extended[m : m + n]
 
 

@@ -49,8 +49,8 @@ def show_in_simulation(
             progress(f"simulating: {rival} is right")
         new = run_twice(rival.model, proposal.plan, proposal.bench, seed=seed + i)
         experiment = extended(proposal.diagnosis.experiment, new)
-        found = find_missing(experiment, proposal.diagnosis.before.model)
-        shown.append(Shown(rival, names_alone(found, rival), found))
+        diagnosis = find_missing(experiment, proposal.diagnosis.before.model)
+        shown.append(Shown(rival, names_alone(diagnosis, rival), diagnosis))
     return tuple(shown)
 
 

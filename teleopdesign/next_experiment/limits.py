@@ -115,12 +115,12 @@ def course_of(limits: Mapping[str, Limits], prepared: Prepared) -> Course:
     """One path for all bodies: a coupled pair keeps its ratio, others go by their strokes."""
     first = next(iter(limits))
     gain = {b: _ratio(first, b, limits, prepared) for b in limits}
-    middle = {b: 0.5 * (own.low + own.high) for b, own in limits.items()}
+    middle = {b: 0.5 * (limit.low + limit.high) for b, limit in limits.items()}
 
     def tightest(name: str) -> float:
-        return min(float(getattr(own, name)) / abs(gain[b]) for b, own in limits.items())
+        return min(float(getattr(limit, name)) / abs(gain[b]) for b, limit in limits.items())
 
-    half = min(0.5 * (own.high - own.low) / abs(gain[b]) for b, own in limits.items())
+    half = min(0.5 * (limit.high - limit.low) / abs(gain[b]) for b, limit in limits.items())
     bounds = {name: tightest(name) for name in ("speed", "acceleration", "jerk")}
     # each body is held to its own force when the force is known
     return Course(middle, gain, Limits(-half, half, **bounds, force=limits[first].force))

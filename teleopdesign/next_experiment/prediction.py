@@ -88,11 +88,11 @@ class Prediction:
 
 def run_twice(truth: Model, plan: Planned, bench: Bench, *, seed: int) -> tuple[Record, Record]:
     """The fit and the check record of the planned motion with this model as the truth."""
-    made = [
+    records = [
         record_under(truth, plan, bench, np.random.default_rng([seed, i]), file=name, use=use)
         for i, (name, use) in enumerate(((FIT, "fit"), (CHECK, "check")))
     ]
-    return made[0], made[1]
+    return records[0], records[1]
 
 
 def extended(experiment: Experiment, records: Sequence[Record]) -> Experiment:
@@ -114,7 +114,7 @@ class Refit:
     floor: float
     check: tuple[Stretch, ...]
 
-    def found(self, *, truth: int, other: int) -> float:
+    def separation(self, *, truth: int, other: int) -> float:
         """Error of one rival beyond another's, in noise floors (in quadrature); 0 if it has less.
 
         For records that were measured.
@@ -122,7 +122,7 @@ class Refit:
         return float(np.sqrt(max(self.errors[other] ** 2 - self.errors[truth] ** 2, 0.0)))
 
     def expected(self, *, truth: int, other: int) -> float:
-        """What `found` is on average over the sensors' errors, for records made by the truth."""
+        """Mean of `separation` over the sensors' errors, for records that the truth would give."""
         both = (referred(self.fits[i].model, self.check) for i in (truth, other))
         apart = [b - a for (a, _), (b, _) in zip(*both, strict=True)]
         return error_of(self.check, apart) / self.floor
@@ -139,8 +139,8 @@ def refit(
     check = tuple(s for s in prepared.stretches if s.motion.file == CHECK)
     fits = tuple(estimate(r.model, prepared) for r in rivals)
     generator = np.random.default_rng(seed)
-    own = noise_floor(fits[best].model, replace(prepared, stretches=check), generator).value
-    floor = max(own, bench.floor / rms_measured(check))
+    check_floor = noise_floor(fits[best].model, replace(prepared, stretches=check), generator).value
+    floor = max(check_floor, bench.floor / rms_measured(check))
     # relative to what acts by each model: one whose actuator passes less has gained nothing by that
     left = [[r for r, _ in referred(f.model, check)] for f in fits]
     return Refit(fits, tuple(error_of(check, r) / floor for r in left), floor, check)
@@ -162,39 +162,39 @@ def predicted(
     truth = rivals[number]
     against = [i for i in range(len(rivals)) if (number, i) in pairs(rivals)]
     new = run_twice(truth.model, plan, bench, seed=seed)
-    found = refit([truth, *(rivals[i] for i in against)], new, bench, seed=seed)
+    fitted = refit([truth, *(rivals[i] for i in against)], new, bench, seed=seed)
     separations = tuple(
         Separation(
             truth,
             rivals[i],
             present[number, i],
-            found.expected(truth=0, other=k),
-            _score(found.fits[k], found.fits[0]),
+            fitted.expected(truth=0, other=k),
+            _score(fitted.fits[k], fitted.fits[0]),
         )
         for k, i in enumerate(against, start=1)
     )
-    curves = tuple(_curves(truth, found, k) for k in range(1, len(found.fits)))
-    return Prediction(number, separations, _determined(truth, found.fits[0]), curves)
+    curves = tuple(_curves(truth, fitted, k) for k in range(1, len(fitted.fits)))
+    return Prediction(number, separations, _determined(truth, fitted.fits[0]), curves)
 
 
 def _score(other: Fit, truth: Fit) -> float:
     return gain_score(other.check_residual, truth.check_residual, truth.check_blocks)
 
 
-def _curves(truth: Rival, found: Refit, other: int) -> Curves:
+def _curves(truth: Rival, fitted: Refit, other: int) -> Curves:
     """The residuals of the truth and of another along the body where the truth's effect is."""
     at = truth.candidate.at
-    here = [s for s in found.check if s.motion.body == at] or list(found.check)
-    (left, _), (noise, _) = (referred(found.fits[i].model, here[:1])[0] for i in (other, 0))
+    here = [s for s in fitted.check if s.motion.body == at] or list(fitted.check)
+    (left, _), (noise, _) = (referred(fitted.fits[i].model, here[:1])[0] for i in (other, 0))
     body, rows = here[0].motion.body, here[0].keep
     unit = unit_of("force", truth.model.body(body).axis)
     return Curves(body, unit, here[0].motion.time[rows], left, noise)
 
 
-def settled(found: Sequence[Determined]) -> tuple[Determined, ...]:
+def settled(determined: Sequence[Determined]) -> tuple[Determined, ...]:
     """Each parameter once, as the truth that settles it least leaves it."""
     least: dict[str, Determined] = {}
-    for d in found:
+    for d in determined:
         if d.name not in least or d.after > least[d.name].after:
             least[d.name] = d
     return tuple(least.values())
@@ -206,7 +206,7 @@ LEFT_OPEN, SETTLED = 0.25, 0.1
 
 def _determined(truth: Rival, fit: Fit) -> tuple[Determined, ...]:
     """Parameters of the truth that the present records leave open and all of them settle."""
-    found = []
+    rows = []
     for name in fit.free:
         old, new = truth.model.parameters[name], fit.model.parameters[name]
         size = np.pi if fit.model.declared(name).quantity == "angle" else abs(new.value)
@@ -214,5 +214,5 @@ def _determined(truth: Rival, fit: Fit) -> tuple[Determined, ...]:
         before, after = old.stderr / size, new.stderr / size
         # a standard error that is not a number: the records say nothing at all
         if not before < LEFT_OPEN and after < SETTLED:
-            found.append(Determined(name, new.value, fit.model.unit(name), before, after))
-    return tuple(found)
+            rows.append(Determined(name, new.value, fit.model.unit(name), before, after))
+    return tuple(rows)

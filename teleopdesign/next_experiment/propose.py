@@ -59,11 +59,11 @@ def propose(
     setting = _setting(diagnosis, rivals, bench)
     parts = family(setting)
     say(f"trying {len(parts)} motions")
-    found = tried(parts, rivals, diagnosis.prepared, bench, kept, floor=bench.floor, seed=seed)
-    if not found.parts:
+    candidates = tried(parts, rivals, diagnosis.prepared, bench, kept, floor=bench.floor, seed=seed)
+    if not candidates.parts:
         return _finished(diagnosis, rivals, kept, bench)
-    chosen = composed(found, duration + setting.repeated, bench.sample_time)
-    reference, path_parts = _reference([found.parts[k] for k in chosen], bench)
+    chosen = composed(candidates, duration + setting.repeated, bench.sample_time)
+    reference, path_parts = _reference([candidates.parts[k] for k in chosen], bench)
     plan = planned(joined(path_parts), bench)
     present = {
         (i, j): present_separation(rivals[i], rivals[j], diagnosis.prepared, diagnosis.floor.value)
@@ -87,7 +87,7 @@ def propose(
         plan=plan,
     )
     say("trying other set-ups")
-    return sentence_of(replace(proposal, remedies=_remedies(proposal, found, setting, seed)))
+    return sentence_of(replace(proposal, remedies=_remedies(proposal, candidates, setting, seed)))
 
 
 def _finished(
@@ -166,11 +166,11 @@ def _reference(parts: Sequence[Part], bench: Bench) -> tuple[Reference, list[Par
 
 
 def _remedies(
-    proposal: Proposal, found: Tried, setting: Setting, seed: int
+    proposal: Proposal, candidates: Tried, setting: Setting, seed: int
 ) -> dict[tuple[int, int], tuple[Remedy, ...]]:
     """What was tried for the first pairs that the motion does not separate, whichever is true."""
     diagnosis, bench = proposal.diagnosis, proposal.bench
-    inertia = {b: own.parameters["inertia"].value for b, own in diagnosis.model.bodies.items()}
+    inertia = {b: body.parameters["inertia"].value for b, body in diagnosis.model.bodies.items()}
     others = {}
     for i, j in [p for p in unordered(proposal) if not proposal.decides(p)][:PAIRS]:
         a, b = proposal.rivals[i], proposal.rivals[j]
@@ -180,8 +180,8 @@ def _remedies(
             (a, b),
             diagnosis.prepared,
             tuple(changed),
-            found.sums.get((i, j)),
-            found.sums.get((j, i)),
+            candidates.sums.get((i, j)),
+            candidates.sums.get((j, i)),
             seed=seed,
         )
     return others

@@ -71,16 +71,16 @@ def remedies(
     along, back: sums of the pair over the family, in both orders
     """
     rivals = [replace(r, question=0) for r in pair]
-    found = []
+    listed = []
     for setup in setups:
         parts = family(setup.setting)[::EVERY]
-        there = tried(
+        candidates = tried(
             parts, rivals, prepared, setup.bench, setup.limits, floor=setup.bench.floor, seed=seed
         )
-        found.append(Remedy(setup.change, there.best((0, 1)) if there.parts else 0.0))
+        listed.append(Remedy(setup.change, candidates.best((0, 1)) if candidates.parts else 0.0))
     if along is not None and back is not None:
-        found += _known(pair, along, back)
-    return tuple(sorted(found, key=lambda r: -r.separation))
+        listed += _known(pair, along, back)
+    return tuple(sorted(listed, key=lambda r: -r.separation))
 
 
 def setups(
@@ -92,7 +92,7 @@ def setups(
     inertia: Mapping[str, float],
 ) -> Iterator[Changed]:
     """The set-ups that are tried; places: bodies that the rivals differ at."""
-    wide = {b: own.widened(WIDER) for b, own in limits.items()}
+    wide = {b: limit.widened(WIDER) for b, limit in limits.items()}
     course = course_of(wide, prepared)
     yield Changed(
         f"the stroke, speed, acceleration and force may be {WIDER:g} times larger",
@@ -154,15 +154,15 @@ def _known(pair: tuple[Rival, Rival], along: Sums, back: Sums) -> list[Remedy]:
     here = [n for n in pair[0].fit.free if pair[0].model.locate(n)[0] in places]
     shared = [n for n in here if n in pair[1].fit.free]
     choices = [[n] for n in shared] + ([shared] if len(shared) > 1 else [])
-    found = []
+    listed = []
     for names in choices:
         both = (
             _with_known(pair[0], pair[1], along, names),
             _with_known(pair[1], pair[0], back, names),
         )
         what = names[0] if len(names) == 1 else "every parameter that both have"
-        found.append(Remedy(f"{what} is known from elsewhere", min(both)))
-    return found
+        listed.append(Remedy(f"{what} is known from elsewhere", min(both)))
+    return listed
 
 
 def _with_known(truth: Rival, other: Rival, sums: Sums, names: Sequence[str]) -> float:

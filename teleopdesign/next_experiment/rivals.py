@@ -41,36 +41,36 @@ def rivals_of(diagnosis: Diagnosis) -> tuple[Rival, ...]:
     place in turn. Where nothing was accepted, or what was explains little: the best few of what
     would be added next.
     """
-    found: list[Rival] = []
+    rivals: list[Rival] = []
     questions = open_questions(diagnosis)
     for number, question in enumerate(questions):
         if question.added is not None:
-            found += _of_question(diagnosis, question, number)
-    if not found:
+            rivals += _of_question(diagnosis, question, number)
+    if not rivals:
         next_ones = [q for q in questions if q.added is None]
-        found = [Rival(c, fit) for q in next_ones for c, fit in q.others]
-    return tuple(found) if len(found) > 1 else ()
+        rivals = [Rival(c, fit) for q in next_ones for c, fit in q.others]
+    return tuple(rivals) if len(rivals) > 1 else ()
 
 
 def _of_question(diagnosis: Diagnosis, question: OpenQuestion, number: int) -> list[Rival]:
     """The accepted effect of a question and its rivals, each in the final model."""
     assert question.added is not None
-    found = [Rival(question.added, diagnosis.estimated, number)]
-    for candidate, there in question.others:
-        fit = _instead(diagnosis, question.added, candidate, there)
+    rivals = [Rival(question.added, diagnosis.estimated, number)]
+    for candidate, other_fit in question.others:
+        fit = _instead(diagnosis, question.added, candidate, other_fit)
         if fit is not None:
-            found.append(Rival(candidate, fit, number))
-    return found if len(found) > 1 else []
+            rivals.append(Rival(candidate, fit, number))
+    return rivals if len(rivals) > 1 else []
 
 
-def _instead(diagnosis: Diagnosis, added: Candidate, other: Candidate, there: Fit) -> Fit | None:
+def _instead(diagnosis: Diagnosis, added: Candidate, other: Candidate, fit: Fit) -> Fit | None:
     """The final model with another effect in the place of an accepted one; None if it has none.
 
-    there: the fit that the other was compared by
+    fit: the fit that the other was compared by
     """
     effect, at = other.effect, other.at
     names = effect.parameters
-    values = {n: there.model.parameters[f"{at}.{effect.name}.{n}"].value for n in names}
+    values = {n: fit.model.parameters[f"{at}.{effect.name}.{n}"].value for n in names}
     model = diagnosis.estimated.model
     if model.body(at).has(effect.name):
         return None  # a later rung has added it beside

@@ -35,15 +35,16 @@ class Tried:
         In noise floors; well above one, more of it decides nothing.
         """
         both: dict[frozenset[int], list[float]] = {}
-        for pair, own in self.sums.items():
-            both.setdefault(frozenset(pair), []).append(own.separation(chosen))
+        for pair, sums in self.sums.items():
+            both.setdefault(frozenset(pair), []).append(sums.separation(chosen))
         return sum(min(s) ** 2 / (min(s) ** 2 + 1.0) for s in both.values())
 
     def best(self, pair: tuple[int, int]) -> float:
         """The largest separation of a pair along any one part, its worse order."""
         orders = [p for p in self.sums if set(p) == set(pair)]
-        found = [min(self.sums[p].separation([k]) for p in orders) for k in range(len(self.parts))]
-        return max(found, default=0.0)
+        parts = range(len(self.parts))
+        least = (min(self.sums[p].separation([k]) for p in orders) for k in parts)
+        return max(least, default=0.0)
 
 
 def tried(
@@ -61,19 +62,19 @@ def tried(
     floor: force (rms) that sensors leave on the present records;  seed: of the sensors' errors
     """
     plans = [planned(p.path, bench) for p in parts]
-    made = {i: _made(r, plans, bench, seed) for i, r in enumerate(rivals)}
-    safe = [k for k in range(len(parts)) if all(_is_safe(m, k, limits) for m in made.values())]
+    simulated = {i: _made(r, plans, bench, seed) for i, r in enumerate(rivals)}
+    safe = [k for k in range(len(parts)) if all(_is_safe(m, k, limits) for m in simulated.values())]
     present = [normal_matrix(r, prepared) for r in rivals]
     sums: dict[tuple[int, int], Sums] = {}
     for i, truth in enumerate(rivals):
-        stretches = [s for s in made[i].stretches if _number(s.motion.file) in safe]
+        stretches = [s for s in simulated[i].stretches if _number(s.motion.file) in safe]
         numbers = [safe.index(_number(s.motion.file)) for s in stretches]
         if not stretches:
             break
-        own = [r for r, _ in referred(truth.model, stretches)]
+        residuals = [r for r, _ in referred(truth.model, stretches)]
         for j, other in enumerate(rivals):
             if (i, j) in pairs(rivals):
-                sums[i, j] = sums_of(other, own, stretches, numbers, present[j], floor)
+                sums[i, j] = sums_of(other, residuals, stretches, numbers, present[j], floor)
     return Tried(tuple(parts[k] for k in safe), sums)
 
 
@@ -97,29 +98,29 @@ def _number(file: str) -> int:
     return int(file)
 
 
-def _is_safe(made: Prepared, part: int, limits: Mapping[str, Limits]) -> bool:
+def _is_safe(simulated: Prepared, part: int, limits: Mapping[str, Limits]) -> bool:
     """Whether no body needs more than its force along a part."""
-    signals = made.experiment.records[part].signals
+    signals = simulated.experiment.records[part].signals
     return all(
-        float(np.abs(signals[f"{body}.actuator_force"]).max()) <= own.force
-        for body, own in limits.items()
+        float(np.abs(signals[f"{body}.actuator_force"]).max()) <= limit.force
+        for body, limit in limits.items()
     )
 
 
-def composed(found: Tried, duration: float, sample_time: float) -> tuple[int, ...]:
+def composed(candidates: Tried, duration: float, sample_time: float) -> tuple[int, ...]:
     """Parts chosen one at a time, each the one that gains most, until the time (s) is used up."""
     chosen: list[int] = []
     reached = 0.0
     while True:
-        used = sum(len(found.parts[k].path) for k in chosen) * sample_time
+        used = sum(len(candidates.parts[k].path) for k in chosen) * sample_time
         left = [
             k
-            for k, part in enumerate(found.parts)
+            for k, part in enumerate(candidates.parts)
             if k not in chosen and (not chosen or used + len(part.path) * sample_time <= duration)
         ]
         if not left:
             return tuple(chosen)
-        worth, best = max((found.worth([*chosen, k]), k) for k in left)
+        worth, best = max((candidates.worth([*chosen, k]), k) for k in left)
         if chosen and worth < (1.0 - DILUTES) * reached:
             return tuple(chosen)
         chosen.append(best)

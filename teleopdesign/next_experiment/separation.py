@@ -78,12 +78,12 @@ def sums_of(
     squares, noise, rows = np.zeros(k), np.zeros(k), np.zeros(k)
     gradient, normal = np.zeros((k, p)), np.zeros((k, p, p))
     parts = referred(other.model, stretches, other.fit.free)
-    for i, s, own, (r, d) in zip(part_of, stretches, truth_left, parts, strict=True):
-        apart = r - own
+    for i, s, truth_residual, (r, d) in zip(part_of, stretches, truth_left, parts, strict=True):
+        apart = r - truth_residual
         squares[i] += s.weight * float(apart @ apart)
         gradient[i] += s.weight * (d @ apart)
         normal[i] += s.weight * (d @ d.T)
-        noise[i] += s.weight * float(own @ own)
+        noise[i] += s.weight * float(truth_residual @ truth_residual)
         rows[i] += s.weight * len(s.keep)
     return Sums(squares, gradient, normal, np.maximum(noise, rows * floor**2), present)
 
@@ -120,5 +120,5 @@ def present_separation(truth: Rival, other: Rival, prepared: Prepared, floor: fl
 
 
 def _against(truth: Rival, other: Rival, stretches: Sequence[Stretch], present: Array) -> Sums:
-    own = [r for r, _ in referred(truth.model, stretches)]
-    return sums_of(other, own, stretches, [0] * len(stretches), present, 0.0)
+    truth_left = [r for r, _ in referred(truth.model, stretches)]
+    return sums_of(other, truth_left, stretches, [0] * len(stretches), present, 0.0)

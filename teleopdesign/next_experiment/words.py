@@ -112,19 +112,19 @@ def _what_stays_open(proposal: Proposal, pair: tuple[int, int]) -> str:
         f"{min(s.present for s in of_pair(proposal, pair)):.2f} on the present records, where 1 is "
         "clear."
     )
-    tried = proposal.remedies.get(pair, ())
-    if not tried:
+    remedies = proposal.remedies.get(pair, ())
+    if not remedies:
         return said
-    return f"{said} {_remedies_said(tried)}"
+    return f"{said} {_remedies_said(remedies)}"
 
 
-def _remedies_said(tried: Sequence[Remedy]) -> str:
-    helping = [r for r in tried if r.separation >= DECIDES]
+def _remedies_said(remedies: Sequence[Remedy]) -> str:
+    helping = [r for r in remedies if r.separation >= DECIDES]
     if helping:
         listed = "; or ".join(f"{r.change} ({r.separation:.1f})" for r in helping)
         return f"Tried in simulation, it would be told if {listed}."
-    changes = "; ".join(f"{r.change} ({r.separation:.2f})" for r in tried)
-    if all(r.separation < SAME for r in tried):
+    changes = "; ".join(f"{r.change} ({r.separation:.2f})" for r in remedies)
+    if all(r.separation < SAME for r in remedies):
         return (
             f"Nor would it help if {changes}. Along all of them the two need the same force: which "
             "it is, only knowledge of the device can say."
@@ -182,11 +182,11 @@ def proposal_data(proposal: Proposal) -> dict[str, Any]:
         "remedies": [
             {
                 "rivals": [_place(proposal.rivals[i]) for i in pair],
-                "tried": [asdict(r) for r in own],
+                "tried": [asdict(r) for r in value],
             }
-            for pair, own in proposal.remedies.items()
+            for pair, value in proposal.remedies.items()
         ],
-        "limits": {b: asdict(own) for b, own in proposal.limits.items()},
+        "limits": {b: asdict(value) for b, value in proposal.limits.items()},
     }
     content: dict[str, Any] = plain(data)
     return content
@@ -200,7 +200,7 @@ def proposal_findings(proposal: Proposal) -> tuple[Finding, ...]:
     """The proposal as findings: what to do, how far apart that takes the rivals, what would."""
     if not proposal.rivals:
         return (Finding("next experiment", "fine", proposal.sentence),)
-    found = [
+    findings = [
         Finding(
             "next experiment",
             "note",
@@ -217,15 +217,15 @@ def proposal_findings(proposal: Proposal) -> tuple[Finding, ...]:
         text = _what_it_shows(proposal, pair) if decides else _what_stays_open(proposal, pair)
         numbers = {f"present {i}": s.present for i, s in enumerate(both)}
         numbers |= {f"predicted {i}": s.predicted for i, s in enumerate(both)}
-        found.append(
+        findings.append(
             Finding("separation of rivals", "note" if decides else "warning", text, numbers)
         )
     for d in proposal.determined:
         text = f"{d.name} becomes determinable: standard error {_percent(d.after)} of its value."
-        found.append(
+        findings.append(
             Finding("determinable parameters", "note", text, {"before": d.before, "after": d.after})
         )
-    return tuple(found)
+    return tuple(findings)
 
 
 def _reference_graph(proposal: Proposal) -> Graph | None:
@@ -236,7 +236,7 @@ def _reference_graph(proposal: Proposal) -> Graph | None:
     unit = experiment.channels[f"{body}.position"].unit
     series = []
     for name, position in reference.position.items():
-        own = experiment.channels[f"{name}.position"].unit
-        factor = si_factor(own, quantity="position", axis=experiment.axis(name))
+        file_unit = experiment.channels[f"{name}.position"].unit
+        factor = si_factor(file_unit, quantity="position", axis=experiment.axis(name))
         series.append(Series(name, reference.time, position / factor, "model"))
     return Graph("time (s)", f"position reference ({unit})", tuple(series))

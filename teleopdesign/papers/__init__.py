@@ -31,16 +31,16 @@ __all__ = [
 
 
 def _statements() -> Mapping[str, Statement]:
-    found: dict[int, Statement] = {}
+    by_number: dict[int, Statement] = {}
     for module in pkgutil.iter_modules(__path__):
         if module.name.startswith("_"):
             continue
         for thing in vars(importlib.import_module(f"{__name__}.{module.name}")).values():
             if isinstance(thing, Statement):
-                if thing.number in found:
+                if thing.number in by_number:
                     raise ModelError(f"papers: {thing.name} is there twice, in {module.name} too")
-                found[thing.number] = thing
-    return MappingProxyType({found[n].name: found[n] for n in sorted(found)})
+                by_number[thing.number] = thing
+    return MappingProxyType({by_number[n].name: by_number[n] for n in sorted(by_number)})
 
 
 #: name, P1 to P65 -> statement, in order

@@ -149,9 +149,9 @@ class Limit(Step):
     def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
         """By sympy's limit."""
         _without_floats(self.expression, self.value)
-        found = sp.limit(self.expression, self.variable, self.at, "+")
-        if found != self.value and not vanishes(found - self.value):
-            raise NotProved(f"{self.words}: the limit is {found}, not {self.value}")
+        limit = sp.limit(self.expression, self.variable, self.at, "+")
+        if limit != self.value and not vanishes(limit - self.value):
+            raise NotProved(f"{self.words}: the limit is {limit}, not {self.value}")
         return []
 
     def told(self) -> str:

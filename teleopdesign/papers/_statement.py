@@ -41,7 +41,7 @@ class Figure:
     """A computed number and the range that it must lie in (SI unless `unit` says otherwise)."""
 
     what: str
-    found: float
+    value: float
     low: float = -math.inf
     high: float = math.inf
     unit: str = ""
@@ -49,7 +49,7 @@ class Figure:
     @property
     def margin(self) -> float:
         """Distance to the nearest end of the range; negative outside of it."""
-        return min(self.found - self.low, self.high - self.found)
+        return min(self.value - self.low, self.high - self.value)
 
     def __str__(self) -> str:
         unit = f" {self.unit}" if self.unit else ""
@@ -57,13 +57,13 @@ class Figure:
             bound = (
                 f"at most {self.high:.4g}" if math.isinf(self.low) else f"at least {self.low:.4g}"
             )
-            return f"{self.what}: {self.found:.4g}{unit}, must be {bound}"
-        return f"{self.what}: {self.found:.4g}{unit}, must be {self.low:.4g} to {self.high:.4g}"
+            return f"{self.what}: {self.value:.4g}{unit}, must be {bound}"
+        return f"{self.what}: {self.value:.4g}{unit}, must be {self.low:.4g} to {self.high:.4g}"
 
 
-def near(what: str, found: float, expected: float, within: float, unit: str = "") -> Figure:
+def near(what: str, value: float, expected: float, within: float, unit: str = "") -> Figure:
     """A number that must lie within `within` of `expected`."""
-    return Figure(what, float(found), expected - within, expected + within, unit)
+    return Figure(what, float(value), expected - within, expected + within, unit)
 
 
 @dataclass(frozen=True)
@@ -120,15 +120,15 @@ class Statement:
 
 @dataclass(frozen=True)
 class Result:
-    """What checking a statement found.
+    """The result of checking a statement.
 
     outcome: how far it is known now; "failed": less than the statement says
-    found: one line for each exact step, or why it failed;  figures: computed numbers
+    details: one line for each exact step, or why it failed;  figures: computed numbers
     """
 
     statement: Statement
     outcome: How | Literal["failed"]
-    found: tuple[str, ...]
+    details: tuple[str, ...]
     figures: tuple[Figure, ...]
     seconds: float
 
@@ -169,20 +169,20 @@ def check(statement: Statement) -> Result:
     """Run what shows the statement; the outcome follows from what kind of evidence holds."""
     start = time.perf_counter()
     outcome: How | Literal["failed"] = "claim of the paper"
-    found: tuple[str, ...] = ()
+    details: tuple[str, ...] = ()
     figures: tuple[Figure, ...] = ()
     try:
         evidence = None if statement.shown_by is None else statement.shown_by()
         if isinstance(evidence, Numbers):
             outcome, figures = "checked numerically", evidence.figures
         elif isinstance(evidence, Refutation):
-            outcome, found = "refuted", evidence.verify()
+            outcome, details = "refuted", evidence.verify()
         elif isinstance(evidence, Proof):
-            outcome, found = "proved", evidence.verify()
+            outcome, details = "proved", evidence.verify()
         if statement.numbers is not None:
             figures += statement.numbers().figures
     except NotProved as error:
-        outcome, found = "failed", (str(error),)
+        outcome, details = "failed", (str(error),)
     if any(not f.margin >= 0 for f in figures):
         outcome = "failed"
-    return Result(statement, outcome, found, figures, time.perf_counter() - start)
+    return Result(statement, outcome, details, figures, time.perf_counter() - start)

@@ -40,12 +40,12 @@ def two_sides(*, cancelled: float, environment: float = 0.0) -> Diagram:
 
 def slow_cycle(*, cancelled: float, environment: float = 0.0) -> Simulation:
     """The second of two slow cycles of the master; its user force F_u is what the motion takes."""
-    found = simulate(
+    simulation = simulate(
         two_sides(cancelled=cancelled, environment=environment),
         duration=2 / FREQUENCY,
         motion={"X_m": sine(amplitude=AMPLITUDE, frequency=FREQUENCY)},
         computer="continuous",
         give=GIVE,
     )
-    kept = found.data["time"].values >= 1 / FREQUENCY
-    return Simulation(found.diagram, found.data.isel(time=np.flatnonzero(kept)))
+    kept = simulation.data["time"].values >= 1 / FREQUENCY
+    return Simulation(simulation.diagram, simulation.data.isel(time=np.flatnonzero(kept)))

@@ -81,7 +81,7 @@ def phase_per_decade() -> Refutation:
     more, q = sp.symbols("more q", positive=True)  # r = 1 + more;  r = q^2
     steep = sp.diff(LOSS, y)
     best = 2 * sp.atan(q) - sp.pi / 2
-    there = LOSS.subs(r, q**2).subs(y, 1 / q)
+    at_maximum = LOSS.subs(r, q**2).subs(y, 1 / q)
     h = sp.Symbol("h", nonnegative=True)
     return Refutation(
         proof(
@@ -105,8 +105,8 @@ def phase_per_decade() -> Refutation:
                 more * h / ((1 + (1 + more) ** 2 * y**2) * (1 + y**2)),
                 {h: 1 - (1 + more) * y**2},
             ),
-            Equal("its value there, as a function of r = q^2", sp.diff(there - best, q), 0),
-            Holds("both are 0 at r = 1", there.subs(q, 1), "==", best.subs(q, 1)),
+            Equal("its value there, as a function of r = q^2", sp.diff(at_maximum - best, q), 0),
+            Holds("both are 0 at r = 1", at_maximum.subs(q, 1), "==", best.subs(q, 1)),
             assuming=[1 - (1 + more) * y**2],
         ),
     )
@@ -114,10 +114,10 @@ def phase_per_decade() -> Refutation:
 
 def apparent_impedance(diagram: Diagram, *, amplitude: float, frequency: float) -> complex:
     """First harmonic of the force error over that of a prescribed sinusoid, N/m."""
-    found = measured_impedance(
+    measured = measured_impedance(
         diagram, amplitude=amplitude, frequency=frequency, computer="continuous"
     )
-    return complex(found.data["impedance"].values.item())
+    return complex(measured.data["impedance"].values.item())
 
 
 def decibel(z: complex | np.ndarray) -> np.ndarray:
@@ -179,9 +179,9 @@ def minimum_over_amplitude() -> Numbers:
     ):
         z = cancelled(grid, share=share, smoothing=smoothing, frequency=5.0)
         turned = int(np.argmax(z.imag < 0))  # F_1 = 4 F_C/pi: nothing but the mass is left
-        found = np.interp(0, -z.imag[turned - 1 : turned + 1], grid[turned - 1 : turned + 1])
+        minimum = np.interp(0, -z.imag[turned - 1 : turned + 1], grid[turned - 1 : turned + 1])
         what = f"MBC, a {1e3 * smoothing:g} mm/s, Fhat_C {share} F_C"
-        figures.append(near(f"{what}: minimum", 1e3 * found, place, 0.005, "mm"))
+        figures.append(near(f"{what}: minimum", 1e3 * minimum, place, 0.005, "mm"))
         rise = float(np.ptp(decibel(z[turned:])))
         figures.append(Figure(f"{what}: rise after it", rise, low, high, "dB"))
     hybrid = four_cases(world_haptics_2005())["hybrid"]

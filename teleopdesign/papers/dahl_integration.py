@@ -34,7 +34,7 @@ def sampled_compensator() -> Numbers:
         return np.asarray(positions[sample])
 
     law = controller("dahl", {"level": level, "stiffness": stiffness})
-    found = simulate(
+    forces = simulate(
         haptic_interface(Body("prismatic", {"inertia": Value(1.0)}), cancellation=law),
         duration=period * (len(positions) - 1),
         motion={"L": Motion(held, np.zeros_like, np.zeros_like)},
@@ -42,7 +42,7 @@ def sampled_compensator() -> Numbers:
         jit=False,
     )["R_MBC"].values
     force, worst = 0.0, 0.0
-    for dx, sampled in zip(np.diff(positions), found[1:], strict=True):
+    for dx, sampled in zip(np.diff(positions), forces[1:], strict=True):
         step = dahl_step(f, d, 1 if dx >= 0 else -1, f_c, sigma)
         force = float(step.subs({f: force, d: abs(dx), f_c: level, sigma: stiffness}))
         worst = max(worst, abs(float(sampled) - force))

@@ -34,8 +34,8 @@ def steady_loop() -> Proof:
     forgets offsets and drifts under small biased oscillation.
     """
     shape = f_c * (1 - sp.exp(-sigma * x / f_c) / sp.cosh(sigma * A / f_c))
-    there = dahl_step(f, 2 * A, 1, f_c, sigma)
-    back = dahl_step(there, 2 * A, -1, f_c, sigma)
+    end = dahl_step(f, 2 * A, 1, f_c, sigma)
+    back = dahl_step(end, 2 * A, -1, f_c, sigma)
     swung = dahl_step(dahl_step(f, d, 1, f_c, sigma), d, -1, f_c, sigma)
     kept = sp.exp(-4 * sigma * A / f_c)
     return proof(
@@ -104,14 +104,14 @@ def relatives() -> Proof:
     """
     alpha, damping, extra, scale = sp.symbols("alpha sigma_1 F_SC v_S", positive=True)
     velocity = sp.Symbol("v", real=True)
-    own = velocity - alpha * sp.Abs(velocity) * z
+    hayward_armstrong_rate = velocity - alpha * sp.Abs(velocity) * z
     level = stribeck_level(velocity, f_c, extra, scale)
     rate = bristle_rate(z, velocity, level, sigma)
     force = bristle_force(z, velocity, level, sigma, damping)
     return proof(
         Equal(
             "Hayward-Armstrong, alpha = sigma/f_c",
-            sigma * own.subs(alpha, sigma / f_c),
+            sigma * hayward_armstrong_rate.subs(alpha, sigma / f_c),
             dahl_rate(sigma * z, velocity, f_c, sigma),
         ),
         Equal("LuGre's force", force, sigma * z + damping * rate),
@@ -123,7 +123,7 @@ def relatives() -> Proof:
         Equal("and without damping Dahl's force", force.subs(damping, 0), sigma * z),
         Equal(
             "alpha = 0: the bristle moves with the body, nothing drifts",
-            own.subs(alpha, 0),
+            hayward_armstrong_rate.subs(alpha, 0),
             velocity,
         ),
     )

@@ -138,14 +138,14 @@ def late_stiffness() -> Proof:
     s = sp.Symbol("s")
     sigma_p, sigma_D, B, x, v = sp.symbols("sigma_p sigma_D B x v", positive=True)
     z = B + (sigma_p - sigma_D * sp.exp(-s * tau)) / s  # force per velocity
-    there = z.subs(s, sp.I * omega)
+    at_omega = z.subs(s, sp.I * omega)
     slope = sp.sin(x) - x * sp.cos(x)  # x^2 times the slope of -sin(x)/x
     seventeen = 17 * sp.pi / 12
     return proof(
         Equal("near rest Dahl is a spring", dahl_rate(sp.S(0), v, f_D, sigma_D), sigma_D * v),
         Equal(
             "real part at j omega",
-            (there + sp.conjugate(there)) / 2,
+            (at_omega + sp.conjugate(at_omega)) / 2,
             B + sigma_D * tau * sp.sin(late) / late,
         ),
         Equal(

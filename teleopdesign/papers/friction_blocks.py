@@ -98,10 +98,10 @@ def place_of_the_schedule() -> Proof:
     fast = sp.Symbol("fast", positive=True)
     # the filter has settled at speed v, then the speed jumps: outputs just after the jump
     outputs = []
-    for made in (c.equation("H", SIGNALS) for c in orders):
-        (state,) = made.rates
-        settled = sp.solve(made.rates[state].subs(speed, v), state)[0]
-        outputs.append(made.output.subs(speed, fast).subs(state, settled))
+    for equation in (c.equation("H", SIGNALS) for c in orders):
+        (state,) = equation.rates
+        steady_state = sp.solve(equation.rates[state].subs(speed, v), state)[0]
+        outputs.append(equation.output.subs(speed, fast).subs(state, steady_state))
     values = {error: 1, v: 1, fast: 3}
     numbers = {x: 1 for e in outputs for x in e.free_symbols if x not in (error, speed, v, fast)}
     return proof(

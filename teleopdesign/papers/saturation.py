@@ -183,14 +183,14 @@ def swing(ratio: float, bristle: float) -> float:
     device = device.with_effect(EFFECTS["coulomb"], {"level": level})
     device = device.with_effect(EFFECTS["spring"], {"stiffness": 400.0})
     values = {"level": ratio * level, "stiffness": ratio * level / bristle}
-    found = simulate(
+    output = simulate(
         haptic_interface(device, cancellation=controller("dahl", values)),
         duration=0.5,
         initial={"L": 2e-3},
         computer="continuous",
         give=1e-6,
     )["L"].values
-    return float(np.abs(found[-110:]).max() / 2e-3)  # the last cycle and a tenth
+    return float(np.abs(output[-110:]).max() / 2e-3)  # the last cycle and a tenth
 
 
 @shows(

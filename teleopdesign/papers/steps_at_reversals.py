@@ -87,16 +87,16 @@ def energy_of_cycle(turning: tuple[float, ...]) -> float:
     motor = Body("prismatic", {"inertia": Value(0.1)})
     motor = motor.with_effect(EFFECTS["coulomb"], {"level": FRICTION})
     law = controller("dahl", {"level": 1.0, "stiffness": 1.0})
-    found = simulate(
+    simulation = simulate(
         haptic_interface(motor, cancellation=law),
         duration=4 * n / 2,
         motion={"L": Motion(position, velocity, acceleration)},
         computer="continuous",
         give=1e-3,
     )
-    last = found.data["time"].values >= 3 * n / 2
-    force = (found["R_MBC"] - found["Z_M_friction"]).values[last]
-    return float(trapezoid(force, found["L"].values[last]))
+    last = simulation.data["time"].values >= 3 * n / 2
+    force = (simulation["R_MBC"] - simulation["Z_M_friction"]).values[last]
+    return float(trapezoid(force, simulation["L"].values[last]))
 
 
 @shows(

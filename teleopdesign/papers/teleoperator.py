@@ -164,10 +164,10 @@ def delayed_coupling() -> Proof:
     )
 
 
-def mid_stroke(found: Simulation, name: str) -> Loop:
+def mid_stroke(simulation: Simulation, name: str) -> Loop:
     """A signal over the master's position, both ways, at mid-stroke."""
     middle = (-0.2 * AMPLITUDE, 0.2 * AMPLITUDE)
-    return loop_of(found["X_m"].values, found[name].values, within=middle)
+    return loop_of(simulation["X_m"].values, simulation[name].values, within=middle)
 
 
 def free_space_force() -> Numbers:
@@ -175,12 +175,12 @@ def free_space_force() -> Numbers:
     viscous = SLAVE_DAMPING * 2 * np.pi * FREQUENCY * AMPLITUDE
     figures = []
     for share in CANCELLED:
-        found = slow_cycle(cancelled=share * FRICTION)
-        felt, left = mid_stroke(found, "F_u").width / 2, (1 - share) * FRICTION
+        simulation = slow_cycle(cancelled=share * FRICTION)
+        felt, left = mid_stroke(simulation, "F_u").width / 2, (1 - share) * FRICTION
         # the damper, and a hundredth of the friction: inertia, settling of the bristles
         within = viscous + 0.01 * FRICTION
         figures.append(near(f"user force, f_D = {share} f_C", felt, left, within, "N"))
-        slack = 1e3 * mid_stroke(found, "X_e").width / 2
+        slack = 1e3 * mid_stroke(simulation, "X_e").width / 2
         expected = 1e3 * left / STIFFNESS
         figures.append(near("  position error", slack, expected, 1e3 * within / STIFFNESS, "mm"))
     return Numbers(tuple(figures))
@@ -212,9 +212,9 @@ def free_space() -> Proof:
 
 def contact(share: float) -> tuple[float, float, float]:
     """Stiffness felt (N/m), hysteresis width (N), rms difference from the environment (N)."""
-    found = slow_cycle(cancelled=share * FRICTION, environment=ENVIRONMENT)
-    loop = mid_stroke(found, "F_u")
-    whole = found["F_u"].values - ENVIRONMENT * found["X_m"].values
+    simulation = slow_cycle(cancelled=share * FRICTION, environment=ENVIRONMENT)
+    loop = mid_stroke(simulation, "F_u")
+    whole = simulation["F_u"].values - ENVIRONMENT * simulation["X_m"].values
     return loop.stiffness, loop.width, float(np.sqrt(np.mean(whole**2)))
 
 
@@ -250,8 +250,8 @@ def soft_contact() -> Proof:
     felt = []
     for way in (1, -1):
         slave = P * (x_m - x_s) - k_e * x_s + way * f_Ds - coulomb(way * w, f_Cs)
-        (there,) = sp.solve(slave, x_s)
-        felt.append(sp.expand(P * (x_m - there)))
+        (slave_position,) = sp.solve(slave, x_s)
+        felt.append(sp.expand(P * (x_m - slave_position)))
     return proof(
         Equal("stiffness, either way", sp.diff(felt[0], x_m), P * k_e / (P + k_e)),
         Equal("the same falling", sp.diff(felt[1], x_m), P * k_e / (P + k_e)),

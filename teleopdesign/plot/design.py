@@ -60,8 +60,8 @@ def save_figure(
 
     files = [Path(path).with_suffix(suffix) for suffix in suffixes]
     # fonts and resolution are taken when it is drawn; what has no layout of its own keeps none
-    own = {"figure.constrained_layout.use": figure.get_layout_engine() is not None}
-    with plt.style.context([STYLE, own]):
+    layout = {"figure.constrained_layout.use": figure.get_layout_engine() is not None}
+    with plt.style.context([STYLE, layout]):
         for file in files:
             with replacing(file) as part:
                 figure.savefig(part)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..identify import CoulombLevel
 
 
-def plot_force_velocity_curve(found: CoulombLevel) -> Figure:
+def plot_force_velocity_curve(level: CoulombLevel) -> Figure:
     """Mean force of each run, friction at each speed, and the line through it."""
     import matplotlib.pyplot as plt
 
@@ -24,19 +24,19 @@ def plot_force_velocity_curve(found: CoulombLevel) -> Figure:
         axis.axhline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
         axis.axvline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
         axis.plot(
-            [r.velocity for r in found.runs],
-            [float(np.mean(r.force)) for r in found.runs],
+            [r.velocity for r in level.runs],
+            [float(np.mean(r.force)) for r in level.runs],
             ".",
             color="0.55",
             markersize=4,
             label="runs",
         )
-        for way, line in ((1, found.forward), (-1, found.backward)):
+        for way, line in ((1, level.forward), (-1, level.backward)):
             if line is not None:
-                speed = np.array([0.0, max(abs(r.velocity) for r in found.runs)])
+                speed = np.array([0.0, max(abs(r.velocity) for r in level.runs)])
                 force = way * (line.level + line.damping * speed)
                 axis.plot(way * speed, force, color="#0072B2", label="line" if way > 0 else None)
-        axis.set_xlabel(f"velocity ({unit_text(unit_of('velocity', found.axis))})")
-        axis.set_ylabel(f"force that moves it ({unit_text(unit_of('force', found.axis))})")
+        axis.set_xlabel(f"velocity ({unit_text(unit_of('velocity', level.axis))})")
+        axis.set_ylabel(f"force that moves it ({unit_text(unit_of('force', level.axis))})")
         axis.legend(loc="lower right")
     return figure

@@ -47,8 +47,8 @@ def draw_graph(
         _logarithmic(graph, axes)
     seen: Counter[str] = Counter()
     for series in graph.series:
-        own = _colour(series.kind, seen[series.kind], totals)
-        _draw(thinned(series, most), axes, (colours or {}).get(series.name, own))
+        default = _colour(series.kind, seen[series.kind], totals)
+        _draw(thinned(series, most), axes, (colours or {}).get(series.name, default))
         seen[series.kind] += 1
     axes.set_xlabel(graph.x_label, parse_math=False)
     axes.set_ylabel(graph.y_label, parse_math=False)
@@ -71,8 +71,8 @@ def extremes(values: Array, buckets: int) -> NDArray[np.intp]:
     filled = np.where(np.isfinite(values), values, 0.0)
     edges = np.linspace(0, len(values), max(buckets, 1) + 1).astype(int)
     pairs = zip(edges[:-1], edges[1:], strict=True)
-    found = [(a + f(filled[a:b])) for a, b in pairs if b > a for f in (np.argmin, np.argmax)]
-    return np.unique(np.array(found, dtype=np.intp))
+    places = [(a + f(filled[a:b])) for a, b in pairs if b > a for f in (np.argmin, np.argmax)]
+    return np.unique(np.array(places, dtype=np.intp))
 
 
 def _colour(kind: str, number: int, totals: Counter[str]) -> str:

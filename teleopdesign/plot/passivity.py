@@ -63,7 +63,7 @@ def plot_passive_region(data: xarray.Dataset) -> matplotlib.figure.Figure:
     import numpy as np
 
     x, y = np.meshgrid(data["softness"].values, data["share"].values)
-    proved, found = data["status"].values == "proved", data["found"].values == 1
+    proved, has_motion = data["status"].values == "proved", data["found"].values == 1
     size = 5.0 if x.size > 500 else 16.0
     with plt.style.context(STYLE):
         figure, axis = plt.subplots(figsize=(ONE_COLUMN, 3.5))
@@ -82,10 +82,10 @@ def plot_passive_region(data: xarray.Dataset) -> matplotlib.figure.Figure:
             [*edge, 0.0], [*edge**2, 1.0], color=THEORY, label="limit", solid_joinstyle="miter"
         )
         for shown, colour, marker, label in (
-            (proved & ~found, PROVED, "o", "proved, no motion found"),
-            (~proved & found, REFUTED, "x", "refuted, motion found"),
-            (~proved & ~found, GREY, "s", "refuted, search missed it"),
-            (proved & found, "black", "*", "contradiction"),
+            (proved & ~has_motion, PROVED, "o", "proved, no motion found"),
+            (~proved & has_motion, REFUTED, "x", "refuted, motion found"),
+            (~proved & ~has_motion, GREY, "s", "refuted, search missed it"),
+            (proved & has_motion, "black", "*", "contradiction"),
         ):
             if shown.any():
                 axis.scatter(

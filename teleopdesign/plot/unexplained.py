@@ -30,14 +30,14 @@ COLOURS = {
 }
 
 
-def plot_unexplained(found: Unexplained) -> Figure:
+def plot_unexplained(failure: Unexplained) -> Figure:
     """Views of each body with the sentences above, dependences first."""
     import matplotlib.pyplot as plt
 
-    panels = [p for part in found.parts for p in _panels(part, name=len(found.parts) > 1)]
+    panels = [p for part in failure.parts for p in _panels(part, name=len(failure.parts) > 1)]
     lines = [
         line
-        for finding in found.findings
+        for finding in failure.findings
         for line in textwrap.wrap(_plain(_said(finding.where, finding.sentence)), 125)
     ]
     rows = math.ceil(len(panels) / COLUMNS)
@@ -70,8 +70,8 @@ def _plain(text: str) -> str:
 
 def _panels(part: BodyUnexplained, *, name: bool) -> list[tuple[str, Graph]]:
     before = f"{part.body}, " if name else ""
-    found = [(before + d.dependence.shape.name, d.graph) for d in part.found]
-    return found + [(f"{before}residual over {n}", g) for n, g in part.views.items()]
+    curves = [(before + d.dependence.shape.name, d.graph) for d in part.dependences]
+    return curves + [(f"{before}residual over {n}", g) for n, g in part.views.items()]
 
 
 def _draw(ax: Axes, graph: Graph) -> None:

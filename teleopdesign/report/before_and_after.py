@@ -70,18 +70,18 @@ def _first_and_last(residual: tuple[Array, ...]) -> list[tuple[str, Array]]:
 
 def _profile(rows: Rows, residual: Array) -> list[tuple[float, float, float, float]]:
     """Velocity, mean, low and high residual of groups of equally many samples in each direction."""
-    found = []
+    groups = []
     for way in (-1, 1):
-        own = np.flatnonzero(rows.direction == way)
-        if len(own) < 10 * FEWEST:
+        this_way = np.flatnonzero(rows.direction == way)
+        if len(this_way) < 10 * FEWEST:
             continue
-        own = own[np.argsort(rows.velocity[own], kind="stable")]
-        for group in np.array_split(own, min(PROFILE, len(own) // FEWEST)):
+        this_way = this_way[np.argsort(rows.velocity[this_way], kind="stable")]
+        for group in np.array_split(this_way, min(PROFILE, len(this_way) // FEWEST)):
             low, high = np.quantile(residual[group], (TAIL, 1.0 - TAIL))
             mean = float(np.mean(residual[group]))
-            found.append((float(np.mean(rows.velocity[group])), mean, float(low), float(high)))
-        found.append((float("nan"),) * 4)  # the line breaks where the motion turns
-    return found
+            groups.append((float(np.mean(rows.velocity[group])), mean, float(low), float(high)))
+        groups.append((float("nan"),) * 4)  # the line breaks where the motion turns
+    return groups
 
 
 def excerpt(rows: Rows, axis: str, bandwidth: float) -> Graph:
@@ -102,18 +102,18 @@ def _window(rows: Rows, bandwidth: float) -> NDArray[np.intp]:
         gain = gain - rows.residual[-1] ** 2
     force = rows.measured**2
     least = QUIET * float(np.mean(force))
-    best, found = -np.inf, np.arange(len(rows.time))
+    best, window = -np.inf, np.arange(len(rows.time))
     for number in np.unique(rows.stretch):
-        own = np.flatnonzero(rows.stretch == number)
-        step = float(np.median(np.diff(rows.time[own]))) if len(own) > 1 else 1.0
-        length = max(2, int(min(PERIODS / bandwidth, PART * len(own) * step) / step))
-        if len(own) < length:
+        of_stretch = np.flatnonzero(rows.stretch == number)
+        step = float(np.median(np.diff(rows.time[of_stretch]))) if len(of_stretch) > 1 else 1.0
+        length = max(2, int(min(PERIODS / bandwidth, PART * len(of_stretch) * step) / step))
+        if len(of_stretch) < length:
             continue
-        share = _moving(gain[own], length) / (_moving(force[own], length) + least)
+        share = _moving(gain[of_stretch], length) / (_moving(force[of_stretch], length) + least)
         if share.max() > best:
             start = int(np.argmax(share))
-            best, found = float(share.max()), own[start : start + length]
-    return found
+            best, window = float(share.max()), of_stretch[start : start + length]
+    return window
 
 
 def _moving(values: Array, length: int) -> Array:

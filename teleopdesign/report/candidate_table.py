@@ -74,8 +74,8 @@ def candidate_rows(diagnosis: Diagnosis) -> tuple[CandidateRow, ...]:
             outcome = _outcome(rung, ranking, ranked)
             # what was added may have been fitted again since: one error for one model
             fit = rung.fit if rung is not None and outcome == "added" else ranked.fit
-            tried = Tried(fit.check_error, ranked.score, outcome)
-            done.setdefault(ranked.candidate.key, [None] * len(rankings))[i] = tried
+            result = Tried(fit.check_error, ranked.score, outcome)
+            done.setdefault(ranked.candidate.key, [None] * len(rankings))[i] = result
     accepted = [r.added.key for r, _ in steps if r.added is not None]
     rows = [
         CandidateRow(c["effect"], c["at"], c["probability"], tuple(done[(c["effect"], c["at"])]))

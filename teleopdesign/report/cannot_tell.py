@@ -41,11 +41,11 @@ def _group(rung: Rung) -> Finding:
     assert rung.added is not None and rung.ranking is not None
     ranked = {r.candidate.key: r for r in rung.ranking.ranked}
     names = [str(c) for c in (rung.added, *rung.equals)]
-    found = [ranked[c.key] for c in (rung.added, *rung.equals)]
-    likeness = min(_likeness(rung.ranking.base, found[0], r) for r in found[1:])
-    apart = max(abs(whole_score(r.fit, found[0].fit)) for r in found[1:])
-    errors = listed([percent(r.fit.check_error) for r in found])
-    numbers = {f"check_error of {n}": r.fit.check_error for n, r in zip(names, found, strict=True)}
+    group = [ranked[c.key] for c in (rung.added, *rung.equals)]
+    likeness = min(_likeness(rung.ranking.base, group[0], r) for r in group[1:])
+    apart = max(abs(whole_score(r.fit, group[0].fit)) for r in group[1:])
+    errors = listed([percent(r.fit.check_error) for r in group])
+    numbers = {f"check_error of {n}": r.fit.check_error for n, r in zip(names, group, strict=True)}
     return Finding(
         topic="effects that look alike",
         concern="warning",
@@ -68,10 +68,10 @@ def _likeness(base: Fit, one: Ranked, other: Ranked) -> float:
 
 
 def _at_bound(diagnosis: Diagnosis) -> list[Finding]:
-    found = []
+    findings = []
     for name in diagnosis.after.at_bound:
         value = diagnosis.model.parameters[name].value
-        found.append(
+        findings.append(
             Finding(
                 topic="a parameter at its bound",
                 concern="warning",
@@ -82,11 +82,11 @@ def _at_bound(diagnosis: Diagnosis) -> list[Finding]:
                 numbers={name: value},
             )
         )
-    return found
+    return findings
 
 
 def _open_parameters(diagnosis: Diagnosis) -> list[Finding]:
-    found = []
+    findings = []
     model = diagnosis.model
     for name in diagnosis.after.free:
         value = model.parameters[name]
@@ -100,7 +100,7 @@ def _open_parameters(diagnosis: Diagnosis) -> list[Finding]:
             why = f"{best} ± {error} {unit_text(model.unit(name))}: it may be zero."
         else:
             why = "its effect on the force cannot be told from that of the other parameters."
-        found.append(
+        findings.append(
             Finding(
                 topic="a parameter left open",
                 concern="note",
@@ -108,20 +108,20 @@ def _open_parameters(diagnosis: Diagnosis) -> list[Finding]:
                 numbers={"value": value.value, "stderr": value.stderr},
             )
         )
-    return found
+    return findings
 
 
 def _together(fit: Fit) -> list[Finding]:
     """Pairs of parameters whose estimates are so correlated that only a combination is known."""
     size = np.linalg.norm(fit.jacobian, axis=0)
-    told = [i for i in range(len(fit.free)) if size[i] > 0]
-    columns = fit.jacobian[:, told] / size[told]
+    moving = [i for i in range(len(fit.free)) if size[i] > 0]
+    columns = fit.jacobian[:, moving] / size[moving]
     covariance = np.linalg.pinv(columns.T @ columns, rcond=1e-12, hermitian=True)
     spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
     correlation = covariance / np.outer(spread, spread)
     pairs = [
-        (float(correlation[i, j]), fit.free[told[i]], fit.free[told[j]])
-        for i in range(len(told))
+        (float(correlation[i, j]), fit.free[moving[i]], fit.free[moving[j]])
+        for i in range(len(moving))
         for j in range(i)
         if abs(correlation[i, j]) > TOGETHER
     ]
@@ -164,13 +164,13 @@ def _open_candidates(diagnosis: Diagnosis) -> list[Finding]:
 def _not_tried(diagnosis: Diagnosis) -> list[Finding]:
     """Effects of the catalogue that could not be candidates on the last step."""
     model = diagnosis.model
-    tried = {r.candidate.key for r in diagnosis.last.ranked}
+    fitted = {r.candidate.key for r in diagnosis.last.ranked}
     reasons = []
     for place in model.places:
         body = model.body(place)
         for name, effect in model.known.items():
             elsewhere = (place in model.bodies) == (effect.role in CONTACT_ROLES)
-            if elsewhere or body.has(name) or (name, place) in tried:
+            if elsewhere or body.has(name) or (name, place) in fitted:
                 continue
             needs = sorted(n for n in effect.needs if not body.has(n))
             because = f" (needs {listed(needs)} beside it)" if needs else ""

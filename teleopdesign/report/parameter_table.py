@@ -57,8 +57,8 @@ def parameter_rows(diagnosis: Diagnosis) -> tuple[ParameterRow, ...]:
     added = {r.added.key for r in diagnosis.rungs if r.added is not None}
     rows = []
     for name, value in diagnosis.model.parameters.items():
-        place, _, own = name.partition(".")
-        effect, _, parameter = own.rpartition(".")
+        place, _, local = name.partition(".")
+        effect, _, parameter = local.rpartition(".")
         declared = diagnosis.model.declared(name)
         first = before.get(name)
         low, high = _interval(value, declared.lower, declared.upper)

@@ -55,9 +55,9 @@ class Unexplained(ByValue):
     @property
     def largest(self) -> tuple[BodyUnexplained, Described] | None:
         """The dependence that takes most away, with its body; None where none was found."""
-        found = [(p, p.found[0]) for p in self.parts if p.found]
+        first_of_body = [(p, p.dependences[0]) for p in self.parts if p.dependences]
         return max(
-            found,
+            first_of_body,
             key=lambda pd: pd[0].error ** 2 * pd[1].dependence.explained,
             default=None,
         )

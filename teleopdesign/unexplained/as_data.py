@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from . import Unexplained
 
 
-def as_data(found: Unexplained) -> dict[str, Any]:
+def as_data(description: Unexplained) -> dict[str, Any]:
     """Sentences, dependences with curves, and every test; SI units."""
     data = {
         "findings": [
@@ -24,9 +24,9 @@ def as_data(found: Unexplained) -> dict[str, Any]:
                 "sentence": f.sentence,
                 "numbers": dict(f.numbers),
             }
-            for f in found.findings
+            for f in description.findings
         ],
-        "bodies": [_body(p) for p in found.parts],
+        "bodies": [_body(p) for p in description.parts],
     }
     content: dict[str, Any] = plain(data)
     return content
@@ -38,7 +38,7 @@ def _body(part: BodyUnexplained) -> dict[str, Any]:
         "check_error": part.error,
         "noise_floor": part.floor,
         "check_error_described": part.after,
-        "dependences": [_dependence(d, part.axis) for d in part.found],
+        "dependences": [_dependence(d, part.axis) for d in part.dependences],
         "tests": [
             {
                 "dependence": t.shape.name,

@@ -37,7 +37,7 @@ class Curve:
     weight: Array
 
 
-def curve_of(rows: Rows, found: Dependence, earlier: tuple[Dependence, ...] = ()) -> Curve:
+def curve_of(rows: Rows, dependence: Dependence, earlier: tuple[Dependence, ...] = ()) -> Curve:
     """The curve that the residual shows once the earlier dependences are taken out.
 
     A constant, a sinusoid and what the command loses are given at their full size, that is with the
@@ -46,16 +46,16 @@ def curve_of(rows: Rows, found: Dependence, earlier: tuple[Dependence, ...] = ()
     left = rows.residual * rows.root
     for before in earlier:
         left = left - before.columns.values @ before.columns.solve(left, rows.learnt)
-    variable = found.shape.variable
-    alone = variable is not None and not variable.wave and not found.shape.of_command
-    columns = found.columns if alone else own_columns(rows).beside(found.columns)
-    value, spread = _coefficients(rows, columns, left, len(found.columns.penalty))
-    x = _grid(rows, found.shape, found.knots)
-    functions = functions_of(found.shape, found.knots, x)
+    variable = dependence.shape.variable
+    alone = variable is not None and not variable.wave and not dependence.shape.of_command
+    columns = dependence.columns if alone else own_columns(rows).beside(dependence.columns)
+    value, spread = _coefficients(rows, columns, left, len(dependence.columns.penalty))
+    x = _grid(rows, dependence.shape, dependence.knots)
+    functions = functions_of(dependence.shape, dependence.knots, x)
     y = value @ functions
     half = BAND * np.sqrt(np.maximum(np.einsum("ig,ij,jg->g", functions, spread, functions), 0.0))
-    means, weight = _means(rows, found.shape, left, x), _weight(rows, found.shape, x)
-    if found.shape.carrier is LOST and variable is None:
+    means, weight = _means(rows, dependence.shape, left, x), _weight(rows, dependence.shape, x)
+    if dependence.shape.carrier is LOST and variable is None:
         # counted so far in what arrives, for residuals are referred to that: c / (1 + c) of all
         low, y, high = (c / (1.0 + c) for c in (y - half, y, y + half))
         return Curve(x, y, low, high, means, weight)
@@ -112,20 +112,20 @@ def _means(rows: Rows, shape: Shape, left: Array, x: Array) -> Array:
         return np.zeros((4, 0))
     carrier = shape.carrier.at(rows) * rows.root
     value = rows.at(shape.variable.name)
-    told = rows.checked & (np.abs(carrier) > TELLS * np.abs(carrier).max()) & np.isfinite(value)
+    visible = rows.checked & (np.abs(carrier) > TELLS * np.abs(carrier).max()) & np.isfinite(value)
     edges = x[np.linspace(0, len(x) - 1, BINS + 1).astype(int)]
-    found = []
+    means = []
     for low, high in zip(edges[:-1], edges[1:], strict=True):
-        own = told & (value >= low) & (value < high)
-        blocks = np.unique(rows.blocks[own])
+        cell = visible & (value >= low) & (value < high)
+        blocks = np.unique(rows.blocks[cell])
         if len(blocks) < 3:
             continue
-        c, r = carrier[own], left[own]
+        c, r = carrier[cell], left[cell]
         mean = float(c @ r / (c @ c))
-        sums = np.bincount(rows.blocks[own], c * (r - mean * c))[blocks]
+        sums = np.bincount(rows.blocks[cell], c * (r - mean * c))[blocks]
         half = BAND * float(np.sqrt(np.sum(sums**2) * len(blocks) / (len(blocks) - 1)) / (c @ c))
-        found.append((float(np.average(value[own], weights=c**2)), mean, mean - half, mean + half))
-    return np.array(found).T.reshape(4, -1)
+        means.append((float(np.average(value[cell], weights=c**2)), mean, mean - half, mean + half))
+    return np.array(means).T.reshape(4, -1)
 
 
 def shortened(dependence: Dependence) -> Dependence:

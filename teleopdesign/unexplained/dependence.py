@@ -124,16 +124,16 @@ def tested(
     rows: Rows, beside: Columns, shape: Shape, knots_and_columns: tuple[Array, Columns]
 ) -> Dependence:
     """Learn one dependence beside other columns and hold it against the checked rows."""
-    knots, own = knots_and_columns
+    knots, columns = knots_and_columns
     if shape.variable is not None and not shape.is_wave:
-        own = _smoothed(rows, beside, own, roughness(shape, knots))
-    together = beside.beside(own)
+        columns = _smoothed(rows, beside, columns, roughness(shape, knots))
+    together = beside.beside(columns)
     before, after = held_out(rows, beside), held_out(rows, together)
     score = gain_score(before, after, rows.blocks[rows.checked])
     return Dependence(
         shape=shape,
         knots=knots,
-        columns=own,
+        columns=columns,
         coefficients=together.solve(rows.residual * rows.root, rows.learnt)[len(beside.penalty) :],
         before=before,
         after=after,
@@ -143,18 +143,18 @@ def tested(
     )
 
 
-def _smoothed(rows: Rows, beside: Columns, own: Columns, rough: Array) -> Columns:
+def _smoothed(rows: Rows, beside: Columns, columns: Columns, rough: Array) -> Columns:
     """With the weight of roughness that predicts blocks of the rows learnt from best."""
     target = rows.residual * rows.root
     where = np.flatnonzero(rows.learnt)
-    together = beside.beside(own)
-    every, n = together.values, len(own.penalty)
+    together = beside.beside(columns)
+    every, n = together.values, len(columns.penalty)
     part = rows.blocks[where] % FOLDS
     held = [where[part == fold] for fold in range(FOLDS)]
     normal = np.array([every[k].T @ every[k] for k in held])
     gradient = np.array([every[k].T @ target[k] for k in held])
     seen = normal.sum(axis=0) - normal + together.penalty
-    size = np.trace(own.penalty) / (n * SMALLNESS)
+    size = np.trace(columns.penalty) / (n * SMALLNESS)
 
     def missed(weight: float) -> float:
         penalised = seen.copy()
@@ -164,7 +164,7 @@ def _smoothed(rows: Rows, beside: Columns, own: Columns, rough: Array) -> Column
         return float(bent - 2 * np.einsum("fi,fi->", x, gradient))
 
     weight = min(SMOOTHNESS.tolist(), key=missed)
-    return replace(own, penalty=own.penalty + weight * size * rough)
+    return replace(columns, penalty=columns.penalty + weight * size * rough)
 
 
 def is_not_itself(rows: Rows, beside: Columns, dependence: Dependence) -> bool:
@@ -174,9 +174,9 @@ def is_not_itself(rows: Rows, beside: Columns, dependence: Dependence) -> bool:
         return True
     expected = replace(variable, name=variable.expected, expected="")
     shape = replace(dependence.shape, variable=expected)
-    found = shape_columns(rows, shape, rows.residual)
-    return found is not None and (
-        tested(rows, beside, shape, found).explained > NOT_ITSELF * dependence.explained
+    columns = shape_columns(rows, shape, rows.residual)
+    return columns is not None and (
+        tested(rows, beside, shape, columns).explained > NOT_ITSELF * dependence.explained
     )
 
 
@@ -206,25 +206,25 @@ def dependences(
     target = rows.residual * rows.root
     whole = float(np.sum(target[rows.checked] ** 2))
     known = {s: shape_columns(rows, s, target) for s in SHAPES}
-    beside, found = own_columns(rows), list[Dependence]()
+    beside, chosen = own_columns(rows), list[Dependence]()
     first: tuple[Dependence, ...] = ()
-    while len(found) < most:
+    while len(chosen) < most:
         left = target - beside.values @ beside.solve(target, rows.learnt)
         tests = []
-        for shape, own in known.items():
-            if shape.is_wave and found:
-                own = shape_columns(rows, shape, left)
-            if own is not None:
-                tests.append(tested(rows, beside, shape, own))
+        for shape, columns in known.items():
+            if shape.is_wave and chosen:
+                columns = shape_columns(rows, shape, left)
+            if columns is not None:
+                tests.append(tested(rows, beside, shape, columns))
         first = first or tuple(sorted(tests, key=lambda t: t.squares))
         real = [
             t for t in tests if is_real(t, whole, floor_squares) and is_not_itself(rows, beside, t)
         ]
         if not real:
             break
-        found.append(_simplest(real))
-        beside = beside.beside(found[-1].columns)
-    return tuple(found), first
+        chosen.append(_simplest(real))
+        beside = beside.beside(chosen[-1].columns)
+    return tuple(chosen), first
 
 
 def _simplest(real: list[Dependence]) -> Dependence:

@@ -54,8 +54,8 @@ class BodyUnexplained:
     floor: what sensors alone would leave of it;  after: error once what was found is taken out,
     while it slides
     at_rest: part of the squares that is left where no motion can be told
-    found: what the residual depends on, largest first;  tests: of each dependence looked at, best
-    first;  views: name -> graph of the residual
+    dependences: what the residual depends on, largest first
+    tests: of each dependence looked at, best first;  views: name -> graph of the residual
     """
 
     body: str
@@ -64,7 +64,7 @@ class BodyUnexplained:
     floor: float
     after: float
     at_rest: float
-    found: tuple[Described, ...]
+    dependences: tuple[Described, ...]
     tests: tuple[Dependence, ...]
     whiteness: Whiteness
     views: Mapping[str, Graph]
@@ -77,7 +77,7 @@ class BodyUnexplained:
     @property
     def is_adequate(self) -> bool:
         """Whether nothing is left that sensors would not leave."""
-        return not self.found and self.floors <= CRITERIA.adequate
+        return not self.dependences and self.floors <= CRITERIA.adequate
 
 
 def described(
@@ -87,18 +87,19 @@ def described(
 
     counted: part of the noise floor that counts
     """
-    own = replace(prepared, stretches=tuple(s for s in prepared.stretches if s.motion.body == body))
-    rows = rows_of(model, own, body)
-    floor = counted * noise_floor(model, own, np.random.default_rng(seed)).value
+    stretches = tuple(s for s in prepared.stretches if s.motion.body == body)
+    of_body = replace(prepared, stretches=stretches)
+    rows = rows_of(model, of_body, body)
+    floor = counted * noise_floor(model, of_body, np.random.default_rng(seed)).value
     used = rows.checked
     weight = np.concatenate([np.full(len(a.stretch.keep), a.stretch.weight) for a in rows.alongs])
     whole = float(np.sum((weight * rows.measured**2)[used]))
     squares = float(np.sum((weight * rows.residual**2)[used]))
     resting = float(np.sum((weight * rows.residual**2)[used & (rows.root == 0)]))
-    found, tests = dependences(rows, floor**2 * whole)
+    chosen, tests = dependences(rows, floor**2 * whole)
     whiteness = whiteness_of(rows)
-    told = _described(rows, found)
-    after = told[-1].dependence.squares if told else squares
+    descriptions = _described(rows, chosen)
+    after = descriptions[-1].dependence.squares if descriptions else squares
     return BodyUnexplained(
         body=body,
         axis=rows.axis,
@@ -106,7 +107,7 @@ def described(
         floor=floor,
         after=float(np.sqrt(after / whole)),
         at_rest=resting / max(squares, 1e-300),
-        found=told,
+        dependences=descriptions,
         tests=tuple(shortened(t) for t in tests),
         whiteness=whiteness,
         views=views_of(rows, whiteness),
@@ -114,7 +115,7 @@ def described(
 
 
 def _described(rows: Rows, found: tuple[Dependence, ...]) -> tuple[Described, ...]:
-    told = []
+    descriptions = []
     beside = own_columns(rows)
     target = rows.residual * rows.root
     for i, dependence in enumerate(found):
@@ -126,9 +127,9 @@ def _described(rows: Rows, found: tuple[Dependence, ...]) -> tuple[Described, ..
         if not said:
             break
         graph = curve_graph(dependence.shape, curve, rows.axis)
-        told.append(Described(shortened(dependence), curve, formula, sides, said, graph))
+        descriptions.append(Described(shortened(dependence), curve, formula, sides, said, graph))
         beside = beside.beside(dependence.columns)
-    return tuple(told)
+    return tuple(descriptions)
 
 
 def findings_of(part: BodyUnexplained, *, name_body: bool) -> tuple[Finding, ...]:
@@ -141,12 +142,12 @@ def findings_of(part: BodyUnexplained, *, name_body: bool) -> tuple[Finding, ...
         said = f"what the model leaves ({error} of the force) is what its sensors would leave"
         return (Finding("what is left", "fine", f"{said}.", numbers, where, time),)
     said = f"the model leaves {error} of the force, {floors} times what its sensors would leave"
-    found = [Finding("what is left", "warning", f"{said}.", numbers, where, time)]
-    for one in part.found:
-        found.append(_finding(one, where))
+    findings = [Finding("what is left", "warning", f"{said}.", numbers, where, time)]
+    for one in part.dependences:
+        findings.append(_finding(one, where))
     if part.floors > CRITERIA.adequate:
-        found += _rest(part, where)
-    return tuple(found)
+        findings += _rest(part, where)
+    return tuple(findings)
 
 
 def _finding(one: Described, where: str) -> Finding:
@@ -180,23 +181,23 @@ def _rest(part: BodyUnexplained, where: str) -> list[Finding]:
         numbers |= {"lag": float(lag), "correlation": float(r)}
         said += f"; it goes along with itself {number(1e3 * lag)} ms later (correlation {r:.2f})"
         said += ", which noise of the sensors would not"
-    found = [Finding("frequency", "note", f"{said}.", numbers, where, part.views["frequency"])]
+    findings = [Finding("frequency", "note", f"{said}.", numbers, where, part.views["frequency"])]
     if part.at_rest > MOSTLY:
         said = f"{100 * part.at_rest:.0f} % of what is left is there while no motion can be told."
         velocity = part.views["velocity"]
-        found.append(Finding("rest", "note", said, {"share": part.at_rest}, where, velocity))
+        findings.append(Finding("rest", "note", said, {"share": part.at_rest}, where, velocity))
     floors = part.after / part.floor if part.floor else float("inf")
     if floors > CRITERIA.adequate and part.after**2 > UNDESCRIBED * part.error**2:
-        what = "Beside that" if part.found else f"None of {len(SHAPES)} dependences is sure:"
+        what = "Beside that" if part.dependences else f"None of {len(SHAPES)} dependences is sure:"
         verb = f"{number(floors)} times the sensors' noise"
         said = (
             f"{what}, {verb} stays undescribed."
-            if part.found
+            if part.dependences
             else f"{what} {verb} stay undescribed."
         )
-        found.append(
+        findings.append(
             Finding(
                 "undescribed", "note", said, {"noise floors": floors}, where, part.views["time"]
             )
         )
-    return found
+    return findings

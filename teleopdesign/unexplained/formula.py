@@ -56,44 +56,44 @@ class Formula:
         return list(np.split(values, edges))
 
 
-def formula_for(rows: Rows, beside: Columns, found: Dependence) -> Formula | None:
+def formula_for(rows: Rows, beside: Columns, dependence: Dependence) -> Formula | None:
     """The formula with the fewest terms that does as well as the smooth curve; None if none does.
 
     beside: columns of the model's own parameters and of what was found before
     """
-    variable = found.shape.variable
+    variable = dependence.shape.variable
     if variable is None or variable.signed:
         return None
-    terms = _terms(rows, beside, found)
-    every = _columns(rows, found.shape, tuple(terms)).values[rows.learnt]
+    terms = _terms(rows, beside, dependence)
+    every = _columns(rows, dependence.shape, tuple(terms)).values[rows.learnt]
     chosen: tuple[Term, ...] = ()
     for _ in range(MOST):
-        own = beside.beside(_columns(rows, found.shape, chosen)) if chosen else beside
-        search = _Search.beside(rows, own)
+        explained = beside.beside(_columns(rows, dependence.shape, chosen)) if chosen else beside
+        search = _Search.beside(rows, explained)
         ranked = search.ranked(terms, every)
         # what has no number to be found is simpler
         simple = [t for t in ranked if not t.is_found]
         for term in dict.fromkeys((*simple[:1], ranked[0])):
-            tried = (*chosen, _refined(rows, search, found.shape, term))
-            formula = _judged(rows, beside, found, tried)
+            longer = (*chosen, _refined(rows, search, dependence.shape, term))
+            formula = _judged(rows, beside, dependence, longer)
             if formula is not None:
                 return formula
-        chosen = tried
+        chosen = longer
     return None
 
 
-def _terms(rows: Rows, beside: Columns, found: Dependence) -> list[Term]:
-    variable = found.shape.variable
+def _terms(rows: Rows, beside: Columns, dependence: Dependence) -> list[Term]:
+    variable = dependence.shape.variable
     assert variable is not None
     if variable.wave:
-        return [Term("wave", float(found.knots[0]))]
+        return [Term("wave", float(dependence.knots[0]))]
     waving = {"position": POSITION_WAVE, "time": TIME_WAVE}.get(variable.name)
     if waving is None:
-        return terms_of(variable, found.knots, 0.0)
+        return terms_of(variable, dependence.knots, 0.0)
     target = rows.residual * rows.root
     left = target - beside.values @ beside.solve(target, rows.learnt)
-    wave = wave_number(rows, left, replace(found.shape, variable=waving))
-    return terms_of(variable, found.knots, wave)
+    wave = wave_number(rows, left, replace(dependence.shape, variable=waving))
+    return terms_of(variable, dependence.knots, wave)
 
 
 @dataclass(frozen=True)
@@ -114,10 +114,10 @@ class _Search:
 
     def gains(self, columns: Array) -> Array:
         """Squares that each column takes away by itself (k,)."""
-        own = columns - self.span @ (self.span.T @ columns)
-        size = np.sum(own**2, axis=0)
+        beyond_span = columns - self.span @ (self.span.T @ columns)
+        size = np.sum(beyond_span**2, axis=0)
         kept = size > 1e-8 * np.sum(columns**2, axis=0)
-        return np.where(kept, (own.T @ self.left) ** 2 / np.where(kept, size, 1.0), 0.0)
+        return np.where(kept, (beyond_span.T @ self.left) ** 2 / np.where(kept, size, 1.0), 0.0)
 
     def ranked(self, terms: list[Term], columns: Array) -> list[Term]:
         """Those first whose columns take most away; a sinusoid's two are nearly orthogonal."""
@@ -152,30 +152,30 @@ def _refined(rows: Rows, search: _Search, shape: Shape, term: Term) -> Term:
 
     wide = 0.25 * abs(term.number)
     bounds = (term.number - wide, term.number + wide)
-    found = minimize_scalar(lost, bounds=bounds, method="bounded", options={"maxiter": 12})
-    return Term(term.kind, float(found.x))
+    minimum = minimize_scalar(lost, bounds=bounds, method="bounded", options={"maxiter": 12})
+    return Term(term.kind, float(minimum.x))
 
 
 def _judged(
-    rows: Rows, beside: Columns, found: Dependence, terms: tuple[Term, ...]
+    rows: Rows, beside: Columns, dependence: Dependence, terms: tuple[Term, ...]
 ) -> Formula | None:
     """The formula of these terms, if each is sure and they hold on the checked rows."""
-    own = _columns(rows, found.shape, terms)
-    together = beside.beside(own)
+    columns = _columns(rows, dependence.shape, terms)
+    together = beside.beside(columns)
     after = held_out(rows, together)
-    before = float(found.before @ found.before)
-    share = (before - float(after @ after)) / (before - found.squares)
-    sure = gain_score(found.before, after, rows.blocks[rows.checked]) > CRITERIA.sure
-    learnt, k = rows.learnt, own.values.shape[1]
+    before = float(dependence.before @ dependence.before)
+    share = (before - float(after @ after)) / (before - dependence.squares)
+    sure = gain_score(dependence.before, after, rows.blocks[rows.checked]) > CRITERIA.sure
+    learnt, k = rows.learnt, columns.values.shape[1]
     target = rows.residual * rows.root
     value = together.solve(target, learnt)
     left = (target - together.values @ value)[learnt]
     errors = standard_errors(together.values[learnt], left, rows.blocks[learnt])[-k:]
-    formula = Formula(found.shape, terms, value[-k:], errors, share)
-    told = all(
+    formula = Formula(dependence.shape, terms, value[-k:], errors, share)
+    is_significant = all(
         np.hypot.reduce(c) > TOLD * np.hypot.reduce(e)
         for (_, c), e in zip(formula.split(), formula.split_errors(), strict=True)
     )
     # a dependence that is a sinusoid is its own formula
-    holds = found.shape.is_wave or (share > HOLDS and sure and told)
+    holds = dependence.shape.is_wave or (share > HOLDS and sure and is_significant)
     return formula if holds else None

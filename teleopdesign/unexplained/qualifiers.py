@@ -43,19 +43,19 @@ class Contrast:
         return self.sides[1 - weak] if self.differs and self.sizes[weak] < ONLY * strong else ""
 
 
-def contrasts(rows: Rows, found: Dependence, left: Array) -> tuple[Contrast, ...]:
+def contrasts(rows: Rows, dependence: Dependence, left: Array) -> tuple[Contrast, ...]:
     """The dependence's size forward and backward, after a rest and after a mere reversal.
 
     left: weighted residual (n,) that it was found in
     """
-    whole = found.columns.values @ found.coefficients
+    whole = dependence.columns.values @ dependence.coefficients
     direction, rested = rows.at("direction"), rows.at("rested")
     pairs = (
         (("forward", "backward"), direction > 0, direction < 0),
         (("after it has rested", "after a mere reversal"), rested >= RESTED, rested < RESTED),
     )
-    told = [_contrast(rows, sides, a, b, whole, left) for sides, a, b in pairs]
-    return tuple(c for c in told if c is not None)
+    candidates = [_contrast(rows, sides, a, b, whole, left) for sides, a, b in pairs]
+    return tuple(c for c in candidates if c is not None)
 
 
 def _contrast(

@@ -46,15 +46,15 @@ def regions_of(curve: Curve, *, signed: bool = False) -> tuple[Region, ...]:
     parts = [slice(None, half), slice(half, None)] if signed else [slice(None)]
     squares = curve.weight * curve.y**2
     whole = max(float(squares.sum()), 1e-300)
-    found = []
+    regions = []
     for part in parts:
         x, y, low, high = (a[part] for a in (curve.x, curve.y, curve.low, curve.high))
         sure = np.where((low > 0) | (high < 0), np.sign(y), 0.0)
         for run in _runs(sure):
             share = float(squares[part][run].sum()) / whole
-            found.append(_region(x, y, run, share, curve.weight[part]))
-    found.sort(key=lambda r: -r.share)
-    return tuple(found)
+            regions.append(_region(x, y, run, share, curve.weight[part]))
+    regions.sort(key=lambda r: -r.share)
+    return tuple(regions)
 
 
 def named(regions: tuple[Region, ...]) -> tuple[Region, ...]:

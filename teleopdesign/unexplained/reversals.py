@@ -33,14 +33,14 @@ def since_reversal(
     rest: s without a told motion after which the same direction counts as a new start
     """
     n = len(direction)
-    told = np.flatnonzero(direction)
+    moving = np.flatnonzero(direction)
     zero = np.zeros(n)
-    if not len(told):
+    if not len(moving):
         return SinceReversal(zero, zero, zero, np.zeros(n, dtype=bool))
-    gap = np.diff(told, prepend=told[0]) * sample_time
-    turned = np.diff(direction[told].astype(int), prepend=0) != 0
+    gap = np.diff(moving, prepend=moving[0]) * sample_time
+    turned = np.diff(direction[moving].astype(int), prepend=0) != 0
     onset = turned | (gap > rest)
-    first = told[onset]
+    first = moving[onset]
     last = np.searchsorted(first, np.arange(n), side="right") - 1
     known = last >= 0
     began = first[np.maximum(last, 0)]

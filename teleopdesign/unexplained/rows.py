@@ -138,12 +138,12 @@ def _splits(
     check = np.repeat([s.use == "check" for s in stretches], [len(s.keep) for s in stretches])
     if check.any():
         return ((~check, check),)
-    found = []
+    splits = []
     for _, unseen in folds(stretches):
         held = [np.isin(s.keep, u.keep) for s, u in zip(stretches, unseen, strict=True)]
         out = np.concatenate(held)
-        found.append((~out, out))
-    return tuple(found)
+        splits.append((~out, out))
+    return tuple(splits)
 
 
 def _along(model: Model, stretch: Stretch) -> Along:

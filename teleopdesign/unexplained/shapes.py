@@ -158,19 +158,19 @@ def basis(variable: Variable, knots: Array, values: Array) -> Array:
         return np.vstack([np.cos(turn), np.sin(turn)]) * known
     size = np.abs(values) if variable.signed else values
     # at rest friction is that of the slowest motion that is told
-    found = _hats(np.maximum(size, knots[0]) if variable.bent else size, knots) * known
-    return np.vstack([found * (values > 0), found * (values < 0)]) if variable.signed else found
+    hats = _hats(np.maximum(size, knots[0]) if variable.bent else size, knots) * known
+    return np.vstack([hats * (values > 0), hats * (values < 0)]) if variable.signed else hats
 
 
 def _hats(values: Array, knots: Array) -> Array:
     """Lines between knots, continued beyond the outer ones: (k, n)."""
     place = np.clip(np.searchsorted(knots, values, side="right") - 1, 0, len(knots) - 2)
     part = (values - knots[place]) / (knots[place + 1] - knots[place])
-    found = np.zeros((len(knots), len(values)))
+    hats = np.zeros((len(knots), len(values)))
     each = np.arange(len(values))
-    found[place, each] = 1.0 - part
-    found[place + 1, each] = part
-    return found
+    hats[place, each] = 1.0 - part
+    hats[place + 1, each] = part
+    return hats
 
 
 def functions_of(shape: Shape, knots: Array, values: Array) -> Array:
@@ -178,10 +178,10 @@ def functions_of(shape: Shape, knots: Array, values: Array) -> Array:
     variable = shape.variable
     if variable is None:
         return np.ones((1, len(values)))
-    found = basis(variable, knots, values)
+    functions = basis(variable, knots, values)
     # without a command there is none to lose
     of_command = shape.carrier is FORCE and shape.of_command
-    return found - basis(variable, knots, np.zeros(1)) * of_command
+    return functions - basis(variable, knots, np.zeros(1)) * of_command
 
 
 def columns_of(shape: Shape, knots: Array, rows: Rows) -> Array:
@@ -192,8 +192,8 @@ def columns_of(shape: Shape, knots: Array, rows: Rows) -> Array:
 
 def columns_from(shape: Shape, rows: Rows, functions: Callable[[Along], Array]) -> Array:
     """What the residual would show (n, k) of functions (k, samples) times the shape's carrier."""
-    found = rows.lowpassed(lambda along: shape.carrier.along(along) * functions(along))
-    return _referred(found, rows) if shape.of_command else found
+    columns = rows.lowpassed(lambda along: shape.carrier.along(along) * functions(along))
+    return _referred(columns, rows) if shape.of_command else columns
 
 
 def _referred(columns: Array, rows: Rows) -> Array:
@@ -203,8 +203,8 @@ def _referred(columns: Array, rows: Rows) -> Array:
     residual and explains nothing: see `force_error.referred`.
     """
     learnt = rows.learnt
-    own = (rows.root**2 * rows.measured)[learnt]
-    share = own @ columns[learnt] / float(own @ rows.measured[learnt])
+    carried = (rows.root**2 * rows.measured)[learnt]
+    share = carried @ columns[learnt] / float(carried @ rows.measured[learnt])
     return columns - np.outer(rows.residual, share)
 
 

@@ -71,16 +71,15 @@ def _view(rows: Rows, signal: str, quantity: str, words: str) -> Graph:
     fy, y_label = label("residual", "force", rows.axis, float(np.max(np.abs(rows.residual))))
     x, y = fx * value, fy * rows.residual
     series = []
-    for name, own in (("forward", direction > 0), ("backward", direction < 0)):
-        chosen = np.flatnonzero(own & known)
+    for name, in_direction in (("forward", direction > 0), ("backward", direction < 0)):
+        chosen = np.flatnonzero(in_direction & known)
         chosen = chosen[:: max(1, len(chosen) // CLOUD)]
         series.append(Series(name, x[chosen], y[chosen], "rest"))
     if signal == "time":  # records lie over each other
         return Graph(x_label, y_label, tuple(series))
-    for name, own in (("mean forward", direction > 0), ("mean backward", direction < 0)):
-        if signal == "direction":
-            own = own & known
-        mean = _binned(x[own & known], y[own & known], rows.blocks[own & known])
+    for name, in_direction in (("mean forward", direction > 0), ("mean backward", direction < 0)):
+        used = in_direction & known
+        mean = _binned(x[used], y[used], rows.blocks[used])
         series.append(Series(name, mean[0], mean[1], "trend", mean[2], mean[3]))
     return Graph(x_label, y_label, tuple(series))
 
@@ -91,14 +90,14 @@ def _binned(x: Array, y: Array, blocks: NDArray[np.intp]) -> Array:
         return np.zeros((4, 0))
     edges = np.unique(np.quantile(x, np.linspace(0, 1, BINS + 1)))
     place = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, max(len(edges) - 2, 0))
-    found = []
+    bins = []
     for k in np.unique(place):
-        own = place == k
-        mean = float(y[own].mean())
-        sums = np.bincount(blocks[own], y[own] - mean)
-        half = BAND * float(np.sqrt(np.sum(sums**2))) / int(own.sum())
-        found.append((float(x[own].mean()), mean, mean - half, mean + half))
-    return np.array(found).T
+        in_bin = place == k
+        mean = float(y[in_bin].mean())
+        sums = np.bincount(blocks[in_bin], y[in_bin] - mean)
+        half = BAND * float(np.sqrt(np.sum(sums**2))) / int(in_bin.sum())
+        bins.append((float(x[in_bin].mean()), mean, mean - half, mean + half))
+    return np.array(bins).T
 
 
 def _frequency(rows: Rows, whiteness: Whiteness) -> Graph:

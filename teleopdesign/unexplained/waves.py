@@ -32,14 +32,14 @@ def wave_number(rows: Rows, left: Array, shape: Shape) -> float:
     reach = float(np.ptp(values))
     step = 1.0 / (FINENESS * reach)
     if shape.variable.name == "time":
-        found = _frequency(rows, used, carrier * left, step)
+        coarse = _frequency(rows, used, carrier * left, step)
     else:
-        found = _along(values, carrier, left, step)
+        coarse = _along(values, carrier, left, step)
 
     def lost(k: float) -> float:
         return -_gain(np.exp(2j * np.pi * k * values), carrier, left)
 
-    bounds = (max(found - step, 0.5 * step), found + step)
+    bounds = (max(coarse - step, 0.5 * step), coarse + step)
     return float(minimize_scalar(lost, bounds=bounds, method="bounded").x)
 
 
@@ -71,9 +71,9 @@ def _frequency(rows: Rows, used: NDArray[np.bool_], product: Array, step: float)
     frequency = fft.rfftfreq(length, interval)
     total = np.zeros(len(frequency), dtype=complex)
     for i in np.unique(number):
-        own = number == i
-        place = np.round((time[own] - time[own][0]) / interval).astype(int) % length
-        line = np.bincount(place, product[own], minlength=length)[:length]
-        total += fft.rfft(line) * np.exp(-2j * np.pi * frequency * time[own][0])
+        in_stretch = number == i
+        place = np.round((time[in_stretch] - time[in_stretch][0]) / interval).astype(int) % length
+        line = np.bincount(place, product[in_stretch], minlength=length)[:length]
+        total += fft.rfft(line) * np.exp(-2j * np.pi * frequency * time[in_stretch][0])
     total[frequency < 2 * step] = 0.0
     return float(frequency[int(np.argmax(np.abs(total)))])

@@ -57,10 +57,10 @@ def whiteness_of(rows: Rows) -> Whiteness:
     steps = [a.stretch.motion.sample_time * a.stretch.weight for a in rows.alongs]
     for i, lag in enumerate(lags):
         sums = np.zeros(int(rows.blocks.max()) + 1)
-        for own, step in zip(parts, steps, strict=True):
+        for part, step in zip(parts, steps, strict=True):
             k = max(1, round(lag / step))
-            if k < len(own):
-                np.add.at(sums, rows.blocks[own[:-k]], left[own[k:]] * left[own[:-k]])
+            if k < len(part):
+                np.add.at(sums, rows.blocks[part[:-k]], left[part[k:]] * left[part[:-k]])
         correlation[i] = sums.sum() / max(whole, 1e-300)
         # neighbouring blocks share samples: their products are taken in
         spread = float(sums @ sums + 2 * (sums[1:] @ sums[:-1]))
@@ -74,11 +74,11 @@ def _spectrum(rows: Rows, parts: list[NDArray[np.intp]], steps: list[float]) -> 
     """Rms per band of a hertz or more, of the residual and of the measured force."""
     edges = np.concatenate([[0.0], np.geomspace(1.0, rows.bandwidth, 25)])
     squares = np.zeros((2, len(edges) - 1))
-    for own, step in zip(parts, steps, strict=True):
-        frequency = np.fft.rfftfreq(len(own), step)
+    for part, step in zip(parts, steps, strict=True):
+        frequency = np.fft.rfftfreq(len(part), step)
         band = np.clip(np.searchsorted(edges, frequency, side="right") - 1, 0, len(edges) - 2)
         for j, signal in enumerate((rows.residual, rows.measured)):
-            power = 2 * np.abs(np.fft.rfft(signal[own])) ** 2 / len(own)
+            power = 2 * np.abs(np.fft.rfft(signal[part])) ** 2 / len(part)
             np.add.at(squares[j], band, power)
     middle = np.sqrt(np.maximum(edges[1:] * edges[:-1], 0.25 * edges[1:] ** 2))
     return np.vstack([middle, np.sqrt(squares / len(rows.residual))])

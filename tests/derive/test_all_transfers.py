@@ -47,19 +47,19 @@ TWO_PORT = {"Z_mm", "Z_ms", "Z_sm", "Z_ss", "h_11", "h_12", "h_21", "h_22", "Z_t
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_shipped_diagram_has_every_transfer_within_two_seconds_each(name):
     start = time.perf_counter()
-    found = all_transfers(shipped(name))
-    each = (time.perf_counter() - start) / len(found.found)
-    assert each < 2 and not found.undone
-    assert (TWO_PORT if name == "teleoperator" else INTERFACE) <= set(found.found)
+    transfers = all_transfers(shipped(name))
+    each = (time.perf_counter() - start) / len(transfers.transfers)
+    assert each < 2 and not transfers.undone
+    assert (TWO_PORT if name == "teleoperator" else INTERFACE) <= set(transfers.transfers)
 
 
 def test_what_a_driver_works_against_is_the_inverse_of_what_it_moves():
     for diagram in (shipped("haptic-interface"), pair(ANY, ANY, ANY)):
-        found = all_transfers(diagram).found
+        transfers = all_transfers(diagram).transfers
         for block in diagram.bodies:
             if isinstance(block, Moving):
-                impedance = found[f"{block.driver}/{block.motion}"].expression
-                moved = found[f"{block.motion}/{block.driver}"].expression
+                impedance = transfers[f"{block.driver}/{block.motion}"].expression
+                moved = transfers[f"{block.motion}/{block.driver}"].expression
                 assert proved_equal(impedance * moved, sp.S(1))
 
 
@@ -89,7 +89,7 @@ def test_transfers_solve_the_equations_of_the_wiring_for_matrices(diagram):
     singular = np.linalg.matrix_rank(left) < len(left)
     output = unknown[-1]
     try:
-        found = transfer(diagram, output, seconds=2.0)
+        transfers = transfer(diagram, output, seconds=2.0)
     except ModelError as error:
         assume("within" not in str(error))
         assert singular, str(error)
@@ -99,7 +99,7 @@ def test_transfers_solve_the_equations_of_the_wiring_for_matrices(diagram):
     k = 2 * unknown.index(output)
     for i, signal in enumerate(diagram.outside):
         expected = solved[k : k + 2, 2 * i : 2 * i + 2]
-        own = numeric(sp.sympify(found[signal]), values)
+        own = numeric(sp.sympify(transfers[signal]), values)
         # weights such as 0.5 are floating numbers, and inverses one inside the other lose digits;
         # a wrong term is off by the size of the blocks
         limit = 1e-7 * (1 + np.abs(expected).max())
@@ -174,10 +174,10 @@ def test_a_loop_that_has_no_solution_at_its_values_only_is_told():
         {"a": "force"},
         measured=("e",),
     )
-    found = all_transfers(diagram)["e/a"]
-    assert proved_equal(found.expression, (1 - block_symbol("C")) ** -1)
+    transfers = all_transfers(diagram)["e/a"]
+    assert proved_equal(transfers.expression, (1 - block_symbol("C")) ** -1)
     with pytest.raises(ModelError, match="e/a: a loop has no solution at these values"):
-        found.system()
+        transfers.system()
     (data,) = all_transfers(diagram).as_data()["transfers"]
     assert "no solution" in data["no_system"]
 
@@ -185,8 +185,8 @@ def test_a_loop_that_has_no_solution_at_its_values_only_is_told():
 def test_numbers_are_those_of_the_blocks():
     """A mass on a damper: x/f = 1/(m s^2 + d s)."""
     diagram = haptic_interface(body(0.5, viscous__damping=2.0))
-    found = all_transfers(diagram)
-    system, left_out = found["L/R_V"].system()
+    transfers = all_transfers(diagram)
+    system, left_out = transfers["L/R_V"].system()
     assert left_out == ()
     np.testing.assert_allclose(system.num[0][0], [2.0], rtol=1e-12)  # of s^2 + 4 s
     np.testing.assert_allclose(system.den[0][0], [1.0, 4.0, 0.0], rtol=1e-12)
@@ -199,9 +199,9 @@ def test_what_has_no_linear_form_is_named():
 
 
 def test_a_derivation_that_takes_too_long_is_named():
-    found = all_transfers(shipped("haptic-interface"), seconds=-1.0)
-    assert not found.found
-    assert "was not derived within" in found.undone["T_H"] and "T_H: " in found.text()
+    transfers = all_transfers(shipped("haptic-interface"), seconds=-1.0)
+    assert not transfers.transfers
+    assert "was not derived within" in transfers.undone["T_H"] and "T_H: " in transfers.text()
 
 
 def test_a_transfer_that_is_not_there_is_told_with_the_nearest():

@@ -171,8 +171,8 @@ def test_the_predicted_separation_is_found_on_an_independent_simulator(one_speed
         if s.truth is proposal.rivals[truth] and s.other is proposal.rivals[other]
     )
     # the servo follows the reference in a way of its own, and chance takes part
-    assert after.found(truth=truth, other=other) == pytest.approx(predicted, rel=0.4)
-    assert after.found(truth=other, other=truth) == 0.0
+    assert after.separation(truth=truth, other=other) == pytest.approx(predicted, rel=0.4)
+    assert after.separation(truth=other, other=truth) == 0.0
 
 
 def test_two_laws_that_need_the_same_force_are_said_to_be_told_by_nothing(tmp_path):
@@ -276,7 +276,7 @@ def test_what_is_predicted_is_found_and_then_named(case, number, tmp_path):
         for s in proposal.separations
         if s.truth is proposal.rivals[truth] and s.other is proposal.rivals[other]
     )
-    found = after.found(truth=truth, other=other)
+    found = after.separation(truth=truth, other=other)
     # found over predicted lay between 0.4 and 1.1 when this was written; the servo is not known
     assert 0.3 * predicted < found < 2.0 * predicted
     again = diagnosed(extended(experiment, new), MOST)

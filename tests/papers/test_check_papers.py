@@ -58,7 +58,7 @@ h = sp.Symbol("h", nonnegative=True)
 
 def outcome_is_as_stated(name):
     result = check(STATEMENTS[name])
-    assert result.as_stated, (result.outcome, result.found, [str(f) for f in result.figures])
+    assert result.as_stated, (result.outcome, result.details, [str(f) for f in result.figures])
     return result
 
 

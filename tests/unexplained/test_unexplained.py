@@ -147,7 +147,7 @@ def test_what_is_found_is_drawn(failure):
 
     figure = failure.plot()
     panels = [ax for ax in figure.axes if ax.axison]
-    assert len(panels) == len(failure.parts[0].views) + len(failure.parts[0].found)
+    assert len(panels) == len(failure.parts[0].views) + len(failure.parts[0].dependences)
     assert "Below" in figure.get_suptitle()
     plt.close(figure)
 

@@ -28,34 +28,34 @@ __all__ = ["check_signals"]
 def check_signals(experiment: Experiment) -> tuple[Finding, ...]:
     """Plain findings about clock and channels of every record, warnings and notes before "fine"."""
     read = signals(experiment)
-    found: list[Finding] = []
+    findings: list[Finding] = []
     for record in experiment.records:
-        own = [s for s in read if s.record is record]
-        found += check_clock(experiment, record, own)
-        found += check_segments(record)
-        for signal in own:
-            found += _of_a_channel(signal, [s for s in own if s is not signal])
-        for position, velocity in _pairs(own):
-            found += check_velocity(position, velocity)
-    if not any(f.topic == "sample clock" for f in found):
-        found.append(clock_in_order(experiment))
-    if not any(f.concern == "warning" and f.topic != "sample clock" for f in found):
-        found.append(_channels_in_order(read))
-    return tuple(found)
+        record_signals = [s for s in read if s.record is record]
+        findings += check_clock(experiment, record, record_signals)
+        findings += check_segments(record)
+        for signal in record_signals:
+            findings += _of_a_channel(signal, [s for s in record_signals if s is not signal])
+        for position, velocity in _pairs(record_signals):
+            findings += check_velocity(position, velocity)
+    if not any(f.topic == "sample clock" for f in findings):
+        findings.append(clock_in_order(experiment))
+    if not any(f.concern == "warning" and f.topic != "sample clock" for f in findings):
+        findings.append(_channels_in_order(read))
+    return tuple(findings)
 
 
 def _of_a_channel(signal: Signal, others: list[Signal]) -> list[Finding]:
     constant = check_constant(signal)
     if constant or signal.channel.quantity == "velocity":
         return constant  # a velocity is held against the position, and used for nothing else
-    found = [*check_stuck(signal), *check_clipped(signal), *check_outliers(signal)]
-    found += [*check_jumps(signal), *check_repeats(signal), *check_update(signal)]
-    return found + check_steps(signal, others) + check_noise(signal, others)
+    findings = [*check_stuck(signal), *check_clipped(signal), *check_outliers(signal)]
+    findings += [*check_jumps(signal), *check_repeats(signal), *check_update(signal)]
+    return findings + check_steps(signal, others) + check_noise(signal, others)
 
 
-def _pairs(own: list[Signal]) -> list[tuple[Signal, Signal]]:
+def _pairs(record_signals: list[Signal]) -> list[tuple[Signal, Signal]]:
     """Position and velocity channel of each body that has both."""
-    by = {(s.channel.body, s.channel.quantity): s for s in own}
+    by = {(s.channel.body, s.channel.quantity): s for s in record_signals}
     return [
         (s, by[(body, "velocity")])
         for (body, quantity), s in by.items()

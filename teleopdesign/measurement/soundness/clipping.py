@@ -44,7 +44,7 @@ def visits(x: Array, limit: float, step: float, *, noisy: bool) -> tuple[int, in
 
 def check_clipped(signal: Signal) -> list[Finding]:
     """Largest and smallest value of a channel, where it runs flat against them."""
-    found = []
+    findings = []
     noisy = reading_noise(signal.values) > STEPS * signal.step > 0
     for name, value in (("largest", signal.values.max()), ("smallest", signal.values.min())):
         count = spent = 0
@@ -61,7 +61,7 @@ def check_clipped(signal: Signal) -> list[Finding]:
             if commanded
             else "the channel is clipped: cut these out, or record with a larger range"
         )
-        found.append(
+        findings.append(
             Finding(
                 "clipped channels",
                 "note" if commanded else "warning",
@@ -72,4 +72,4 @@ def check_clipped(signal: Signal) -> list[Finding]:
                 signal.around(int(at[0]), at, name=f"at the {name} value"),
             )
         )
-    return found
+    return findings

@@ -46,7 +46,7 @@ def check_clock(experiment: Experiment, record: Record, read: list[Signal]) -> l
     read: the record's channels
     """
     h = record.sample_time
-    found = []
+    findings = []
     stamps = stamps_of(experiment, record)
     off = np.zeros(1) if stamps is None else stamps - record.time
     rms = float(np.sqrt(np.mean(off**2)))
@@ -58,7 +58,7 @@ def check_clock(experiment: Experiment, record: Record, read: list[Signal]) -> l
             "stamp less uniform time (ms)",
             (Series("stamps", record.time[some], 1e3 * off[some]),),
         )
-        found.append(
+        findings.append(
             Finding(
                 "sample clock",
                 "note" if rms < 5 * UNIFORM * h else "warning",
@@ -72,8 +72,8 @@ def check_clock(experiment: Experiment, record: Record, read: list[Signal]) -> l
         )
     for signal in read:
         if signal.channel.quantity == "position":
-            found += _scatter(signal, stamped=stamps is not None)
-    return found
+            findings += _scatter(signal, stamped=stamps is not None)
+    return findings
 
 
 def _scatter(signal: Signal, *, stamped: bool) -> list[Finding]:

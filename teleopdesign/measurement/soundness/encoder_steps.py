@@ -31,8 +31,8 @@ def true_step(x: Array, stated: float) -> float | None:
     if gridded(x, stated) < ON_GRID:
         return None
     reached, seen = float(np.ptp(x)), round(reading_step(x) / stated)
-    tried = [k for k in (*MULTIPLES, seen) if k > 1 and k * stated < 0.1 * reached]
-    on = [k for k in tried if gridded(x, k * stated) > ON_GRID]
+    multiples = [k for k in (*MULTIPLES, seen) if k > 1 and k * stated < 0.1 * reached]
+    on = [k for k in multiples if gridded(x, k * stated) > ON_GRID]
     return stated * max(on, default=1)
 
 

@@ -70,8 +70,8 @@ def repeats(x: Array, step: float) -> NDArray[np.intp]:
     usual = (x[high] - x[low]) / (high - low)
     way, size = np.sign(usual), np.abs(usual)
     into, out = way * change[first - 1], way * change[past]
-    told = (size >= STEPS * step) & (into >= 0.5 * size) & (out >= 0.5 * size)
-    pairs = zip(first[told].tolist(), past[told].tolist(), strict=True)
+    is_held = (size >= STEPS * step) & (into >= 0.5 * size) & (out >= 0.5 * size)
+    pairs = zip(first[is_held].tolist(), past[is_held].tolist(), strict=True)
     rows = [np.arange(a, b) + 1 for a, b in pairs]
     return np.concatenate(rows) if rows else np.zeros(0, dtype=np.intp)
 
@@ -133,7 +133,7 @@ def stuck_stretches(x: Array, step: float, quantity: str) -> list[tuple[int, int
     change = np.diff(x)
     first, past = runs_of(change == 0)
     lasting = (past - first >= LASTING) & (first >= 5)
-    found = []
+    stretches = []
     for a, b in zip(first[lasting].tolist(), past[lasting].tolist(), strict=True):
         before = np.abs(change[a - 5 : a])
         usual = float(np.median(before))
@@ -144,13 +144,13 @@ def stuck_stretches(x: Array, step: float, quantity: str) -> list[tuple[int, int
         if quantity == "position":
             slowing = abs(change[a - 1] - change[a - 3]) / 2
             dead = abs(change[a - 1]) > max(STEPS * step, LEAP * slowing)
-            told = dead and (leaps or ends)
+            is_stuck = dead and (leaps or ends)
         else:
             chance = (b - a) * np.log(_ZERO * step / usual)
-            told = bool(chance < np.log(FALSE_ALARM / len(x)))
-        if told:
-            found.append((a, b + 1))
-    return found
+            is_stuck = bool(chance < np.log(FALSE_ALARM / len(x)))
+        if is_stuck:
+            stretches.append((a, b + 1))
+    return stretches
 
 
 def check_stuck(signal: Signal) -> list[Finding]:

@@ -73,11 +73,11 @@ def check_outliers(signal: Signal) -> list[Finding]:
     sizes: list[Array] = []
     for first, x in signal.stretches:
         at, size, _ = lone_samples(x, signal.step)
-        told = x[at] != x[at - 1]
+        is_outlier = x[at] != x[at - 1]
         if signal.channel.quantity == "actuator_force":
-            told &= _out_of_range(x, at)
-        rows.append(at[told] + first)
-        sizes.append(size[told])
+            is_outlier &= _out_of_range(x, at)
+        rows.append(at[is_outlier] + first)
+        sizes.append(size[is_outlier])
     odd, off = np.concatenate(rows), np.concatenate(sizes)
     if not len(odd):
         return []
@@ -112,7 +112,7 @@ def check_jumps(signal: Signal) -> list[Finding]:
     """Leaps of a position, which no body can make: lost samples, lost counts, a wrapped angle."""
     if signal.channel.quantity != "position":
         return []
-    found: list[tuple[int, float, float]] = []
+    events: list[tuple[int, float, float]] = []
     for first, x in signal.stretches:
         at, size, _ = jumps(x, signal.step)
         lone = lone_samples(x, signal.step)[0]
@@ -121,11 +121,11 @@ def check_jumps(signal: Signal) -> list[Finding]:
             if held or np.any(np.abs(lone - k) <= 2):
                 continue
             speed = float(np.mean([x[k] - x[k - 1], x[k + 2] - x[k + 1]]))
-            found.append((first + k, leap, leap / speed if speed else np.inf))
-    if not found:
+            events.append((first + k, leap, leap / speed if speed else np.inf))
+    if not events:
         return []
-    row, leap, lost = max(found, key=lambda f: abs(f[1]))
-    times = "once" if len(found) == 1 else f"{len(found)} times"
+    row, leap, lost = max(events, key=lambda f: abs(f[1]))
+    times = "once" if len(events) == 1 else f"{len(events)} times"
     turn = 2 * np.pi
     if signal.unit == "rad" and abs(abs(leap) - turn) < 0.05 * turn:
         why = "a whole turn: unwrap the angle"
@@ -143,7 +143,7 @@ def check_jumps(signal: Signal) -> list[Finding]:
             f"{signal.name} jumps {times}, most at {signal.time(row):.6g} s (row {row + 1}), by "
             f"{leap:.4g} {signal.unit}: {why}.",
             {
-                "count": float(len(found)),
+                "count": float(len(events)),
                 "time": signal.time(row),
                 "size": leap,
                 "samples": lost,

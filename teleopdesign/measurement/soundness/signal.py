@@ -75,7 +75,7 @@ def written(experiment: Experiment, key: str) -> str:
 
 def signals(experiment: Experiment) -> list[Signal]:
     """Every channel of a body in every record."""
-    found = []
+    rows = []
     for record in experiment.records:
         for key, values in record.signals.items():
             channel = experiment.channels[key]
@@ -83,8 +83,8 @@ def signals(experiment: Experiment) -> list[Signal]:
             unit = unit_of(BODY_QUANTITIES[channel.quantity], experiment.axis(channel.body))
             middle = max(0, (len(values) - ENOUGH) // 2)
             step = reading_step(values[middle : middle + ENOUGH])
-            found.append(Signal(written(experiment, key), unit, channel, record, values, step))
-    return found
+            rows.append(Signal(written(experiment, key), unit, channel, record, values, step))
+    return rows
 
 
 def local_scale(e: Array, floor: float) -> Array:

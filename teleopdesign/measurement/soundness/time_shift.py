@@ -65,15 +65,15 @@ def check_velocity(position: Signal, velocity: Signal) -> list[Finding]:
     if left > 0.5:
         text = "does not follow the position's derivative: one of the two is something else"
         return [Finding("time shift", "warning", f"{velocity.name} {text}.", numbers, where)]
-    found = []
+    findings = []
     if not 1 / FACTOR < factor < FACTOR:
         text = f"is {factor:.4g} times the derivative of {position.name}: units, sign or clock"
-        found.append(
+        findings.append(
             Finding("units", "warning", f"{velocity.name} {text} disagree.", numbers, where)
         )
     if abs(shift) > h:
         way = "lags" if shift > 0 else "leads"
-        found.append(
+        findings.append(
             Finding(
                 "time shift",
                 "note",
@@ -83,4 +83,4 @@ def check_velocity(position: Signal, velocity: Signal) -> list[Finding]:
                 where,
             )
         )
-    return found
+    return findings

@@ -32,13 +32,13 @@ class Cells:
         return not any(c in columns and r == row for c, r in self.at.values())
 
 
-def place(network: Network, found: Sequence[Path], sides: Mapping[int, int]) -> Cells:
+def place(network: Network, branches: Sequence[Path], sides: Mapping[int, int]) -> Cells:
     """Cells of all nodes.
 
     sides: number of a path -> 1 (below) or -1 (above) where it is not on its usual side
     """
     cells = Cells()
-    waiting = dict(enumerate(found))
+    waiting = dict(enumerate(branches))
     spine = waiting.pop(0)
     for column, node in enumerate(spine.nodes):
         cells.put(node, (column, 0), RIGHT)

@@ -25,8 +25,8 @@ def figure(shapes: Sequence[Shape], *, width: float, height: float) -> Figure:
 
     with plt.style.context(STYLE):
         size = width / POINTS_PER_INCH, height / POINTS_PER_INCH
-        made = plt.figure(figsize=size, layout="none")
-        axes = made.add_axes((0.0, 0.0, 1.0, 1.0))
+        page = plt.figure(figsize=size, layout="none")
+        axes = page.add_axes((0.0, 0.0, 1.0, 1.0))
         axes.set_axis_off()
         axes.set_xlim(0.0, width)
         axes.set_ylim(height, 0.0)
@@ -35,7 +35,7 @@ def figure(shapes: Sequence[Shape], *, width: float, height: float) -> Figure:
                 _write(shape, axes)
             else:
                 _paint(shape, axes)
-    return made
+    return page
 
 
 def _paint(shape: Box | Circle | Dot | Wire, axes: Axes) -> None:

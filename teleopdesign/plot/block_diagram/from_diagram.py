@@ -189,15 +189,15 @@ def _same_signals(diagram: Diagram) -> dict[str, str]:
         for j in diagram.junctions
         if len(j.terms) == 1 and not j.arms and next(iter(j.terms.values())) == 1
     }
-    found = {}
+    origins = {}
     for output in passed:
         origin, seen = output, set()
         while origin in passed and origin not in seen:
             seen.add(origin)
             origin = passed[origin]
         if origin not in passed:  # else signals that only pass each other on, in a ring
-            found[output] = origin
-    return found
+            origins[output] = origin
+    return origins
 
 
 def _box(block: Block) -> str:

@@ -27,13 +27,13 @@ class Path:
 def paths(network: Network) -> list[Path]:
     """The spine first, then all others, each after those that it starts and ends at."""
     spine = _spine(network)
-    found = [Path(spine, None, None)]
+    listed = [Path(spine, None, None)]
     placed = set(spine)
     while len(placed) < len(network.nodes):
         path = _next(network, placed)
-        found.append(path)
+        listed.append(path)
         placed |= set(path.nodes)
-    return found
+    return listed
 
 
 def _spine(network: Network) -> tuple[str, ...]:
@@ -42,12 +42,12 @@ def _spine(network: Network) -> tuple[str, ...]:
     # commands before what acts on bodies from outside; of those the first one named
     commands = [n for n in sources if not n.driver]
     for among in (commands, *([n] for n in sources)):
-        found: list[str] = []
+        longest: list[str] = []
         for source in among:
             way = _longest(network, source.name, set(), lambda n: not moving or n in moving)
-            found = way if len(way) > len(found) else found
-        if found:
-            return tuple(found)
+            longest = way if len(way) > len(longest) else longest
+        if longest:
+            return tuple(longest)
     first = next(iter(network.nodes))
     return tuple(_longest(network, first, set(), lambda _: True))
 

@@ -77,11 +77,11 @@ class Grid:
 
     def _lengths(self, lines: int) -> list[float]:
         """Where every line lies, in lengths from the first."""
-        found = [0.0]
+        places = [0.0]
         for line in range(1, lines):
             middle = any(k % (self.tracks + 1) == self.tracks for k in (line, line - 1))
-            found.append(found[-1] + (MIDDLE if middle else BESIDE))
-        return found
+            places.append(places[-1] + (MIDDLE if middle else BESIDE))
+        return places
 
     def between(self, a: Vertex, b: Vertex) -> float:
         """Length of the shortest way there is if nothing stands in it."""
@@ -120,10 +120,10 @@ def _routes(
     routes: list[Route] = []
     total = 0.0
     for i, (net, target, weight) in enumerate(jobs):
-        found = _cheapest(network, grid, net, target)
-        if found is None:
+        cheapest = _cheapest(network, grid, net, target)
+        if cheapest is None:
             return routes, total, i
-        vertices, cost = found
+        vertices, cost = cheapest
         taken_off = vertices[0] != grid.vertex(net.source)
         grid.lay(net.name, vertices)
         routes.append(Route(net.name, target, weight, vertices, taken_off))
@@ -185,16 +185,16 @@ def _cheapest(
             return _way(before, (vertex, d), after), cost
         if after in grid.blocked:
             continue
-        there = grid.used.get(after, {})
-        if not there:
+        nets_here = grid.used.get(after, {})
+        if not nets_here:
             door, inwards = grid.doors.get(after, ("", -1))
             turns = [e for e in ((d + 3) % 4, (d + 1) % 4) if not door or e == inwards]
             if vertex in grid.blocked:  # just out of its own door
                 turns = [(d + 3) % 4, (d + 1) % 4]
             for e in (d, *turns):
                 offer(cost + (0.0 if e == d else BEND), after, e, (vertex, d))
-        elif net.name not in there and len(there) == 1:
-            (steps,) = there.values()
+        elif net.name not in nets_here and len(nets_here) == 1:
+            (steps,) = nets_here.values()
             if steps == {(d + 1) % 4, (d + 3) % 4}:
                 offer(cost + CROSSING, after, d, (vertex, d))
     return None

@@ -57,27 +57,27 @@ def _across(
     """x of every used line."""
     used = _lines(routes, 0)
     columns = sorted({c for c, _ in cells.at.values()})
-    found: dict[int, float] = {}
+    at: dict[int, float] = {}
     x = 0.0
     for i, c in enumerate(range(columns[0], columns[-1] + 2)):
         start = i * (grid.tracks + 1)
         before = _room(network, cells, routes, c - 1, RIGHT)
         after = _room(network, cells, routes, c, -RIGHT)
         lines = [k for k in range(start, start + grid.tracks) if k in used]
-        x = _gap(found, x, before, after, lines)
+        x = _gap(at, x, before, after, lines)
         if c <= columns[-1]:
             half = _half(network, cells, 0, c)
-            found[start + grid.tracks] = x + half
+            at[start + grid.tracks] = x + half
             x += 2 * half
-    return found
+    return at
 
 
-def _gap(found: dict[int, float], x: float, before: float, after: float, lines: list[int]) -> float:
+def _gap(at: dict[int, float], x: float, before: float, after: float, lines: list[int]) -> float:
     """Place the used lines between two columns or rows; returns where the next one begins."""
     x += before
     for k, line in enumerate(lines):
         x += PITCH if k else 0.0
-        found[line] = x
+        at[line] = x
     return x + after
 
 
@@ -106,19 +106,19 @@ def _down(network: Network, cells: Cells, grid: Grid, routes: Sequence[Route]) -
     """y of every used line."""
     used = _lines(routes, 1)
     rows = sorted({r for _, r in cells.at.values()})
-    found: dict[int, float] = {}
+    at: dict[int, float] = {}
     y = 0.0
     for i, r in enumerate(range(rows[0], rows[-1] + 2)):
         start = i * (grid.tracks + 1)
         inside = rows[0] < r <= rows[-1]
         lines = [k for k in range(start, start + grid.tracks) if k in used]
         room = BETWEEN_ROWS if lines or inside else 0.0
-        y = _gap(found, y, room if r > rows[0] else 0.0, room if r <= rows[-1] else 0.0, lines)
+        y = _gap(at, y, room if r > rows[0] else 0.0, room if r <= rows[-1] else 0.0, lines)
         if r <= rows[-1]:
             half = max(HALF_ROW, _half(network, cells, 1, r))
-            found[start + grid.tracks] = y + half
+            at[start + grid.tracks] = y + half
             y += 2 * half
-    return found
+    return at
 
 
 def _lines(routes: Sequence[Route], axis: int) -> set[int]:
@@ -127,8 +127,8 @@ def _lines(routes: Sequence[Route], axis: int) -> set[int]:
 
 
 def _half(network: Network, cells: Cells, axis: int, line: int) -> float:
-    own = [network.nodes[n].size[axis] for n, cell in cells.at.items() if cell[axis] == line]
-    return max(own, default=0.0) / 2
+    sizes = [network.nodes[n].size[axis] for n, cell in cells.at.items() if cell[axis] == line]
+    return max(sizes, default=0.0) / 2
 
 
 def _wire(

@@ -75,12 +75,12 @@ def _text(text: Text) -> str:
     size = SIZES[text.role]
     out, level = "", 0.0
     for run in text.runs:
-        own = RAISED[run.level]
+        raised = RAISED[run.level]
         style = ' font-style="italic"' if run.italic else ""
         small = f' font-size="{size * SMALLER:.4g}"' if run.level else ""
-        moved = f' dy="{(own - level) * size:.4g}"' if own != level else ""
+        moved = f' dy="{(raised - level) * size:.4g}"' if raised != level else ""
         out += f"<tspan{style}{small}{moved}>{escape(run.text)}</tspan>"
-        level = own
+        level = raised
     place = f'x="{text.x:g}" y="{text.y + BASELINE * size:.5g}"'
     fill = 'fill="black" stroke="none"'
     return f'<text {place} font-size="{size:g}" text-anchor="{text.anchor}" {fill}>{out}</text>'
