@@ -26,7 +26,9 @@ from ..claims.claim import Claim, Refutation, Unknown
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Dahl
 from ..search.stroke_motion import Strokes
-from .friction_compensation import bounded_compensation
+from ._cycle_simulation import simulate_cycle
+from ._theorem import Question, Theorem, TopicClaim
+from .bounded_compensation import bounded_compensation
 
 #: most samples one way of a motion that is written down
 LONGEST = 10_000_000
@@ -184,3 +186,33 @@ def _best(helps: Dahl, against: Dahl, damping: float, period: float, late: int) 
             if samples <= LONGEST and (best is None or gain > best[0]):
                 best = gain, replace(one, samples=samples)
     return None if best is None or best[1].energy <= 0 else best[1]
+
+
+def _applies(question: Question) -> bool:
+    """To a Dahl bristle in a computer beside friction that gives before it slides."""
+    sampled = question.computer is not None and question.device.presliding is not None
+    return sampled and question.bristle is not None
+
+
+def _claims(question: Question) -> list[TopicClaim]:
+    """The pair at the estimates in a computer, whatever the motion."""
+    device, computer = question.device, question.computer
+    assert computer is not None and question.bristle is not None
+    level, stiffness = question.bristle
+    if device.bristle_damping.high > 0:
+        why = "no theorem here is about bristle damping beside a compensator in a computer"
+        statement = "the device's friction with its sampled compensator is passive"
+        return [TopicClaim("any motion, sampled", Claim(statement, Unknown(why)))]
+    claim = sampled_compensation(
+        coulomb_level=device.highest.estimate,
+        compensator_level=level,
+        compensator_stiffness=stiffness,
+        sample_time=computer.period,
+        presliding_stiffness=device.presliding and device.presliding.estimate,
+        viscous_damping=device.damping.estimate,
+        late=question.late,
+    )
+    return [TopicClaim("any motion, sampled", claim)]
+
+
+THEOREM = Theorem(applies=_applies, claims=_claims, order=40, simulate=simulate_cycle)

@@ -26,7 +26,7 @@ from typing import Any
 
 import sympy as sp
 
-from ...controllers import CONTROLLERS
+from ...controllers import laws_that_declare
 from ...errors import ModelError
 from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..linear.impedance import decimal, exact
@@ -37,11 +37,12 @@ _SYMBOLS = sp.symbols("velocity level smoothing", real=True)
 
 
 def _law() -> Any:
-    """(velocity, level, smoothing velocity) -> force of the control law `smoothed_coulomb`."""
+    """(velocity, level, smoothing velocity) -> force of the control law that is smoothed so."""
     v, level, smoothing = _SYMBOLS
+    made = laws_that_declare("smoothing")[0]
     now = SimpleNamespace(velocity=v, speed=sp.Abs(v))
-    values = SimpleNamespace(level=level, smoothing_velocity=smoothing)
-    return sp.lambdify(_SYMBOLS, CONTROLLERS["smoothed_coulomb"].law(now, values), "math")
+    values = SimpleNamespace(**{made.bound: level, made.smoothing: smoothing})
+    return sp.lambdify(_SYMBOLS, made.law(now, values), "math")
 
 
 _COMMAND = _law()
