@@ -141,7 +141,7 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
     """What may be chosen so that it is passive for every value within the 95 % intervals."""
     force, stiff = device.force_unit, device.stiffness_unit
     alone = f", for friction without {', '.join(device.set_aside)}" if device.set_aside else ""
-    found = [
+    limits = [
         Margin(text + alone, level, force)
         for text, level in (
             ("largest f_D that is passive at the estimates", device.lowest.estimate),
@@ -151,7 +151,7 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
     own = device.presliding
     if own is None:
         text = "largest f_D that drives no motion, viscous damping counted"
-        return [*found, Margin(text + alone, device.least_resistance.low, force)]
+        return [*limits, Margin(text + alone, device.least_resistance.low, force)]
     recoil = device.bristle_damping.high * (device.highest.high - device.lowest.low)
     if device.damping.low * device.lowest.low < recoil:
         return []  # no limit is known where the bristle's damping may give out energy
@@ -159,10 +159,10 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
         return []  # no limit is known for such a law on a contact that gives
     level = min(compensator.level if compensator else math.inf, device.lowest.low)
     softest = own.low * math.sqrt(level / device.highest.high)
-    found.append(Margin(f"largest sigma_D at f_D = {level:.4g} {force}{alone}", softest, stiff))
+    limits.append(Margin(f"largest sigma_D at f_D = {level:.4g} {force}{alone}", softest, stiff))
     if compensator is not None:
         least = device.highest.high * (compensator.second / own.low) ** 2
-        found.append(
+        limits.append(
             Margin(f"least f_D at sigma_D = {compensator.second:.4g} {stiff}{alone}", least, force)
         )
-    return found
+    return limits

@@ -85,33 +85,33 @@ def diagram_claims(
     search = search or Search()
     whole = judged(diagram)
     alone = without_holding(whole)
-    found, bent = ports(alone), nonlinear_parts(alone)
+    all_ports, bent = ports(alone), nonlinear_parts(alone)
     settled: list[TopicClaim] = []
     sampled = search.computer != "continuous" and any(not c.analog for c in alone.controls)
     if not bent:
-        settled += linear_claims(alone, found)
+        settled += linear_claims(alone, all_ports)
     else:
         pairs = friction_pairs(alone)
         for pair in pairs:
             own = f"friction of {pair.body.name}"
             settled += [replace(s, topic=own) for s in device_claims(pair.device)]
             settled += pair_claims(pair)
-        if (composed := _composed(alone, found, pairs)) is not None:
+        if (composed := _composed(alone, all_ports, pairs)) is not None:
             settled.append(composed)
     if sampled or not any(s.topic in WHOLE and s.claim.status != "unknown" for s in settled):
-        settled += [_searched(whole, port, rng, search) for port in found]
-    return DiagramClaims(diagram, found, bent, tuple(settled))
+        settled += [_searched(whole, port, rng, search) for port in all_ports]
+    return DiagramClaims(diagram, all_ports, bent, tuple(settled))
 
 
-def linear_claims(diagram: Diagram, found: Sequence[Port]) -> list[TopicClaim]:
+def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
     """Passivity of a linear diagram at its ports, and absolute stability where there are two."""
-    if len(found) > 2:
-        statement = f"{diagram.name}: its {len(found)} ports are passive together"
+    if len(all_ports) > 2:
+        statement = f"{diagram.name}: its {len(all_ports)} ports are passive together"
         why = "the exact tests are for one port or two"
         return [TopicClaim(WHOLE[0], Claim(statement, Unknown(why)))]
     try:
-        z = impedance_matrix(diagram, found)
-        if len(found) == 1:
+        z = impedance_matrix(diagram, all_ports)
+        if len(all_ports) == 1:
             return [TopicClaim(WHOLE[1], positive_real(z[0, 0]))]
     except ModelError as problem:
         claim = Claim(f"{diagram.name}: its ports are passive", Unknown(str(problem)))
@@ -124,7 +124,7 @@ def linear_claims(diagram: Diagram, found: Sequence[Port]) -> list[TopicClaim]:
 
 
 def _composed(
-    diagram: Diagram, found: Sequence[Port], pairs: Sequence[FrictionPair]
+    diagram: Diagram, all_ports: Sequence[Port], pairs: Sequence[FrictionPair]
 ) -> TopicClaim | None:
     """The sum of parts on the same motions: linear rest, and friction with what cancels it.
 
@@ -136,7 +136,7 @@ def _composed(
         claims = [one.claim for one in pair_claims(pair, simulated=False)]
         if pair.device.set_aside or not pair.is_constant:
             return None
-        if not spanned(pair.body.motion, found):
+        if not spanned(pair.body.motion, all_ports):
             return None
         if pair.cancellation is None and pair.device.presliding is not None:
             return None  # no theorem about friction alone is called here
@@ -149,11 +149,11 @@ def _composed(
         return None
     if not all(rest.is_position(c.input) for c in rest.controls):
         return None  # what a controller makes of a force is no sum of parts
-    linear = linear_claims(rest, found)[0].claim
+    linear = linear_claims(rest, all_ports)[0].claim
     if not isinstance(linear.verdict, Proof):
         return None
     parts = [linear, *proofs]
-    names = ", ".join(map(str, found))
+    names = ", ".join(map(str, all_ports))
     statement = f"{diagram.name}: no motion of {names} takes energy out"
     method = (
         "the energies of its parts, which add: its linear rest, and friction that takes at least "

@@ -58,7 +58,7 @@ def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
     A cancellation takes the body's own motion and adds to its command alone. A level that reaches
     down to nothing leaves nothing to cancel.
     """
-    found = []
+    pairs = []
     for part in diagram.blocks:
         if not isinstance(part, Moving) or not isinstance(part.body, Body):
             continue
@@ -71,8 +71,8 @@ def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
             device = identified(_exact(part.body))
         except ModelError:
             continue
-        found.append(FrictionPair(part, along[0] if along else None, device))
-    return found
+        pairs.append(FrictionPair(part, along[0] if along else None, device))
+    return pairs
 
 
 def _is_bounded(control: Control, part: Moving, diagram: Diagram) -> bool:

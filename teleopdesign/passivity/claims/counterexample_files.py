@@ -47,11 +47,11 @@ def read_record(path: str | Path) -> Counterexample:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
         record = _made(content)
         with np.errstate(over="raise", invalid="raise"):
-            stated, found = float(content["energy"]), record.energy
+            stated, replayed = float(content["energy"]), record.energy
     except (OSError, ValueError, KeyError, TypeError, ArithmeticError, RecursionError) as problem:
         raise ModelError(f"{path}: no record of a motion: {problem}"[:300]) from problem
-    if abs(found - stated) > 1e-6 * abs(stated) or found <= 0:
-        raise ModelError(f"{path}: states {stated:g} J, the replay gives out {found:g} J")
+    if abs(replayed - stated) > 1e-6 * abs(stated) or replayed <= 0:
+        raise ModelError(f"{path}: states {stated:g} J, the replay gives out {replayed:g} J")
     return record
 
 

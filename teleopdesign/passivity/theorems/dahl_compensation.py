@@ -72,12 +72,12 @@ def dahl_compensation(
     if f_d <= f_c and stiffness**2 * top <= own**2 * f_d:
         return Claim(statement, _pair_proof(f_c, top, f_d, stiffness, own))
     against = Dahl(float(f_c if f_d > f_c else top), float(own))
-    found = _best_cycle(helps, against)
-    if found is None:
+    cycle = _best_cycle(helps, against)
+    if cycle is None:
         why = "the condition fails, but by so little that no cycle shows it in double precision"
         return Claim(statement, Unknown(why))
     reason = "large motion: f_D > f_C" if f_d > f_c else "small motion: sigma_D^2/f_D too large"
-    return Claim(statement, Refutation(f"a cycle of {reason}", found))
+    return Claim(statement, Refutation(f"a cycle of {reason}", cycle))
 
 
 def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: float) -> float:

@@ -110,10 +110,10 @@ def lugre_passivity(
         values = {"sigma_0": sigma, "s1": s1, "s2": s2, "F_C": f_c, "F_S": f_s}
         proof = Proof("V = y^2/(2 sigma_0)", (_certificate(values),), float(margin), "N s/m")
         return Claim(statement, proof)
-    found = _recoil((float(f_c), float(f_s)), float(sigma), (float(s1), float(s2)), float(v_s))
-    if found is None:
+    jumps = _recoil((float(f_c), float(f_s)), float(sigma), (float(s1), float(s2)), float(v_s))
+    if jumps is None:
         return Claim(statement, Unknown("the condition fails, but no motion on the grid shows it"))
-    return Claim(statement, Refutation("slow motion, then a jump to high speed, to and fro", found))
+    return Claim(statement, Refutation("slow motion, then a jump to high speed, to and fro", jumps))
 
 
 def beside_bristle_damping(

@@ -60,7 +60,7 @@ class Trembling:
     @property
     def power(self) -> float:
         """Power given out while it drifts on, W."""
-        return self._settled()[0] / self.sample_time
+        return self._steady_sample()[0] / self.sample_time
 
     @property
     def path(self) -> float:
@@ -71,9 +71,9 @@ class Trembling:
         """Energy given out, J, each stroke exactly, summed over all samples."""
         force, seen, out = 0.0, [0.0] * (self.late + 1), 0.0
         for _ in range(2):  # the way back is the way there with all signs turned
-            settled, forgets, by_force = self._settled()[1:]
+            steady, forgets, by_force = self._steady_sample()[1:]
             k = np.arange(self.samples)
-            forces = settled + (force - settled) * forgets**k
+            forces = steady + (force - steady) * forgets**k
             work = self._work(0.0) * self.samples + by_force * float(forces.sum())
             level, net = self.compensator.level, self.forth - self.back
             length = level / self.compensator.stiffness
@@ -81,7 +81,7 @@ class Trembling:
             helped = np.concatenate([seen, helped])
             out += net * float(helped[: self.samples].sum()) - work
             out -= self.damping * self.path**2 / self.sample_time * self.samples
-            force = -float(settled + (force - settled) * forgets**self.samples)
+            force = -float(steady + (force - steady) * forgets**self.samples)
             seen = [-float(d) for d in helped[self.samples : self.samples + self.late + 1]]
         return out
 
@@ -97,7 +97,7 @@ class Trembling:
         pair = {n: ["dahl", *vars(getattr(self, n)).values()] for n in ("compensator", "friction")}
         return {"kind": "trembling", **vars(self), **pair, "energy": self.energy}
 
-    def _settled(self) -> tuple[float, float, float, float]:
+    def _steady_sample(self) -> tuple[float, float, float, float]:
         """Energy of a sample in the long run; force at its begin; what is left of a force after it;
         and work for each newton of that force.
         """
@@ -155,15 +155,15 @@ def sampled_compensation(
         f"{decimal(period)} s, is passive"
     )
     helps, against = Dahl(float(f_d), float(stiffness)), Dahl(float(f_c), float(own))
-    found = _best(helps, against, float(b), float(period), late)
-    if found is None:
+    motion = _best(helps, against, float(b), float(period), late)
+    if motion is None:
         why = f"a motion gives out energy, but one of more than {LONGEST:g} samples"
         return Claim(statement, Unknown(why))
     how = (
-        f"trembling {found.path:.3g} m a sample, {found.power:.3g} W: friction relaxes, and "
+        f"trembling {motion.path:.3g} m a sample, {motion.power:.3g} W: friction relaxes, and "
         "readings do not show it"
     )
-    return Claim(statement, Refutation(how, found))
+    return Claim(statement, Refutation(how, motion))
 
 
 def _best(helps: Dahl, against: Dahl, damping: float, period: float, late: int) -> Trembling | None:

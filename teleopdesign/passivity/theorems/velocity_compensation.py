@@ -139,11 +139,11 @@ def velocity_compensation(
     if gap <= 0 or gap**2 <= 4 * least * a * b:
         return Claim(statement, _proof(least, f_d, a, b, own, sampled=period > 0))
     friction = Coulomb(float(f_c)) if own is None else Dahl(float(f_c), float(own))
-    found = _strokes((float(f_d), float(a)), friction, float(b), float(period), late)
-    if found is None:
+    strokes = _strokes((float(f_d), float(a)), friction, float(b), float(period), late)
+    if strokes is None:
         why = "the condition fails, but by so little that no stroke shows it in double precision"
         return Claim(statement, Unknown(why))
-    return Claim(statement, Refutation(f"strokes at {found.speed:.4g} m/s", found))
+    return Claim(statement, Refutation(f"strokes at {strokes.speed:.4g} m/s", strokes))
 
 
 def _proof(
