@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ..passivity.device_claims import Settled
+    from ..passivity.theorems import TopicClaim
 
 #: columns of the terminal
 WIDTH = 100
 
 
-def claim_lines(claims: Sequence[Settled]) -> list[str]:
+def claim_lines(claims: Sequence[TopicClaim]) -> list[str]:
     """Status and topic of each claim, with its statement and how it is known."""
     lines = []
     for one in claims:
@@ -31,7 +31,7 @@ def _folded(text: str) -> list[str]:
     )
 
 
-def plain(settled: Settled) -> dict[str, Any]:
+def plain(settled: TopicClaim) -> dict[str, Any]:
     """A settled claim as plain data, with its certificates and the motions that refute it."""
     claim = settled.claim
     return {

@@ -18,8 +18,9 @@ from ._diagram_passivity import BESIDE_A_DIAGRAM, is_diagram, settle_diagram
 from ._options import add_effect_files, check_output
 
 if TYPE_CHECKING:
-    from ..passivity.device_claims import Compensator, Margin, Settled
+    from ..passivity.device_claims import Compensator, Margin
     from ..passivity.identified import IdentifiedDevice
+    from ..passivity.theorems import TopicClaim
     from ..simulate import Sampling
 
 
@@ -149,7 +150,7 @@ def _compensator(options: argparse.Namespace) -> Compensator | None:
 
 def _settled(
     options: argparse.Namespace, device: IdentifiedDevice, compensator: Compensator | None
-) -> list[Settled]:
+) -> list[TopicClaim]:
     import numpy as np
 
     from ..passivity.device_claims import compensation_claims, device_claims, wall_claims
@@ -176,7 +177,7 @@ def _computer(options: argparse.Namespace) -> Sampling | None:
     return Sampling(options.period, options.delay, options.encoder_step)
 
 
-def _text(device: IdentifiedDevice, claims: Sequence[Settled], limits: Sequence[Margin]) -> str:
+def _text(device: IdentifiedDevice, claims: Sequence[TopicClaim], limits: Sequence[Margin]) -> str:
     from ..quantity import unit_of
 
     force, stiff = device.force_unit, device.stiffness_unit

@@ -16,6 +16,7 @@ from ..frozen import Catalogue
 from ..recipes import remember
 from ._controller import (
     SIGNALS,
+    Ability,
     ControlLaw,
     Controller,
     ControllerEquation,
@@ -28,6 +29,7 @@ from ._from_control import from_control, inverted
 __all__ = [
     "CONTROLLERS",
     "SIGNALS",
+    "Ability",
     "ControlLaw",
     "Controller",
     "ControllerEquation",
@@ -36,6 +38,7 @@ __all__ = [
     "controller",
     "from_control",
     "inverted",
+    "laws_that_declare",
     "parameter_symbol",
     "scheduled_force_feedback",
 ]
@@ -63,6 +66,11 @@ def controller(name: str, values: Mapping[str, float]) -> Controller:
             f"{did_you_mean(name, CONTROLLERS)}"
         )
     return Controller((Stage(CONTROLLERS[name], values),))
+
+
+def laws_that_declare(ability: Ability) -> tuple[ControlLaw, ...]:
+    """The laws of the catalogue that can do that, in the order of their names."""
+    return tuple(law for law in CONTROLLERS.values() if getattr(law, ability))
 
 
 def scheduled_force_feedback(

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import sympy as sp
 
@@ -25,6 +25,9 @@ from ..notebook import html_table
 from ..recipes import recipe
 
 _MOST_SHOWN = 8  # parameters of a law that one line shows
+
+#: what a law may declare that it can do, by a field of `ControlLaw`
+Ability = Literal["bound", "bristle_stiffness", "smoothing", "filter_bandwidth"]
 
 SIGNALS = {
     name: sp.Symbol(name, real=True)
@@ -66,6 +69,12 @@ class ControlLaw:
     sampled(values, period): the stage that takes the place of this one in a computer of that
     period (s); None: this one, its states stepped as they say
     system: a python-control system in place of a law: known as code only, it has no equation
+
+    What the law can do, each by the name of the parameter that says how much; "": it cannot.
+    bound: its force is never more than that, whatever the motion
+    bristle_stiffness: its force is that of a Dahl bristle of that stiffness, level `bound`
+    smoothing: its force is bound v/(a + abs(v)) with that a
+    filter_bandwidth: its output follows its input through a low-pass of first order
     """
 
     law: Callable[[Any, Any], sp.Expr]
@@ -76,9 +85,22 @@ class ControlLaw:
     transfer: Callable[[Mapping[str, float], sp.Symbol], sp.Expr] | None = None
     sampled: Callable[[Mapping[str, float], float], Stage] | None = None
     system: Any = None
+    bound: str = ""
+    bristle_stiffness: str = ""
+    smoothing: str = ""
+    filter_bandwidth: str = ""
     source: str = ""
     name: str = ""
     text: str = ""
+
+    def __post_init__(self) -> None:
+        for ability in get_args(Ability):
+            parameter = getattr(self, ability)
+            if parameter and parameter not in self.parameters:
+                raise ModelError(
+                    f'{self.name or "control law"}: {ability}: no parameter "{parameter}", has '
+                    f"{', '.join(self.parameters)}{did_you_mean(parameter, self.parameters)}"
+                )
 
     def __hash__(self) -> int:
         return hash((self.name, self.law))  # what is equal has these in common
@@ -136,6 +158,11 @@ class Stage:
                     f"{parameter.lower:g} .. {parameter.upper:g}"
                 )
         object.__setattr__(self, "values", Frozen(self.values))
+
+    def value_of(self, ability: Ability) -> float | None:
+        """Value (SI) of the parameter that the law declares for it; None where it declares none."""
+        parameter = getattr(self.law, ability)
+        return float(self.values[parameter]) if parameter else None
 
 
 @dataclass(frozen=True)

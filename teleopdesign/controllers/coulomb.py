@@ -24,5 +24,6 @@ def law(now, p):
 CONTROLLER = ControlLaw(
     law=law,
     parameters={"level": Parameter("force", "F_C: level that is cancelled")},
+    bound="level",
     source="Bernstein, Lawrence, Pao, World Haptics 2005, eq (1)",
 )

@@ -34,5 +34,7 @@ CONTROLLER = ControlLaw(
         "level": Parameter("force", "F_D: level that is cancelled"),
         "stiffness": _DAHL.parameters["stiffness"],
     },
+    bound="level",
+    bristle_stiffness="stiffness",
     source="Mahvash, Okamura, ICRA 2006, eq (9), with the sign of the travel",
 )

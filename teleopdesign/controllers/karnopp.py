@@ -36,5 +36,6 @@ CONTROLLER = ControlLaw(
         "level": coulomb.CONTROLLER.parameters["level"],
         "band": Parameter("velocity", "largest speed that counts as rest"),
     },
+    bound="level",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100: the friction law, here added",
 )

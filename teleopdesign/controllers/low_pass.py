@@ -22,5 +22,6 @@ CONTROLLER = ControlLaw(
     states={"output": State("force", output)},
     linear=True,
     parameters={"bandwidth": Parameter("frequency", "f_c: -3 dB frequency in Hz")},
+    filter_bandwidth="bandwidth",
     source="Bernstein, Lawrence, Pao, World Haptics 2005, section 5 (filter of H)",
 )

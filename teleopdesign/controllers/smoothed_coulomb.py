@@ -22,5 +22,7 @@ CONTROLLER = ControlLaw(
         "level": Parameter("force", "F_C: level that is cancelled"),
         "smoothing_velocity": Parameter("velocity", "a: half of the level is reached there"),
     },
+    bound="level",
+    smoothing="smoothing_velocity",
     source="Bernstein, Lawrence, Pao, World Haptics 2005, eq (6)",
 )

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from ..blocks import Body
-from ..controllers import controller
+from ..controllers import controller, laws_that_declare
 from ..errors import ModelError
 from ..quantity import unit_of
 from ..realise.acting_bound import largest_acting_force
@@ -105,9 +105,11 @@ def dahl_cancellation(
             ] = needed
     why = min(limits, key=limits.__getitem__)
     stiffness = rounded_down(limits[why] / gain)
-    law = controller("dahl", {"level": level.value, "stiffness": stiffness})
-    reason = Reason("dahl.stiffness", stiffness, unit_of("stiffness", axis), why)
-    return Chosen(law, (_named("dahl", level), reason))
+    law = laws_that_declare("bristle_stiffness")[0]
+    made = controller(law.name, {law.bound: level.value, law.bristle_stiffness: stiffness})
+    named = f"{law.name}.{law.bristle_stiffness}"
+    reason = Reason(named, stiffness, unit_of("stiffness", axis), why)
+    return Chosen(made, (_named(law.name, level), reason))
 
 
 def smoothed_cancellation(
@@ -134,10 +136,10 @@ def smoothed_cancellation(
         f"{1e3 * period:g} ms, through the {filter_bandwidth:.3g} Hz velocity filter, is "
         f"{count:.3g} {unit}: it moves the force by no more than {share:g} of the level"
     )
-    values = {"level": level.value, "smoothing_velocity": value}
-    law = controller("smoothed_coulomb", values)
-    reason = Reason("smoothed_coulomb.smoothing_velocity", value, unit, why)
-    return Chosen(law, (_named("smoothed_coulomb", level), reason))
+    law = laws_that_declare("smoothing")[0]
+    made = controller(law.name, {law.bound: level.value, law.smoothing: value})
+    reason = Reason(f"{law.name}.{law.smoothing}", value, unit, why)
+    return Chosen(made, (_named(law.name, level), reason))
 
 
 def _named(law: str, level: Reason) -> Reason:

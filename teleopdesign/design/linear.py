@@ -64,9 +64,10 @@ def _linear(diagram: Diagram, motion: StatedMotion) -> Diagram:
     damping, stiffness = _equal_friction(body, motion)
     for block in diagram.controls:
         assert isinstance(block.controller, Controller)
-        if block.controller.stages[0].law.name == "dahl":
-            values = block.controller.stages[0].values
-            less = _equal_dahl(values["level"], values["stiffness"], motion)
+        stage = block.controller.stages[0]
+        level, bristle = stage.value_of("bound"), stage.value_of("bristle_stiffness")
+        if level is not None and bristle is not None:
+            less = _equal_dahl(level, bristle, motion)
             damping, stiffness = damping - less[0], stiffness - less[1]
             diagram = diagram.without(block.name)
     return diagram.with_block("Z_M", without_friction(body, damping=damping, stiffness=stiffness))

@@ -67,7 +67,7 @@ def _friction(design: Design) -> list[str]:
             f"lower one is {lower:.3g} {unit}, and motion that only ever goes one way would need a "
             "level below that."
         )
-    if design.cancellation.law == "smoothed_coulomb":
+    if design.cancellation.controller.stages[0].law.smoothing:
         lines.append(
             f"The records tell no presliding shorter than {design.reach.unresolved:.3g} "
             f"{unit_of('position', design.body.axis)}. Beside one, a smoothed cancellation is a "

@@ -41,16 +41,18 @@ def compliant_claim(
     tip = values.get("transmission_compliance.tip_inertia", 0.0)
     # the equation of the motor side: what moves behind the compliance has one of its own
     motor = float(body.equation().inertia.subs(body.numbers()))
-    if tip <= 0 or motor <= 0 or chosen.law != "dahl":
+    law = chosen.controller.stages[0].law
+    if tip <= 0 or motor <= 0 or not law.bristle_stiffness:
         return None
-    parameters = chosen.controller.names()
+    own = chosen.controller.names()
+    level, stiffness = own[f"{law.name}.{law.bound}"], own[f"{law.name}.{law.bristle_stiffness}"]
     return any_environment(
         motor_level=_decimal(rounded_down(friction.lowest.low, digits=4)),
         link_level=0,
         transmission_stiffness=_decimal(values["transmission_compliance.stiffness"]),
         transmission_damping=_decimal(values["transmission_compliance.damping"]),
-        compensator_level=_decimal(rounded_up(parameters["dahl.level"] * gain, digits=6)),
-        compensator_stiffness=_decimal(rounded_up(parameters["dahl.stiffness"] * gain, digits=6)),
+        compensator_level=_decimal(rounded_up(level * gain, digits=6)),
+        compensator_stiffness=_decimal(rounded_up(stiffness * gain, digits=6)),
         motor_inertia=_decimal(motor),
         link_inertia=_decimal(tip),
     )
@@ -89,12 +91,12 @@ def _friction_claims(
     errors: float,
 ) -> list[Claim]:
     """Claims on friction and its cancellation alone."""
-    level = chosen.controller.names()[f"{chosen.law}.level"] * gain
-    level = rounded_up(level, digits=6)
+    law, own = chosen.controller.stages[0].law, chosen.controller.names()
+    level = rounded_up(own[f"{law.name}.{law.bound}"] * gain, digits=6)
     least = rounded_down(friction.lowest.low, digits=4)
-    if chosen.law != "dahl" or friction.presliding is None:
+    if not law.bristle_stiffness or friction.presliding is None:
         return [bounded_compensation(coulomb_level=_decimal(least), bound=_decimal(level))]
-    stiffness = rounded_up(chosen.controller.names()["dahl.stiffness"] * gain, digits=6)
+    stiffness = rounded_up(own[f"{law.name}.{law.bristle_stiffness}"] * gain, digits=6)
     presliding = _decimal(rounded_down(friction.presliding.low, digits=4))
     most = _decimal(rounded_up(friction.highest.high, digits=4))
     pair = dahl_compensation(

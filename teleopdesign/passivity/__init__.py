@@ -46,18 +46,18 @@ from .search.by_simulation import (
     search_counterexample,
 )
 from .search.stroke_motion import Strokes
+from .theorems.bounded_compensation import bounded_compensation
 from .theorems.compliant_transmission import any_environment, free_motion, free_motion_margin
-from .theorems.delayed_compensation import delayed_small_motion, given_out_late, inertia_given_out
-from .theorems.delayed_coupling import delayed_spring
-from .theorems.delayed_inertia import cancelled_inertia, damping_given_out, largest_passive_inertia
-from .theorems.friction_compensation import (
-    bounded_compensation,
+from .theorems.dahl_compensation import (
     dahl_compensation,
     largest_passive_level,
     largest_ratio,
     onset_amplitude,
     self_motion_speed,
 )
+from .theorems.delayed_compensation import delayed_small_motion, given_out_late, inertia_given_out
+from .theorems.delayed_coupling import delayed_spring
+from .theorems.delayed_inertia import cancelled_inertia, damping_given_out, largest_passive_inertia
 from .theorems.lugre import lugre_passivity
 from .theorems.quantised_spring import quantised_spring, stiffest_spring
 from .theorems.sampled_compensation import Trembling, sampled_compensation

@@ -18,7 +18,7 @@ from ..diagrams import Diagram
 from ..errors import ModelError
 from ..notebook import html_table
 from .claims.claim import Claim, Proof, Refutation, Unknown
-from .device_claims import Settled, device_claims, replay_cycle
+from .device_claims import device_claims
 from .friction_pairs import FrictionPair, friction_pairs, pair_claims
 from .linear.positive_real import positive_real
 from .ports import (
@@ -31,8 +31,8 @@ from .ports import (
     without_friction,
     without_holding,
 )
-from .rate_independent import Cycle
 from .search.by_simulation import Computer, SimulatedMotion, search_counterexample
+from .theorems import TopicClaim
 from .two_port.claims import absolutely_stable, passive
 from .two_port.two_port import two_port
 
@@ -61,7 +61,7 @@ class DiagramClaims:
     diagram: Diagram
     ports: tuple[Port, ...]
     nonlinear: tuple[str, ...]
-    settled: tuple[Settled, ...]
+    settled: tuple[TopicClaim, ...]
 
     def __repr__(self) -> str:
         lines = [f"{s.claim.status:<9} {s.topic}: {s.claim.statement}" for s in self.settled]
@@ -85,60 +85,47 @@ def diagram_claims(
     search = search or Search()
     whole = judged(diagram)
     alone = without_holding(whole)
-    found, bent = ports(alone), nonlinear_parts(alone)
-    settled: list[Settled] = []
+    all_ports, bent = ports(alone), nonlinear_parts(alone)
+    settled: list[TopicClaim] = []
     sampled = search.computer != "continuous" and any(not c.analog for c in alone.controls)
     if not bent:
-        settled += linear_claims(alone, found)
+        settled += linear_claims(alone, all_ports)
     else:
         pairs = friction_pairs(alone)
         for pair in pairs:
             own = f"friction of {pair.body.name}"
             settled += [replace(s, topic=own) for s in device_claims(pair.device)]
-            settled += [_replayed(_topic(pair), claim) for claim in pair_claims(pair)]
-        if (composed := _composed(alone, found, pairs)) is not None:
+            settled += pair_claims(pair)
+        if (composed := _composed(alone, all_ports, pairs)) is not None:
             settled.append(composed)
     if sampled or not any(s.topic in WHOLE and s.claim.status != "unknown" for s in settled):
-        settled += [_searched(whole, port, rng, search) for port in found]
-    return DiagramClaims(diagram, found, bent, tuple(settled))
+        settled += [_searched(whole, port, rng, search) for port in all_ports]
+    return DiagramClaims(diagram, all_ports, bent, tuple(settled))
 
 
-def linear_claims(diagram: Diagram, found: Sequence[Port]) -> list[Settled]:
+def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
     """Passivity of a linear diagram at its ports, and absolute stability where there are two."""
-    if len(found) > 2:
-        statement = f"{diagram.name}: its {len(found)} ports are passive together"
+    if len(all_ports) > 2:
+        statement = f"{diagram.name}: its {len(all_ports)} ports are passive together"
         why = "the exact tests are for one port or two"
-        return [Settled(WHOLE[0], Claim(statement, Unknown(why)))]
+        return [TopicClaim(WHOLE[0], Claim(statement, Unknown(why)))]
     try:
-        z = impedance_matrix(diagram, found)
-        if len(found) == 1:
-            return [Settled(WHOLE[1], positive_real(z[0, 0]))]
+        z = impedance_matrix(diagram, all_ports)
+        if len(all_ports) == 1:
+            return [TopicClaim(WHOLE[1], positive_real(z[0, 0]))]
     except ModelError as problem:
         claim = Claim(f"{diagram.name}: its ports are passive", Unknown(str(problem)))
-        return [Settled(WHOLE[0], claim)]
+        return [TopicClaim(WHOLE[0], claim)]
     system = two_port(z.tolist())
     return [
-        Settled(WHOLE[2], passive(system)),
-        Settled("both ports, whatever passive holds them", absolutely_stable(system)),
+        TopicClaim(WHOLE[2], passive(system)),
+        TopicClaim("both ports, whatever passive holds them", absolutely_stable(system)),
     ]
 
 
-def _topic(pair: FrictionPair) -> str:
-    assert pair.cancellation is not None
-    return f"friction of {pair.body.name} with {pair.cancellation.name}"
-
-
-def _replayed(topic: str, claim: Claim) -> Settled:
-    record = claim.record if claim.status == "refuted" else None
-    motion = replay_cycle(record) if isinstance(record, Cycle) else None
-    if motion is None:
-        return Settled(topic, claim)
-    return Settled(topic, claim, motion.energy, motion)
-
-
 def _composed(
-    diagram: Diagram, found: Sequence[Port], pairs: Sequence[FrictionPair]
-) -> Settled | None:
+    diagram: Diagram, all_ports: Sequence[Port], pairs: Sequence[FrictionPair]
+) -> TopicClaim | None:
     """The sum of parts on the same motions: linear rest, and friction with what cancels it.
 
     Friction acts on a motion that the ports determine, beside their forces, so that energies add.
@@ -146,10 +133,10 @@ def _composed(
     """
     rest, proofs = diagram, []
     for pair in pairs:
-        claims = pair_claims(pair)
+        claims = [one.claim for one in pair_claims(pair, simulated=False)]
         if pair.device.set_aside or not pair.is_constant:
             return None
-        if not spanned(pair.body.motion, found):
+        if not spanned(pair.body.motion, all_ports):
             return None
         if pair.cancellation is None and pair.device.presliding is not None:
             return None  # no theorem about friction alone is called here
@@ -162,26 +149,26 @@ def _composed(
         return None
     if not all(rest.is_position(c.input) for c in rest.controls):
         return None  # what a controller makes of a force is no sum of parts
-    linear = linear_claims(rest, found)[0].claim
+    linear = linear_claims(rest, all_ports)[0].claim
     if not isinstance(linear.verdict, Proof):
         return None
     parts = [linear, *proofs]
-    names = ", ".join(map(str, found))
+    names = ", ".join(map(str, all_ports))
     statement = f"{diagram.name}: no motion of {names} takes energy out"
     method = (
         "the energies of its parts, which add: its linear rest, and friction that takes at least "
         "what its cancellation gives"
     )
     certificates = tuple(c for claim in parts for c in claim.certificates)
-    return Settled(WHOLE[0], Claim(statement, Proof(method, certificates)))
+    return TopicClaim(WHOLE[0], Claim(statement, Proof(method, certificates)))
 
 
-def _searched(whole: Diagram, port: Port, rng: np.random.Generator, search: Search) -> Settled:
+def _searched(whole: Diagram, port: Port, rng: np.random.Generator, search: Search) -> TopicClaim:
     topic = f"port {port}, search by simulation"
     statement = f"{whole.name}: the port {port} gives out no energy"
     if port.motion is None:
         why = "its motion is no single body's, so that a simulation cannot prescribe it"
-        return Settled(topic, Claim(statement, Unknown(why)))
+        return TopicClaim(topic, Claim(statement, Unknown(why)))
     free = without_holding(whole, port.motion.removesuffix("_tip"))
     lengths = [x for pair in friction_pairs(free) for x in pair.lengths]
     shortest = min([search.stroke / 1000, *lengths])
@@ -197,8 +184,8 @@ def _searched(whole: Diagram, port: Port, rng: np.random.Generator, search: Sear
             tries=search.tries,
         )
     except ModelError as problem:  # what this simulation does not take
-        return Settled(topic, Claim(statement, Unknown(str(problem))))
+        return TopicClaim(topic, Claim(statement, Unknown(str(problem))))
     record = claim.verdict.record if isinstance(claim.verdict, Refutation) else None
     if not isinstance(record, SimulatedMotion):
-        return Settled(topic, claim)
-    return Settled(topic, claim, record.replay(), record)
+        return TopicClaim(topic, claim)
+    return TopicClaim(topic, claim, record.replay(), record)

@@ -9,12 +9,8 @@ from ..controllers import Controller, Stage
 from ..diagrams import Control, Diagram, Moving
 from ..errors import ModelError
 from .claims.claim import Claim, Unknown
-from .device_claims import about_device, dahl_claim
-from .identified import IdentifiedDevice, identified
-from .theorems.friction_compensation import bounded_compensation
-
-#: laws whose force is never more than their `level`, whatever the motion
-BOUNDED = ("coulomb", "dahl", "smoothed_coulomb")
+from .identified import IdentifiedDevice, about_device, identified
+from .theorems import Question, TopicClaim, settle
 
 
 @dataclass(frozen=True)
@@ -26,19 +22,17 @@ class FrictionPair:
     device: IdentifiedDevice
 
     @property
-    def law(self) -> str:
-        """Name of the law that cancels; "" where none does."""
-        return self._stage.law.name if self.cancellation else ""
-
-    @property
-    def values(self) -> dict[str, float]:
-        """Parameters of that law (SI)."""
-        return dict(self._stage.values) if self.cancellation else {}
-
-    @property
-    def _stage(self) -> Stage:
-        assert self.cancellation and isinstance(self.cancellation.controller, Controller)
+    def stage(self) -> Stage | None:
+        """The law that cancels, with its values; None where none does."""
+        if self.cancellation is None:
+            return None
+        assert isinstance(self.cancellation.controller, Controller)
         return self.cancellation.controller.stages[0]
+
+    @property
+    def question(self) -> Question:
+        """What theorems are asked: values are exact, so that estimates are no question apart."""
+        return Question(self.device, self.stage, estimates=False)
 
     @property
     def is_constant(self) -> bool:
@@ -50,12 +44,12 @@ class FrictionPair:
     @property
     def lengths(self) -> list[float]:
         """Travels over which friction and its cancellation build up, m or rad."""
-        found = []
+        lengths = []
         if self.device.presliding is not None:
-            found.append(self.device.lowest.estimate / self.device.presliding.estimate)
-        if "stiffness" in self.values:
-            found.append(self.values["level"] / self.values["stiffness"])
-        return found
+            lengths.append(self.device.lowest.estimate / self.device.presliding.estimate)
+        if (bristle := self.question.bristle) is not None:
+            lengths.append(bristle[0] / bristle[1])
+        return lengths
 
 
 def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
@@ -64,7 +58,7 @@ def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
     A cancellation takes the body's own motion and adds to its command alone. A level that reaches
     down to nothing leaves nothing to cancel.
     """
-    found = []
+    pairs = []
     for part in diagram.blocks:
         if not isinstance(part, Moving) or not isinstance(part.body, Body):
             continue
@@ -77,8 +71,8 @@ def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
             device = identified(_exact(part.body))
         except ModelError:
             continue
-        found.append(FrictionPair(part, along[0] if along else None, device))
-    return found
+        pairs.append(FrictionPair(part, along[0] if along else None, device))
+    return pairs
 
 
 def _is_bounded(control: Control, part: Moving, diagram: Diagram) -> bool:
@@ -88,7 +82,7 @@ def _is_bounded(control: Control, part: Moving, diagram: Diagram) -> bool:
     made = {j.output: j.terms for j in diagram.junctions}
     adds = control.output == part.command or made.get(part.command, {}).get(control.output) == 1
     users = [p.name for p in diagram.parts if control.output in p.inputs]
-    known = law.stages[0].law.name in BOUNDED
+    known = bool(law.stages[0].law.bound)
     acts = not any(e.role == "actuation" for e in getattr(part.body, "effects", ()))
     return known and adds and len(users) == 1 and acts
 
@@ -99,21 +93,17 @@ def _exact(body: Body) -> Body:
     return body.with_values(dict[str, float | Value](values))
 
 
-def pair_claims(pair: FrictionPair) -> list[Claim]:
-    """Claims about friction with its cancellation, the same as for a diagnosed device."""
-    device, values = pair.device, pair.values
-    if pair.cancellation is None:
+def pair_claims(pair: FrictionPair, *, simulated: bool = True) -> list[TopicClaim]:
+    """Claims about friction with its cancellation, the same as for a diagnosed device.
+
+    simulated: whether the motions of refutations are replayed in simulation
+    """
+    if pair.stage is None or pair.cancellation is None:
         return []
-    found = []
-    ideal = device.presliding is None
-    if ideal:
-        found.append(bounded_compensation(coulomb_level=device.lowest.low, bound=values["level"]))
-    if pair.law == "dahl":
-        found.append(dahl_claim(device, values["level"], values["stiffness"]))
-    elif not ideal:
-        statement = (
-            f"friction of {pair.body.name} with {pair.cancellation.name} ({pair.law}) is passive"
-        )
-        why = "no limit is known for such a law on a contact that gives before it slides"
-        found.append(Claim(statement, Unknown(why)))
-    return [about_device(device, claim) for claim in found]
+    topic = f"friction of {pair.body.name} with {pair.cancellation.name}"
+    if claims := settle(pair.question, simulated=simulated):
+        return [replace(one, topic=topic) for one in claims]
+    law = f"{pair.cancellation.name} ({pair.stage.law.name})"
+    statement = f"friction of {pair.body.name} with {law} is passive"
+    why = "no limit is known for such a law on a contact that gives before it slides"
+    return [TopicClaim(topic, about_device(pair.device, Claim(statement, Unknown(why))))]

@@ -162,6 +162,15 @@ def of_whole_device(claim: Claim, *, over: str, left: Sequence[str]) -> Claim:
     return Claim(claim.statement, Unknown(why + "are of a kind that no theorem here is about"))
 
 
+def about_device(device: IdentifiedDevice, claim: Claim, *, besides: Sequence[str] = ()) -> Claim:
+    """A claim about friction as one about the device.
+
+    besides: effects that its theorem is about, though no claim about friction alone is
+    """
+    left = [name for name in device.set_aside if name not in besides]
+    return of_whole_device(claim, over=device.friction.over, left=left)
+
+
 def _is_open(effect: Effect) -> bool:
     """Whether nothing here covers an effect: forces are asked for by `damping_interval`."""
     if effect.role == "friction_shape":

@@ -22,7 +22,7 @@ import numpy as np
 import sympy as sp
 
 from ..blocks import Body, MatrixImpedance
-from ..controllers import CONTROLLERS, SIGNALS, ControlLaw, Controller
+from ..controllers import SIGNALS, ControlLaw, Controller, laws_that_declare
 from ..diagrams import Control, Diagram, Kinematics
 from ..effects import Effect
 from ..errors import ModelError
@@ -162,13 +162,14 @@ def _states(law: Effect | ControlLaw) -> tuple[Any, ...]:
 def velocity_smoothing(bandwidth: float, period: float) -> float:
     """Factor by which the velocity filter keeps its last output over a sample.
 
-    The filter is the controller `low_pass`, its rate's own slope stepped exactly.
+    The filter is the control law that declares to be one, its rate's own slope stepped exactly.
     """
     if math.isinf(bandwidth):
         return 0.0
     state = sp.Symbol("state")
     now = SimpleNamespace(input=SIGNALS["input"], output=state)
-    rate = CONTROLLERS["low_pass"].states["output"].rate(now, SimpleNamespace(bandwidth=bandwidth))
+    law = laws_that_declare("filter_bandwidth")[0]
+    rate = law.states["output"].rate(now, SimpleNamespace(**{law.filter_bandwidth: bandwidth}))
     return math.exp(period * float(sp.diff(rate, state)))
 
 

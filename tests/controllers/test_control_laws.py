@@ -11,7 +11,14 @@ from devices import body
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.controllers import CONTROLLERS, controller, from_control, parameter_symbol
+from teleopdesign.controllers import (
+    CONTROLLERS,
+    ControlLaw,
+    controller,
+    from_control,
+    laws_that_declare,
+    parameter_symbol,
+)
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ModelError
@@ -152,7 +159,7 @@ def along(made, positions, input="L"):
     )
 
 
-BOUNDED = ("coulomb", "dahl", "karnopp", "smoothed_coulomb")
+BOUNDED = [law.name for law in laws_that_declare("bound")]
 
 
 @pytest.mark.parametrize("name", BOUNDED)
@@ -162,6 +169,31 @@ def test_no_sequence_of_positions_drives_it_beyond_its_level(name, positions):
     """P38: passivity beside ideal Coulomb friction needs this bound and nothing else."""
     found = along(law(name), positions, "R_D" if name == "karnopp" else "L")
     assert np.abs(found).max() <= 0.5 * (1 + 1e-12)
+
+
+def test_an_ability_that_names_no_parameter_is_one_clear_line():
+    made = CONTROLLERS["dahl"]
+    with pytest.raises(ModelError, match='bound: no parameter "levl".*did you mean "level"'):
+        ControlLaw(law=made.law, states=made.states, parameters=made.parameters, bound="levl")
+
+
+@pytest.mark.parametrize("made", laws_that_declare("bristle_stiffness"), ids=lambda made: made.name)
+def test_a_declared_bristle_stiffness_is_the_slope_from_rest(made):
+    """Over a travel of a thousandth of a bristle length; the force bends by half of that."""
+    (stage,) = law(made.name).stages
+    stiffness = stage.value_of("bristle_stiffness")
+    length = stage.value_of("bound") / stiffness
+    forces = along(law(made.name), [0.0, *[length / 1000] * 3], "L")
+    slope = np.abs(forces).max() / (length / 1000)
+    assert slope == pytest.approx(stiffness, rel=1e-3)
+
+
+@pytest.mark.parametrize("made", laws_that_declare("smoothing"), ids=lambda made: made.name)
+def test_a_declared_smoothing_is_the_speed_of_half_the_bound(made):
+    speed, bound, smoothing = sp.symbols("speed bound smoothing", positive=True)
+    now = SimpleNamespace(velocity=speed, speed=speed)
+    force = made.law(now, SimpleNamespace(**{made.bound: bound, made.smoothing: smoothing}))
+    assert sp.simplify(force - bound * speed / (smoothing + speed)) == 0
 
 
 def turning(q, samples=12):

@@ -86,7 +86,7 @@ def test_in_a_diagram_bristle_damping_counts_too():
     body = body_of(**SLOPE, presliding=BRISTLE)
     law = controller("dahl", {"level": 0.4, "stiffness": 1e4})
     (pair,) = friction_pairs(haptic_interface(body, cancellation=law))
-    assert [c.status for c in pair_claims(pair)] == ["unknown"]
+    assert [one.claim.status for one in pair_claims(pair)] == ["unknown"]
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ _NUMBER = re.compile(r"-?\d+(/0*[1-9]\d*)?", re.ASCII)
 
 
 def expect(kind: type, value: Any, what: str) -> Any:
+    """The value; Refused where it is not exactly of that type. what: its name in the message."""
     need(type(value) is kind, f"{what}: expected {kind.__name__}, found {type(value).__name__}")
     return value
 
@@ -28,16 +29,19 @@ def read_words(value: Any, what: str) -> list[str]:
 
 
 def read_number(text: Any, what: str) -> Fraction:
+    """The number of a text such as "-1/2"; Refused for any other."""
     fits = type(text) is str and len(text) <= DIGITS and _NUMBER.fullmatch(text)
     need(fits, f"{what}: expected a fraction such as -1/2")
     return Fraction(text)
 
 
 def expect_fields(c: dict[str, Any], *names: str) -> None:
+    """Refuse a certificate that has not exactly these fields."""
     need({*c} == {*names}, f"expected exactly the fields {', '.join(sorted(names))}")
 
 
 def flat(text: str) -> str:
+    """The text on one line."""
     return " ".join(text.split())
 
 

@@ -17,7 +17,7 @@ from ...notebook import html_table
 from .certificate import Certificate
 
 
-class Record(Protocol):
+class Counterexample(Protocol):
     """A motion that gives out energy."""
 
     @property
@@ -67,7 +67,7 @@ class Refutation(ByValue):
     """A motion that gives out `record.energy` > 0 J; `record.replay()` computes it anew."""
 
     method: str
-    record: Record
+    record: Counterexample
 
     status = "refuted"
     holds = False
@@ -136,7 +136,7 @@ class Claim(ByValue):
         return self.verdict.certificates if isinstance(self.verdict, Proof) else ()
 
     @property
-    def record(self) -> Record:
+    def record(self) -> Counterexample:
         """The motion that refutes the claim; ModelError where there is none."""
         if not isinstance(self.verdict, Refutation):
             raise ModelError(f"claim: {self.status}, so no motion refutes it: {self.statement}")

@@ -24,7 +24,7 @@ from ..theorems.sampled_compensation import Trembling
 from ..theorems.sampled_data import Z, sampled_wave
 from ..theorems.velocity_compensation import SteadyStrokes
 from ..two_port.growing_mode import CLAMPED, GrowingMode, Termination
-from .claim import Record
+from .claim import Counterexample
 
 _ELEMENTS = {"coulomb": Coulomb, "dahl": Dahl, "spring": Spring}
 #: longer than any that a search writes, short enough to be read at once
@@ -33,12 +33,12 @@ _FRACTION = re.compile(r"-?[0-9]{1,2000}(/[0-9]{1,2000})?")
 MOST_STROKES = 1_000_000
 
 
-def write_record(record: Record, path: str | Path) -> None:
+def write_record(record: Counterexample, path: str | Path) -> None:
     """Write a refuting motion as JSON."""
     write_json(path, record.as_dict())
 
 
-def read_record(path: str | Path) -> Record:
+def read_record(path: str | Path) -> Counterexample:
     """Read a refuting motion; `replay()` then computes what it gives out, in J.
 
     raises ModelError: not such a file, or one whose stated energy its replay does not confirm
@@ -47,15 +47,15 @@ def read_record(path: str | Path) -> Record:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
         record = _made(content)
         with np.errstate(over="raise", invalid="raise"):
-            stated, found = float(content["energy"]), record.energy
+            stated, replayed = float(content["energy"]), record.energy
     except (OSError, ValueError, KeyError, TypeError, ArithmeticError, RecursionError) as problem:
         raise ModelError(f"{path}: no record of a motion: {problem}"[:300]) from problem
-    if abs(found - stated) > 1e-6 * abs(stated) or found <= 0:
-        raise ModelError(f"{path}: states {stated:g} J, the replay gives out {found:g} J")
+    if abs(replayed - stated) > 1e-6 * abs(stated) or replayed <= 0:
+        raise ModelError(f"{path}: states {stated:g} J, the replay gives out {replayed:g} J")
     return record
 
 
-def _made(c: dict[str, Any]) -> Record:
+def _made(c: dict[str, Any]) -> Counterexample:
     kind = c["kind"]
     strokes = int(c.get("rounds", 1)) * max(len(c.get(n, ())) for n in ("turning_points", "legs"))
     if not 0 <= strokes <= MOST_STROKES:

@@ -21,7 +21,7 @@ from ..claims.claim import Claim, Evidence, Proof, Refutation
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Coulomb, Cycle, Dahl, Element, Spring, lost_share, symmetric_cycle
 from ._dahl_certificates import Values, d, f_D
-from .friction_compensation import dahl_compensation
+from .dahl_compensation import dahl_compensation
 
 
 def any_environment(

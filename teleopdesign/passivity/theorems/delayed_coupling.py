@@ -55,10 +55,10 @@ def delayed_spring(
         equality = "for w -> 0" if margin == 0 else ""
         certificate = _certificate({"b_m": b_m, "b_s": b_s, "P": k, "T": late})
         return Claim(statement, Proof(method, (certificate,), margin, "(N s/m)^2", equality))
-    found = absolutely_stable(
+    general = absolutely_stable(
         teleoperator(master=master, slave=slave, stiffness=k, damping=0, delay=late)
     )
-    return Claim(statement, found.verdict)
+    return Claim(statement, general.verdict)
 
 
 def _certificate(values: Values) -> Certificate:

@@ -24,6 +24,7 @@ from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Dahl
 from ._dahl_certificates import Values, abs_v, dahl_rate, v
+from ._theorem import Question, Theorem, TopicClaim
 
 _STRIBECK = EFFECTS["stribeck"]
 #: (velocity, F_S - F_C, v_S) -> extra level: the law of the effect `stribeck`
@@ -109,10 +110,10 @@ def lugre_passivity(
         values = {"sigma_0": sigma, "s1": s1, "s2": s2, "F_C": f_c, "F_S": f_s}
         proof = Proof("V = y^2/(2 sigma_0)", (_certificate(values),), float(margin), "N s/m")
         return Claim(statement, proof)
-    found = _recoil((float(f_c), float(f_s)), float(sigma), (float(s1), float(s2)), float(v_s))
-    if found is None:
+    jumps = _recoil((float(f_c), float(f_s)), float(sigma), (float(s1), float(s2)), float(v_s))
+    if jumps is None:
         return Claim(statement, Unknown("the condition fails, but no motion on the grid shows it"))
-    return Claim(statement, Refutation("slow motion, then a jump to high speed, to and fro", found))
+    return Claim(statement, Refutation("slow motion, then a jump to high speed, to and fro", jumps))
 
 
 def beside_bristle_damping(
@@ -236,3 +237,41 @@ def _level_within(claim: str, values: Values, *, spring: bool) -> Certificate:
         },
         example={**values, "g": values["F_S"], "v": 1},
     )
+
+
+def _applies(question: Question) -> bool:
+    """To a device alone with LuGre friction, all of whose parts were identified."""
+    alone = question.cancellation is None and question.wall is None
+    has_parts = "stribeck.extra_static_level" in question.device.body.parameters
+    return alone and has_parts and question.device.presliding is not None
+
+
+def _claims(question: Question) -> list[TopicClaim]:
+    device = question.device
+    assert device.presliding is not None
+    values = {n: v.value for n, v in device.body.parameters.items()}
+    low, high = device.lowest.estimate, device.highest.estimate
+    plain = sum((EFFECTS[n].expression() for n in ("coulomb", "stribeck")), sp.S(0))
+    if device.body.level() == plain:
+        low = values["coulomb.level"]
+        high = low + values["stribeck.extra_static_level"]
+    claim = lugre_passivity(
+        coulomb_level=low,
+        static_level=high,
+        stiffness=device.presliding.estimate,
+        bristle_damping=device.bristle_damping.estimate,
+        viscous_damping=device.damping.estimate,
+        stribeck_velocity=values["stribeck.stribeck_velocity"],
+    )
+    if device.body.level() != plain and not claim.holds:
+        why = "the condition fails, and no motion is sought where the level is not Stribeck's alone"
+        claim = Claim(claim.statement, Unknown(why))
+    return [TopicClaim("the device's own friction", claim)]
+
+
+THEOREM = Theorem(
+    applies=_applies,
+    claims=_claims,
+    order=50,
+    covers=lambda question: question.device.actuation,  # what acts on commands is no part of it
+)

@@ -24,6 +24,7 @@ from ...errors import ModelError
 from ..claims.certificate import Certificate, Term, storage_certificate
 from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..linear.impedance import decimal, exact
+from ._theorem import Question, Theorem, TopicClaim
 
 
 @dataclass(frozen=True)
@@ -177,3 +178,28 @@ def _certificate(
             "c": 0,
         },
     )
+
+
+def _applies(question: Question) -> bool:
+    """To a wall without damping, in time, on encoder steps."""
+    wall, computer = question.wall, question.computer
+    if wall is None or computer is None:
+        return False
+    return bool(computer.encoder_step) and not wall.damping and not question.late
+
+
+def _claims(question: Question) -> list[TopicClaim]:
+    device, wall, computer = question.device, question.wall, question.computer
+    assert wall is not None and computer is not None
+    claim = quantised_spring(
+        stiffness=wall.stiffness,
+        damping=device.damping.low,
+        sample_time=computer.period,
+        step=computer.encoder_step,
+        coulomb_level=device.lowest.low,
+        compensator_level=wall.cancelled,
+    )
+    return [TopicClaim("virtual wall, encoder steps", claim)]
+
+
+THEOREM = Theorem(applies=_applies, claims=_claims, order=60)

@@ -26,7 +26,9 @@ from ..claims.claim import Claim, Refutation, Unknown
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Dahl
 from ..search.stroke_motion import Strokes
-from .friction_compensation import bounded_compensation
+from ._cycle_simulation import simulate_cycle
+from ._theorem import Question, Theorem, TopicClaim
+from .bounded_compensation import bounded_compensation
 
 #: most samples one way of a motion that is written down
 LONGEST = 10_000_000
@@ -58,7 +60,7 @@ class Trembling:
     @property
     def power(self) -> float:
         """Power given out while it drifts on, W."""
-        return self._settled()[0] / self.sample_time
+        return self._steady_sample()[0] / self.sample_time
 
     @property
     def path(self) -> float:
@@ -69,9 +71,9 @@ class Trembling:
         """Energy given out, J, each stroke exactly, summed over all samples."""
         force, seen, out = 0.0, [0.0] * (self.late + 1), 0.0
         for _ in range(2):  # the way back is the way there with all signs turned
-            settled, forgets, by_force = self._settled()[1:]
+            steady, forgets, by_force = self._steady_sample()[1:]
             k = np.arange(self.samples)
-            forces = settled + (force - settled) * forgets**k
+            forces = steady + (force - steady) * forgets**k
             work = self._work(0.0) * self.samples + by_force * float(forces.sum())
             level, net = self.compensator.level, self.forth - self.back
             length = level / self.compensator.stiffness
@@ -79,7 +81,7 @@ class Trembling:
             helped = np.concatenate([seen, helped])
             out += net * float(helped[: self.samples].sum()) - work
             out -= self.damping * self.path**2 / self.sample_time * self.samples
-            force = -float(settled + (force - settled) * forgets**self.samples)
+            force = -float(steady + (force - steady) * forgets**self.samples)
             seen = [-float(d) for d in helped[self.samples : self.samples + self.late + 1]]
         return out
 
@@ -95,7 +97,7 @@ class Trembling:
         pair = {n: ["dahl", *vars(getattr(self, n)).values()] for n in ("compensator", "friction")}
         return {"kind": "trembling", **vars(self), **pair, "energy": self.energy}
 
-    def _settled(self) -> tuple[float, float, float, float]:
+    def _steady_sample(self) -> tuple[float, float, float, float]:
         """Energy of a sample in the long run; force at its begin; what is left of a force after it;
         and work for each newton of that force.
         """
@@ -153,15 +155,15 @@ def sampled_compensation(
         f"{decimal(period)} s, is passive"
     )
     helps, against = Dahl(float(f_d), float(stiffness)), Dahl(float(f_c), float(own))
-    found = _best(helps, against, float(b), float(period), late)
-    if found is None:
+    motion = _best(helps, against, float(b), float(period), late)
+    if motion is None:
         why = f"a motion gives out energy, but one of more than {LONGEST:g} samples"
         return Claim(statement, Unknown(why))
     how = (
-        f"trembling {found.path:.3g} m a sample, {found.power:.3g} W: friction relaxes, and "
+        f"trembling {motion.path:.3g} m a sample, {motion.power:.3g} W: friction relaxes, and "
         "readings do not show it"
     )
-    return Claim(statement, Refutation(how, found))
+    return Claim(statement, Refutation(how, motion))
 
 
 def _best(helps: Dahl, against: Dahl, damping: float, period: float, late: int) -> Trembling | None:
@@ -184,3 +186,33 @@ def _best(helps: Dahl, against: Dahl, damping: float, period: float, late: int) 
             if samples <= LONGEST and (best is None or gain > best[0]):
                 best = gain, replace(one, samples=samples)
     return None if best is None or best[1].energy <= 0 else best[1]
+
+
+def _applies(question: Question) -> bool:
+    """To a Dahl bristle in a computer beside friction that gives before it slides."""
+    sampled = question.computer is not None and question.device.presliding is not None
+    return sampled and question.bristle is not None
+
+
+def _claims(question: Question) -> list[TopicClaim]:
+    """The pair at the estimates in a computer, whatever the motion."""
+    device, computer = question.device, question.computer
+    assert computer is not None and question.bristle is not None
+    level, stiffness = question.bristle
+    if device.bristle_damping.high > 0:
+        why = "no theorem here is about bristle damping beside a compensator in a computer"
+        statement = "the device's friction with its sampled compensator is passive"
+        return [TopicClaim("any motion, sampled", Claim(statement, Unknown(why)))]
+    claim = sampled_compensation(
+        coulomb_level=device.highest.estimate,
+        compensator_level=level,
+        compensator_stiffness=stiffness,
+        sample_time=computer.period,
+        presliding_stiffness=device.presliding and device.presliding.estimate,
+        viscous_damping=device.damping.estimate,
+        late=question.late,
+    )
+    return [TopicClaim("any motion, sampled", claim)]
+
+
+THEOREM = Theorem(applies=_applies, claims=_claims, order=40, simulate=simulate_cycle)

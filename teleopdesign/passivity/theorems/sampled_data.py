@@ -32,6 +32,7 @@ from ..claims.claim import Claim, Proof, Refutation
 from ..linear.impedance import Impedance, decimal, exact, impedance, readable
 from ..linear.positive_real import damping_excess, is_positive_real
 from ..search.growing_wave import growing_wave
+from ._theorem import Question, Theorem, TopicClaim
 
 #: forward shift by one sample
 Z = sp.Symbol("z")
@@ -213,3 +214,31 @@ def _given_out(
     lost = float(damping) / float(sample_time) * (travel**2).sum(axis=-1)
     stored = float(stiffness) * position[..., -1] ** 2 / 2
     return np.asarray(-((held * travel).sum(axis=-1) + lost + stored))
+
+
+def _claims(question: Question) -> list[TopicClaim]:
+    """A virtual wall beside damping alone; a Dahl bristle in small motion, where it is a spring."""
+    device, computer, wall = question.device, question.computer, question.wall
+    assert computer is not None
+    period, claims = computer.period, []
+    if wall is not None:
+        law = sp.Float(wall.stiffness) + sp.Float(wall.damping) * (Z - 1) / (period * Z)
+        law = law * Z**-question.late
+        claim = sampled_passivity(law, damping=device.damping.low, sample_time=period)
+        claims.append(TopicClaim("virtual wall, damping alone", claim))
+    if question.bristle is not None and device.presliding is not None:
+        claim = sampled_passivity(
+            -sp.Float(question.bristle[1]) * Z**-question.late,
+            damping=device.damping.low,
+            sample_time=period,
+            stiffness=device.presliding.low,
+        )
+        claims.append(TopicClaim("small motion, sampled", claim))
+    return claims
+
+
+THEOREM = Theorem(
+    applies=lambda question: question.computer is not None,
+    claims=_claims,
+    order=30,
+)

@@ -26,7 +26,7 @@ from typing import Any
 
 import sympy as sp
 
-from ...controllers import CONTROLLERS
+from ...controllers import laws_that_declare
 from ...errors import ModelError
 from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..linear.impedance import decimal, exact
@@ -37,11 +37,12 @@ _SYMBOLS = sp.symbols("velocity level smoothing", real=True)
 
 
 def _law() -> Any:
-    """(velocity, level, smoothing velocity) -> force of the control law `smoothed_coulomb`."""
+    """(velocity, level, smoothing velocity) -> force of the control law that is smoothed so."""
     v, level, smoothing = _SYMBOLS
+    made = laws_that_declare("smoothing")[0]
     now = SimpleNamespace(velocity=v, speed=sp.Abs(v))
-    values = SimpleNamespace(level=level, smoothing_velocity=smoothing)
-    return sp.lambdify(_SYMBOLS, CONTROLLERS["smoothed_coulomb"].law(now, values), "math")
+    values = SimpleNamespace(**{made.bound: level, made.smoothing: smoothing})
+    return sp.lambdify(_SYMBOLS, made.law(now, values), "math")
 
 
 _COMMAND = _law()
@@ -138,11 +139,11 @@ def velocity_compensation(
     if gap <= 0 or gap**2 <= 4 * least * a * b:
         return Claim(statement, _proof(least, f_d, a, b, own, sampled=period > 0))
     friction = Coulomb(float(f_c)) if own is None else Dahl(float(f_c), float(own))
-    found = _strokes((float(f_d), float(a)), friction, float(b), float(period), late)
-    if found is None:
+    strokes = _strokes((float(f_d), float(a)), friction, float(b), float(period), late)
+    if strokes is None:
         why = "the condition fails, but by so little that no stroke shows it in double precision"
         return Claim(statement, Unknown(why))
-    return Claim(statement, Refutation(f"strokes at {found.speed:.4g} m/s", found))
+    return Claim(statement, Refutation(f"strokes at {strokes.speed:.4g} m/s", strokes))
 
 
 def _proof(

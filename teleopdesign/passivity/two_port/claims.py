@@ -159,8 +159,8 @@ def _lowest(system: TwoPort, margin: Any) -> tuple[list[float], float]:
 
 def _best(waves: Iterable[GrowingWave | None]) -> GrowingWave | None:
     """The wave that grows fastest against its frequency."""
-    found = [w for w in waves if w is not None]
-    return max(found, key=lambda w: w.rate / (w.frequency or w.rate), default=None)
+    growing = [w for w in waves if w is not None]
+    return max(growing, key=lambda w: w.rate / (w.frequency or w.rate), default=None)
 
 
 def _wave_at(z: sp.ImmutableMatrix, frequency: float) -> GrowingWave | None:

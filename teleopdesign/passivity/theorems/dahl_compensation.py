@@ -8,7 +8,6 @@ prove f_D <= f_C for Coulomb friction.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -16,7 +15,8 @@ import sympy as sp
 
 from ...errors import ModelError
 from ..claims.claim import Claim, Proof, Refutation, Unknown
-from ..linear.impedance import decimal, exact
+from ..identified import IdentifiedDevice
+from ..linear.impedance import decimal
 from ..rate_independent import (
     Coulomb,
     Cycle,
@@ -27,24 +27,10 @@ from ..rate_independent import (
     symmetric_cycle,
 )
 from . import _dahl_certificates as shown
-
-
-def bounded_compensation(*, coulomb_level: Any, bound: Any) -> Claim:
-    """Is Coulomb friction passive beside any compensator whose force stays within `bound`?
-
-    It needs nothing but the bound: so it also holds for a compensator that is sampled, delayed,
-    quantised or driven by noise, whatever its stiffness. N.
-    """
-    f_c, f_d = _levels(coulomb_level=coulomb_level, bound=bound)
-    statement = (
-        f"Coulomb friction {decimal(f_c)} N with any compensator within {decimal(f_d)} N is passive"
-    )
-    if f_d <= f_c:
-        certificate = shown.bounded_compensator({"f_C": f_c, "f_D": f_d})
-        return Claim(statement, _proof("storage 0, abs(d) <= f_D <= f_C", f_d, f_c, certificate))
-    stiffest = Dahl(float(f_d), 1e3 * float(f_d))
-    cycle = symmetric_cycle(stiffest, [Coulomb(float(f_c))], _beyond_onset(stiffest, float(f_c)))
-    return Claim(statement, Refutation("a Dahl compensator of that level in a cycle", cycle))
+from ._cycle_simulation import simulate_cycle
+from ._theorem import Question, Theorem, TopicClaim
+from .bounded_compensation import amplitude_beyond_onset, positive_numbers, proof_of_level
+from .lugre import beside_bristle_damping
 
 
 def dahl_compensation(
@@ -64,12 +50,12 @@ def dahl_compensation(
     returns: proved iff f_D <= f_C and, with presliding, sigma_D^2/f_D <= sigma_p^2/f_max; else
     refuted by a cycle. Decided in exact numbers, equality included
     """
-    f_c, f_d, stiffness = _levels(
+    f_c, f_d, stiffness = positive_numbers(
         coulomb_level=coulomb_level,
         compensator_level=compensator_level,
         compensator_stiffness=compensator_stiffness,
     )
-    top = f_c if highest_level is None else _levels(highest_level=highest_level)[0]
+    top = f_c if highest_level is None else positive_numbers(highest_level=highest_level)[0]
     if top < f_c:
         raise ModelError(
             f"highest_level: {decimal(top)} N is below coulomb_level, {decimal(f_c)} N"
@@ -77,7 +63,7 @@ def dahl_compensation(
     helps = Dahl(float(f_d), float(stiffness))
     if presliding_stiffness is None:
         return _ideal(f_c, f_d, stiffness, helps)
-    (own,) = _levels(presliding_stiffness=presliding_stiffness)
+    (own,) = positive_numbers(presliding_stiffness=presliding_stiffness)
     levels = f"{decimal(f_c)} N" if top == f_c else f"{decimal(f_c)} to {decimal(top)} N"
     statement = (
         f"Dahl friction ({levels}, {decimal(own)} N/m) with a Dahl compensator "
@@ -86,12 +72,12 @@ def dahl_compensation(
     if f_d <= f_c and stiffness**2 * top <= own**2 * f_d:
         return Claim(statement, _pair_proof(f_c, top, f_d, stiffness, own))
     against = Dahl(float(f_c if f_d > f_c else top), float(own))
-    found = _best_cycle(helps, against)
-    if found is None:
+    cycle = _best_cycle(helps, against)
+    if cycle is None:
         why = "the condition fails, but by so little that no cycle shows it in double precision"
         return Claim(statement, Unknown(why))
     reason = "large motion: f_D > f_C" if f_d > f_c else "small motion: sigma_D^2/f_D too large"
-    return Claim(statement, Refutation(f"a cycle of {reason}", found))
+    return Claim(statement, Refutation(f"a cycle of {reason}", cycle))
 
 
 def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: float) -> float:
@@ -174,16 +160,12 @@ def _ideal(f_c: sp.Expr, f_d: sp.Expr, stiffness: sp.Expr, helps: Dahl) -> Claim
     values = {"f_C": f_c, "f_D": f_d, "sigma_D": stiffness}
     if f_d <= f_c:
         certificates = shown.dahl_bound(values), shown.sampled_bound({"f_D": f_d})
-        return Claim(statement, _proof("storage 0, abs(d) <= f_D <= f_C", f_d, f_c, *certificates))
+        return Claim(
+            statement, proof_of_level("storage 0, abs(d) <= f_D <= f_C", f_d, f_c, *certificates)
+        )
     against: list[Element] = [Coulomb(float(f_c))]
-    cycle = symmetric_cycle(helps, against, _beyond_onset(helps, float(f_c)))
+    cycle = symmetric_cycle(helps, against, amplitude_beyond_onset(helps, float(f_c)))
     return Claim(statement, Refutation("a cycle beyond the onset amplitude", cycle))
-
-
-def _beyond_onset(helps: Dahl, f_c: float) -> float:
-    """An amplitude at which cycles give out energy, m: 1 - 1/u = f_C/f_D, doubled."""
-    length = helps.level / helps.stiffness
-    return length + 2 * length / (1 - f_c / helps.level)
 
 
 def _pair_proof(
@@ -192,19 +174,10 @@ def _pair_proof(
     equality = ["small motion"] if stiffness**2 * top == own**2 * f_d else []
     if stiffness == own:  # then the conditions leave f_D = f_C = f_max
         certificate = shown.identical_pair({"f_D": f_d, "sigma_D": stiffness})
-        return _proof("V = f abs(p - d)/sigma", f_d, f_c, certificate, also=equality)
+        return proof_of_level("V = f abs(p - d)/sigma", f_d, f_c, certificate, also=equality)
     values = {"f_D": f_d, "sigma_D": stiffness, "sigma_p": own, "F_min": f_c, "F_max": top}
     certificate = shown.presliding_pair(values)
-    return _proof("a quadratic storage function", f_d, f_c, certificate, also=equality)
-
-
-def _proof(
-    method: str, f_d: sp.Expr, f_c: sp.Expr, *certificates: Any, also: Sequence[str] = ()
-) -> Proof:
-    """The margin is that of the level; equality also where small motion just stores."""
-    equality = " and ".join([*(["sliding"] if f_d == f_c else []), *also])
-    text = f"in {equality}" if equality else ""
-    return Proof(method, tuple(certificates), float(f_c - f_d), "N of level", text)
+    return proof_of_level("a quadratic storage function", f_d, f_c, certificate, also=equality)
 
 
 def _best_cycle(helps: Dahl, against: Dahl) -> Cycle | None:
@@ -228,11 +201,47 @@ def _share(helps: Dahl, against: Dahl, amplitude: float) -> float:
     return 1 - dahl_loss(against.level, against.stiffness, amplitude) / given
 
 
-def _levels(**values: Any) -> list[sp.Expr]:
-    found = []
-    for name, value in values.items():
-        number = exact(value)
-        if number <= 0:
-            raise ModelError(f"{name}: expected a number > 0, found {number}")
-        found.append(number)
-    return found
+def dahl_claim(
+    device: IdentifiedDevice, level: float, stiffness: float, *, certain: bool = True
+) -> Claim:
+    """Friction of the device, bristle damping counted, with a Dahl compensator (N, N/m).
+
+    certain: for all levels within the intervals, else at the estimates
+    """
+    own = device.presliding
+    low = device.lowest.low if certain else device.lowest.estimate
+    high = device.highest.high if certain else device.highest.estimate
+    values = dict(coulomb_level=low, compensator_level=level, compensator_stiffness=stiffness)
+    if own is None:
+        return dahl_compensation(**values)
+    softest = own.low if certain else own.estimate
+    pair = dahl_compensation(**values, presliding_stiffness=softest, highest_level=high)
+    return beside_bristle_damping(
+        pair,
+        coulomb_level=low,
+        highest_level=high,
+        stiffness=softest,
+        bristle_damping=device.bristle_damping.high if certain else device.bristle_damping.estimate,
+        viscous_damping=device.damping.low if certain else device.damping.estimate,
+    )
+
+
+def _claims(question: Question) -> list[TopicClaim]:
+    """At the estimates, and for all levels within the intervals; in continuous time."""
+    assert question.bristle is not None
+    device, (level, stiffness) = question.device, question.bristle
+    sampled = question.computer is not None and device.presliding is not None
+    when = ", continuous time" if sampled else ""
+    certain = TopicClaim(f"95 % interval{when}", dahl_claim(device, level, stiffness))
+    if not question.estimates:
+        return [certain]
+    estimate = dahl_claim(device, level, stiffness, certain=False)
+    return [TopicClaim(f"estimate{when}", estimate), certain]
+
+
+THEOREM = Theorem(
+    applies=lambda question: question.bristle is not None,
+    claims=_claims,
+    order=20,
+    simulate=simulate_cycle,
+)

@@ -1,0 +1,39 @@
+"""Cycles of friction and its cancellation, in the compiled simulation."""
+
+from __future__ import annotations
+
+from ...blocks import Body, Value
+from ...controllers import controller, laws_that_declare
+from ...diagrams import haptic_interface
+from ...effects import EFFECTS
+from ..claims.claim import Counterexample
+from ..rate_independent import Coulomb, Cycle, Dahl
+from ..search.by_simulation import SimulatedMotion, confirmed_motion
+from ..search.stroke_motion import Strokes
+
+
+def simulate_cycle(cycle: Counterexample) -> SimulatedMotion | None:
+    """A refuting cycle of one friction element, in the compiled simulation.
+
+    None where simulation does not confirm it, as next to a limit, for several elements, or a motion
+    of another kind.
+    """
+    if not isinstance(cycle, Cycle) or len(cycle.friction) != 1:
+        return None
+    friction, helps = cycle.friction[0], cycle.compensator
+    if not isinstance(friction, Coulomb | Dahl):
+        return None
+    body = Body("prismatic", {"inertia": Value(1e-3)})
+    body = body.with_effect(EFFECTS["coulomb"], {"level": friction.level})
+    lengths = [helps.level / helps.stiffness]
+    if isinstance(friction, Dahl):
+        presliding = EFFECTS["presliding"].without("bristle_damping")
+        body = body.with_effect(presliding, {"stiffness": friction.stiffness})
+        lengths.append(friction.level / friction.stiffness)
+    bristle = laws_that_declare("bristle_stiffness")[0]
+    values = {bristle.bound: helps.level, bristle.bristle_stiffness: helps.stiffness}
+    law = controller(bristle.name, values)
+    # friction does not depend on speed: a stroke takes about 10 ms
+    strokes = Strokes(cycle.turning_points, speed=300 * max(map(abs, cycle.turning_points)))
+    give = min(*lengths, *map(abs, cycle.turning_points)) / 1000
+    return confirmed_motion(haptic_interface(body, cancellation=law), strokes, give=give)

@@ -1,0 +1,101 @@
+"""What a theorem is here: which questions about a device it answers, and its claims about them.
+
+A file of this folder states its mathematics as functions of numbers; with a `THEOREM` it is also
+asked about every device and diagram. Another file with a `THEOREM` is another theorem asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from ...controllers import Stage
+from ...simulate import Sampling
+from ..claims.claim import Claim, Counterexample
+from ..identified import IdentifiedDevice
+from ..search.by_simulation import SimulatedMotion
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A virtual wall: K, N/m, and B, N s/m; cancelled: friction that a compensator takes, N."""
+
+    stiffness: float
+    damping: float
+    cancelled: float = 0.0
+
+
+@dataclass(frozen=True)
+class Question:
+    """What passivity is asked of: a device, alone, with a law that cancels friction, or a wall.
+
+    computer: period, delay (whole periods) and encoder of law and wall; None: continuous
+    estimates: whether also at the estimates, and not only for all values within the intervals
+    """
+
+    device: IdentifiedDevice
+    cancellation: Stage | None = None
+    wall: Wall | None = None
+    computer: Sampling | None = None
+    estimates: bool = True
+
+    @property
+    def bound(self) -> float | None:
+        """The most that the cancellation commands, N; None where no such bound is declared."""
+        return self.cancellation.value_of("bound") if self.cancellation else None
+
+    @property
+    def bristle_stiffness(self) -> float | None:
+        """Of a cancellation that is a Dahl bristle within its bound, N/m; None for all others."""
+        return self.cancellation.value_of("bristle_stiffness") if self.cancellation else None
+
+    @property
+    def bristle(self) -> tuple[float, float] | None:
+        """(level, stiffness) of a cancellation that is a Dahl bristle, N and N/m."""
+        level, stiffness = self.bound, self.bristle_stiffness
+        return None if level is None or stiffness is None else (level, stiffness)
+
+    @property
+    def late(self) -> int:
+        """Whole samples by which the computer is late."""
+        return round(self.computer.delay / self.computer.period) if self.computer else 0
+
+
+@dataclass(frozen=True)
+class TopicClaim:
+    """A claim in its topic; replayed: energy (J) that its motion gave out in simulation, NaN where
+    none was replayed; motion: that simulated motion.
+    """
+
+    topic: str
+    claim: Claim
+    replayed: float = float("nan")
+    motion: SimulatedMotion | None = None
+
+
+def simulate_nothing(counterexample: Counterexample) -> SimulatedMotion | None:
+    """No simulation: the motion of a refutation is replayed by its own equations alone."""
+    return None
+
+
+def cover_nothing(question: Question) -> Sequence[str]:
+    """No effect beside those of friction."""
+    return ()
+
+
+@dataclass(frozen=True)
+class Theorem:
+    """A theorem that is asked about devices and diagrams.
+
+    applies: whether it is about the question at all
+    claims: about friction, walls and computers alone, each in its topic
+    order: where it stands among all: continuous time before computers, friction before walls
+    covers: effects of the device that it is about, though no claim about friction alone is
+    simulate: the motion of its refutations in the compiled simulation, as far as that confirms it
+    """
+
+    applies: Callable[[Question], bool]
+    claims: Callable[[Question], Sequence[TopicClaim]]
+    order: int
+    covers: Callable[[Question], Sequence[str]] = cover_nothing
+    simulate: Callable[[Counterexample], SimulatedMotion | None] = simulate_nothing
