@@ -174,7 +174,7 @@ def is_told(found: Fit, base: Fit) -> bool:
         if declared.optional:
             continue
         away = np.pi if declared.quantity == "angle" else found.model.from_absence(name)
-        if not value.stderr * (SURELY if declared.essential else 1.0) < away:
+        if not value.stderr * (SURELY if declared.search.essential else 1.0) < away:
             return False
     old = [i for i, n in enumerate(found.free) if n in base.free]
     for i in new:

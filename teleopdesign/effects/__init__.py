@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 from collections.abc import Iterable, Mapping
+from dataclasses import fields
 from pathlib import Path
 from types import ModuleType
 from weakref import WeakValueDictionary
@@ -26,6 +27,7 @@ from ._effect import (
     SIGNALS,
     UNEXPLAINED,
     Effect,
+    FitSearch,
     Parameter,
     Role,
     State,
@@ -41,6 +43,7 @@ __all__ = [
     "SIGNALS",
     "UNEXPLAINED",
     "Effect",
+    "FitSearch",
     "Parameter",
     "Role",
     "State",
@@ -93,6 +96,13 @@ def _read(path: Path) -> Effect:
         spec.loader.exec_module(module)
     except TeleopDesignError as error:
         raise ModelError(f"{path}: {error}") from error
+    except TypeError as error:
+        for name in (f.name for f in fields(FitSearch)):
+            if f"unexpected keyword argument '{name}'" in str(error):
+                raise ModelError(
+                    f"{path}: Parameter: found {name}=..., expected search=FitSearch({name}=...)"
+                ) from error
+        raise ModelError(f"{path}: TypeError: {error}") from error
     except Exception as error:  # any failure of a user's file is reported, with its kind
         raise ModelError(f"{path}: {type(error).__name__}: {error}") from error
     return _checked(module, path)

@@ -89,28 +89,39 @@ delayed = sp.Function("delayed", real=True)
 
 @checked
 @dataclass(frozen=True)
+class FitSearch:
+    """How a fit searches a parameter whose value nobody gives.
+
+    starts: where the search begins, as multiples of the record's own scale
+    scale: "": the scale of the parameter's quantity; "duration": of the record; "travel": the whole
+        travel; "resonance_stiffness" and the like: of a resonance within the bandwidth
+    within: upper bound in that scale, where a larger value would mean something else
+    chosen: set at the first start and not estimated: other parameters are relative to this one
+    essential: must be surely more than zero, for at zero the effect would be another one
+    """
+
+    starts: tuple[float, ...] = (0.01, 0.1)
+    scale: str = ""
+    within: float = float("inf")
+    chosen: bool = False
+    essential: bool = False
+
+
+@checked
+@dataclass(frozen=True)
 class Parameter:
     """One parameter of an effect: its quantity (a key of `quantity`), meaning and bounds (SI).
 
-    starts: where a search begins, as multiples of the record's own scale of that quantity
-    scale: another scale of the record than the quantity's: "duration" for times as long as it,
-        "travel" for the whole of its travel
-    within: upper bound of a search in that scale, where a larger value would mean something else
-    chosen: set at its first start, not estimated: others are meant relative to it
-    optional: the effect is there where this is zero too, which it is unless a value is given
-    essential: where this is zero the effect would be another one: it must be surely more
+    optional: may be zero, and is by default
+    search: how a fit searches it
     """
 
     quantity: str
     meaning: str
     lower: float = 0.0
     upper: float = float("inf")
-    starts: tuple[float, ...] = (0.01, 0.1)
-    scale: str = ""
-    within: float = float("inf")
-    chosen: bool = False
     optional: bool = False
-    essential: bool = False
+    search: FitSearch = FitSearch()
 
     def __post_init__(self) -> None:
         if self.quantity not in QUANTITIES:
@@ -118,6 +129,11 @@ class Parameter:
                 f'Parameter: no quantity "{self.quantity}", has {", ".join(QUANTITIES)}'
                 f"{did_you_mean(self.quantity, QUANTITIES)}"
             )
+
+    @property
+    def scale(self) -> str:
+        """What a search counts this in: a scale of the record, by default its quantity's."""
+        return self.search.scale or self.quantity
 
 
 #: period of something that repeats along the travel. Searches start evenly in 1/period, three
@@ -127,9 +143,9 @@ class Parameter:
 PERIOD = Parameter(
     "position",
     "p: travel of one period",
-    starts=tuple(4.0 / 3.0 / k for k in range(1, 151)),
-    scale="travel",
-    within=2.0,
+    search=FitSearch(
+        starts=tuple(4.0 / 3.0 / k for k in range(1, 151)), scale="travel", within=2.0
+    ),
 )
 
 

@@ -3,7 +3,7 @@
 import re
 import subprocess
 import sys
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
 from pathlib import Path
 
@@ -27,7 +27,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign.effects as folder
-from teleopdesign.effects import EFFECTS, SIGNALS, catalogue, find_effect, load_effect
+from teleopdesign.effects import EFFECTS, SIGNALS, FitSearch, catalogue, find_effect, load_effect
 from teleopdesign.effects._effect import ROLES
 from teleopdesign.errors import ModelError
 from teleopdesign.quantity import QUANTITIES, unit_of
@@ -68,7 +68,7 @@ def test_parameters_have_a_known_quantity_a_meaning_and_ordered_bounds(name):
         assert declared.quantity in QUANTITIES
         assert declared.meaning
         assert declared.lower < declared.upper
-        assert declared.starts and np.all(np.isfinite(declared.starts))
+        assert declared.search.starts and np.all(np.isfinite(declared.search.starts))
         assert all(unit_of(declared.quantity, axis) for axis in ("prismatic", "revolute"))
 
 
@@ -426,6 +426,17 @@ def test_a_mistake_in_an_effect_file_is_one_line(own, mistake):
     assert message.startswith(f"{own}: ")
     assert len(message.splitlines()) == 1
     assert re.search(expected, message), message
+
+
+@pytest.mark.parametrize("field", [f.name for f in fields(FitSearch)])
+def test_an_older_file_is_told_what_to_write_instead(own, field):
+    text = own.read_text()
+    older = re.sub(r"(Parameter\([^)]*)\)", rf"\1, {field}=0)", text)
+    assert older != text
+    own.write_text(older)
+    with pytest.raises(ModelError, match=rf"search=FitSearch\({field}=") as refusal:
+        load_effect(own)
+    assert "\n" not in str(refusal.value)
 
 
 def test_an_effect_file_that_is_not_there_or_has_no_name_is_one_line(tmp_path):
