@@ -60,6 +60,11 @@ ACTUATION_ORDER = (
 CONTACT_ROLES = frozenset({"contact", "contact_shape"})
 
 
+def parameter_symbol(effect: str, parameter: str) -> sp.Symbol:
+    """Symbol of a parameter of an effect, by the names of both: for laws that need another one."""
+    return sp.Symbol(f"{effect}_{parameter}", real=True)
+
+
 def positive_amplitude(values: Mapping[str, float]) -> dict[str, float]:
     """The same sinusoid with an amplitude >= 0 and a phase in [0, 2 pi)."""
     turned = values["phase"] + (math.pi if values["amplitude"] < 0 else 0.0)
@@ -176,6 +181,8 @@ class Effect:
     follows (friction_speed), the friction force (friction_shape), the stage's output (actuation), a
     share of the force that a modelled environment takes (contact), or the penetration that its
     spring feels (contact_shape).
+    block: what it belongs to, such as "hand" or "environment"; then it is wanted there and is no
+        candidate of a diagnosis;  "": a body
     energy: what it does with energy, beside no more than the effects that it needs, for parameters
         within their bounds: "stores": gives all of it back on a closed path; "dissipates": never
         gives back more than it took; "supplies": may, or nothing is known. It is what claims of
@@ -196,6 +203,7 @@ class Effect:
     law: Callable[[Any, Any], sp.Expr]
     parameters: Mapping[str, Parameter]
     absent: Mapping[str, float]
+    block: str = ""
     energy: Energy = "supplies"
     states: Mapping[str, State] = field(default_factory=dict)
     linear: bool = False
@@ -264,7 +272,7 @@ class Effect:
 
     def symbols(self) -> dict[str, sp.Symbol]:
         """Parameter name -> sympy symbol NAME_PARAMETER, one per effect."""
-        return {p: sp.Symbol(f"{self.name}_{p}", real=True) for p in self.parameters}
+        return {p: parameter_symbol(self.name, p) for p in self.parameters}
 
     def state_symbols(self) -> dict[str, sp.Symbol]:
         """State name -> sympy symbol."""
