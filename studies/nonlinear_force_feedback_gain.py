@@ -34,7 +34,7 @@ from teleopdesign.diagrams import Diagram, four_cases, reading, world_haptics_20
 from teleopdesign.frequency import delay_margin, loop_gain, measured_impedance
 from teleopdesign.plot.design import STYLE, TWO_COLUMNS
 from teleopdesign.plot.frequency_axes import logarithmic
-from teleopdesign.simulate import Motion, simulate
+from teleopdesign.simulate import Trajectory, simulate
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -131,7 +131,7 @@ class TradeOff:
 
 def at_constant_velocity(diagram: Diagram, speed: float) -> float:
     """Force error (N) once everything has settled in motion at that speed (m/s)."""
-    motion = Motion(lambda t: speed * t, lambda t: speed + 0 * t, lambda t: 0 * t)
+    motion = Trajectory(lambda t: speed * t, lambda t: speed + 0 * t, lambda t: 0 * t)
     # 0.35 s: 44 time constants of the low-pass of 20 Hz, and 350 bristle lengths at 0.1 mm/s
     simulation = simulate(
         diagram, duration=0.35, motion={"L": motion}, give=1e-7, computer="continuous", step=1e-3

@@ -18,7 +18,7 @@ from _slave_with_friction import two_sides
 from _study import write_study
 
 from teleopdesign.blocks import Body, Value, soft_rubber
-from teleopdesign.simulate import ForceDisplacement, Motion, force_displacement, simulate, sine
+from teleopdesign.simulate import ForceDisplacement, Trajectory, force_displacement, simulate, sine
 
 STIFFNESS = 600.0  # of the rubber, N/m
 RUBBER = {"stiffness": STIFFNESS, "damping": 1.0, "level": 0.1, "give": 1e-3, "position": 0.0}
@@ -28,10 +28,10 @@ MIDDLE, AMPLITUDE, FREQUENCY = 4e-3, 6e-3, 0.2  # m, m, Hz: in and out of contac
 WITHIN = (4e-3, 8e-3)  # m, where slope and width are read: in contact both ways
 
 
-def press(frequency: float) -> Motion:
+def press(frequency: float) -> Trajectory:
     """Into the rubber and out of it, about the middle."""
     one = sine(amplitude=AMPLITUDE, frequency=frequency)
-    return Motion(lambda t: MIDDLE + one.position(t), one.velocity, one.acceleration)
+    return Trajectory(lambda t: MIDDLE + one.position(t), one.velocity, one.acceleration)
 
 
 def run(*, quick: bool = False) -> ForceDisplacement:

@@ -32,7 +32,7 @@ from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Diagram, teleoperator
 from teleopdesign.passivity import largest_ratio
 from teleopdesign.plot.onset import plot_teleoperator_onset
-from teleopdesign.simulate import Motion, simulate
+from teleopdesign.simulate import Trajectory, simulate
 
 FRICTION, MASTER, SLAVE = 1.0, 0.1, 0.3  # N, kg, kg
 COUPLING, DAMPING = 2000.0, 1.0  # P, N/m, and D, N s/m, of the map that does not vary it
@@ -80,7 +80,7 @@ def growth(share: float, *, damping: float, contact: float) -> float:
     simulation = simulate(
         machine(share, damping=damping, contact=contact),
         duration=1.25 * period,
-        motion={"X_m": Motion(nothing, nothing, nothing)},
+        motion={"X_m": Trajectory(nothing, nothing, nothing)},
         # at the turning point of the settled loop, where the Dahl force is f_D tanh(u)
         initial={
             "X_s": AMPLITUDE,

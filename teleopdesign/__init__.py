@@ -18,7 +18,7 @@ The names that a user types:
 
     experiments   Experiment, Record, load_experiment, check_experiment, example, fetch
     models        Model, Body, Value
-    effects       EFFECTS, Effect, Parameter, State, load_effect
+    effects       EFFECTS, Effect, Parameter, FitSearch, State, load_effect
     diagnosis     fit, compare, rank, find_missing, describe, propose_experiment, Comparison,
                   Ranking, Diagnosis
     diagrams      Diagram, ANY, haptic_interface, teleoperator, hand, read_diagram,
@@ -103,7 +103,7 @@ if TYPE_CHECKING:
         rank,
     )
     from .diagrams import ANY, Diagram, haptic_interface, read_diagram, teleoperator, write_diagram
-    from .effects import EFFECTS, Effect, Parameter, State, load_effect
+    from .effects import EFFECTS, Effect, FitSearch, Parameter, State, load_effect
     from .errors import ExperimentError, ModelError, TeleopDesignError
     from .examples import example
     from .frequency import bode, measured_impedance
@@ -133,6 +133,7 @@ __all__ = [
     "Effect",
     "Experiment",
     "ExperimentError",
+    "FitSearch",
     "Model",
     "ModelError",
     "Parameter",
@@ -193,6 +194,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "EFFECTS": "effects",
         "Effect": "effects",
         "Parameter": "effects",
+        "FitSearch": "effects",
         "State": "effects",
         "load_effect": "effects",
     },

@@ -52,7 +52,7 @@ CONSTRUCTORS = [
     td.Sampling, td.Assumptions, td.Certificate, td.diagrams.Moving, td.diagrams.Attached,
     td.diagrams.Linked, td.diagrams.Control, td.diagrams.Junction, td.diagrams.Kinematics,
     td.diagrams.Arm, td.controllers.Stage, td.controllers.ControlLaw, td.controllers.State,
-    td.blocks.MatrixImpedance, td.simulate.Motion, passivity.Strokes, passivity.Dahl,
+    td.blocks.MatrixImpedance, td.simulate.Trajectory, passivity.Strokes, passivity.Dahl,
     passivity.Coulomb, passivity.Spring, passivity.DahlBehindSpring, passivity.Search,
 ]  # fmt: skip
 METHODS = [
@@ -94,7 +94,7 @@ def functions():
 #: a right value for what an annotation names, first match wins
 RIGHT = (
     ("Mapping[str, Simulation]", lambda: {"one": objects.simulation()}),
-    ("Mapping[str, Motion]", lambda: {"L": td.sine(amplitude=0.01, frequency=1.0)}),
+    ("Mapping[str, Trajectory]", lambda: {"L": td.sine(amplitude=0.01, frequency=1.0)}),
     ("Mapping[str, float]", dict),
     ("Sequence[Body]", lambda: (objects.BODY, objects.BODY)),
     ("np.random.Generator", lambda: np.random.default_rng(0)),

@@ -7,7 +7,7 @@ Damping of the rubber is left out. Where all strokes reach far into it, it is mi
 
 from sympy import Max
 
-from teleopdesign.effects import Effect, Parameter
+from teleopdesign.effects import Effect, FitSearch, Parameter
 
 
 def law(now, p):
@@ -21,7 +21,10 @@ EFFECT = Effect(
     parameters={
         "stiffness": Parameter("stiffness", "K: of the buffer"),
         "start": Parameter(
-            "position", "x_0: where it begins", lower=-float("inf"), starts=(0.5, 1.0, 2.0)
+            "position",
+            "x_0: where it begins",
+            lower=-float("inf"),
+            search=FitSearch(starts=(0.5, 1.0, 2.0)),
         ),
     },
     absent={"stiffness": 0.0},

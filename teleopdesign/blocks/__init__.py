@@ -1,15 +1,16 @@
 """Blocks of a diagram: equations only."""
 
 from ..arguments import check_arguments
-from .arm import ARM
+from ..effects import BLOCK_EFFECTS, with_block_effects
 from .body import NINETY_FIVE, Body, BodyEquation, Value
-from .contact_hysteresis import CONTACT_HYSTERESIS
 from .environment import CONTACT
 from .environments import free_space, hunt_crossley, soft_rubber, spring_damper
-from .every_effect import BLOCK_EFFECTS, with_block_effects
 from .hand import hand
-from .impact_damping import IMPACT_DAMPING
 from .matrix_impedance import MatrixImpedance, matrix_impedance
+
+ARM = BLOCK_EFFECTS["arm"]
+CONTACT_HYSTERESIS = BLOCK_EFFECTS["contact_hysteresis"]
+IMPACT_DAMPING = BLOCK_EFFECTS["impact_damping"]
 
 __all__ = [
     "ARM",

@@ -174,7 +174,7 @@ class Body:
                 if other.role == effect.role:
                     kept = kept.without_effect(other.name)
         added = {
-            f"{effect.name}.{n}": Value(v, fixed=effect.parameters[n].chosen)
+            f"{effect.name}.{n}": Value(v, fixed=effect.parameters[n].search.chosen)
             for n, v in start.items()
         }
         return replace(

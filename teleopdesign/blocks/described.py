@@ -64,7 +64,7 @@ def effects_of(
             if key in given:
                 parameters[f"{name}.{key}"] = value_of(given[key], parameter, axis)
             elif not complete:
-                open_value = Value(effect.default(key), fixed=parameter.chosen)
+                open_value = Value(effect.default(key), fixed=parameter.search.chosen)
                 parameters[f"{name}.{key}"] = open_value
             elif not parameter.optional:
                 raise ExperimentError(f'{where}.{name}: no key "{key}", expected a number')

@@ -1,40 +1,14 @@
-"""An environment that is modelled, not measured: a one-sided spring and damper the body runs into.
-
-    F = max(K d + D v, 0) where d = x - x_c > 0, else 0    subtracted from the body's equation
-
-It is carried by the body that touches it, under the name `environment`; effects of the role
-`contact` add to the sum, one of the role `contact_shape` takes the place of d. A body with a tip
-behind its transmission touches it with the tip: x and v are the tip's.
-"""
+"""The force that a modelled environment takes from the body that touches it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import sympy as sp
 
-from ..effects import CONTACT_ROLES, SIGNALS, Effect, Parameter
+from ..effects import BLOCK_EFFECTS, CONTACT_ROLES, SIGNALS, Effect
 
-NAME = "environment"
-
-
-def _law(now: Any, p: Any) -> sp.Expr:
-    return p.stiffness * now.penetration + p.damping * now.velocity
-
-
-CONTACT = Effect(
-    role="contact",
-    energy="dissipates",
-    law=_law,
-    parameters={
-        "stiffness": Parameter("stiffness", "K: contact stiffness"),
-        "damping": Parameter("damping", "D: contact damping"),
-        "contact_position": Parameter("position", "x_c: where contact begins", lower=-float("inf")),
-    },
-    absent={"stiffness": 0.0, "damping": 0.0},
-    source="one-sided spring and damper",
-).named(NAME, __doc__ or "")
+CONTACT = BLOCK_EFFECTS["environment"]
 
 
 def contact_force(effects: Sequence[Effect]) -> sp.Expr:

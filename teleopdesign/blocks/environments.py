@@ -8,11 +8,9 @@ lies beyond it resists. Numbers in the documentation are examples: what a materi
 
 from __future__ import annotations
 
-from ..effects import CONTACT_ROLES, EFFECTS, Effect
+from ..effects import BLOCK_EFFECTS, CONTACT_ROLES, EFFECTS
 from .body import Body
-from .contact_hysteresis import CONTACT_HYSTERESIS
 from .environment import CONTACT
-from .impact_damping import IMPACT_DAMPING
 
 
 def free_space(body: Body) -> Body:
@@ -47,7 +45,9 @@ def hunt_crossley(
     """
     wall = _touching(body, stiffness, position)
     hard = wall.with_effect(EFFECTS["contact_hardening"], {"power": power, "depth": depth})
-    return hard.with_effect(IMPACT_DAMPING, {"reference_velocity": reference_velocity})
+    return hard.with_effect(
+        BLOCK_EFFECTS["impact_damping"], {"reference_velocity": reference_velocity}
+    )
 
 
 def soft_rubber(
@@ -67,10 +67,9 @@ def soft_rubber(
     """
     wall = _touching(body, stiffness, position, damping=damping)
     inside = {"level": level, "stiffness": level / give, "recovery_time": recovery_time}
-    return wall.with_effect(CONTACT_HYSTERESIS, inside)
+    return wall.with_effect(BLOCK_EFFECTS["contact_hysteresis"], inside)
 
 
 def _touching(body: Body, stiffness: float, position: float, *, damping: float = 0.0) -> Body:
-    wall: Effect = CONTACT
     values = {"stiffness": stiffness, "damping": damping, "contact_position": position}
-    return free_space(body).with_effect(wall, values)
+    return free_space(body).with_effect(CONTACT, values)

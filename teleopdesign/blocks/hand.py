@@ -13,8 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..effects import EFFECTS
-from .arm import ARM
+from ..effects import BLOCK_EFFECTS, EFFECTS
 from .body import Body, Value
 
 
@@ -36,4 +35,4 @@ def hand(
         body = body.with_effect(EFFECTS["viscous"], {"damping": damping})
         return body.with_effect(EFFECTS["spring"], {"stiffness": stiffness})
     grip = {"grip_damping": damping, "grip_stiffness": stiffness}
-    return body.with_effect(ARM, {**grip, **arm})
+    return body.with_effect(BLOCK_EFFECTS["arm"], {**grip, **arm})

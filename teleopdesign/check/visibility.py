@@ -149,8 +149,8 @@ def _shapes(candidate: Candidate, model: Model, unit: dict[str, float]) -> list[
     names = [f"{place}.{effect.name}.{n}" for n in effect.parameters]
     grids = []
     for full, (name, p) in zip(names, effect.parameters.items(), strict=True):
-        one = name in effect.absent or p.chosen or p.quantity == "angle"
-        scaled = [x * unit[p.scale or p.quantity] for x in (p.starts[:1] if one else p.starts)]
+        one = name in effect.absent or p.search.chosen or p.quantity == "angle"
+        scaled = [x * unit[p.scale] for x in (p.search.starts[:1] if one else p.search.starts)]
         grids.append([added.parameters[full].value] if p.optional else scaled)
     every = list(product(*grids))
     some = every[:: max(1, math.ceil(len(every) / SHAPES))]

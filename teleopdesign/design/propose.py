@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from ..blocks import Body
+from ..blocks import Body, free_space
 from ..diagnose import Diagnosis
 from ..diagrams import Diagram, four_cases, haptic_interface
 from ..errors import ModelError
@@ -76,7 +76,7 @@ def design(
         diagnosis = diagnosed(diagnosis)
     at = _place(diagnosis.model, place)
     reach = reach_of(diagnosis.experiment, at)
-    body = free_body(diagnosis.model.body(at))
+    body = free_space(diagnosis.model.body(at))
     given = settled(assumptions or Assumptions(), body, reach)
     motion = stated_motion(reach, given, body.axis)
     friction = friction_interval(body, reach, errors=given.errors)
@@ -110,13 +110,6 @@ def design(
         notes=(),
     )
     return replace(proposal, notes=notes_on(proposal, diagnosis))
-
-
-def free_body(body: Body) -> Body:
-    """The body in free space: without a modelled environment."""
-    for effect in [e for e in reversed(body.effects) if e.role in ("contact_shape", "contact")]:
-        body = body.without_effect(effect.name)
-    return body
 
 
 def settled(given: Assumptions, body: Body, reach: Reach) -> Assumptions:

@@ -11,7 +11,7 @@ from ..errors import ModelError
 from ..measurement.filtering import Array
 from ..quantity import unit_of
 from ..realise.reach import Reach
-from ..simulate import Motion, sine
+from ..simulate import Trajectory, sine
 from .assumptions import Assumptions
 from .rounding import rounded_down
 
@@ -38,7 +38,7 @@ class StatedMotion:
         return self.omega * self.amplitude
 
     @property
-    def motion(self) -> Motion:
+    def motion(self) -> Trajectory:
         """The motion as functions of time."""
         about = sine(amplitude=self.amplitude, frequency=self.frequency)
 

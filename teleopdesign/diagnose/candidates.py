@@ -75,11 +75,10 @@ def started(model: Model, scale: dict[str, float]) -> list[Model]:
         free = [
             n
             for n, p in parameters.items()
-            if p.chosen or not model.parameters[f"{place}.{name}.{n}"].fixed
+            if p.search.chosen or not model.parameters[f"{place}.{name}.{n}"].fixed
         ]
         grids = [
-            [m * scale[parameters[n].scale or parameters[n].quantity] for m in parameters[n].starts]
-            for n in free
+            [m * scale[parameters[n].scale] for m in parameters[n].search.starts] for n in free
         ]
         names = [f"{place}.{name}.{n}" for n in free]
         models = [

@@ -212,10 +212,12 @@ def solve(
     """Bounded least squares on the referred residuals of these stretches."""
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     declared = [model.declared(n) for n in free]
-    scale = np.array([unit[d.scale or d.quantity] for d in declared])
+    scale = np.array([unit[d.scale] for d in declared])
     decades = np.array([over_decades(model, n) for n in free], dtype=bool)
     lower = np.array([d.lower for d in declared]) / scale
-    upper = np.array([min(d.upper / s, d.within) for d, s in zip(declared, scale, strict=True)])
+    upper = np.array(
+        [min(d.upper / s, d.search.within) for d, s in zip(declared, scale, strict=True)]
+    )
     start = np.array([model.parameters[n].value for n in free]) / scale
     lower[decades] = -DECADES * np.log(10)
     upper[decades] = np.log(np.minimum(upper[decades], 10.0**DECADES))

@@ -22,7 +22,7 @@ def is_identifiable(found: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> 
         if declared.optional:
             continue
         away = np.pi if declared.quantity == "angle" else found.model.from_absence(name)
-        if not value.stderr * (criteria.surely if declared.essential else 1.0) < away:
+        if not value.stderr * (criteria.surely if declared.search.essential else 1.0) < away:
             return False
     old = [i for i, n in enumerate(found.free) if n in base.free]
     for i in new:

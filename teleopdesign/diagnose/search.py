@@ -111,7 +111,7 @@ def _varied(model: Model, ordered: list[Model]) -> list[Model]:
         f"{at}.{name}.{n}"
         for name, at in model.absent
         for n, p in model.body(at).effect(name).parameters.items()
-        if p.essential
+        if p.search.essential
     ]
     first: dict[tuple[float, ...], Model] = {}
     rest = []

@@ -1,5 +1,8 @@
 """The catalogue of physical effects: every file of this folder that does not begin with `_`.
 
+An effect that belongs to a hand or an environment says so by its `block`: it is wanted there, and
+is no candidate of a diagnosis. `BLOCK_EFFECTS` are these, `EFFECTS` all others.
+
 The file name is the effect's name, its docstring the effect's page. A user's own file is read by
 `load_effect` and takes part like any other.
 """
@@ -9,6 +12,7 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 from collections.abc import Iterable, Mapping
+from dataclasses import fields
 from pathlib import Path
 from types import ModuleType
 from weakref import WeakValueDictionary
@@ -26,21 +30,25 @@ from ._effect import (
     SIGNALS,
     UNEXPLAINED,
     Effect,
+    FitSearch,
     Parameter,
     Role,
     State,
     delayed,
     ordered,
+    parameter_symbol,
 )
 from ._structure import make_structure, touching
 
 __all__ = [
+    "BLOCK_EFFECTS",
     "CONTACT_ROLES",
     "EFFECTS",
     "INERTIA",
     "SIGNALS",
     "UNEXPLAINED",
     "Effect",
+    "FitSearch",
     "Parameter",
     "Role",
     "State",
@@ -50,7 +58,9 @@ __all__ = [
     "load_effect",
     "make_structure",
     "ordered",
+    "parameter_symbol",
     "touching",
+    "with_block_effects",
 ]
 
 
@@ -93,6 +103,13 @@ def _read(path: Path) -> Effect:
         spec.loader.exec_module(module)
     except TeleopDesignError as error:
         raise ModelError(f"{path}: {error}") from error
+    except TypeError as error:
+        for name in (f.name for f in fields(FitSearch)):
+            if f"unexpected keyword argument '{name}'" in str(error):
+                raise ModelError(
+                    f"{path}: Parameter: found {name}=..., expected search=FitSearch({name}=...)"
+                ) from error
+        raise ModelError(f"{path}: TypeError: {error}") from error
     except Exception as error:  # any failure of a user's file is reported, with its kind
         raise ModelError(f"{path}: {type(error).__name__}: {error}") from error
     return _checked(module, path)
@@ -114,8 +131,10 @@ def _checked(module: ModuleType, path: Path) -> Effect:
     effect = effect.named(path.stem, module.__doc__ or "")
     try:
         allowed = {*SIGNALS.values(), *effect.symbols().values(), *effect.state_symbols().values()}
+        needed = tuple(f"{name}_" for name in effect.needs)
         for law in (effect.expression(), *effect.rates().values()):
-            if strangers := law.free_symbols - allowed:
+            known = {s for s in law.free_symbols if s.name.startswith(needed)}
+            if strangers := law.free_symbols - allowed - known:
                 raise ModelError(f"{path}: law uses {', '.join(map(str, strangers))}")
         for law in effect.corrections().values():
             if strangers := law.free_symbols - allowed - {INERTIA, UNEXPLAINED}:
@@ -125,20 +144,29 @@ def _checked(module: ModuleType, path: Path) -> Effect:
     return effect
 
 
-def _own_effects() -> Mapping[str, Effect]:
+def _own_effects() -> dict[str, Effect]:
     files = sorted(p for p in Path(__file__).parent.glob("*.py") if not p.name.startswith("_"))
-    return Catalogue(
-        {p.stem: remember(_read(p), _own_effect, p.stem) for p in files},
-        "effect",
-        see=" (see `teleopdesign effects`)",
-    )
+    return {p.stem: remember(_read(p), _own_effect, p.stem) for p in files}
 
 
 def _own_effect(name: str) -> Effect:
-    return EFFECTS[name]
+    return _OWN[name]
 
 
-EFFECTS: Mapping[str, Effect] = _own_effects()
+_OWN = _own_effects()
+#: effects of a body or its actuation, and of contacts: the candidates of a diagnosis
+EFFECTS: Mapping[str, Effect] = Catalogue(
+    {n: e for n, e in _OWN.items() if not e.block}, "effect", see=" (see `teleopdesign effects`)"
+)
+#: effects that belong to a hand or an environment
+BLOCK_EFFECTS: Mapping[str, Effect] = Catalogue(
+    {n: e for n, e in _OWN.items() if e.block}, "effect of a block"
+)
+
+
+def with_block_effects(effects: Mapping[str, Effect] = EFFECTS) -> Mapping[str, Effect]:
+    """Those effects and the ones of blocks, by name; one given wins."""
+    return Catalogue({**BLOCK_EFFECTS, **effects}, "effect")
 
 
 def catalogue(extra: Iterable[str | Path | Effect] = ()) -> Mapping[str, Effect]:

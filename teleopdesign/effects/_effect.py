@@ -60,6 +60,11 @@ ACTUATION_ORDER = (
 CONTACT_ROLES = frozenset({"contact", "contact_shape"})
 
 
+def parameter_symbol(effect: str, parameter: str) -> sp.Symbol:
+    """Symbol of a parameter of an effect, by the names of both: for laws that need another one."""
+    return sp.Symbol(f"{effect}_{parameter}", real=True)
+
+
 def positive_amplitude(values: Mapping[str, float]) -> dict[str, float]:
     """The same sinusoid with an amplitude >= 0 and a phase in [0, 2 pi)."""
     turned = values["phase"] + (math.pi if values["amplitude"] < 0 else 0.0)
@@ -89,28 +94,39 @@ delayed = sp.Function("delayed", real=True)
 
 @checked
 @dataclass(frozen=True)
+class FitSearch:
+    """How a fit searches a parameter whose value nobody gives.
+
+    starts: where the search begins, as multiples of the record's own scale
+    scale: "": the scale of the parameter's quantity; "duration": of the record; "travel": the whole
+        travel; "resonance_stiffness" and the like: of a resonance within the bandwidth
+    within: upper bound in that scale, where a larger value would mean something else
+    chosen: set at the first start and not estimated: other parameters are relative to this one
+    essential: must be surely more than zero, for at zero the effect would be another one
+    """
+
+    starts: tuple[float, ...] = (0.01, 0.1)
+    scale: str = ""
+    within: float = float("inf")
+    chosen: bool = False
+    essential: bool = False
+
+
+@checked
+@dataclass(frozen=True)
 class Parameter:
     """One parameter of an effect: its quantity (a key of `quantity`), meaning and bounds (SI).
 
-    starts: where a search begins, as multiples of the record's own scale of that quantity
-    scale: another scale of the record than the quantity's: "duration" for times as long as it,
-        "travel" for the whole of its travel
-    within: upper bound of a search in that scale, where a larger value would mean something else
-    chosen: set at its first start, not estimated: others are meant relative to it
-    optional: the effect is there where this is zero too, which it is unless a value is given
-    essential: where this is zero the effect would be another one: it must be surely more
+    optional: may be zero, and is by default
+    search: how a fit searches it
     """
 
     quantity: str
     meaning: str
     lower: float = 0.0
     upper: float = float("inf")
-    starts: tuple[float, ...] = (0.01, 0.1)
-    scale: str = ""
-    within: float = float("inf")
-    chosen: bool = False
     optional: bool = False
-    essential: bool = False
+    search: FitSearch = FitSearch()
 
     def __post_init__(self) -> None:
         if self.quantity not in QUANTITIES:
@@ -118,6 +134,11 @@ class Parameter:
                 f'Parameter: no quantity "{self.quantity}", has {", ".join(QUANTITIES)}'
                 f"{did_you_mean(self.quantity, QUANTITIES)}"
             )
+
+    @property
+    def scale(self) -> str:
+        """What a search counts this in: a scale of the record, by default its quantity's."""
+        return self.search.scale or self.quantity
 
 
 #: period of something that repeats along the travel. Searches start evenly in 1/period, three
@@ -127,9 +148,9 @@ class Parameter:
 PERIOD = Parameter(
     "position",
     "p: travel of one period",
-    starts=tuple(4.0 / 3.0 / k for k in range(1, 151)),
-    scale="travel",
-    within=2.0,
+    search=FitSearch(
+        starts=tuple(4.0 / 3.0 / k for k in range(1, 151)), scale="travel", within=2.0
+    ),
 )
 
 
@@ -160,6 +181,8 @@ class Effect:
     follows (friction_speed), the friction force (friction_shape), the stage's output (actuation), a
     share of the force that a modelled environment takes (contact), or the penetration that its
     spring feels (contact_shape).
+    block: what it belongs to, such as "hand" or "environment"; then it is wanted there and is no
+        candidate of a diagnosis;  "": a body
     energy: what it does with energy, beside no more than the effects that it needs, for parameters
         within their bounds: "stores": gives all of it back on a closed path; "dissipates": never
         gives back more than it took; "supplies": may, or nothing is known. It is what claims of
@@ -180,6 +203,7 @@ class Effect:
     law: Callable[[Any, Any], sp.Expr]
     parameters: Mapping[str, Parameter]
     absent: Mapping[str, float]
+    block: str = ""
     energy: Energy = "supplies"
     states: Mapping[str, State] = field(default_factory=dict)
     linear: bool = False
@@ -248,7 +272,7 @@ class Effect:
 
     def symbols(self) -> dict[str, sp.Symbol]:
         """Parameter name -> sympy symbol NAME_PARAMETER, one per effect."""
-        return {p: sp.Symbol(f"{self.name}_{p}", real=True) for p in self.parameters}
+        return {p: parameter_symbol(self.name, p) for p in self.parameters}
 
     def state_symbols(self) -> dict[str, sp.Symbol]:
         """State name -> sympy symbol."""

@@ -6,7 +6,7 @@ Computation, buses and drives. Told from `actuator_lag` by commands that hold co
 below that both are a phase in proportion to frequency.
 """
 
-from ._effect import Effect, Parameter, delayed
+from ._effect import Effect, FitSearch, Parameter, delayed
 
 
 def law(now, p):
@@ -20,7 +20,10 @@ EFFECT = Effect(
     linear=True,
     parameters={
         "delay": Parameter(
-            "time", "tau: time from command to force", upper=0.2, starts=(0.05, 0.5, 2.0)
+            "time",
+            "tau: time from command to force",
+            upper=0.2,
+            search=FitSearch(starts=(0.05, 0.5, 2.0)),
         )
     },
     absent={"delay": 0.0},

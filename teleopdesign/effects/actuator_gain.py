@@ -6,7 +6,7 @@ A torque constant or gear ratio that is not what the data sheet says. Something 
 of force: an exciting interaction force, or an inertia that is known.
 """
 
-from ._effect import Effect, Parameter
+from ._effect import Effect, FitSearch, Parameter
 
 
 def law(now, p):
@@ -18,7 +18,11 @@ EFFECT = Effect(
     energy="supplies",
     law=law,
     linear=True,
-    parameters={"gain": Parameter("dimensionless", "g: acting force per command", starts=(1.0,))},
+    parameters={
+        "gain": Parameter(
+            "dimensionless", "g: acting force per command", search=FitSearch(starts=(1.0,))
+        )
+    },
     absent={"gain": 1.0},
     source="torque constant of a motor",
 )

@@ -6,7 +6,7 @@ A current loop, a motor's inductance. Told from `actuation_delay` by commands th
 above 1/tau: a lag also weakens them.
 """
 
-from ._effect import Effect, Parameter, State
+from ._effect import Effect, FitSearch, Parameter, State
 
 
 def law(now, p):
@@ -23,7 +23,11 @@ EFFECT = Effect(
     law=law,
     states={"output": State("force", output)},
     linear=True,
-    parameters={"time_constant": Parameter("time", "tau: lag", upper=0.2, starts=(0.05, 0.5, 2.0))},
+    parameters={
+        "time_constant": Parameter(
+            "time", "tau: lag", upper=0.2, search=FitSearch(starts=(0.05, 0.5, 2.0))
+        )
+    },
     absent={"time_constant": 0.0},
     source="first-order lag in the sense of any control text",
 )

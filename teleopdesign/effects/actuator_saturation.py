@@ -7,7 +7,7 @@ Supply voltage, current limits. Nothing is seen of it in records whose command s
 
 from sympy import Max, Min
 
-from ._effect import Effect, Parameter
+from ._effect import Effect, FitSearch, Parameter
 
 #: multiples of the rms force, from a command that is nearly always cut to one that seldom is
 LIMITS = tuple(0.7 * 1.25**k for k in range(9))
@@ -21,7 +21,9 @@ EFFECT = Effect(
     role="actuation",
     energy="supplies",
     law=law,
-    parameters={"limit": Parameter("force", "F_max: largest acting force", starts=LIMITS)},
+    parameters={
+        "limit": Parameter("force", "F_max: largest acting force", search=FitSearch(starts=LIMITS))
+    },
     absent={"limit": float("inf")},
     source="current limit of an amplifier",
 )

@@ -12,7 +12,7 @@ the tip is led back to its course (`_structure.py`).
 
 from sympy import Piecewise
 
-from ._effect import Parameter
+from ._effect import FitSearch, Parameter
 from ._structure import make_structure
 
 
@@ -32,22 +32,25 @@ EFFECT = make_structure(
     following=FOLLOWING,
     energy="dissipates",
     parameters={
-        "tip_inertia": Parameter("inertia", "m_t: inertia of the tip side", starts=(0.1, 0.3)),
+        "tip_inertia": Parameter(
+            "inertia", "m_t: inertia of the tip side", search=FitSearch(starts=(0.1, 0.3))
+        ),
         "stiffness": Parameter(
             "stiffness",
             "K: contact stiffness",
-            starts=(0.03, 0.1, 0.3),
-            scale="resonance_stiffness",
+            search=FitSearch(starts=(0.03, 0.1, 0.3), scale="resonance_stiffness"),
         ),
         "damping": Parameter(
-            "damping", "C: contact damping", starts=(0.03,), scale="resonance_damping"
+            "damping",
+            "C: contact damping",
+            search=FitSearch(starts=(0.03,), scale="resonance_damping"),
         ),
         "gap": Parameter(
             "position",
             "g: width of the gap",
-            starts=(0.7, 2.5, 10.0, 35.0, 120.0),
-            scale="resonance_position",
-            essential=True,
+            search=FitSearch(
+                starts=(0.7, 2.5, 10.0, 35.0, 120.0), scale="resonance_position", essential=True
+            ),
         ),
     },
     source="two masses with lost motion",

@@ -8,7 +8,7 @@ Magnets against iron teeth, ball screws, gear meshing. It does not depend on the
 
 from sympy import pi, sin
 
-from ._effect import PERIOD, Effect, Parameter, positive_amplitude
+from ._effect import PERIOD, Effect, FitSearch, Parameter, positive_amplitude
 
 
 def law(now, p):
@@ -20,9 +20,13 @@ EFFECT = Effect(
     energy="stores",
     law=law,
     parameters={
-        "amplitude": Parameter("force", "A: amplitude", lower=-float("inf"), starts=(0.03,)),
+        "amplitude": Parameter(
+            "force", "A: amplitude", lower=-float("inf"), search=FitSearch(starts=(0.03,))
+        ),
         "period": PERIOD,
-        "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=(0.0,)),
+        "phase": Parameter(
+            "angle", "phi: phase at x = 0", lower=-float("inf"), search=FitSearch(starts=(0.0,))
+        ),
     },
     absent={"amplitude": 0.0},
     canonical=positive_amplitude,

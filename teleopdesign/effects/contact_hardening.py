@@ -7,7 +7,7 @@ is that of K in F = K d^n. n = 1.5 for a sphere on a flat (Hertz), more for soft
 stiffer linear contact only if the depth varies widely.
 """
 
-from ._effect import Effect, Parameter
+from ._effect import Effect, FitSearch, Parameter
 
 
 def law(now, p):
@@ -20,10 +20,16 @@ EFFECT = Effect(
     law=law,
     parameters={
         "power": Parameter(
-            "dimensionless", "n: exponent of the penetration", 1.0, 4.0, starts=(1.2, 1.5, 2.0)
+            "dimensionless",
+            "n: exponent of the penetration",
+            1.0,
+            4.0,
+            search=FitSearch(starts=(1.2, 1.5, 2.0)),
         ),
         "depth": Parameter(
-            "position", "d_0: where K is the secant stiffness", starts=(0.5,), chosen=True
+            "position",
+            "d_0: where K is the secant stiffness",
+            search=FitSearch(starts=(0.5,), chosen=True),
         ),
     },
     absent={"power": 1.0},

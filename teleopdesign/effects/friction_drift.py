@@ -8,7 +8,7 @@ only a trend, from which d and tau cannot both be told.
 
 from sympy import exp
 
-from ._effect import Effect, Parameter
+from ._effect import Effect, FitSearch, Parameter
 
 
 def law(now, p):
@@ -24,7 +24,7 @@ EFFECT = Effect(
             "dimensionless", "d: part of the cold level that is lost", lower=-1.0, upper=1.0
         ),
         "time_constant": Parameter(
-            "time", "tau: of warming up", starts=(0.2, 1.0), scale="duration"
+            "time", "tau: of warming up", search=FitSearch(starts=(0.2, 1.0), scale="duration")
         ),
     },
     absent={"fraction": 0.0},

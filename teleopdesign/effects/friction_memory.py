@@ -5,7 +5,7 @@
 The lubricant film takes time to build up and to break down. Only where the level depends on speed.
 """
 
-from ._effect import Effect, Parameter, State
+from ._effect import Effect, FitSearch, Parameter, State
 
 
 def law(now, p):
@@ -23,7 +23,10 @@ EFFECT = Effect(
     states={"film": State("velocity", film)},
     parameters={
         "time_constant": Parameter(
-            "time", "tau: lag of the film behind the speed", upper=2.0, starts=(1.0, 10.0)
+            "time",
+            "tau: lag of the film behind the speed",
+            upper=2.0,
+            search=FitSearch(starts=(1.0, 10.0)),
         )
     },
     absent={"time_constant": 0.0},

@@ -6,7 +6,7 @@ Gears, screws and capstans press harder on their contacts the more they transmit
 `coulomb` by commands that vary at equal speed. From mu = 1 on no acting force moves the body.
 """
 
-from ._effect import Effect, Parameter
+from ._effect import Effect, FitSearch, Parameter
 
 
 def law(now, p):
@@ -18,7 +18,9 @@ EFFECT = Effect(
     energy="dissipates",
     law=law,
     parameters={
-        "coefficient": Parameter("dimensionless", "mu: level per force carried", within=1.0)
+        "coefficient": Parameter(
+            "dimensionless", "mu: level per force carried", search=FitSearch(within=1.0)
+        )
     },
     absent={"coefficient": 0.0},
     needs=frozenset({"coulomb"}),

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from sympy import pi, sin
 
-from ._effect import PERIOD, Effect, Parameter, positive_amplitude
+from ._effect import PERIOD, Effect, FitSearch, Parameter, positive_amplitude
 
 
 def law(now, p):
@@ -28,11 +28,16 @@ EFFECT = Effect(
             "e: half of its range over the mean",
             lower=-1.0,
             upper=1.0,
-            starts=(0.05,),
+            search=FitSearch(starts=(0.05,)),
         ),
         # half a wave over the travel is a friction that grows along it
-        "period": replace(PERIOD, starts=(3.0, *PERIOD.starts), within=float("inf")),
-        "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=(0.0,)),
+        "period": replace(
+            PERIOD,
+            search=replace(PERIOD.search, starts=(3.0, *PERIOD.search.starts), within=float("inf")),
+        ),
+        "phase": Parameter(
+            "angle", "phi: phase at x = 0", lower=-float("inf"), search=FitSearch(starts=(0.0,))
+        ),
     },
     absent={"amplitude": 0.0},
     canonical=positive_amplitude,

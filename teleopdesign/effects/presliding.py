@@ -8,7 +8,7 @@ lengths that the encoder resolves; in larger motion it is mistaken for `actuatio
 round the corners of the friction loop.
 """
 
-from ._effect import Effect, Parameter, State
+from ._effect import Effect, FitSearch, Parameter, State
 
 
 def law(now, p):
@@ -29,10 +29,13 @@ EFFECT = Effect(
         "stiffness": Parameter(
             "stiffness",
             "sigma: bristle stiffness before sliding",
-            starts=(3.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4),
+            search=FitSearch(starts=(3.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4)),
         ),
         "bristle_damping": Parameter(
-            "damping", "sigma_1: damping of the bristle", starts=(0.1,), optional=True
+            "damping",
+            "sigma_1: damping of the bristle",
+            optional=True,
+            search=FitSearch(starts=(0.1,)),
         ),
     },
     absent={"stiffness": float("inf")},

@@ -8,7 +8,7 @@ crosses v_S slowly, both ways, and travels many bristle lengths between reversal
 
 from sympy import exp
 
-from ._effect import Effect, Parameter
+from ._effect import Effect, FitSearch, Parameter
 
 
 def law(now, p):
@@ -22,7 +22,7 @@ EFFECT = Effect(
     parameters={
         "extra_static_level": Parameter("force", "F_S - F_C: extra friction at rest"),
         "stribeck_velocity": Parameter(
-            "velocity", "v_S: extra level down to 1/e", starts=(0.02, 0.1, 0.5)
+            "velocity", "v_S: extra level down to 1/e", search=FitSearch(starts=(0.02, 0.1, 0.5))
         ),
     },
     absent={"extra_static_level": 0.0},

@@ -8,7 +8,7 @@ that tells it from `cogging`.
 
 from sympy import pi, sin
 
-from ._effect import PERIOD, Effect, Parameter, positive_amplitude
+from ._effect import PERIOD, Effect, FitSearch, Parameter, positive_amplitude
 
 
 def law(now, p):
@@ -21,10 +21,16 @@ EFFECT = Effect(
     law=law,
     parameters={
         "amplitude": Parameter(
-            "dimensionless", "r: relative amplitude", lower=-1.0, upper=1.0, starts=(0.05,)
+            "dimensionless",
+            "r: relative amplitude",
+            lower=-1.0,
+            upper=1.0,
+            search=FitSearch(starts=(0.05,)),
         ),
         "period": PERIOD,
-        "phase": Parameter("angle", "phi: phase at x = 0", lower=-float("inf"), starts=(0.0,)),
+        "phase": Parameter(
+            "angle", "phi: phase at x = 0", lower=-float("inf"), search=FitSearch(starts=(0.0,))
+        ),
     },
     absent={"amplitude": 0.0},
     canonical=positive_amplitude,

@@ -11,7 +11,7 @@ Noise of the readings swings a lightly damped tip, which swings on: along a meas
 is led back to its course (`_structure.py`).
 """
 
-from ._effect import Parameter
+from ._effect import FitSearch, Parameter
 from ._structure import make_structure
 
 
@@ -27,15 +27,18 @@ EFFECT = make_structure(
     energy="dissipates",
     linear=True,
     parameters={
-        "tip_inertia": Parameter("inertia", "m_t: inertia of the tip side", starts=(0.1, 0.5)),
+        "tip_inertia": Parameter(
+            "inertia", "m_t: inertia of the tip side", search=FitSearch(starts=(0.1, 0.5))
+        ),
         "stiffness": Parameter(
             "stiffness",
             "K: stiffness of the transmission",
-            starts=(0.004, 0.02, 0.1, 0.5),
-            scale="resonance_stiffness",
+            search=FitSearch(starts=(0.004, 0.02, 0.1, 0.5), scale="resonance_stiffness"),
         ),
         "damping": Parameter(
-            "damping", "C: damping of the transmission", starts=(0.01,), scale="resonance_damping"
+            "damping",
+            "C: damping of the transmission",
+            search=FitSearch(starts=(0.01,), scale="resonance_damping"),
         ),
     },
     source="two masses on a spring; Mahvash, Okamura, IEEE CDC 2006",

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..diagrams import Diagram, Junction, Moving
 from ..errors import ModelError, did_you_mean
-from ..simulate import Prepared, Sampling, prepare, sine
+from ..simulate import Sampling, Setup, prepare, sine
 from ..simulate.sampling import SAMPLED
 from .lock_in import Harmonic, lock_in
 
@@ -58,9 +58,9 @@ def settled_harmonics(
         diagram.signal(name)
     cycles = _CYCLES
     while True:
-        prepared = _prepared(diagram, drive, duration=cycles / drive.frequency)
-        rows, timing = prepared.checked(long_step="refine", every_step=True)
-        columns = dict(zip(prepared.program.layout.columns, rows.T, strict=True))
+        setup = _set_up(diagram, drive, duration=cycles / drive.frequency)
+        rows, timing = setup.checked(long_step="refine", every_step=True)
+        columns = dict(zip(setup.program.layout.columns, rows.T, strict=True))
         columns = _outside(diagram, drive, len(rows), timing.step) | columns
         harmonics = {
             name: lock_in(
@@ -77,7 +77,7 @@ def settled_harmonics(
         cycles *= 2
 
 
-def _prepared(diagram: Diagram, drive: Sinusoid, *, duration: float) -> Prepared:
+def _set_up(diagram: Diagram, drive: Sinusoid, *, duration: float) -> Setup:
     omega = 2 * np.pi * drive.frequency
     motion = sine(amplitude=drive.amplitude, frequency=drive.frequency)
     prescribed = drive.drive in {b.motion for b in diagram.blocks if isinstance(b, Moving)}

@@ -8,7 +8,7 @@ import sympy as sp
 from ..blocks import Body, Value
 from ..controllers import controller
 from ..diagrams import haptic_interface
-from ..simulate import Motion, simulate
+from ..simulate import Trajectory, simulate
 from ._laws import dahl_rate, dahl_step
 from ._proof import Equal, Grows, NotNegative, Proof, Refutation, Step, proof
 from ._statement import MAHVASH, Numbers, near, shows
@@ -37,7 +37,7 @@ def sampled_compensator() -> Numbers:
     forces = simulate(
         haptic_interface(Body("prismatic", {"inertia": Value(1.0)}), cancellation=law),
         duration=period * (len(positions) - 1),
-        motion={"L": Motion(held, np.zeros_like, np.zeros_like)},
+        motion={"L": Trajectory(held, np.zeros_like, np.zeros_like)},
         step=period,
         jit=False,
     )["R_MBC"].values

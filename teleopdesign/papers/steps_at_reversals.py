@@ -16,7 +16,7 @@ from ..blocks import Body, Value
 from ..controllers import controller
 from ..diagrams import haptic_interface
 from ..effects import EFFECTS
-from ..simulate import Motion, simulate
+from ..simulate import Trajectory, simulate
 from ._laws import dahl_rate, dahl_step
 from ._proof import Equal, Grows, Holds, NotNegative, Refutation, proof
 from ._statement import DERIVED, Figure, Numbers, shows
@@ -90,7 +90,7 @@ def energy_of_cycle(turning: tuple[float, ...]) -> float:
     simulation = simulate(
         haptic_interface(motor, cancellation=law),
         duration=4 * n / 2,
-        motion={"L": Motion(position, velocity, acceleration)},
+        motion={"L": Trajectory(position, velocity, acceleration)},
         computer="continuous",
         give=1e-3,
     )

@@ -3,17 +3,17 @@
 from ..arguments import check_arguments
 from .force_displacement import ForceDisplacement, Loop, force_displacement, loop_of
 from .force_velocity import ForceVelocity, force_velocity
-from .motion import Motion, sampled_motion, sine
-from .prepared import Prepared, prepare
 from .sampling import Sampling
+from .setup import Setup, prepare
 from .simulation import Simulation, simulate
+from .trajectory import Trajectory, sampled_motion, sine
 
 __all__ = [
     "ForceDisplacement",
     "ForceVelocity",
     "Loop",
-    "Motion",
-    "Prepared",
+    "Trajectory",
+    "Setup",
     "Sampling",
     "Simulation",
     "force_displacement",

@@ -13,9 +13,9 @@ from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
 from ..notebook import html_table
-from .motion import Motion
-from .prepared import Input, Prepared, prepare
 from .sampling import SAMPLED, Sampling
+from .setup import Input, Setup, prepare
+from .trajectory import Trajectory
 from .units import signal_units
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def simulate(
     *,
     duration: float,
     inputs: Mapping[str, Input] | None = None,
-    motion: Mapping[str, Motion] | None = None,
+    motion: Mapping[str, Trajectory] | None = None,
     initial: Mapping[str, float] | None = None,
     computer: Sampling | Literal["continuous"] = SAMPLED,
     step: float = 1e-4,
@@ -107,7 +107,7 @@ def simulate(
     jit: False runs the generated code in plain Python
     raises ModelError: block without laws, unknown signal, step refused or force not finite
     """
-    prepared = prepare(
+    setup = prepare(
         diagram,
         duration=duration,
         inputs=inputs,
@@ -118,34 +118,34 @@ def simulate(
         give=give,
         jit=jit,
     )
-    rows, timing = prepared.checked(long_step=long_step, every_step=every_step)
-    result = _labelled(prepared, rows, timing, every_step)
+    rows, timing = setup.checked(long_step=long_step, every_step=every_step)
+    result = _labelled(setup, rows, timing, every_step)
     if estimate_error:
         stride = 2 if every_step else 1
-        finer, _ = prepared.run(prepared.timing(2 * timing.inner), every_step=every_step)
+        finer, _ = setup.run(setup.timing(2 * timing.inner), every_step=every_step)
         difference = np.abs(finer[::stride] - rows).max(axis=0)
         size = np.maximum(np.abs(finer).max(axis=0), np.finfo(float).tiny)
-        for name, error in zip(prepared.program.layout.columns, difference / size, strict=True):
+        for name, error in zip(setup.program.layout.columns, difference / size, strict=True):
             result.data[name].attrs["step_error"] = float(error)
     return result
 
 
-def _labelled(prepared: Prepared, rows: np.ndarray, timing: Timing, every_step: bool) -> Simulation:
+def _labelled(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -> Simulation:
     """Rows as labelled arrays with units."""
     import xarray
 
     step = timing.step if every_step else timing.period
-    units = signal_units(prepared.diagram)
+    units = signal_units(setup.diagram)
     data = {
         name: (
             "time",
             rows[:, i],
-            {"units": units(name), "text": prepared.diagram.texts.get(name, "")},
+            {"units": units(name), "text": setup.diagram.texts.get(name, "")},
         )
-        for i, name in enumerate(prepared.program.layout.columns)
+        for i, name in enumerate(setup.program.layout.columns)
     }
     time = ("time", step * np.arange(len(rows)), {"units": "s"})
     scheme = f"exponential Runge-Kutta of order 4, step {timing.step * 1e3:.4g} ms"
-    attrs = {"diagram": prepared.diagram.name, "step_s": timing.step, "scheme": scheme}
-    attrs |= {f"parameter {n}": v for n, v in prepared.diagram.values.items()}
-    return Simulation(prepared.diagram, xarray.Dataset(data, {"time": time}, attrs))
+    attrs = {"diagram": setup.diagram.name, "step_s": timing.step, "scheme": scheme}
+    attrs |= {f"parameter {n}": v for n, v in setup.diagram.values.items()}
+    return Simulation(setup.diagram, xarray.Dataset(data, {"time": time}, attrs))

@@ -40,7 +40,7 @@ _HEAD = '''"""{title}
 {source}
 """
 
-{names}from teleopdesign.effects import Effect, Parameter
+{names}from teleopdesign.effects import Effect, FitSearch, Parameter
 
 
 def law(now, p):

@@ -32,10 +32,11 @@ class Law:
 def _parameter(
     name: str, quantity: str, meaning: str, start: float, *, positive: bool = False
 ) -> str:
-    lower = "" if positive else 'lower=-float("inf"), '
+    lower = "" if positive else ' lower=-float("inf"),'
     return (
         f'        "{name}": Parameter(\n'
-        f'            "{quantity}", "{meaning}", {lower}starts=({start:.7g},)\n'
+        f'            "{quantity}", "{meaning}",{lower}\n'
+        f"            search=FitSearch(starts=({start:.7g},)),\n"
         f"        ),"
     )
 

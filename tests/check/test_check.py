@@ -228,12 +228,12 @@ def test_a_users_own_effect_is_judged_like_any_other(rod, few, tmp_path):
     path = tmp_path / "magnet.py"
     path.write_text(
         '"""Magnet: pulls towards the middle, ever less far away."""\n'
-        "from teleopdesign.effects import Effect, Parameter\n"
+        "from teleopdesign.effects import Effect, FitSearch, Parameter\n"
         "def law(now, p):\n"
         "    return p.pull * now.position / (p.reach**2 + now.position**2)\n"
         "EFFECT = Effect(role='force', law=law, absent={'pull': 0.0}, parameters={\n"
         "    'pull': Parameter('dimensionless', 'pull'),\n"
-        "    'reach': Parameter('position', 'reach', starts=(0.3, 1.0))})\n"
+        "    'reach': Parameter('position', 'reach', search=FitSearch(starts=(0.3, 1.0)))})\n"
     )
     known = {**few, "magnet": catalogue([path])["magnet"]}
     numbers = shows(rod, known)["what the record can show"].numbers

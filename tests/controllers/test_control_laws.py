@@ -24,7 +24,7 @@ from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ModelError
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.lti import S, as_transfer_function
-from teleopdesign.simulate import Motion, Sampling, simulate, sine
+from teleopdesign.simulate import Sampling, Trajectory, simulate, sine
 
 #: of the right order for a rod that moves 10 mm at some Hz; bandwidths and poles well below 1 kHz
 TYPICAL = {
@@ -113,7 +113,7 @@ def test_the_linear_form_is_the_law_at_that_speed(name):
     """A motion of constant speed is the step of G(s) v/s; 1e-6: order four at 0.25 ms."""
     speed = 0.05
     made = law(name)
-    ramp = Motion(lambda t: speed * t, lambda t: 0 * t + speed, np.zeros_like)
+    ramp = Trajectory(lambda t: speed * t, lambda t: 0 * t + speed, np.zeros_like)
     found = force(moved(made), motion=ramp, duration=0.1)
     form = made.linear_form("C", S, sp.Float(speed))
     form = form.subs({parameter_symbol("C", n): v for n, v in made.names().items()})
@@ -145,7 +145,7 @@ def held(positions):
     def position(t):
         return np.asarray(positions)[np.clip(np.round(t / PERIOD).astype(int), 0, None)]
 
-    return Motion(position, np.zeros_like, np.zeros_like)
+    return Trajectory(position, np.zeros_like, np.zeros_like)
 
 
 def along(made, positions, input="L"):

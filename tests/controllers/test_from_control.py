@@ -13,7 +13,7 @@ from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, transfer_function
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.lti import S
-from teleopdesign.simulate import Motion, Sampling, simulate, sine
+from teleopdesign.simulate import Sampling, Trajectory, simulate, sine
 
 NOTCH = control.tf([1.0, 6.0, 4e3], [1.0, 120.0, 4e3])
 #: two resonances and a slow pole
@@ -42,7 +42,7 @@ def test_a_filter_of_high_order_keeps_its_digits():
     """Butterworth of order 8 at 100 Hz, entries up to 2e22: its step as a sum of exponentials."""
     zeros, poles, gain = butter(8, 2 * np.pi * 100, analog=True, output="zpk")
     filtered = from_control(control.tf(*butter(8, 2 * np.pi * 100, analog=True)))
-    one = {"L": Motion(np.ones_like, np.zeros_like, np.zeros_like)}
+    one = {"L": Trajectory(np.ones_like, np.zeros_like, np.zeros_like)}
     found = sampled(filtered, motion=one, duration=0.05)
     expected = np.zeros(len(found["time"]), dtype=complex)
     for i, pole in enumerate(poles):

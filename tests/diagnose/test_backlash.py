@@ -54,7 +54,7 @@ def test_a_true_model_leaves_what_its_sensors_leave(case):
 def test_a_gap_is_sought_from_every_width_however_little_it_promises(case):
     _, _, stated, _ = case
     new = stated.with_effect(BACKLASH, at="device")
-    widths = BACKLASH.parameters["gap"].starts
+    widths = BACKLASH.parameters["gap"].search.starts
     inertias = (0.1, 0.3, 0.2)
     # as if the narrowest promised most by far
     ordered = [

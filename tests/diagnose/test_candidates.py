@@ -73,7 +73,7 @@ def test_a_search_starts_within_bounds_at_every_combination(name, model, prepare
         base = base.with_effect(need, values=dict.fromkeys(EFFECTS[need].parameters, 1.0))
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     starts = started(base.with_effect(name), unit)
-    assert len(starts) >= np.prod([len(p.starts) for p in effect.parameters.values()])
+    assert len(starts) >= np.prod([len(p.search.starts) for p in effect.parameters.values()])
     for start in starts:
         values = start.body("device").parameters
         for parameter, declared in effect.parameters.items():
@@ -94,7 +94,7 @@ def test_scales_are_those_of_the_record(prepared):
 
 def test_every_quantity_of_an_effect_has_a_scale(prepared):
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
-    wanted = {p.scale or p.quantity for e in EFFECTS.values() for p in e.parameters.values()}
+    wanted = {p.scale for e in EFFECTS.values() for p in e.parameters.values()}
     assert wanted <= set(unit)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import sympy as sp
 
 from teleopdesign import load_experiment
-from teleopdesign.effects import Effect, Parameter
+from teleopdesign.effects import Effect, FitSearch, Parameter
 from teleopdesign.effects._effect import State
 
 RATE, SECONDS, BANDWIDTH = 100.0, 12.0, 4.0
@@ -87,8 +87,8 @@ def _follows(now, p):
     return (now.acting_force - now.slow) / p.time_constant
 
 
-PART = {"part": Parameter("dimensionless", "part", upper=1.0, starts=(0.3, 0.9))}
-SLOW = {"time_constant": Parameter("time", "tau", upper=1e3, starts=(1.0, 30.0))}
+PART = {"part": Parameter("dimensionless", "part", upper=1.0, search=FitSearch(starts=(0.3, 0.9)))}
+SLOW = {"time_constant": Parameter("time", "tau", upper=1e3, search=FitSearch(starts=(1.0, 30.0)))}
 
 #: what users could write to be rid of the recorded force
 CHEATS = {
@@ -97,7 +97,8 @@ CHEATS = {
         _own(
             "fades_when_large", "actuation",
             lambda now, p: now.command / (1 + p.part * now.command**2),
-            {"part": Parameter("dimensionless", "k", starts=(0.3, 3.0, 1e3))}, {"part": 0.0},
+            {"part": Parameter("dimensionless", "k", search=FitSearch(starts=(0.3, 3.0, 1e3)))},
+            {"part": 0.0},
         ),
         _own(
             "next_to_nothing", "actuation", lambda now, p: (1 - 0.99 * p.part) * now.command,
@@ -105,7 +106,8 @@ CHEATS = {
         ),
         _own(
             "soft_limit", "actuation", lambda now, p: p.limit * sp.tanh(now.command / p.limit),
-            {"limit": Parameter("force", "l", starts=(0.3, 1.0))}, {"limit": float("inf")},
+            {"limit": Parameter("force", "l", search=FitSearch(starts=(0.3, 1.0)))},
+            {"limit": float("inf")},
         ),
         _own(
             "very_slow", "actuation", lambda now, p: now.slow, SLOW, {"time_constant": 0.0},

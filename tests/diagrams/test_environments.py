@@ -17,7 +17,7 @@ from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import CONTACT_ROLES
 from teleopdesign.frequency import transfer_function
 from teleopdesign.realise.iosystem import to_iosystem
-from teleopdesign.simulate import Motion, sampled_motion, simulate, sine
+from teleopdesign.simulate import Trajectory, sampled_motion, simulate, sine
 
 HERTZ = {"stiffness": 2e3, "depth": 1e-3, "reference_velocity": 0.5}
 RUBBER = {"stiffness": 800.0, "damping": 0.0, "level": 0.3, "give": 5e-4}
@@ -124,7 +124,7 @@ def test_rubber_loses_the_same_energy_in_slow_loading():
     lost = []
     for frequency in (1.0, 0.25):
         swing = sine(amplitude=2e-3, frequency=frequency)
-        pressed = Motion(
+        pressed = Trajectory(
             lambda t, s=swing: 4e-3 + s.position(t), swing.velocity, swing.acceleration
         )
         time, x, v, force = felt(

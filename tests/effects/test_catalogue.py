@@ -3,7 +3,7 @@
 import re
 import subprocess
 import sys
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
 from pathlib import Path
 
@@ -27,7 +27,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign.effects as folder
-from teleopdesign.effects import EFFECTS, SIGNALS, catalogue, find_effect, load_effect
+from teleopdesign.effects import (
+    BLOCK_EFFECTS,
+    EFFECTS,
+    SIGNALS,
+    FitSearch,
+    catalogue,
+    find_effect,
+    load_effect,
+    with_block_effects,
+)
 from teleopdesign.effects._effect import ROLES
 from teleopdesign.errors import ModelError
 from teleopdesign.quantity import QUANTITIES, unit_of
@@ -42,8 +51,28 @@ S = sp.Symbol("s")
 
 
 def test_every_file_of_the_folder_is_one_effect_under_its_own_name():
-    assert [p.stem for p in FILES] == NAMES
-    assert all(EFFECTS[name].name == name for name in NAMES)
+    known = EFFECTS | BLOCK_EFFECTS
+    assert [p.stem for p in FILES] == sorted(known)
+    assert all(known[name].name == name for name in known)
+
+
+def test_what_belongs_to_a_block_says_so_and_is_apart_from_the_candidates():
+    assert not set(EFFECTS) & set(BLOCK_EFFECTS)
+    assert {e.block for e in BLOCK_EFFECTS.values()} == {"hand", "environment"}
+    assert {e.block for e in EFFECTS.values()} == {""}
+    assert set(with_block_effects()) == {*EFFECTS, *BLOCK_EFFECTS}
+
+
+def test_a_law_may_use_parameters_of_effects_that_it_needs_and_of_no_others(tmp_path):
+    text = (Path(folder.__file__).parent / "impact_damping.py").read_text()
+    file = tmp_path / "own_damping.py"
+    file.write_text(text.replace("from ._effect", "from teleopdesign.effects._effect"))
+    assert "environment_stiffness" in str(load_effect(file).expression())
+    file.write_text(
+        file.read_text().replace('needs=frozenset({"environment"})', "needs=frozenset()")
+    )
+    with pytest.raises(ModelError, match="law uses environment_stiffness"):
+        load_effect(file)
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda p: p.stem)
@@ -68,7 +97,7 @@ def test_parameters_have_a_known_quantity_a_meaning_and_ordered_bounds(name):
         assert declared.quantity in QUANTITIES
         assert declared.meaning
         assert declared.lower < declared.upper
-        assert declared.starts and np.all(np.isfinite(declared.starts))
+        assert declared.search.starts and np.all(np.isfinite(declared.search.starts))
         assert all(unit_of(declared.quantity, axis) for axis in ("prismatic", "revolute"))
 
 
@@ -426,6 +455,17 @@ def test_a_mistake_in_an_effect_file_is_one_line(own, mistake):
     assert message.startswith(f"{own}: ")
     assert len(message.splitlines()) == 1
     assert re.search(expected, message), message
+
+
+@pytest.mark.parametrize("field", [f.name for f in fields(FitSearch)])
+def test_an_older_file_is_told_what_to_write_instead(own, field):
+    text = own.read_text()
+    older = re.sub(r"(Parameter\([^)]*)\)", rf"\1, {field}=0)", text)
+    assert older != text
+    own.write_text(older)
+    with pytest.raises(ModelError, match=rf"search=FitSearch\({field}=") as refusal:
+        load_effect(own)
+    assert "\n" not in str(refusal.value)
 
 
 def test_an_effect_file_that_is_not_there_or_has_no_name_is_one_line(tmp_path):

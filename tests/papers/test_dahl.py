@@ -48,14 +48,14 @@ def sampled(positions, level=LEVEL, stiffness=STIFFNESS):
 
 
 def _held(positions):
-    from teleopdesign.simulate import Motion
+    from teleopdesign.simulate import Trajectory
 
     table = np.asarray(positions, dtype=float)
 
     def position(t):
         return table[np.clip(np.round(t / 1e-3).astype(int), 0, len(table) - 1)]
 
-    return Motion(position, np.zeros_like, np.zeros_like)
+    return Trajectory(position, np.zeros_like, np.zeros_like)
 
 
 def exact(force, dx, level=LEVEL, stiffness=STIFFNESS):

@@ -7,7 +7,7 @@ from devices import body
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.errors import ModelError
-from teleopdesign.simulate import Motion, Sampling, simulate, sine
+from teleopdesign.simulate import Sampling, Trajectory, simulate, sine
 
 PERIOD = 1e-3
 ENCODER = 7.2e-6  # m, of the rod that ships with the package
@@ -53,7 +53,7 @@ def force(values, motion, duration, **sampling):
 def test_delay_in_a_motion_of_constant_acceleration(way, late):
     """Continuous-time values; sampling adds no more than half a sample."""
     bend = 0.3
-    motion = Motion(lambda t: bend * t**2 / 2, lambda t: bend * t, lambda t: 0 * t + bend)
+    motion = Trajectory(lambda t: bend * t**2 / 2, lambda t: bend * t, lambda t: 0 * t + bend)
     time, known = force(SPEEDOMETER, motion, 0.4, **WAYS[way])
     delay = time[-1] - known[-1] / bend
     assert abs(delay - late) <= 0.5 * PERIOD * 1.01
@@ -64,7 +64,7 @@ def test_delay_in_a_motion_of_constant_acceleration(way, late):
 @pytest.mark.parametrize("order", [2, 3])
 def test_the_poles_of_the_observer_are_at_its_bandwidth(order):
     """From a reading one step off at the first sample it returns as a polynomial times p^n."""
-    motion = Motion(lambda t: 1.0 * (t < 0.5 * PERIOD), np.zeros_like, np.zeros_like)
+    motion = Trajectory(lambda t: 1.0 * (t < 0.5 * PERIOD), np.zeros_like, np.zeros_like)
     way = WAYS[f"observer of order {order}"]
     _, known = force(SPEEDOMETER, motion, 0.1, **way)
     pole = np.exp(-2 * np.pi * BANDWIDTH * PERIOD)
@@ -76,7 +76,7 @@ def test_the_poles_of_the_observer_are_at_its_bandwidth(order):
 
 def measured(way):
     """Noise (N) of the cancellation at a slow constant speed, and its delay (s) at 4 Hz."""
-    slow = Motion(lambda t: 3.3e-3 * t, lambda t: 0 * t + 3.3e-3, np.zeros_like)
+    slow = Trajectory(lambda t: 3.3e-3 * t, lambda t: 0 * t + 3.3e-3, np.zeros_like)
     _, found = force(CANCELLATION, slow, 2.0, encoder_step=ENCODER, **WAYS[way])
     noise = np.std(found[500:])
     moved = sine(amplitude=0.002, frequency=4.0)

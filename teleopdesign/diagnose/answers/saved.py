@@ -152,7 +152,7 @@ def _value(parameter: Mapping[str, Any], fixed: bool) -> dict[str, Any]:
 
 
 def _is_chosen(effect: Effect | None, key: str) -> bool:
-    return effect is not None and key in effect.parameters and effect.parameters[key].chosen
+    return effect is not None and key in effect.parameters and effect.parameters[key].search.chosen
 
 
 def _axis_of(saved: SavedAnswer, place: str, unit: str) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arguments import checked
-from ...simulate import Motion
+from ...simulate import Trajectory
 
 Array = NDArray[np.float64]
 
@@ -53,9 +53,9 @@ class Strokes:
         end = len(self.points) * self.rounds
         return float(self.times[end - len(self.points)]), float(self.times[end])
 
-    def motion(self) -> Motion:
+    def motion(self) -> Trajectory:
         """Position, velocity and acceleration as functions of time; at rest before and after."""
-        return Motion(*(_Along(self, order) for order in range(3)))
+        return Trajectory(*(_Along(self, order) for order in range(3)))
 
 
 @dataclass(frozen=True)

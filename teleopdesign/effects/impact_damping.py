@@ -8,30 +8,25 @@ zero force at the touch. For slow impacts the speed of return over that of impac
 alpha = 2/(3 v_0).
 """
 
-from __future__ import annotations
-
-from typing import Any
-
-import sympy as sp
-
-from ..effects import Effect, Parameter
-from .environment import CONTACT
+from ._effect import Effect, Parameter, parameter_symbol
 
 
-def _law(now: Any, p: Any) -> sp.Expr:
-    return CONTACT.symbols()["stiffness"] * now.penetration * now.velocity / p.reference_velocity
+def law(now, p):
+    stiffness = parameter_symbol("environment", "stiffness")
+    return stiffness * now.penetration * now.velocity / p.reference_velocity
 
 
-IMPACT_DAMPING = Effect(
+EFFECT = Effect(
     role="contact",
+    block="environment",
     energy="dissipates",
-    law=_law,
+    law=law,
     parameters={
         "reference_velocity": Parameter(
             "velocity", "v_0: speed of compression that doubles the force"
         )
     },
     absent={"reference_velocity": float("inf")},
-    needs=frozenset({CONTACT.name}),
+    needs=frozenset({"environment"}),
     source="Hunt, Crossley, J. Appl. Mech. 42 (1975) 440",
-).named("impact_damping", __doc__ or "")
+)

@@ -11,8 +11,8 @@ import numpy as np
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
 from ..realise.simulated import in_computer, simulated
-from .motion import Motion
 from .sampling import SAMPLED, Sampling
+from .trajectory import Trajectory
 
 if TYPE_CHECKING:
     from ..realise.kernel import Program, Timing
@@ -28,13 +28,13 @@ def prepare(
     *,
     duration: float,
     inputs: Mapping[str, Input] | None = None,
-    motion: Mapping[str, Motion] | None = None,
+    motion: Mapping[str, Trajectory] | None = None,
     initial: Mapping[str, float] | None = None,
     computer: Sampling | Literal["continuous"] = SAMPLED,
     step: float = 1e-4,
     give: float = 1e-5,
     jit: bool = True,
-) -> Prepared:
+) -> Setup:
     """Everything that `simulate` does before it runs; arguments as there."""
     from ..realise.kernel import program
 
@@ -67,11 +67,11 @@ def prepare(
             raise ModelError(
                 f'initial: no state "{name}", has {", ".join(states)}{did_you_mean(name, states)}'
             )
-    return Prepared(body, made, setting, duration, step, inputs, motion, initial)
+    return Setup(body, made, setting, duration, step, inputs, motion, initial)
 
 
 @dataclass(frozen=True)
-class Prepared:
+class Setup:
     """A simulation ready to run, also with other steps."""
 
     diagram: Diagram
@@ -80,7 +80,7 @@ class Prepared:
     duration: float
     step: float
     inputs: Mapping[str, Input]
-    motion: Mapping[str, Motion]
+    motion: Mapping[str, Trajectory]
     initial: Mapping[str, float]
 
     def timing(self, inner: int) -> Timing:

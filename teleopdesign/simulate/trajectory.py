@@ -20,7 +20,7 @@ Function = Callable[[np.ndarray], np.ndarray]
 
 @checked
 @dataclass(frozen=True)
-class Motion:
+class Trajectory:
     """A motion as functions of time (s): position (m or rad) and its two derivatives."""
 
     position: Function
@@ -80,17 +80,17 @@ class _Sampled(ByValue):
         return f"spline of {len(self.time)} samples, derivative {self.order}"
 
 
-def sine(*, amplitude: float, frequency: float, phase: float = 0.0) -> Motion:
+def sine(*, amplitude: float, frequency: float, phase: float = 0.0) -> Trajectory:
     """amplitude * sin(2 pi frequency t + phase); frequency in Hz, phase in rad."""
     omega = 2 * np.pi * frequency
-    return Motion(
+    return Trajectory(
         _Sinusoid(amplitude, omega, phase),
         _Cosinusoid(omega * amplitude, omega, phase),
         _Sinusoid(-(omega**2) * amplitude, omega, phase),
     )
 
 
-def sampled_motion(time: np.ndarray, position: np.ndarray) -> Motion:
+def sampled_motion(time: np.ndarray, position: np.ndarray) -> Trajectory:
     """A measured motion: quintic spline through the samples (n,), constant beyond the ends."""
     time, position = np.asarray(time, dtype=float), np.asarray(position, dtype=float)
     if time.ndim != 1 or time.shape != position.shape or len(time) < _FEWEST:
@@ -100,4 +100,4 @@ def sampled_motion(time: np.ndarray, position: np.ndarray) -> Motion:
         )
     if not (np.all(np.diff(time) > 0) and np.all(np.isfinite(position))):
         raise ModelError("sampled_motion: expected times that grow and positions without NaN")
-    return Motion(*(_Sampled(time, position, order) for order in range(3)))
+    return Trajectory(*(_Sampled(time, position, order) for order in range(3)))

@@ -8,43 +8,42 @@ While the material pushes it is loaded; where F would pull, contact has been los
 within tau. It stores sigma z^2/2, only gives up what it stored, and so the contact stays passive.
 """
 
-from __future__ import annotations
-
 from types import SimpleNamespace
-from typing import Any
 
-import sympy as sp
+from sympy import And, Piecewise
 
-from ..effects import EFFECTS, SIGNALS, Effect, Parameter, State
-from .environment import CONTACT
-
-_DAHL = EFFECTS["presliding"].without("bristle_damping")
+from . import presliding
+from ._effect import SIGNALS, Effect, Parameter, State, parameter_symbol
 
 
-def _law(now: Any, p: Any) -> sp.Expr:
-    return sp.sympify(_DAHL.law(now, p), strict=True)
+def undamped(p):
+    return SimpleNamespace(stiffness=p.stiffness, bristle_damping=0)
 
 
-def _bristle(now: Any, p: Any) -> sp.Expr:
-    symbols = CONTACT.symbols()
-    depth = SIGNALS["position"] - symbols["contact_position"]
-    pushing = sp.And(depth > 0, symbols["stiffness"] * depth + _law(now, p) > 0)
+def law(now, p):
+    return presliding.law(now, undamped(p))
+
+
+def bristle(now, p):
+    depth = SIGNALS["position"] - parameter_symbol("environment", "contact_position")
+    pushing = parameter_symbol("environment", "stiffness") * depth + law(now, p) > 0
     here = SimpleNamespace(velocity=now.velocity, level=p.level, bristle=now.bristle)
-    loaded = _DAHL.states["bristle"].rate(here, p)
-    return sp.Piecewise((loaded, pushing), (-now.bristle / p.recovery_time, True))
+    loaded = presliding.bristle(here, undamped(p))
+    return Piecewise((loaded, And(depth > 0, pushing)), (-now.bristle / p.recovery_time, True))
 
 
-CONTACT_HYSTERESIS = Effect(
+EFFECT = Effect(
     role="contact",
+    block="environment",
     energy="dissipates",
-    law=_law,
-    states={"bristle": State("position", _bristle)},
+    law=law,
+    states={"bristle": State("position", bristle)},
     parameters={
         "level": Parameter("force", "greatest force of the friction inside"),
         "stiffness": Parameter("stiffness", "sigma: its stiffness before it slides"),
         "recovery_time": Parameter("time", "tau: of its recovery where nothing touches"),
     },
     absent={"level": 0.0},
-    needs=frozenset({CONTACT.name}),
+    needs=frozenset({"environment"}),
     source="Dahl, AIAA J. 14 (1976) 1675, inside a one-sided contact",
-).named("contact_hysteresis", __doc__ or "")
+)
