@@ -12,8 +12,8 @@ import numpy as np
 from ..diagnose.candidates import Candidate, candidates
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.fit import ROUGH, Fit, estimate
-from ..diagnose.force_error import Prepared
 from ..diagnose.noise_floor import noise_floor
+from ..diagnose.prepare import Prepared
 from ..effects import CONTACT_ROLES, SIGNALS, Effect
 from ..finding import Finding
 from ..model import Model

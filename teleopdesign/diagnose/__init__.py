@@ -8,8 +8,8 @@ from ..model import Model
 from .comparison import Comparison, compare
 from .diagnosis import Diagnosis
 from .fit import Fit
-from .force_error import prepare
 from .ladder import find_missing
+from .prepare import prepare
 from .rank import rank_candidates
 from .ranking import Ranked, Ranking
 from .rung import Rung

@@ -6,9 +6,11 @@ from dataclasses import replace
 
 from .decision import is_adequate, moment_above_noise, verdict
 from .diagnosis import Diagnosis
+from .error import force_error
+from .error_at_command import at_command
 from .fit import Fit
-from .force_error import Prepared, at_command, force_error
 from .ladder_state import LadderSearch, LadderState
+from .prepare import Prepared
 from .probability import probable
 from .reading_error import with_reading_error
 from .rung import Rung

@@ -17,10 +17,10 @@ from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .evidence import chance, check_score, check_squares, seen_gain, seen_score, whole_score
 from .fit import Fit
-from .force_error import Prepared
 from .noise_floor import NoiseFloor
 from .one_moment import Moment, worst_moment
 from .outside_tone import Tone
+from .prepare import Prepared
 from .ranking import Ranked, Ranking
 from .rung import Rung
 

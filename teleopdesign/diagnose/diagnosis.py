@@ -12,10 +12,10 @@ from ..notebook import html_table
 from .candidates import Candidate
 from .decision import floors_left, is_adequate, verdict
 from .fit import Fit
-from .force_error import Prepared
 from .ladder_text import ladder_text, sentence
 from .noise_floor import NoiseFloor
 from .one_moment import Moment
+from .prepare import Prepared
 from .ranking import Ranking
 from .rung import Rung
 

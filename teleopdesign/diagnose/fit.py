@@ -12,8 +12,11 @@ from ..blocks import Value
 from ..by_value import ByValue
 from ..measurement.filtering import Array
 from ..model import Model
-from .force_error import AtCommand, Prepared, Stretch, at_command, folds, force_error, referred
+from .error import force_error
+from .error_at_command import AtCommand, at_command
 from .least_squares import minimise
+from .prepare import Prepared, Stretch, folds
+from .residual import relative_residuals
 from .scales import scales
 
 #: seconds over which residuals count as one observation in standard errors and tests
@@ -41,7 +44,7 @@ class Fit(ByValue):
 
     fit_error, check_error: relative force errors; NaN where there is no such record
     fit_residual, check_residual: low-passed residuals on the rows that count, weighted, relative to
-        the force that acts by the model (`referred`): what models are compared by
+        the force that acts by the model (`relative_residuals`): what models are compared by
     seen: what is left on the check records as an error of the recorded forces (`at_command`): an
         effect must lower it too
     fit_blocks, check_blocks: number of the block of each of these rows
@@ -141,7 +144,7 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = FINE) -> Fit:
     fitted = fitted.canonical()
     check = prepared.of("check")
     if check:
-        parts = [v for v, _ in referred(fitted, check)]
+        parts = [v for v, _ in relative_residuals(fitted, check)]
         check_error = force_error(fitted, check)
         seen = seen_on(fitted, check)
     else:
@@ -186,7 +189,7 @@ def _held_out(
         solution = solve(fitted, free, prepared, known, HELD_OUT)
         model = fitted.with_values(dict(zip(free, solution.values, strict=True)))
         held += unseen
-        parts += [v for v, _ in referred(model, unseen)]
+        parts += [v for v, _ in relative_residuals(model, unseen)]
         seen.append(at_command(model, unseen))
         measured = sum(s.measured for s in unseen)
         squares += force_error(model, unseen) ** 2 * measured
@@ -209,7 +212,7 @@ def solve(
     stretches: Sequence[Stretch],
     effort: Effort,
 ) -> Solution:
-    """Bounded least squares on the referred residuals of these stretches."""
+    """Bounded least squares on the relative_residuals residuals of these stretches."""
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     declared = [model.declared(n) for n in free]
     scale = np.array([unit[d.scale or d.quantity] for d in declared])
@@ -229,7 +232,7 @@ def solve(
 
     def both(x: Array) -> tuple[Array, Array]:
         there = model.with_values(dict(zip(free, values(x), strict=True)))
-        parts = referred(there, stretches, free)
+        parts = relative_residuals(there, stretches, free)
         r = np.concatenate([w * v for w, (v, _) in zip(roots, parts, strict=True)])
         j = np.concatenate([w * t.T for w, (_, t) in zip(roots, parts, strict=True)])
         return r, j * np.where(decades, values(x), scale)

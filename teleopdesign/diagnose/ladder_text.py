@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..quantity import unit_of
 from .fit import Fit
-from .force_error import own_groups
 from .ranking import REFUSALS
+from .record_offsets import offset_groups
 
 if TYPE_CHECKING:
     from .diagnosis import Diagnosis
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def own_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """What records have of their own by the model that the diagnosis ends with."""
     stretches, rows = diagnosis.prepared.stretches, []
-    for group, own in own_groups(diagnosis.model, stretches):
+    for group, own in offset_groups(diagnosis.model, stretches):
         motion = stretches[group[0]].motion
         units = {
             "position_zero": unit_of("position", own.body.axis),

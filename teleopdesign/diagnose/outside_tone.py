@@ -24,7 +24,8 @@ from ..model import Model
 from .criteria import CRITERIA
 from .evidence import check_squares, gain_score
 from .fit import Fit, estimate
-from .force_error import Prepared, Stretch, residuals
+from .prepare import Prepared, Stretch
+from .residual import residuals
 
 #: frequencies tried per inverse of the longest stretch
 FINENESS = 4

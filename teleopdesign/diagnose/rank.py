@@ -11,8 +11,8 @@ from .criteria import CRITERIA, Criteria
 from .decision import rank_key, refusal
 from .evidence import check_score, whole_score
 from .fit import ROUGH, Fit, estimate, fit_squares
-from .force_error import Prepared
 from .identifiability import is_identifiable
+from .prepare import Prepared
 from .ranking import Ranked, Ranking
 from .search import at_stated, estimate_from_starts
 from .search_plan import PLAN

@@ -24,8 +24,9 @@ from ..errors import ModelError
 from ..measurement.filtering import Array
 from ..model import Model
 from .fit import Effort, Fit, estimate, over_decades, solve
-from .force_error import Prepared, Stretch, along_own, stretch_of
 from .noise_floor import read_again
+from .prepare import Prepared, Stretch, stretch_of
+from .record_offsets import along_with_offsets
 from .simulated_course import as_led, dead_times, grid, simulated_course
 from .threads import in_threads
 
@@ -111,7 +112,9 @@ def _simulated(
     """The fit records with the model's exact courses in place of theirs; None if it has none."""
     stretches = list(prepared.of("fit"))
     made = []
-    for stretch, (body, motion) in zip(stretches, along_own(model, stretches), strict=True):
+    for stretch, (body, motion) in zip(
+        stretches, along_with_offsets(model, stretches), strict=True
+    ):
         try:
             course = simulated_course(body, motion, give=give, damping_ratio=damping_ratio)
         except ModelError:

@@ -20,8 +20,9 @@ from ..model import Model
 from .candidates import started
 from .criteria import CRITERIA
 from .fit import FINE, ROUGH, Effort, Fit, estimate, fit_squares, free_parameters, solve
-from .force_error import Prepared, referred
 from .linear_start import linear_starts
+from .prepare import Prepared
+from .residual import relative_residuals
 from .scales import scales
 from .search_plan import PLAN
 
@@ -162,7 +163,7 @@ def _promise(model: Model, prepared: Prepared, base: Fit, unit: dict[str, float]
     stretches = prepared.of("fit")
     same = all(model.parameters[n].value == base.model.parameters[n].value for n in base.free)
     wanted = [n for n in free_parameters(model) if not (same and n in base.free)]
-    parts = referred(model, stretches, wanted)
+    parts = relative_residuals(model, stretches, wanted)
     roots = [np.sqrt(s.weight) for s in stretches]
     residual = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
     columns = np.concatenate([w * d.T for w, (_, d) in zip(roots, parts, strict=True)])

@@ -16,7 +16,7 @@ from teleopdesign.check.soundness_check import check_experiment
 from teleopdesign.cli import main
 from teleopdesign.diagnose.excerpt import excerpt
 from teleopdesign.diagnose.fit import ROUGH, estimate
-from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.effects import catalogue
 
 #: effects that stand for each way of being seen; all of them take longer

@@ -15,9 +15,9 @@ from ..candidates import Candidate
 from ..diagnosis import Diagnosis, OpenQuestion
 from ..excerpt import on_windows
 from ..fit import Effort, Fit, estimate
-from ..force_error import Prepared, prepare
 from ..noise_floor import NoiseFloor
 from ..one_moment import Moment
+from ..prepare import Prepared, prepare
 from ..ranking import Ranking
 from ..rung import Rung
 from .bodies import known_effect, model_from
