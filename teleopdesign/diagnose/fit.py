@@ -12,6 +12,7 @@ from ..blocks import Value
 from ..by_value import ByValue
 from ..measurement.filtering import Array
 from ..model import Model
+from .effort import EFFORTS, Effort
 from .error import force_error
 from .error_at_command import AtCommand, at_command
 from .least_squares import minimise
@@ -98,19 +99,10 @@ def weighted(stretches: Sequence[Stretch], values: Sequence[Array]) -> Array:
     return np.concatenate(parts) if parts else np.zeros(0)
 
 
-@dataclass(frozen=True)
-class Effort:
-    """How far a fit is driven: relative change of squares and parameters, evaluations."""
-
-    tolerance: float
-    evaluations: int
-
-
 #: distance to a bound, in the record's scale of the quantity, that counts as being there
 AT_BOUND = 1e-6
 #: decades to either side of the record's scale in which a logarithmic parameter is searched
 DECADES = 8.0
-ROUGH, FINE, HELD_OUT = Effort(1e-4, 12), Effort(1e-7, 60), Effort(1e-3, 5)
 
 
 @dataclass(frozen=True)
@@ -124,7 +116,7 @@ class Solution:
     jacobian: Array
 
 
-def estimate(model: Model, prepared: Prepared, *, effort: Effort = FINE) -> Fit:
+def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine) -> Fit:
     """Re-estimate the parameters of the model that are not fixed, on the fit records.
 
     Without check records, blocks of the fit records are held out in turn: what is reported as
@@ -186,7 +178,7 @@ def _held_out(
     seen: list[AtCommand] = []
     squares = at_commands = 0.0
     for known, unseen in folds(prepared.of("fit")):
-        solution = solve(fitted, free, prepared, known, HELD_OUT)
+        solution = solve(fitted, free, prepared, known, EFFORTS.held_out)
         model = fitted.with_values(dict(zip(free, solution.values, strict=True)))
         held += unseen
         parts += [v for v, _ in relative_residuals(model, unseen)]
