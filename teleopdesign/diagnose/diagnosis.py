@@ -88,7 +88,9 @@ class Diagnosis(ByValue):
     @property
     def groups(self) -> tuple[tuple[Candidate, ...], ...]:
         """Effects that explain the records equally well, named one first."""
-        return tuple((r.added, *r.equals) for r in self.rungs if r.added is not None and r.equals)
+        return tuple(
+            (r.added, *r.alternatives) for r in self.rungs if r.added is not None and r.alternatives
+        )
 
     @property
     def more_is_missing(self) -> bool:

@@ -28,14 +28,14 @@ class AtCommand:
     """What a model leaves on some stretches, as an error of the recorded forces.
 
     residual: per stretch, low-passed, on the rows that count; in blind rows as it acts
-    told: per stretch, the rows that are not blind
+    sighted: per stretch, the rows that are not blind
     error: relative, over the rows that are not blind, above the line and below; NaN: there are none
     blind: share of blind samples among those where the body slides
     weak: an actuator can give, at no command, what its model needs to slide
     """
 
     residual: tuple[Array, ...]
-    told: tuple[NDArray[np.bool_], ...]
+    sighted: tuple[NDArray[np.bool_], ...]
     error: float
     blind: float
     weak: bool

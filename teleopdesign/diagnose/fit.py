@@ -28,12 +28,12 @@ BLOCK = 0.25
 class Seen(ByValue):
     """What a model leaves on the check records, seen at the command.
 
-    residual: of `Fit.check_residual`'s rows;  told: those of them that are not blind
+    residual: of `Fit.check_residual`'s rows;  sighted: those of them that are not blind
     error, blind, weak: as `AtCommand` has them
     """
 
     residual: Array
-    told: NDArray[np.bool_]
+    sighted: NDArray[np.bool_]
     error: float
     blind: float
     weak: bool
@@ -164,9 +164,9 @@ def seen_on(model: Model, stretches: Sequence[Stretch]) -> Seen:
 
 
 def _in_one(stretches: Sequence[Stretch], found: AtCommand) -> Seen:
-    told = np.concatenate(found.told) if found.told else np.zeros(0, dtype=bool)
+    sighted = np.concatenate(found.sighted) if found.sighted else np.zeros(0, dtype=bool)
     residual = weighted(stretches, found.residual)
-    return Seen(residual, told, found.error, found.blind, found.weak)
+    return Seen(residual, sighted, found.error, found.blind, found.weak)
 
 
 def _held_out(
@@ -189,7 +189,7 @@ def _held_out(
     whole = sum(s.measured for s in held)
     together = AtCommand(
         tuple(r for one in seen for r in one.residual),
-        tuple(t for one in seen for t in one.told),
+        tuple(t for one in seen for t in one.sighted),
         float(np.sqrt(at_commands / whole)),
         float(np.mean([one.blind for one in seen])),
         any(one.weak for one in seen),

@@ -27,11 +27,11 @@ def open_questions(diagnosis: Diagnosis) -> tuple[OpenQuestion, ...]:
 def _of_rung(diagnosis: Diagnosis, rung: Rung) -> OpenQuestion:
     """The accepted effect of a rung and what may stand in its place."""
     assert rung.added is not None and rung.ranking is not None
-    equals = {c.key for c in rung.equals}
+    alternatives = {c.key for c in rung.alternatives}
     ranked = [r for r in rung.ranking.ranked if r.candidate.key != rung.added.key]
     close = sorted(
-        (r for r in ranked if r.candidate.key in equals or _is_open(r, rung, diagnosis)),
-        key=lambda r: (r.candidate.key not in equals, r.fit.check_error),
+        (r for r in ranked if r.candidate.key in alternatives or _is_open(r, rung, diagnosis)),
+        key=lambda r: (r.candidate.key not in alternatives, r.fit.check_error),
     )
     return OpenQuestion(rung.added, tuple((r.candidate, r.fit) for r in close[: PLAN.rivals - 1]))
 

@@ -131,6 +131,6 @@ def ranked(base: Fit, candidate: Candidate, found: Fit, *, criteria: Criteria = 
         fit=found,
         score=check_score(base, found),
         behind=0.0,
-        told=is_identifiable(found, base, criteria=criteria),
+        is_identifiable=is_identifiable(found, base, criteria=criteria),
         refused=refusal(base, found, criteria=criteria),
     )

@@ -149,6 +149,7 @@ def along_with_offsets(model: Model, stretches: Sequence[Stretch]) -> list[tuple
 def along_offsets(
     model: Model, stretches: Sequence[Stretch], groups: Sequence[tuple[list[int], RecordOffsets]]
 ) -> list[tuple[Body, Motion]]:
+    """Body and motion of each stretch, with the offsets of these groups (`offset_groups`)."""
     found = [(model.body(s.motion.body), s.motion) for s in stretches]
     for group, offsets in groups:
         for i, motion in zip(group, offsets.motions, strict=True):
