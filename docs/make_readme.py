@@ -101,7 +101,7 @@ def _ladder(found: td.Diagnosis) -> str:
         if rung.added is None:
             text = "model"
         else:
-            text = " or ".join(f"`{c.effect.name}`" for c in (rung.added, *rung.equals))
+            text = " or ".join(f"`{c.effect.name}`" for c in (rung.added, *rung.alternatives))
         steps.append(f"{text} {100 * rung.fit.check_error:.2f}")
     floor = f"{100 * found.floor.value:.2f}"
     return f"{' → '.join(steps)} | {floor} | {found.verdict}, {found.left:.0f} floors left"

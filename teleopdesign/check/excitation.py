@@ -11,9 +11,10 @@ import numpy as np
 
 from ..diagnose.candidates import Candidate, candidates
 from ..diagnose.criteria import CRITERIA
-from ..diagnose.fit import ROUGH, Fit, estimate
-from ..diagnose.force_error import Prepared
+from ..diagnose.effort import EFFORTS
+from ..diagnose.fit import Fit, estimate
 from ..diagnose.noise_floor import noise_floor
+from ..diagnose.prepare import Prepared
 from ..effects import CONTACT_ROLES, SIGNALS, Effect
 from ..finding import Finding
 from ..model import Model
@@ -32,7 +33,7 @@ def check_excitation(
     model: Model, prepared: Prepared, generator: np.random.Generator
 ) -> tuple[Finding, ...]:
     """Findings about the motion of each body and what it can show, from the fit records."""
-    base = estimate(model, _unfolded(prepared), effort=ROUGH)
+    base = estimate(model, _unfolded(prepared), effort=EFFORTS.rough)
     floor = noise_floor(base.model, prepared, generator, use="fit")
     motions = [s.motion for s in prepared.of("fit")]
     every = candidates(base.model)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ..blocks import Body
 from ..diagnose.fit import block_numbers, standard_errors
-from ..diagnose.force_error import Prepared, Stretch
+from ..diagnose.prepare import Prepared, Stretch
 from ..measurement.filtering import Array
 from ..model import Model
 from .force_timing import BANDS, ON_TIME, Along, Settled, along_in, rows_of, settle, with_shifts

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import Body
-from ..diagnose.force_error import Stretch
+from ..diagnose.prepare import Stretch
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..realise.along_motion import residual_along

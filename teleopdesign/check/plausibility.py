@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator
 from typing import Literal
 
-from ..diagnose.force_error import Prepared
+from ..diagnose.prepare import Prepared
 from ..finding import Finding
 from ..measurement.soundness.signal import written
 from ..model import Model

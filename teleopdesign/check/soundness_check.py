@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..diagnose.excerpt import excerpt
-from ..diagnose.force_error import prepare
+from ..diagnose.prepare import prepare
 from ..finding import Finding
 from ..measurement.experiment import Experiment
 from ..measurement.soundness import check_signals

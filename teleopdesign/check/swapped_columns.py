@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
 
-from ..diagnose.force_error import Prepared, prepare
+from ..diagnose.prepare import Prepared, prepare
 from ..finding import Finding
 from ..measurement.experiment import Experiment
 from ..model import Model

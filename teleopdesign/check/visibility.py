@@ -19,7 +19,8 @@ import numpy as np
 from ..diagnose.candidates import Candidate
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.fit import Fit, weighted
-from ..diagnose.force_error import Prepared, Stretch, referred
+from ..diagnose.prepare import Prepared, Stretch
+from ..diagnose.residual import relative_residuals
 from ..diagnose.scales import scales
 from ..measurement.filtering import Array
 from ..model import Model
@@ -93,7 +94,7 @@ def visibilities(
     floor: noise floor of these records, a relative force error
     """
     stretches = prepared.of("fit")
-    residual = weighted(stretches, [r for r, _ in referred(base.model, stretches)])
+    residual = weighted(stretches, [r for r, _ in relative_residuals(base.model, stretches)])
     columns = base.jacobian[:, np.linalg.norm(base.jacobian, axis=0) > 0]
     span = np.linalg.svd(columns / np.linalg.norm(columns, axis=0), full_matrices=False)
     kept = span[0][:, span[1] > 1e-8 * span[1].max(initial=0.0)]
@@ -176,7 +177,7 @@ def _trial(candidate: Candidate, shaped: Model, factor: float, scene: _Scene) ->
             step = first - absent if first != absent else 0.1
             values[full] = absent + factor * step
     model = _bounded(shaped, values)
-    parts = referred(model, scene.stretches)
+    parts = relative_residuals(model, scene.stretches)
     mark = weighted(scene.stretches, [r for r, _ in parts]) - scene.residual
     if not np.isfinite(mark).all():
         mark = np.zeros_like(mark)

@@ -13,8 +13,8 @@ from ._options import check_output
 
 if TYPE_CHECKING:
     from ..diagnose.fit import Fit
-    from ..diagnose.force_error import Prepared
     from ..diagnose.noise_floor import NoiseFloor
+    from ..diagnose.prepare import Prepared
     from ..unexplained import Unexplained
 
 
@@ -67,7 +67,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _fitted(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor | None, str]:
     """The fit that is described, its noise floor if a diagnosis told it, and which model it is."""
-    from ..diagnose.force_error import prepare
+    from ..diagnose.prepare import prepare
     from ..diagnose.search import estimate_from_starts
 
     experiment = experiment_of(options.folder)

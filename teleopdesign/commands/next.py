@@ -168,7 +168,7 @@ def _asked(texts: Sequence[str], experiment: Experiment) -> dict[str, dict[str, 
 
 def _limits(asked: dict[str, dict[str, float]], experiment: Experiment) -> dict[str, Limits]:
     """Body -> the limits that its records have shown, with those asked for in their place."""
-    from ..diagnose.force_error import prepare
+    from ..diagnose.prepare import prepare
     from ..next_experiment import shown_limits
 
     if not asked:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..check.motion_facts import RARE
-from ..diagnose.force_error import prepare
+from ..diagnose.prepare import prepare
 from ..errors import ExperimentError
 from ..measurement.experiment import Experiment
 from ..measurement.motion import TRAVEL

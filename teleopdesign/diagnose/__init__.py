@@ -6,10 +6,12 @@ from ..arguments import check_arguments
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .comparison import Comparison, compare
+from .corrected_fit import corrected_fit
 from .diagnosis import Diagnosis
 from .fit import Fit
-from .force_error import prepare
 from .ladder import find_missing
+from .ladder_state import search_for
+from .prepare import prepare
 from .rank import rank_candidates
 from .ranking import Ranked, Ranking
 from .rung import Rung
@@ -29,13 +31,18 @@ __all__ = [
 ]
 
 
-def fit(model: Model, experiment: Experiment) -> Model:
+def fit(model: Model, experiment: Experiment, *, seed: int = 0) -> Model:
     """The model with its free parameters re-estimated on the fit records, with standard errors.
 
     Effects that are still absent (as `with_effect` leaves them) start from values of the record's
-    own scale.
+    own scale. As in `find_missing`, what reading the motion by sensors does to the estimates is
+    taken off them where the model leaves only noise, and widens their standard errors where it
+    leaves more; of long records, windows are fitted.
+
+    seed: of the draws for the noise floor and for the simulated readings
+    raises ExperimentError: the experiment lacks what the comparison needs
     """
-    return estimate_from_starts(model, prepare(experiment)).model
+    return corrected_fit(search_for(experiment, model, seed=seed)).model
 
 
 def rank(model: Model, experiment: Experiment) -> Ranking:

@@ -19,12 +19,12 @@ from .answers.bodies import model_data
 from .answers.fingerprint import experiment_data
 from .diagnosis import Diagnosis
 from .fit import Fit
-from .force_error import along_own
 from .ladder_text import own_rows
 from .one_moment import Moment
 from .open_questions import open_questions
 from .probability import CandidateEvidence, evidence_of
 from .ranking import REFUSALS
+from .record_offsets import along_with_offsets
 
 
 def answer(diagnosis: Diagnosis) -> dict[str, Any]:
@@ -208,7 +208,7 @@ def _predicted(diagnosis: Diagnosis, file: str) -> list[np.ndarray]:
     columns: list[np.ndarray] = []
     stretches = [s for s in diagnosis.prepared.stretches if s.motion.file == file]
     models = (diagnosis.before.model, diagnosis.model)
-    along = [along_own(model, stretches) for model in models]
+    along = [along_with_offsets(model, stretches) for model in models]
     for body in diagnosis.experiment.bodies:
         interaction = record.signals.get(f"{body}.interaction_force")
         measured = record.signals[f"{body}.actuator_force"] + (

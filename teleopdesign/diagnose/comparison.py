@@ -14,8 +14,9 @@ from ..model import Model
 from ..notebook import html_table
 from ..quantity import unit_of
 from ..realise.along_motion import residual_along
-from .force_error import Prepared, force_error, prepare
+from .error import force_error
 from .noise_floor import NoiseFloor, noise_floor
+from .prepare import Prepared, prepare
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

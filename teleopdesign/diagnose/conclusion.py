@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from .decision import is_adequate, moment_above_noise, verdict
+from .corrected_fit import corrected
+from .decision import moment_above_noise, verdict
 from .diagnosis import Diagnosis
+from .error import force_error
+from .error_at_command import at_command
 from .fit import Fit
-from .force_error import Prepared, at_command, force_error
 from .ladder_state import LadderSearch, LadderState
+from .prepare import Prepared
 from .probability import probable
-from .reading_error import with_reading_error
 from .rung import Rung
 from .rungs import first_rise, without_rise
 
@@ -45,13 +47,8 @@ def conclude(search: LadderSearch, state: LadderState) -> Diagnosis:
 def _with_reading_error(search: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
     """The rungs with what readings do taken off the last fit, unless it then leaves more."""
     search.progress("reading the model's own motion")
-    corrected = with_reading_error(
-        state.fit,
-        search.prepared,
-        search.generator(),
-        adequate=lambda fit: is_adequate(fit, state.floor, criteria=search.criteria),
-    )
-    rungs = (*state.rungs[:-1], replace(state.rungs[-1], fit=corrected))
+    last = corrected(search, state.fit, state.floor)
+    rungs = (*state.rungs[:-1], replace(state.rungs[-1], fit=last))
     return rungs if first_rise(rungs) is None else state.rungs
 
 

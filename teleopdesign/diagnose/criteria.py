@@ -58,6 +58,10 @@ class Criteria:
     #: part of what the user's model leaves up to which the floor may rise nonetheless: so small a
     #: rest is explained, whatever its source
     hidden: float = 0.1
+    #: part of the squares of velocity near a tone above which the motion itself may have brought it
+    tone_in_motion: float = 0.01
+    #: part of the check squares that a tone must take to be tried as a force: as `relevant`
+    tone_heard: float = 0.03
     #: probability of an effect that was accepted with nothing but noise left: of 74 on simulated
     #: cases 73 were true, (73 + 1)/(74 + 2)
     true_of_accepted: float = 0.97

@@ -17,10 +17,10 @@ from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .evidence import chance, check_score, check_squares, seen_gain, seen_score, whole_score
 from .fit import Fit
-from .force_error import Prepared
 from .noise_floor import NoiseFloor
 from .one_moment import Moment, worst_moment
 from .outside_tone import Tone
+from .prepare import Prepared
 from .ranking import Ranked, Ranking
 from .rung import Rung
 
@@ -159,7 +159,7 @@ def is_supported(
     driven = set(ranked.fit.at_bound) - set(base.at_bound)
     own = [n for n in driven if n not in base.model.parameters]
     return (
-        ranked.told
+        ranked.is_identifiable
         and not displaced(base, ranked.fit)
         and (
             all(ranked.fit.model.declared(n).optional for n in own)
@@ -216,7 +216,7 @@ def preferred(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> 
     return min(alike(supported, criteria=criteria), key=simplicity)
 
 
-def equals_of(
+def alternatives_of(
     best: Ranked,
     ranking: Ranking,
     base: Fit,
@@ -268,6 +268,6 @@ def verdict(
         adequate = is_adequate(rungs[-1].fit, floor, criteria=criteria) or moment is not None
         return "model_adequate" if adequate else "undecided"
     part = explained(rungs[0].fit, rungs[-1].fit, floor)
-    if part < criteria.mostly or all(r.equals for r in added):
+    if part < criteria.mostly or all(r.alternatives for r in added):
         return "undecided"
     return "effects_missing"

@@ -12,10 +12,10 @@ from ..notebook import html_table
 from .candidates import Candidate
 from .decision import floors_left, is_adequate, verdict
 from .fit import Fit
-from .force_error import Prepared
 from .ladder_text import ladder_text, sentence
 from .noise_floor import NoiseFloor
 from .one_moment import Moment
+from .prepare import Prepared
 from .ranking import Ranking
 from .rung import Rung
 
@@ -88,7 +88,9 @@ class Diagnosis(ByValue):
     @property
     def groups(self) -> tuple[tuple[Candidate, ...], ...]:
         """Effects that explain the records equally well, named one first."""
-        return tuple((r.added, *r.equals) for r in self.rungs if r.added is not None and r.equals)
+        return tuple(
+            (r.added, *r.alternatives) for r in self.rungs if r.added is not None and r.alternatives
+        )
 
     @property
     def more_is_missing(self) -> bool:

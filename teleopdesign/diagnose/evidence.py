@@ -53,7 +53,7 @@ def seen_score(before: Fit, after: Fit) -> float:
 
     On the rows that both can tell: what a model is blind to speaks for neither.
     """
-    rows = before.seen.told & after.seen.told
+    rows = before.seen.sighted & after.seen.sighted
     return gain_score(
         before.seen.residual[rows], after.seen.residual[rows], after.check_blocks[rows]
     )
@@ -65,7 +65,7 @@ def seen_gain(before: Fit, after: Fit) -> float:
     No more than the error itself says of each model on its own rows: to be blind to where most is
     left is no gain.
     """
-    rows = before.seen.told & after.seen.told
+    rows = before.seen.sighted & after.seen.sighted
     whole, left = (float(np.sum(f.seen.residual[rows] ** 2)) for f in (before, after))
     own = 1.0 - (after.seen.error / before.seen.error) ** 2
     return min(own, 1.0 - left / whole) if whole > 0.0 else 0.0

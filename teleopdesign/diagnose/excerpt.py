@@ -8,7 +8,7 @@ import numpy as np
 
 from ..measurement.experiment import Experiment
 from ..measurement.record import Record
-from .force_error import Prepared, prepare
+from .prepare import Prepared, prepare
 from .search_plan import PLAN, SearchPlan
 
 #: samples of all records together above which windows are taken

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
-from .decision import equals_of, is_adequate, is_better, is_supported
+from .decision import alternatives_of, is_adequate, is_better, is_supported
 from .evidence import check_squares
 from .fit import Fit
 from .ladder_state import LadderSearch, LadderState
@@ -53,8 +53,8 @@ def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
     if best is None:
         return None
     taken, without = best.taken, best.without
-    equals = equals_of(taken, best.ranking, without, floor, criteria=criteria)
-    rung = Rung(taken.candidate, taken.fit, best.ranking, equals)
+    alternatives = alternatives_of(taken, best.ranking, without, floor, criteria=criteria)
+    rung = Rung(taken.candidate, taken.fit, best.ranking, alternatives)
     kept = [r for r in state.rungs if r.added is not best.dropped]
     order = falling(refitted([*kept, rung], taken.fit, prepared), prepared)
     if order is None:

@@ -12,8 +12,12 @@ from ..blocks import Value
 from ..by_value import ByValue
 from ..measurement.filtering import Array
 from ..model import Model
-from .force_error import AtCommand, Prepared, Stretch, at_command, folds, force_error, referred
+from .effort import EFFORTS, Effort
+from .error import force_error
+from .error_at_command import AtCommand, at_command
 from .least_squares import minimise
+from .prepare import Prepared, Stretch, folds
+from .residual import relative_residuals
 from .scales import scales
 
 #: seconds over which residuals count as one observation in standard errors and tests
@@ -24,12 +28,12 @@ BLOCK = 0.25
 class Seen(ByValue):
     """What a model leaves on the check records, seen at the command.
 
-    residual: of `Fit.check_residual`'s rows;  told: those of them that are not blind
+    residual: of `Fit.check_residual`'s rows;  sighted: those of them that are not blind
     error, blind, weak: as `AtCommand` has them
     """
 
     residual: Array
-    told: NDArray[np.bool_]
+    sighted: NDArray[np.bool_]
     error: float
     blind: float
     weak: bool
@@ -41,7 +45,7 @@ class Fit(ByValue):
 
     fit_error, check_error: relative force errors; NaN where there is no such record
     fit_residual, check_residual: low-passed residuals on the rows that count, weighted, relative to
-        the force that acts by the model (`referred`): what models are compared by
+        the force that acts by the model (`relative_residuals`): what models are compared by
     seen: what is left on the check records as an error of the recorded forces (`at_command`): an
         effect must lower it too
     fit_blocks, check_blocks: number of the block of each of these rows
@@ -95,19 +99,10 @@ def weighted(stretches: Sequence[Stretch], values: Sequence[Array]) -> Array:
     return np.concatenate(parts) if parts else np.zeros(0)
 
 
-@dataclass(frozen=True)
-class Effort:
-    """How far a fit is driven: relative change of squares and parameters, evaluations."""
-
-    tolerance: float
-    evaluations: int
-
-
 #: distance to a bound, in the record's scale of the quantity, that counts as being there
 AT_BOUND = 1e-6
 #: decades to either side of the record's scale in which a logarithmic parameter is searched
 DECADES = 8.0
-ROUGH, FINE, HELD_OUT = Effort(1e-4, 12), Effort(1e-7, 60), Effort(1e-3, 5)
 
 
 @dataclass(frozen=True)
@@ -121,7 +116,7 @@ class Solution:
     jacobian: Array
 
 
-def estimate(model: Model, prepared: Prepared, *, effort: Effort = FINE) -> Fit:
+def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine) -> Fit:
     """Re-estimate the parameters of the model that are not fixed, on the fit records.
 
     Without check records, blocks of the fit records are held out in turn: what is reported as
@@ -141,7 +136,7 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = FINE) -> Fit:
     fitted = fitted.canonical()
     check = prepared.of("check")
     if check:
-        parts = [v for v, _ in referred(fitted, check)]
+        parts = [v for v, _ in relative_residuals(fitted, check)]
         check_error = force_error(fitted, check)
         seen = seen_on(fitted, check)
     else:
@@ -169,9 +164,9 @@ def seen_on(model: Model, stretches: Sequence[Stretch]) -> Seen:
 
 
 def _in_one(stretches: Sequence[Stretch], found: AtCommand) -> Seen:
-    told = np.concatenate(found.told) if found.told else np.zeros(0, dtype=bool)
+    sighted = np.concatenate(found.sighted) if found.sighted else np.zeros(0, dtype=bool)
     residual = weighted(stretches, found.residual)
-    return Seen(residual, told, found.error, found.blind, found.weak)
+    return Seen(residual, sighted, found.error, found.blind, found.weak)
 
 
 def _held_out(
@@ -183,10 +178,10 @@ def _held_out(
     seen: list[AtCommand] = []
     squares = at_commands = 0.0
     for known, unseen in folds(prepared.of("fit")):
-        solution = solve(fitted, free, prepared, known, HELD_OUT)
+        solution = solve(fitted, free, prepared, known, EFFORTS.held_out)
         model = fitted.with_values(dict(zip(free, solution.values, strict=True)))
         held += unseen
-        parts += [v for v, _ in referred(model, unseen)]
+        parts += [v for v, _ in relative_residuals(model, unseen)]
         seen.append(at_command(model, unseen))
         measured = sum(s.measured for s in unseen)
         squares += force_error(model, unseen) ** 2 * measured
@@ -194,7 +189,7 @@ def _held_out(
     whole = sum(s.measured for s in held)
     together = AtCommand(
         tuple(r for one in seen for r in one.residual),
-        tuple(t for one in seen for t in one.told),
+        tuple(t for one in seen for t in one.sighted),
         float(np.sqrt(at_commands / whole)),
         float(np.mean([one.blind for one in seen])),
         any(one.weak for one in seen),
@@ -209,7 +204,7 @@ def solve(
     stretches: Sequence[Stretch],
     effort: Effort,
 ) -> Solution:
-    """Bounded least squares on the referred residuals of these stretches."""
+    """Bounded least squares on the relative_residuals residuals of these stretches."""
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     declared = [model.declared(n) for n in free]
     scale = np.array([unit[d.scale] for d in declared])
@@ -231,7 +226,7 @@ def solve(
 
     def both(x: Array) -> tuple[Array, Array]:
         there = model.with_values(dict(zip(free, values(x), strict=True)))
-        parts = referred(there, stretches, free)
+        parts = relative_residuals(there, stretches, free)
         r = np.concatenate([w * v for w, (v, _) in zip(roots, parts, strict=True)])
         j = np.concatenate([w * t.T for w, (_, t) in zip(roots, parts, strict=True)])
         return r, j * np.where(decades, values(x), scale)

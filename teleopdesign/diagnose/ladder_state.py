@@ -20,9 +20,9 @@ from .decision import (
 )
 from .excerpt import on_windows
 from .fit import Fit
-from .force_error import Prepared, prepare
 from .noise_floor import NoiseFloor, noise_floor
 from .outside_tone import Tone, acts_by_the_clock, best_tone
+from .prepare import Prepared, prepare
 from .rank import rank_candidates
 from .ranking import Ranked, Ranking
 from .rung import Rung

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..quantity import unit_of
 from .fit import Fit
-from .force_error import own_groups
 from .ranking import REFUSALS
+from .record_offsets import offset_groups
 
 if TYPE_CHECKING:
     from .diagnosis import Diagnosis
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def own_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """What records have of their own by the model that the diagnosis ends with."""
     stretches, rows = diagnosis.prepared.stretches, []
-    for group, own in own_groups(diagnosis.model, stretches):
+    for group, own in offset_groups(diagnosis.model, stretches):
         motion = stretches[group[0]].motion
         units = {
             "position_zero": unit_of("position", own.body.axis),
@@ -87,8 +87,8 @@ def ladder_text(diagnosis: Diagnosis) -> str:
             )
         if (seen := seen_text(rung.fit)) is not None:
             lines.append(f"      {seen}")
-        if rung.equals:
-            others = ", ".join(map(str, rung.equals))
+        if rung.alternatives:
+            others = ", ".join(map(str, rung.alternatives))
             lines.append(f"      no different on these records: {others}")
     lines += [
         f"own of {o['record']}: {o['of'].replace('_', ' ')} {o['value']:.4g} {o['unit']}"
@@ -118,7 +118,7 @@ def sentence(diagnosis: Diagnosis) -> str:
         noise = f" What is left is noise ({left:.2f} noise floors)."
         return f"verdict: model_adequate.{rest or noise}"
     if diagnosis.verdict == "effects_missing":
-        equals = {r.added: r.equals for r in diagnosis.rungs if r.added is not None}
+        equals = {r.added: r.alternatives for r in diagnosis.rungs if r.added is not None}
         names = ", ".join(" or ".join(map(str, (c, *equals[c]))) for c in diagnosis.missing)
         less = [str(c) for c in equals if c not in diagnosis.missing]
         others = f" {', '.join(less)}: less likely than not." if less else ""
@@ -129,7 +129,7 @@ def sentence(diagnosis: Diagnosis) -> str:
             f"verdict: undecided. What helps most ({names}) is less likely than not what is "
             f"missing: {left:.1f} noise floors are left."
         )
-    if len(diagnosis.rungs) > 1 and any(r.added and not r.equals for r in diagnosis.rungs):
+    if len(diagnosis.rungs) > 1 and any(r.added and not r.alternatives for r in diagnosis.rungs):
         names = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)
         return (
             f"verdict: undecided. {names} help, but explain less than half of what is missing: "

@@ -20,7 +20,8 @@ from ..measurement.filtering import Array
 from ..model import Model
 from ..realise.traced import Probe
 from .fit import Fit
-from .force_error import Prepared, referred
+from .prepare import Prepared
+from .residual import relative_residuals
 
 #: columns that are carried through the friction balance at once: bounds the memory
 AT_ONCE = 48
@@ -95,7 +96,7 @@ def _size(columns: Array) -> Array:
 
 def _columns(model: Model, probes: list[Probe], prepared: Prepared) -> Array:
     stretches = prepared.of("fit")
-    parts = referred(model, stretches, probes)
+    parts = relative_residuals(model, stretches, probes)
     return np.concatenate(
         [np.sqrt(s.weight) * d.T for s, (_, d) in zip(stretches, parts, strict=True)]
     )

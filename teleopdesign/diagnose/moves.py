@@ -6,7 +6,7 @@ supported. It is judged by the noise floor that the state holds.
 
 from __future__ import annotations
 
-from .decision import equals_of, is_better, preferred
+from .decision import alternatives_of, is_better, preferred
 from .ladder_state import LadderSearch, LadderState
 from .rung import Rung
 from .rungs import estimate_without, falling, refitted
@@ -18,8 +18,10 @@ def add(search: LadderSearch, state: LadderState) -> LadderState | None:
         return None
     criteria = search.criteria
     best = preferred(state.supported, criteria=criteria)
-    equals = equals_of(best, state.ranking, state.fit, state.floor, criteria=criteria)
-    return state.with_rungs((*state.rungs, Rung(best.candidate, best.fit, state.ranking, equals)))
+    alternatives = alternatives_of(best, state.ranking, state.fit, state.floor, criteria=criteria)
+    return state.with_rungs(
+        (*state.rungs, Rung(best.candidate, best.fit, state.ranking, alternatives))
+    )
 
 
 def remove(search: LadderSearch, state: LadderState) -> LadderState | None:

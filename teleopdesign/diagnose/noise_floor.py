@@ -17,7 +17,10 @@ from ..by_value import ByValue
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motion_of
 from ..model import Model
-from .force_error import Prepared, Stretch, at_command, error_of, residuals
+from .error import error_of
+from .error_at_command import at_command
+from .prepare import Prepared, Stretch
+from .residual import residuals
 from .sensors import sensor_of
 
 #: records drawn anew per floor; its spread from draw to draw is a few percent
@@ -29,8 +32,8 @@ class NoiseFloor(ByValue):
     """The floor as a relative force error, and where its numbers come from.
 
     drawn: what the readings drawn anew left;  value: what counts of it
-    at_command: what sensors leave seen at the command (`force_error.at_command`), over what they
-        leave of the force: 1 where nothing stands between
+    at_command: what sensors leave seen at the command (`error_at_command.at_command`), over what
+        they leave of the force: 1 where nothing stands between
     held: kept below what this model makes of sensor errors, or what it leaves would hide in them
     """
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .fit import Fit, block_numbers
-from .force_error import Prepared
 from .noise_floor import NoiseFloor
+from .prepare import Prepared
 
 #: least number of moments of which one may be left out: of fewer, each is too much of the records
 MOMENTS = 10

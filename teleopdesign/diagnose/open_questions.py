@@ -7,9 +7,7 @@ from .decision import is_supported
 from .diagnosis import Diagnosis, OpenQuestion
 from .ranking import Ranked
 from .rung import Rung
-
-#: most rivals of one question
-MOST = 4
+from .search_plan import PLAN
 
 
 def open_questions(diagnosis: Diagnosis) -> tuple[OpenQuestion, ...]:
@@ -21,7 +19,7 @@ def open_questions(diagnosis: Diagnosis) -> tuple[OpenQuestion, ...]:
     found = [_of_rung(diagnosis, rung) for rung in diagnosis.rungs if rung.added is not None]
     if diagnosis.verdict == "undecided":
         told = [r for r in diagnosis.last.ranked if r.counts and r.score > 0.0]
-        others = tuple((r.candidate, r.fit) for r in told[: MOST - 1])
+        others = tuple((r.candidate, r.fit) for r in told[: PLAN.rivals - 1])
         found.append(OpenQuestion(None, others))
     return tuple(q for q in found if q.others)
 
@@ -29,13 +27,13 @@ def open_questions(diagnosis: Diagnosis) -> tuple[OpenQuestion, ...]:
 def _of_rung(diagnosis: Diagnosis, rung: Rung) -> OpenQuestion:
     """The accepted effect of a rung and what may stand in its place."""
     assert rung.added is not None and rung.ranking is not None
-    equals = {c.key for c in rung.equals}
+    alternatives = {c.key for c in rung.alternatives}
     ranked = [r for r in rung.ranking.ranked if r.candidate.key != rung.added.key]
     close = sorted(
-        (r for r in ranked if r.candidate.key in equals or _is_open(r, rung, diagnosis)),
-        key=lambda r: (r.candidate.key not in equals, r.fit.check_error),
+        (r for r in ranked if r.candidate.key in alternatives or _is_open(r, rung, diagnosis)),
+        key=lambda r: (r.candidate.key not in alternatives, r.fit.check_error),
     )
-    return OpenQuestion(rung.added, tuple((r.candidate, r.fit) for r in close[: MOST - 1]))
+    return OpenQuestion(rung.added, tuple((r.candidate, r.fit) for r in close[: PLAN.rivals - 1]))
 
 
 def _is_open(ranked: Ranked, rung: Rung, diagnosis: Diagnosis) -> bool:

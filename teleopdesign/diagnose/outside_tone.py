@@ -24,16 +24,9 @@ from ..model import Model
 from .criteria import CRITERIA
 from .evidence import check_squares, gain_score
 from .fit import Fit, estimate
-from .force_error import Prepared, Stretch, residuals
-
-#: frequencies tried per inverse of the longest stretch
-FINENESS = 4
-#: part of the squares of velocity near the tone above which the motion itself may have brought it
-MOVED = 0.01
-#: part of the check squares that a tone must take to be tried as a force
-HEARD = 0.03
-#: turns of finding the force, and of estimating the model beside it
-TURNS, ESTIMATES = 4, 2
+from .prepare import Prepared, Stretch
+from .residual import residuals
+from .search_plan import PLAN
 
 
 def acts_by_the_clock(effect: Effect) -> bool:
@@ -78,13 +71,15 @@ def best_tone(found: Fit, prepared: Prepared) -> Tone:
         own = [(s, r) for s, r in zip(fit, before, strict=True) if s.motion.body == body]
         there = [(s, r) for s, r in zip(check, after, strict=True) if s.motion.body == body]
         frequency = _frequency(own)
-        if frequency > 0 and all(_share(s, frequency) < MOVED for s, _ in own + there):
+        if frequency > 0 and all(
+            _share(s, frequency) < CRITERIA.tone_in_motion for s, _ in own + there
+        ):
             left = [
                 _without(s, r, frequency) if s.motion.body == body else r
                 for s, r in zip(check, after, strict=True)
             ]
             tones = [least, Tone(np.concatenate(left))]
-            if tones[-1].squares < (1 - HEARD) * whole:
+            if tones[-1].squares < (1 - CRITERIA.tone_heard) * whole:
                 tones.append(Tone(_beside_a_force(found, prepared, body, frequency)))
             least = min(tones, key=lambda tone: tone.squares)
     return least
@@ -93,7 +88,7 @@ def best_tone(found: Fit, prepared: Prepared) -> Tone:
 def _beside_a_force(found: Fit, prepared: Prepared, body: str, frequency: float) -> Array:
     """Check residual of the model, estimated again, where a tone acts on the body as a force."""
     stretches = prepared.stretches
-    for _ in range(ESTIMATES):
+    for _ in range(PLAN.tone_estimates):
         stretches = tuple(
             _driven(found.model, s, frequency) if s.motion.body == body else s for s in stretches
         )
@@ -108,7 +103,7 @@ def _driven(model: Model, stretch: Stretch, frequency: float) -> Stretch:
     """
     waves = _waves(stretch, frequency)
     shown = stretch.motion.lowpassed(waves.T).T[stretch.keep]
-    for _ in range(TURNS):
+    for _ in range(PLAN.tone_turns):
         ((residual, _),) = residuals(model, [stretch])
         if len(residual) < 3:
             break
@@ -136,7 +131,7 @@ def _frequency(parts: Sequence[tuple[Stretch, Array]]) -> float:
         return 0.0
     interval = parts[0][0].motion.sample_time
     rows = max(len(s.motion.time) for s, _ in parts)
-    length = fft.next_fast_len(FINENESS * rows, real=True)
+    length = fft.next_fast_len(PLAN.tone_fineness * rows, real=True)
     grid = fft.rfftfreq(length, interval)
     power = np.zeros(len(grid))
     for stretch, residual in parts:

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from .candidates import Candidate
-from .decision import equals_of, explained, is_adequate, is_better, is_supported
+from .decision import alternatives_of, explained, is_adequate, is_better, is_supported
 from .evidence import check_squares
 from .fit import Fit, fit_squares
 from .ladder_state import LadderSearch, LadderState
@@ -72,10 +72,10 @@ def _best_pair(
         second = next(supported, None)
         if second is None:
             continue
-        equals = equals_of(second, beside, first.fit, floor, criteria=criteria)
+        alternatives = alternatives_of(second, beside, first.fit, floor, criteria=criteria)
         rungs = (
             Rung(first.candidate, first.fit, ranking),
-            Rung(second.candidate, second.fit, beside, equals),
+            Rung(second.candidate, second.fit, beside, alternatives),
         )
         if _needs_both(search, here, rungs, floor):
             order = falling((base, *rungs), search.prepared)

@@ -65,7 +65,7 @@ def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
                 CandidateEvidence(
                     ranked=ranked,
                     accepted=rung is not None and rung.added is not None and rung.added.key == key,
-                    as_good=rung is not None and key in {c.key for c in rung.equals},
+                    as_good=rung is not None and key in {c.key for c in rung.alternatives},
                     share=share[key],
                     explained=_explained(diagnosis, ranking, ranked),
                     left=diagnosis.left,
@@ -93,7 +93,7 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
     """
     accepted = rung is not None and rung.added is not None
     if rung is not None and rung.added is not None:
-        alike = {c.key for c in (rung.added, *rung.equals)}
+        alike = {c.key for c in (rung.added, *rung.alternatives)}
         first = next(r.behind for r in ranking.ranked if r.candidate.key == rung.added.key)
     else:
         alike = {r.candidate.key for r in ranking.ranked}

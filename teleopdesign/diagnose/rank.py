@@ -9,10 +9,11 @@ from ..model import Model
 from .candidates import Candidate, candidates
 from .criteria import CRITERIA, Criteria
 from .decision import rank_key, refusal
+from .effort import EFFORTS
 from .evidence import check_score, whole_score
-from .fit import ROUGH, Fit, estimate, fit_squares
-from .force_error import Prepared
+from .fit import Fit, estimate, fit_squares
 from .identifiability import is_identifiable
+from .prepare import Prepared
 from .ranking import Ranked, Ranking
 from .search import at_stated, estimate_from_starts
 from .search_plan import PLAN
@@ -42,7 +43,7 @@ def _from_kin(
     values = {
         n: found.model.parameters[n.replace(there, other, 1)].value for n in rough.model.parameters
     }
-    again = estimate(rough.model.with_values(values), prepared, effort=ROUGH)
+    again = estimate(rough.model.with_values(values), prepared, effort=EFFORTS.rough)
     return candidate, min((rough, again), key=fit_squares)
 
 
@@ -64,7 +65,7 @@ def _refined(
         again = (
             estimate_from_starts(model, prepared)
             if model.absent
-            else estimate(model, prepared, effort=ROUGH)
+            else estimate(model, prepared, effort=EFFORTS.rough)
         )
         if fit_squares(again) < fit_squares(rough):
             rough = again
@@ -130,6 +131,6 @@ def ranked(base: Fit, candidate: Candidate, found: Fit, *, criteria: Criteria = 
         fit=found,
         score=check_score(base, found),
         behind=0.0,
-        told=is_identifiable(found, base, criteria=criteria),
+        is_identifiable=is_identifiable(found, base, criteria=criteria),
         refused=refusal(base, found, criteria=criteria),
     )

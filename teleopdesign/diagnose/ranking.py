@@ -23,7 +23,7 @@ class Ranked(ByValue):
 
     score: how surely it lowers the error on the check records (standard deviations)
     behind: how surely the best candidate has the smaller error on all records; 0 for the best
-    told: its parameters are determined, and told from those of the model it was added to
+    is_identifiable: its parameters are determined, and told from those of the model it was added to
     refused: why it does not count though it may leave less force (a key of `REFUSALS`), or ""
     """
 
@@ -31,20 +31,20 @@ class Ranked(ByValue):
     fit: Fit
     score: float
     behind: float
-    told: bool
+    is_identifiable: bool
     refused: str = ""
 
     @property
     def counts(self) -> bool:
         """Whether the records can speak for it: told, and not refused."""
-        return self.told and not self.refused
+        return self.is_identifiable and not self.refused
 
     @property
     def note(self) -> str:
         """What is to be said beside the numbers; "" where nothing is."""
         if self.candidate.key in self.fit.model.absent:
             return "gains nothing"
-        return REFUSALS.get(self.refused, "" if self.told else "not determined")
+        return REFUSALS.get(self.refused, "" if self.is_identifiable else "not determined")
 
     def __repr__(self) -> str:
         return f"Ranked {self.candidate}: score {self.score:.1f}, behind {self.behind:.1f}"

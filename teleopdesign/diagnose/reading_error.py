@@ -23,9 +23,11 @@ import numpy as np
 from ..errors import ModelError
 from ..measurement.filtering import Array
 from ..model import Model
-from .fit import Effort, Fit, estimate, over_decades, solve
-from .force_error import Prepared, Stretch, along_own, stretch_of
+from .effort import EFFORTS
+from .fit import Fit, estimate, over_decades, solve
 from .noise_floor import read_again
+from .prepare import Prepared, Stretch, stretch_of
+from .record_offsets import along_with_offsets
 from .simulated_course import as_led, dead_times, grid, simulated_course
 from .threads import in_threads
 
@@ -40,8 +42,6 @@ GIVES, DAMPED = (0.3, 0.1, 0.03), (0.0, 0.5)
 LARGEST = 0.5
 #: simulations one after the other, at most, while the shift still moves by more than its own error
 ROUNDS = 4
-#: how far each of these is driven, and an estimate that stays where it is
-AGAIN, STAY = Effort(1e-5, 12), Effort(1.0, 1)
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ def reading_error(
     def missed(stretches: list[Stretch], own: np.random.Generator) -> Array:
         drawn = [as_read(s, prepared, own) for s in stretches]
         again = replace(prepared, stretches=tuple(drawn))
-        solution = solve(truth, found.free, again, drawn, AGAIN)
+        solution = solve(truth, found.free, again, drawn, EFFORTS.again)
         there = truth.with_values(dict(zip(found.free, solution.values, strict=True)))
         by = coordinates(there, found.free) - true
         for i, name in enumerate(found.free):
@@ -111,7 +111,9 @@ def _simulated(
     """The fit records with the model's exact courses in place of theirs; None if it has none."""
     stretches = list(prepared.of("fit"))
     made = []
-    for stretch, (body, motion) in zip(stretches, along_own(model, stretches), strict=True):
+    for stretch, (body, motion) in zip(
+        stretches, along_with_offsets(model, stretches), strict=True
+    ):
         try:
             course = simulated_course(body, motion, give=give, damping_ratio=damping_ratio)
         except ModelError:
@@ -196,7 +198,7 @@ def with_reading_error(
     better, moved = found, np.zeros(len(found.free), dtype=bool)
     if adequate(found):
         error, model, taken = _settled(found, error, prepared, generator)
-        tried = estimate(model, prepared, effort=STAY)
+        tried = estimate(model, prepared, effort=EFFORTS.stay)
         if adequate(tried):
             better, moved = tried, taken
     more = np.hypot(error.spread, np.where(moved, 0.0, error.shift))

@@ -14,13 +14,14 @@ from .ranking import Ranking
 class Rung(ByValue):
     """One step of the ladder: what was added (None: the user's model), the fit, and the ranking.
 
-    ranking: the candidates that were compared on this step; equals: those as good as the added one
+    ranking: the candidates that were compared on this step
+    alternatives: those that explain the records as well as the added one
     """
 
     added: Candidate | None
     fit: Fit
     ranking: Ranking | None = None
-    equals: tuple[Candidate, ...] = ()
+    alternatives: tuple[Candidate, ...] = ()
 
     def __repr__(self) -> str:
         return f"Rung {self.added or 'of the model'}: {self.fit!r}"

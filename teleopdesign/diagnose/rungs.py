@@ -10,7 +10,7 @@ from ..errors import ModelError
 from ..model import Model
 from .candidates import Candidate
 from .fit import Fit, estimate
-from .force_error import Prepared
+from .prepare import Prepared
 from .rank import ranked
 from .ranking import Ranking
 from .rung import Rung

@@ -19,14 +19,13 @@ from ..measurement.filtering import Array
 from ..model import Model
 from .candidates import started
 from .criteria import CRITERIA
-from .fit import FINE, ROUGH, Effort, Fit, estimate, fit_squares, free_parameters, solve
-from .force_error import Prepared, referred
+from .effort import EFFORTS
+from .fit import Fit, estimate, fit_squares, free_parameters, solve
 from .linear_start import linear_starts
+from .prepare import Prepared
+from .residual import relative_residuals
 from .scales import scales
 from .search_plan import PLAN
-
-#: a few real steps from a start: enough to see which of many starts lead down
-FIRST_STEPS = Effort(1e-3, 4)
 
 
 def estimate_from_starts(
@@ -54,18 +53,18 @@ def estimate_from_starts(
         if curved and stated is not None and _moved(base, stated):
             models += [at_stated(m, stated) for m in models]
         most = PLAN.corrected_predicted if rugged else PLAN.curved_predicted
-        models = _promising(model, models, prepared, base, unit, most, worth)
+        models = _promising(model, models, prepared, base, unit, most=most, worth=worth)
         if not models:
             return unchanged(model, base)
     elif len(models) == 1:
         return estimate(model, prepared)
     if len(models) > kept + 1:
         models = _best_stepped(models, prepared, kept, promised=base is not None)
-    rough = [estimate(m, prepared, effort=ROUGH) for m in models]
+    rough = [estimate(m, prepared, effort=EFFORTS.rough) for m in models]
     best = min(rough, key=fit_squares)
     if rugged and base is not None and fit_squares(best) < PLAN.jolted * fit_squares(base):
         best = _jolted(best, model.absent, prepared)
-    return best if base is not None else estimate(best.model, prepared, effort=FINE)
+    return best if base is not None else estimate(best.model, prepared, effort=EFFORTS.fine)
 
 
 def at_stated(model: Model, stated: Model) -> Model:
@@ -86,6 +85,7 @@ def _promising(
     prepared: Prepared,
     base: Fit,
     unit: dict[str, float],
+    *,
     most: int,
     worth: float,
 ) -> list[Model]:
@@ -162,7 +162,7 @@ def _promise(model: Model, prepared: Prepared, base: Fit, unit: dict[str, float]
     stretches = prepared.of("fit")
     same = all(model.parameters[n].value == base.model.parameters[n].value for n in base.free)
     wanted = [n for n in free_parameters(model) if not (same and n in base.free)]
-    parts = referred(model, stretches, wanted)
+    parts = relative_residuals(model, stretches, wanted)
     roots = [np.sqrt(s.weight) for s in stretches]
     residual = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
     columns = np.concatenate([w * d.T for w, (_, d) in zip(roots, parts, strict=True)])
@@ -191,7 +191,7 @@ def _best_stepped(
     stretches, found = prepared.of("fit"), []
     for i, model in enumerate(models):
         free = free_parameters(model)
-        solution = solve(model, free, prepared, stretches, FIRST_STEPS)
+        solution = solve(model, free, prepared, stretches, EFFORTS.first_steps)
         squares = float(solution.residual @ solution.residual)
         found.append((squares, i, dict(zip(free, solution.values.tolist(), strict=True))))
     found.sort(key=lambda f: f[:2])
@@ -211,7 +211,7 @@ def _jolted(found: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> F
         before = least
         for name, factor in product(names, PLAN.jolts):
             jolted = model.with_values({name: model.parameters[name].value * factor})
-            solution = solve(jolted, free, prepared, stretches, FIRST_STEPS)
+            solution = solve(jolted, free, prepared, stretches, EFFORTS.first_steps)
             squares = float(solution.residual @ solution.residual)
             if squares < least:
                 least = squares
@@ -219,4 +219,4 @@ def _jolted(found: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> F
                 model = model.with_values(values)
         if least > (1.0 - PLAN.onward) * before:
             break
-    return found if model is found.model else estimate(model, prepared, effort=ROUGH)
+    return found if model is found.model else estimate(model, prepared, effort=EFFORTS.rough)

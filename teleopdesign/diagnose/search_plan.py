@@ -47,6 +47,15 @@ class SearchPlan:
     #: squares on the fit records above the best candidate's, as a part of these, up to which
     #: another candidate is fitted finely too
     contending: float = 0.5
+    #: frequencies tried for a tone per inverse of the longest stretch: four, so that none falls
+    #: between two
+    tone_fineness: int = 4
+    #: turns of finding the force of a tone on one stretch
+    tone_turns: int = 4
+    #: turns of finding that force and estimating the model beside it
+    tone_estimates: int = 2
+    #: most models that one open question holds: each is told from the others by an experiment
+    rivals: int = 4
 
 
 #: the sizes in use

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..diagnose.force_error import Stretch
+from ..diagnose.prepare import Stretch
 from ..measurement.filtering import Array
 from ..measurement.motion import play
 from ..model import Model

@@ -58,5 +58,5 @@ def names_alone(diagnosis: Diagnosis, rival: Rival) -> bool:
     """Whether a diagnosis names the rival's effect, with none that does as well."""
     key = rival.candidate.key
     return diagnosis.verdict == "effects_missing" and any(
-        r.added is not None and r.added.key == key and not r.equals for r in diagnosis.rungs
+        r.added is not None and r.added.key == key and not r.alternatives for r in diagnosis.rungs
     )

@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from ..diagnose.force_error import Prepared, Stretch
+from ..diagnose.prepare import Prepared, Stretch
 from ..errors import ModelError, did_you_mean
 
 #: part of the samples of a signal that may lie above the limit read off: single samples are noise

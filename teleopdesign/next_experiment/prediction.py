@@ -10,10 +10,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..diagnose.error import error_of
 from ..diagnose.evidence import gain_score
 from ..diagnose.fit import Fit, estimate
-from ..diagnose.force_error import Stretch, error_of, prepare, referred
 from ..diagnose.noise_floor import noise_floor
+from ..diagnose.prepare import Stretch, prepare
+from ..diagnose.residual import relative_residuals
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.record import Record
@@ -123,7 +125,7 @@ class Refit:
 
     def expected(self, *, truth: int, other: int) -> float:
         """Mean of `separation` over the sensors' errors, for records that the truth would give."""
-        both = (referred(self.fits[i].model, self.check) for i in (truth, other))
+        both = (relative_residuals(self.fits[i].model, self.check) for i in (truth, other))
         apart = [b - a for (a, _), (b, _) in zip(*both, strict=True)]
         return error_of(self.check, apart) / self.floor
 
@@ -142,7 +144,7 @@ def refit(
     check_floor = noise_floor(fits[best].model, replace(prepared, stretches=check), generator).value
     floor = max(check_floor, bench.floor / rms_measured(check))
     # relative to what acts by each model: one whose actuator passes less has gained nothing by that
-    left = [[r for r, _ in referred(f.model, check)] for f in fits]
+    left = [[r for r, _ in relative_residuals(f.model, check)] for f in fits]
     return Refit(fits, tuple(error_of(check, r) / floor for r in left), floor, check)
 
 
@@ -185,7 +187,9 @@ def _curves(truth: Rival, fitted: Refit, other: int) -> Curves:
     """The residuals of the truth and of another along the body where the truth's effect is."""
     at = truth.candidate.at
     here = [s for s in fitted.check if s.motion.body == at] or list(fitted.check)
-    (left, _), (noise, _) = (referred(fitted.fits[i].model, here[:1])[0] for i in (other, 0))
+    (left, _), (noise, _) = (
+        relative_residuals(fitted.fits[i].model, here[:1])[0] for i in (other, 0)
+    )
     body, rows = here[0].motion.body, here[0].keep
     unit = unit_of("force", truth.model.body(body).axis)
     return Curves(body, unit, here[0].motion.time[rows], left, noise)

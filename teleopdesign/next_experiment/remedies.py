@@ -13,8 +13,8 @@ import numpy as np
 
 from ..blocks.body import INERTIA
 from ..diagnose.fit import fit_squares
-from ..diagnose.force_error import Prepared
 from ..diagnose.least_squares import solve_normal
+from ..diagnose.prepare import Prepared
 from ..diagnose.scales import scales
 from ..diagnose.sensors import Sensor
 from ..measurement.filtering import Array

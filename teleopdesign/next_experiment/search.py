@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..diagnose.force_error import Prepared, prepare, referred
+from ..diagnose.prepare import Prepared, prepare
+from ..diagnose.residual import relative_residuals
 from ..measurement.filtering import Array
 from .family import Part
 from .limits import Limits
@@ -71,7 +72,7 @@ def tried(
         numbers = [safe.index(_number(s.motion.file)) for s in stretches]
         if not stretches:
             break
-        residuals = [r for r, _ in referred(truth.model, stretches)]
+        residuals = [r for r, _ in relative_residuals(truth.model, stretches)]
         for j, other in enumerate(rivals):
             if (i, j) in pairs(rivals):
                 sums[i, j] = sums_of(other, residuals, stretches, numbers, present[j], floor)

@@ -17,8 +17,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..diagnose.force_error import Prepared, Stretch, referred
 from ..diagnose.least_squares import solve_normal
+from ..diagnose.prepare import Prepared, Stretch
+from ..diagnose.residual import relative_residuals
 from ..measurement.filtering import Array
 from .rivals import Rival
 
@@ -52,7 +53,7 @@ class Sums:
 def normal_matrix(rival: Rival, prepared: Prepared, use: str = "fit") -> Array:
     """J'J of a model by its free parameters on the records of one use."""
     stretches = prepared.of(use)
-    parts = referred(rival.model, stretches, rival.fit.free)
+    parts = relative_residuals(rival.model, stretches, rival.fit.free)
     p = len(rival.fit.free)
     return sum(
         (s.weight * d @ d.T for s, (_, d) in zip(stretches, parts, strict=True)), np.zeros((p, p))
@@ -77,7 +78,7 @@ def sums_of(
     k, p = max(part_of) + 1, len(other.fit.free)
     squares, noise, rows = np.zeros(k), np.zeros(k), np.zeros(k)
     gradient, normal = np.zeros((k, p)), np.zeros((k, p, p))
-    parts = referred(other.model, stretches, other.fit.free)
+    parts = relative_residuals(other.model, stretches, other.fit.free)
     for i, s, truth_residual, (r, d) in zip(part_of, stretches, truth_left, parts, strict=True):
         apart = r - truth_residual
         squares[i] += s.weight * float(apart @ apart)
@@ -120,5 +121,5 @@ def present_separation(truth: Rival, other: Rival, prepared: Prepared, floor: fl
 
 
 def _against(truth: Rival, other: Rival, stretches: Sequence[Stretch], present: Array) -> Sums:
-    truth_left = [r for r, _ in referred(truth.model, stretches)]
+    truth_left = [r for r, _ in relative_residuals(truth.model, stretches)]
     return sums_of(other, truth_left, stretches, [0] * len(stretches), present, 0.0)

@@ -13,6 +13,7 @@ import tempfile
 from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 
@@ -33,6 +34,9 @@ def cache_folder() -> Path:
     return folder
 
 
+_IMPORTING = Lock()
+
+
 @lru_cache(maxsize=256)
 def compiled(source: str, function: str) -> Callable[..., Any]:
     """The function of that name in the source (a module that uses numba), from the cache folder."""
@@ -46,9 +50,10 @@ def compiled(source: str, function: str) -> Callable[..., Any]:
         ) as file:
             file.write(source)
         Path(file.name).replace(path)
-    if str(folder) not in sys.path:
-        sys.path.append(str(folder))  # numba's cache finds the module again by its name
-    importlib.invalidate_caches()
-    module = importlib.import_module(path.stem)
-    found: Callable[..., Any] = getattr(module, function)
-    return found
+    with _IMPORTING:  # candidates are fitted in threads, and the import system's caches are shared
+        if str(folder) not in sys.path:
+            sys.path.append(str(folder))  # numba's cache finds the module again by its name
+        importlib.invalidate_caches()
+        module = importlib.import_module(path.stem)
+    kernel: Callable[..., Any] = getattr(module, function)
+    return kernel

@@ -57,7 +57,7 @@ def ladder_rows(diagnosis: Diagnosis) -> tuple[LadderRow, ...]:
             fit_error=r.fit.fit_error,
             check_error=r.fit.check_error,
             floors=r.fit.check_error / floor if floor else float("inf"),
-            alike=tuple(map(str, r.equals)),
+            alike=tuple(map(str, r.alternatives)),
             seen=seen_text(r.fit),
         )
         for r in diagnosis.rungs
@@ -96,12 +96,12 @@ def _outcome(rung: Rung | None, ranking: Ranking, ranked: Ranked) -> str:
     key = ranked.candidate.key
     if rung is not None and rung.added is not None and rung.added.key == key:
         return "added"
-    if rung is not None and key in {c.key for c in rung.equals}:
+    if rung is not None and key in {c.key for c in rung.alternatives}:
         return "as good"
     if key in ranked.fit.model.absent:
         return "no gain"
     if ranked.refused:
         return ranked.refused
-    if not ranked.told:
+    if not ranked.is_identifiable:
         return "open"
     return "displaces" if set(ranked.fit.at_bound) - set(ranking.base.at_bound) else ""

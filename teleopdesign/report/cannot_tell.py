@@ -25,7 +25,7 @@ PAIRS = 6
 
 def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
     """Effects, parameters and candidates that these records leave open; may be empty."""
-    groups = [_group(r) for r in diagnosis.rungs if r.added is not None and r.equals]
+    groups = [_group(r) for r in diagnosis.rungs if r.added is not None and r.alternatives]
     rest = [
         *_at_bound(diagnosis),
         *_open_parameters(diagnosis),
@@ -40,8 +40,8 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
 def _group(rung: Rung) -> Finding:
     assert rung.added is not None and rung.ranking is not None
     ranked = {r.candidate.key: r for r in rung.ranking.ranked}
-    names = [str(c) for c in (rung.added, *rung.equals)]
-    group = [ranked[c.key] for c in (rung.added, *rung.equals)]
+    names = [str(c) for c in (rung.added, *rung.alternatives)]
+    group = [ranked[c.key] for c in (rung.added, *rung.alternatives)]
     likeness = min(_likeness(rung.ranking.base, group[0], r) for r in group[1:])
     apart = max(abs(whole_score(r.fit, group[0].fit)) for r in group[1:])
     errors = listed([percent(r.fit.check_error) for r in group])
@@ -144,7 +144,7 @@ def _open_candidates(diagnosis: Diagnosis) -> list[Finding]:
     names = [
         str(r.candidate)
         for r in diagnosis.last.ranked
-        if not r.told and r.candidate.key not in r.fit.model.absent
+        if not r.is_identifiable and r.candidate.key not in r.fit.model.absent
     ]
     if not names:
         return []

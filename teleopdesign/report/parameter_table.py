@@ -91,7 +91,7 @@ def added_effects(diagnosis: Diagnosis, rows: tuple[ParameterRow, ...]) -> tuple
         AddedEffect(
             effect=r.added.effect.name,
             at=r.added.at,
-            alike=tuple(map(str, r.equals)),
+            alike=tuple(map(str, r.alternatives)),
             title=r.added.effect.title,
             law=r.added.effect.text.strip(),
             source=r.added.effect.source,

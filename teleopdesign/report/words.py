@@ -70,7 +70,7 @@ def step_name(rung: Rung) -> str:
     """What a rung adds, with those that do as well: "stribeck at device"."""
     if rung.added is None:
         return "your model, re-estimated"
-    return " or ".join(map(str, (rung.added, *rung.equals)))
+    return " or ".join(map(str, (rung.added, *rung.alternatives)))
 
 
 def judged_on(diagnosis: Diagnosis) -> str:
@@ -121,7 +121,7 @@ def verdict(diagnosis: Diagnosis) -> str:
             f"Undecided: with {listed(added)} {fell}, but {each} less likely than not what is "
             f"missing. {rest}"
         )
-    if all(r.equals for r in diagnosis.rungs[1:]):
+    if all(r.alternatives for r in diagnosis.rungs[1:]):
         names = listed(added)
         return f"Undecided between {names}: these records cannot tell. Either way {fell}. {rest}"
     helps = "helps, but explains" if len(added) == 1 else "help, but explain"

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 from ..arguments import check_arguments
 from ..by_value import ByValue
 from ..diagnose.fit import Fit
-from ..diagnose.force_error import Prepared, prepare
 from ..diagnose.noise_floor import NoiseFloor
+from ..diagnose.prepare import Prepared, prepare
 from ..diagnose.search import estimate_from_starts
 from ..finding import Finding
 from ..measurement.experiment import Experiment

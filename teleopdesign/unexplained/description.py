@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..diagnose.criteria import CRITERIA
-from ..diagnose.force_error import Prepared
 from ..diagnose.noise_floor import noise_floor
+from ..diagnose.prepare import Prepared
 from ..finding import Finding, Graph
 from ..model import Model
 from .amounts import number

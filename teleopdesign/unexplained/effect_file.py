@@ -9,7 +9,7 @@ from __future__ import annotations
 import textwrap
 from pathlib import Path
 
-from ..diagnose.force_error import Prepared
+from ..diagnose.prepare import Prepared
 from ..diagnose.scales import scales
 from ..errors import ModelError
 from ..plain_data import write_text

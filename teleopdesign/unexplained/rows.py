@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..diagnose.fit import block_numbers, free_parameters
-from ..diagnose.force_error import Prepared, Stretch, folds, residuals
+from ..diagnose.prepare import Prepared, Stretch, folds
+from ..diagnose.residual import residuals
 from ..effects import Effect, Parameter
 from ..measurement.filtering import Array
 from ..model import Model

@@ -200,7 +200,7 @@ def _referred(columns: Array, rows: Rows) -> Array:
     """Columns of what changes the acting force, relative to the force that is left to act.
 
     Where no other force is measured, less command with less of everything else leaves less
-    residual and explains nothing: see `force_error.referred`.
+    residual and explains nothing: see `residual.relative_residuals`.
     """
     learnt = rows.learnt
     carried = (rows.root**2 * rows.measured)[learnt]

@@ -12,7 +12,7 @@ from teleopdesign.blocks import CONTACT
 from teleopdesign.blocks.environment import contact_force
 from teleopdesign.diagnose.candidates import candidates
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.effects import SIGNALS
 
 TEXT = """\

@@ -14,9 +14,10 @@ from teleopdesign.check.excitation import check_excitation
 from teleopdesign.check.plausibility import check_plausibility
 from teleopdesign.check.soundness_check import check_experiment
 from teleopdesign.cli import main
+from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.excerpt import excerpt
-from teleopdesign.diagnose.fit import ROUGH, estimate
-from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.effects import catalogue
 
 #: effects that stand for each way of being seen; all of them take longer
@@ -170,7 +171,7 @@ def test_the_least_size_that_shows_is_where_the_error_reaches_the_bound(rod, few
 
     model = Model.from_experiment(rod, few).with_effect("stribeck")
     prepared = prepare(rod)
-    base = estimate(model, prepared, effort=ROUGH)
+    base = estimate(model, prepared, effort=EFFORTS.rough)
     spring = [c for c in candidates(base.model) if c.effect.name == "spring"]
     floor = base.fit_error
     (seen,) = visibilities(base, prepared, spring, floor)
@@ -190,7 +191,7 @@ def test_the_least_size_that_shows_is_where_the_error_reaches_the_bound(rod, few
             for r in rod.records
         ),
     )
-    after = estimate(model, prepare(planted), effort=ROUGH)
+    after = estimate(model, prepare(planted), effort=EFFORTS.rough)
     # the size is found to 20 %, and what is left of Stribeck is in the floor used here
     assert after.fit_error / floor == pytest.approx(CRITERIA.adequate, rel=0.2)
 

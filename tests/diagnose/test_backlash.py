@@ -7,8 +7,10 @@ import pytest
 from diagnose.own_cases import truth_of, write_own
 
 from teleopdesign import Model, find_missing, load_experiment
-from teleopdesign.diagnose.force_error import force_error, prepare, residuals
+from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.residual import residuals
 from teleopdesign.diagnose.search import _varied
 from teleopdesign.diagnose.search_plan import PLAN
 from teleopdesign.effects import EFFECTS

@@ -9,8 +9,8 @@ from diagnose.own_cases import FEW
 from teleopdesign import Model
 from teleopdesign.diagnose.candidates import candidates, started
 from teleopdesign.diagnose.fit import estimate, free_parameters
-from teleopdesign.diagnose.force_error import prepare
 from teleopdesign.diagnose.identifiability import is_identifiable
+from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.scales import scales
 from teleopdesign.effects import CONTACT_ROLES, EFFECTS
 

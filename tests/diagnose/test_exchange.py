@@ -8,9 +8,9 @@ from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.exchange import best_exchange
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.force_error import prepare
 from teleopdesign.diagnose.ladder_state import LadderSearch
 from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
 

@@ -11,18 +11,12 @@ from shared_data import shared_folder
 
 from teleopdesign import ExperimentError, Model, example, load_experiment
 from teleopdesign.diagnose.answer import write_predictions
+from teleopdesign.diagnose.bandwidth import default_bandwidth
+from teleopdesign.diagnose.error import error_of, force_error
 from teleopdesign.diagnose.fit import block_numbers, estimate
-from teleopdesign.diagnose.force_error import (
-    FOLDS,
-    default_bandwidth,
-    error_of,
-    folds,
-    force_error,
-    prepare,
-    referred,
-    residuals,
-)
 from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.diagnose.prepare import FOLDS, folds, prepare
+from teleopdesign.diagnose.residual import relative_residuals, residuals
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.realise.along_motion import residual_along
 
@@ -271,8 +265,8 @@ def test_a_friction_that_takes_up_whatever_acts_gains_nothing(beside):
         ((r, slope),) = of(model, stretches, [name])
         return float(r @ r), 2.0 * float(slope[0] @ r)
 
-    plain, (little, _) = squares(0.0, residuals)[0], squares(0.9, referred)
+    plain, (little, _) = squares(0.0, residuals)[0], squares(0.9, relative_residuals)
     assert little > plain
-    value, slope = squares(0.3, referred)
-    ahead, back = (squares(0.3 + h, referred)[0] for h in (1e-5, -1e-5))
+    value, slope = squares(0.3, relative_residuals)
+    ahead, back = (squares(0.3 + h, relative_residuals)[0] for h in (1e-5, -1e-5))
     assert slope == pytest.approx((ahead - back) / 2e-5, rel=1e-3)

@@ -8,8 +8,8 @@ import pytest
 import teleopdesign as td
 from teleopdesign.diagnose.candidates import started
 from teleopdesign.diagnose.fit import estimate, fit_squares
-from teleopdesign.diagnose.force_error import prepare
 from teleopdesign.diagnose.linear_start import linear_starts
+from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.scales import scales
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS

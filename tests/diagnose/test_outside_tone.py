@@ -10,9 +10,9 @@ from teleopdesign.diagnose import ladder, ladder_state
 from teleopdesign.diagnose.decision import is_a_tone
 from teleopdesign.diagnose.evidence import check_squares
 from teleopdesign.diagnose.fit import estimate, weighted
-from teleopdesign.diagnose.force_error import prepare
 from teleopdesign.diagnose.noise_floor import NoiseFloor
 from teleopdesign.diagnose.outside_tone import Tone, _taken, acts_by_the_clock, best_tone
+from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS

@@ -8,7 +8,7 @@ import pytest
 import teleopdesign as td
 from teleopdesign.blocks import Body, Value
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.reading_error import (
     ReadingError,
     as_read,

@@ -158,6 +158,29 @@ def test_an_effect_of_the_users_model_left_to_defaults_is_found_its_values(exper
     assert found.check_error < 1.1 * diagnosis.rungs[1].fit.check_error
 
 
+def test_a_fit_alone_gives_what_a_diagnosis_that_adds_nothing_gives(experiment):
+    from teleopdesign import fit
+
+    known = {name: EFFECTS[name] for name in ("coulomb", "viscous", "stribeck")}
+    stated = Model.from_experiment(experiment, known).with_effect("stribeck", at="device")
+    diagnosed = find_missing(experiment, stated)
+    assert diagnosed.missing == () and diagnosed.verdict == "model_adequate"
+    alone = fit(stated, experiment)
+    # value and standard error of each, to the last digit: the same steps on the same draws
+    assert alone.parameters == diagnosed.model.parameters
+    assert alone.parameters != diagnosed.estimated.model.parameters
+
+
+def test_a_model_has_one_error_in_the_ladder_and_among_the_candidates(diagnosis):
+    said = answer(diagnosis)
+    candidates = {(c["effect"], c["at"]): c["check_error"] for c in said["candidates"]}
+    added = [row for row in said["ladder"] if row["added"]]
+    assert added
+    for row in added:
+        key = (row["added"]["effect"], row["added"]["at"])
+        assert candidates[key] == row["check_error"]
+
+
 def test_the_same_records_give_the_same_answer(experiment, diagnosis):
     again = find_missing(experiment, Model.from_experiment(experiment, FEW))
     assert answer(again) == answer(diagnosis)

@@ -80,7 +80,7 @@ def test_a_diagnosis_is_read_back_with_its_figures(path, diagnosis, experiment):
     assert ladder_text(found) == ladder_text(diagnosis)
     for one, other in zip(found.rungs, diagnosis.rungs, strict=True):
         assert_same(one.fit.model, other.fit.model)
-        assert one.added == other.added and one.equals == other.equals
+        assert one.added == other.added and one.alternatives == other.alternatives
         assert one.fit.free == other.fit.free
     assert_same(found.estimated.model, diagnosis.estimated.model)
     # a search ends a trifle inside its bounds (1e-7 of a scale), and so does what is evaluated

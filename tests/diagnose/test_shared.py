@@ -8,7 +8,7 @@ from truth_effects import TEN
 
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.diagnose.prepare import prepare
 
 
 def one_body_cases():

@@ -13,10 +13,12 @@ from teleopdesign.blocks import Body, Value
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.decision import is_better, is_supported, refusal
+from teleopdesign.diagnose.error import force_error
+from teleopdesign.diagnose.error_at_command import at_command
 from teleopdesign.diagnose.evidence import seen_gain
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.force_error import at_command, force_error, prepare
 from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.rank import rank_candidates
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.motion import motion_of

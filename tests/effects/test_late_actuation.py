@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.diagnose.force_error import prepare
+from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.realise.along_motion import residual_along
 
 

@@ -127,7 +127,7 @@ def test_look_alikes_come_with_the_reason(diagnosis):
     rung = diagnosis.rungs[1]
     same = replace(rung.ranking.ranked[1], fit=rung.ranking.ranked[0].fit)
     ranking = replace(rung.ranking, ranked=(rung.ranking.ranked[0], same))
-    alike = replace(rung, ranking=ranking, equals=(same.candidate,))
+    alike = replace(rung, ranking=ranking, alternatives=(same.candidate,))
     found = cannot_tell(replace(diagnosis, rungs=(diagnosis.rungs[0], alike)))[0]
     assert found.concern == "warning" and str(same.candidate) in found.sentence
     assert found.numbers["correlation"] == pytest.approx(1.0)

@@ -72,7 +72,9 @@ def test_the_verdict_names_the_effect_and_both_errors(diagnosis):
 def test_look_alikes_are_named_together(diagnosis):
     first, second = diagnosis.rungs
     other = next(r.candidate for r in second.ranking.ranked if r.candidate.key != second.added.key)
-    alike = replace(diagnosis, verdict="undecided", rungs=(first, replace(second, equals=(other,))))
+    alike = replace(
+        diagnosis, verdict="undecided", rungs=(first, replace(second, alternatives=(other,)))
+    )
     text = verdict(alike)
     assert text.startswith(f"Undecided between stribeck at device or {other}: these records cannot")
 

@@ -13,9 +13,9 @@ from teleopdesign import Model, example, load_effect, load_experiment
 from teleopdesign.cli import main
 from teleopdesign.diagnose import find_missing
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.force_error import prepare
 from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.errors import ModelError
 from teleopdesign.unexplained import unexplained, where_it_fails

@@ -13,18 +13,17 @@ from ...measurement.experiment import Experiment
 from ...model import Model
 from ..candidates import Candidate
 from ..diagnosis import Diagnosis, OpenQuestion
+from ..effort import EFFORTS
 from ..excerpt import on_windows
-from ..fit import Effort, Fit, estimate
-from ..force_error import Prepared, prepare
+from ..fit import Fit, estimate
 from ..noise_floor import NoiseFloor
 from ..one_moment import Moment
+from ..prepare import Prepared, prepare
 from ..ranking import Ranking
 from ..rung import Rung
 from .bodies import known_effect, model_from
 from .saved import SavedAnswer
 
-#: a fit that stays where it begins: its residuals and their derivatives are all that is wanted
-AS_IT_IS = Effort(tolerance=1.0, evaluations=1)
 #: what an answer holds that an older one does not
 _NEEDED = ("models", "floor", "open", "bandwidth")
 
@@ -95,7 +94,7 @@ def evaluated(model: Model, prepared: Prepared) -> Fit:
 
     Without check records, what is held out is fitted from here, as `estimate` does.
     """
-    return replace(estimate(model, prepared, effort=AS_IT_IS), model=model)
+    return replace(estimate(model, prepared, effort=EFFORTS.stay), model=model)
 
 
 def steps_of(saved: SavedAnswer, known: Mapping[str, Effect]) -> _Steps:

@@ -8,9 +8,12 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.diagnose.answer import answer, write_predictions
+from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.force_error import force_error, own_groups, prepare, residuals
 from teleopdesign.diagnose.ladder_text import ladder_text
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.record_offsets import offset_groups
+from teleopdesign.diagnose.residual import residuals
 
 BIAS, LEVEL = 0.15, 0.8  # N, and of the rod's friction
 STRIBECK = {"extra_static_level": 0.2, "stribeck_velocity": 0.0225}
@@ -44,7 +47,7 @@ def changed(rod, own, *, bias=0.0, factor=1.0, model=None):
 
 def values(experiment, model):
     prepared = prepare(experiment)
-    ((_, own),) = own_groups(model, prepared.stretches)
+    ((_, own),) = offset_groups(model, prepared.stretches)
     return own.values, force_error(model, prepared.of("check"))
 
 

@@ -1,4 +1,4 @@
-"""What a record has of its own: an encoder zero, a bias, a level of friction.
+"""Record offsets: an encoder zero, a bias, a level of friction that a record has of its own.
 
 Where an experiment says that a record does not share one of these with the others, it is found
 anew on that record for every model, by least squares: two steps by the slopes of the residual,
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -17,10 +18,15 @@ from ..blocks import Body
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
+from ..model import Model
+from ..realise.along_motion import residual_along
+from .prepare import Stretch
 
-#: steps of finding them, and part of their scale over which a slope is taken
-TURNS, SLOPE = 2, 1e-3
-#: least friction level of a record, over the model's
+#: steps of finding them: two are exact where force is linear in what is found
+TURNS = 2
+#: part of their scale over which a slope is taken: far above rounding, far below a curve
+SLOPE = 1e-3
+#: least friction level of a record, over the model's: friction does not vanish from a machine
 LEAST = 0.05
 _LEVEL = "coulomb.level"
 
@@ -29,7 +35,7 @@ Residual = Callable[[Body, Motion, int], Array]
 
 
 @dataclass(frozen=True)
-class Own:
+class RecordOffsets:
     """A body along the motions of one record, with what it has there of its own.
 
     values: "position_zero" (shift of the position, m or rad), "bias" (force that acts, N or N m),
@@ -57,9 +63,9 @@ class Own:
         return [(part[0], part[1:]) for part in np.split(rows, ends, axis=1)]
 
 
-def own_of(
+def find_offsets(
     body: Body, motions: Sequence[Motion], names: Collection[str], residual: Residual
-) -> Own:
+) -> RecordOffsets:
     """Find what a record has of its own.
 
     motions: the body's, all of one record;  names: of "position_zero", "bias", "friction_level"
@@ -83,7 +89,7 @@ def own_of(
         if "friction_level" in values:
             values["friction_level"] = max(values["friction_level"], LEAST - 1.0)
     said = {n: 1.0 + v if n == "friction_level" else v for n, v in values.items()}
-    return Own(said, own_body, own_motions, tuple(slopes))
+    return RecordOffsets(said, own_body, own_motions, tuple(slopes))
 
 
 def _steps(body: Body, motions: Sequence[Motion], names: Collection[str]) -> dict[str, float]:
@@ -111,3 +117,41 @@ def _with(
         replace(m, position=m.position + zero, interaction=m.interaction + bias) for m in motions
     )
     return body, tuple(changed)
+
+
+def offset_groups(
+    model: Model, stretches: Sequence[Stretch]
+) -> list[tuple[list[int], RecordOffsets]]:
+    """(places of the stretches, what they have of their own) for each record that has any."""
+    groups: dict[tuple[str, str], list[int]] = {}
+    for i, stretch in enumerate(stretches):
+        if stretch.own:
+            groups.setdefault((stretch.motion.file, stretch.motion.body), []).append(i)
+    found = []
+    for (_, place), group in groups.items():
+        rows = [stretches[i].keep for i in group]
+
+        def residual(body: Body, motion: Motion, k: int, rows: Any = rows) -> Array:
+            left = motion.lowpassed(residual_along(body, motion).residual.value)
+            return np.asarray(left[rows[k]])
+
+        motions = [stretches[i].motion for i in group]
+        names = stretches[group[0]].own
+        found.append((group, find_offsets(model.body(place), motions, names, residual)))
+    return found
+
+
+def along_with_offsets(model: Model, stretches: Sequence[Stretch]) -> list[tuple[Body, Motion]]:
+    """Body and motion of each stretch, with what its record has of its own."""
+    return along_offsets(model, stretches, offset_groups(model, stretches))
+
+
+def along_offsets(
+    model: Model, stretches: Sequence[Stretch], groups: Sequence[tuple[list[int], RecordOffsets]]
+) -> list[tuple[Body, Motion]]:
+    """Body and motion of each stretch, with the offsets of these groups (`offset_groups`)."""
+    found = [(model.body(s.motion.body), s.motion) for s in stretches]
+    for group, offsets in groups:
+        for i, motion in zip(group, offsets.motions, strict=True):
+            found[i] = (offsets.body, motion)
+    return found

@@ -1,0 +1,28 @@
+"""A fit with what its readings do taken off: the same for one model and at the end of a ladder."""
+
+from __future__ import annotations
+
+from .decision import bounded_by_what_is_left, is_adequate
+from .fit import Fit
+from .ladder_state import LadderSearch
+from .noise_floor import NoiseFloor, noise_floor
+from .ranking import Ranking
+from .reading_error import with_reading_error
+from .search import estimate_from_starts
+
+
+def corrected_fit(search: LadderSearch) -> Fit:
+    """The fit of the stated model as a diagnosis that adds nothing to it reports it."""
+    fit = estimate_from_starts(search.stated, search.prepared)
+    drawn = noise_floor(fit.model, search.prepared, search.generator())
+    return corrected(search, fit, bounded_by_what_is_left(drawn, fit, Ranking(fit, ())))
+
+
+def corrected(search: LadderSearch, fit: Fit, floor: NoiseFloor) -> Fit:
+    """A fit with the reading error taken off where it leaves only noise, and in its errors else."""
+    return with_reading_error(
+        fit,
+        search.prepared,
+        search.generator(),
+        adequate=lambda other: is_adequate(other, floor, criteria=search.criteria),
+    )

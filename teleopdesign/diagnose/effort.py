@@ -1,0 +1,35 @@
+"""How far a fit is driven, for each purpose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Relative change of squares and parameters at which a fit ends, and evaluations at most."""
+
+    tolerance: float
+    evaluations: int
+
+
+@dataclass(frozen=True)
+class Efforts:
+    """An effort for each purpose; `EFFORTS` are those in use. Less is faster."""
+
+    #: a few real steps: enough to see which of many starts lead down
+    first_steps: Effort = Effort(1e-3, 4)
+    #: blocks that are held out in turn: each fit begins next to its optimum
+    held_out: Effort = Effort(1e-3, 5)
+    #: candidates before they are ranked: closer than they differ
+    rough: Effort = Effort(1e-4, 12)
+    #: readings of a simulated motion: closer than their spread
+    again: Effort = Effort(1e-5, 12)
+    #: what is reported: far below standard errors
+    fine: Effort = Effort(1e-7, 60)
+    #: residuals and derivatives alone: the values stay where they are
+    stay: Effort = Effort(1.0, 1)
+
+
+#: the efforts in use
+EFFORTS = Efforts()

@@ -1,0 +1,32 @@
+"""The force error: what a model leaves of the measured force, as one figure.
+
+    error = rms(LP residual) / rms(LP (actuator force + interaction force)),  record less its ends
+
+LP is the zero-phase low-pass at the comparison's bandwidth; sums of squares run over all bodies,
+records and segments of one use ("fit" or "check").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..measurement.filtering import Array
+from ..model import Model
+from .prepare import Stretch
+from .residual import residuals
+
+
+def error_of(stretches: Sequence[Stretch], values: Sequence[Array]) -> float:
+    """The force error of these stretches from their low-passed residuals."""
+    left = sum(s.weight * float(np.sum(r**2)) for s, r in zip(stretches, values, strict=True))
+    whole = sum(s.measured for s in stretches)
+    return float(np.sqrt(left / whole))
+
+
+def force_error(model: Model, stretches: Sequence[Stretch]) -> float:
+    """Relative force error of the model as it stands, on these stretches; NaN if there are none."""
+    if not stretches:
+        return float("nan")
+    return error_of(stretches, [r for r, _ in residuals(model, stretches)])

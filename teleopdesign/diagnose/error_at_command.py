@@ -1,0 +1,106 @@
+"""The residual as an error of the recorded command.
+
+What makes the recorded force unpredictable has not explained it: with less force acting there is
+less to explain. So the figure of `error` is taken of the residual seen at the command too, and what
+counts must be smaller in both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..blocks import Body
+from ..measurement.filtering import Array
+from ..measurement.motion import Motion
+from ..model import Model
+from ..realise.along_motion import residual_along
+from ..realise.seen_at_command import SeenAtCommand, blind_share, is_between, seen_at_command
+from .prepare import Stretch, measured_force
+from .record_offsets import along_offsets, offset_groups
+
+
+@dataclass(frozen=True)
+class AtCommand:
+    """What a model leaves on some stretches, as an error of the recorded forces.
+
+    residual: per stretch, low-passed, on the rows that count; in blind rows as it acts
+    sighted: per stretch, the rows that are not blind
+    error: relative, over the rows that are not blind, above the line and below; NaN: there are none
+    blind: share of blind samples among those where the body slides
+    weak: an actuator can give, at no command, what its model needs to slide
+    """
+
+    residual: tuple[Array, ...]
+    sighted: tuple[NDArray[np.bool_], ...]
+    error: float
+    blind: float
+    weak: bool
+
+
+def at_command(model: Model, stretches: Sequence[Stretch]) -> AtCommand:
+    """What the model leaves, as an error of the recorded forces: see `seen_at_command`.
+
+    Equal to `residuals` where nothing stands between the recorded forces and the body. What a model
+    keeps of the interaction force from a body is made up for by the scale of the rest.
+    """
+    groups = offset_groups(model, stretches)
+    along = along_offsets(model, stretches, groups)
+    seen = [_seen(body, motion) for body, motion in along]
+    values = [
+        m.lowpassed(one.residual)[s.keep]
+        for s, (_, m), one in zip(stretches, along, seen, strict=True)
+    ]
+    nothing = np.zeros((0, 0))
+    for group, offsets in groups:
+        bare = [(values[i], nothing.reshape(0, len(values[i]))) for i in group]
+        for i, (residual, _) in zip(group, offsets.cleared(bare), strict=True):
+            values[i] = residual
+    values = _made_up_for(stretches, values, seen)
+    sighted = [~one.blind[s.keep] for s, one in zip(stretches, seen, strict=True)]
+    left = whole = 0.0
+    for s, r, told in zip(stretches, values, sighted, strict=True):
+        left += s.weight * float(np.sum(r[told] ** 2))
+        whole += (
+            s.measured if told.all() else s.weight * float(np.sum(measured_force(s)[told] ** 2))
+        )
+    return AtCommand(
+        tuple(values),
+        tuple(sighted),
+        float(np.sqrt(left / whole)) if whole > 0.0 else float("nan"),
+        blind_share(seen, [s.motion for s in stretches]) if stretches else 0.0,
+        any(one.weak for one in seen),
+    )
+
+
+def _seen(body: Body, motion: Motion) -> SeenAtCommand:
+    if is_between(body):
+        return seen_at_command(body, motion)
+    none = np.zeros(len(motion.time), dtype=bool)
+    return SeenAtCommand(
+        residual_along(body, motion).residual.value, none, motion.interaction, False
+    )
+
+
+def _made_up_for(
+    stretches: Sequence[Stretch], values: list[Array], seen: Sequence[SeenAtCommand]
+) -> list[Array]:
+    """Residuals at the scale that they have where all of the interaction force reaches the body."""
+    values = list(values)
+    for body in {s.motion.body for s in stretches}:
+        mine = [i for i, s in enumerate(stretches) if s.motion.body == body]
+        if all(seen[i].passed is stretches[i].motion.interaction for i in mine):
+            continue
+        whole = sum(stretches[i].measured for i in mine)
+        passed = 0.0
+        for i in mine:
+            s, kept = stretches[i], seen[i].passed
+            force = s.motion.lowpassed(s.motion.at_rows(s.motion.command) + kept)[s.keep]
+            passed += s.weight * float(force @ force)
+        factor = max(1.0, float(np.sqrt(whole / max(passed, 1e-12 * whole))))
+        for i in mine:
+            values[i] = factor * values[i]
+    return values

@@ -1,0 +1,125 @@
+"""An experiment made ready for comparison: smoothed, differentiated, cut, at one bandwidth."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..by_value import ByValue
+from ..errors import ExperimentError
+from ..measurement.experiment import Experiment
+from ..measurement.filtering import Array
+from ..measurement.motion import Motion, motions
+from .bandwidth import default_bandwidth
+
+#: seconds at each end of a stretch where the low-pass has not settled
+TRIM = 0.25
+#: samples kept per second and hertz of bandwidth after the low-pass (2 would be Nyquist's)
+OVERSAMPLING = 5.0
+#: blocks of the fit records that are held out in turn where there is no check record
+FOLDS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Stretch(ByValue):
+    """One body along one segment with its use, and the rows that count.
+
+    keep: the rows that count, thinned to what the low-pass leaves
+    weight: rows that each of them stands for
+    measured: sum of squares of the low-passed measured force over the rows that count
+    own: what the record has of its own, to be found on it
+    """
+
+    motion: Motion
+    use: str
+    keep: NDArray[np.intp]
+    weight: float
+    measured: float
+    own: frozenset[str] = frozenset()
+
+    @property
+    def own_zero(self) -> bool:
+        """Whether its position cannot be compared with that of other records."""
+        return "position_zero" in self.own
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared(ByValue):
+    """An experiment made ready for comparison at one bandwidth (Hz)."""
+
+    experiment: Experiment
+    bandwidth: float
+    stretches: tuple[Stretch, ...]
+
+    def of(self, use: str) -> tuple[Stretch, ...]:
+        """The stretches of one use."""
+        return tuple(s for s in self.stretches if s.use == use)
+
+
+def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepared:
+    """Smooth, differentiate and cut the records of an experiment for comparison.
+
+    bandwidth: Hz; default: the experiment's, or chosen from the record
+    raises ExperimentError: bandwidth too high for the sample rate, or no stretch long enough
+    """
+    chosen = bandwidth or experiment.bandwidth or default_bandwidth(experiment)
+    stretches = []
+    for record in experiment.records:
+        if chosen > 0.4 / record.sample_time:
+            raise ExperimentError(
+                f"{experiment.folder.name}/experiment.toml: comparison.bandwidth: {chosen:g} Hz is "
+                f"too high for {record.file} at {1 / record.sample_time:g} Hz, expected below "
+                f"{0.4 / record.sample_time:g} Hz"
+            )
+        for body in experiment.bodies:
+            channel = experiment.channels[f"{body}.position"]
+            for motion in motions(record, body, bandwidth=chosen, resolution=channel.resolution):
+                stretches.append(stretch_of(motion, record.use, chosen, record.own))
+    if not any(s.use == "fit" for s in stretches):
+        raise ExperimentError(f"{experiment.folder.name}: fit records: no stretch of 0.6 s or more")
+    return Prepared(experiment, chosen, tuple(stretches))
+
+
+def stretch_of(motion: Motion, use: str, bandwidth: float, own: frozenset[str]) -> Stretch:
+    """A motion with the rows of it that count at this bandwidth (Hz).
+
+    own: what its record has of its own
+    """
+    n, rate = len(motion.time), 1.0 / motion.sample_time
+    trim = min(int(TRIM * rate), n // 3)
+    stride = max(1, int(rate / (OVERSAMPLING * bandwidth)))
+    keep = np.arange(trim, n - trim, stride)
+    return Stretch(motion, use, keep, float(stride), _squares(motion, keep, float(stride)), own)
+
+
+def folds(
+    stretches: Sequence[Stretch],
+) -> list[tuple[tuple[Stretch, ...], tuple[Stretch, ...]]]:
+    """The stretches with `FOLDS` blocks of each held out in turn: (seen, held out)."""
+    found = []
+    for i in range(FOLDS):
+        seen, unseen = [], []
+        for s in stretches:
+            part = np.arange(len(s.keep)) * FOLDS // len(s.keep) == i
+            seen.append(_cut(s, s.keep[~part]))
+            unseen.append(_cut(s, s.keep[part]))
+        found.append((tuple(seen), tuple(unseen)))
+    return found
+
+
+def _cut(stretch: Stretch, keep: NDArray[np.intp]) -> Stretch:
+    return replace(stretch, keep=keep, measured=_squares(stretch.motion, keep, stretch.weight))
+
+
+def measured_force(stretch: Stretch) -> Array:
+    """The low-passed measured force on the rows that count."""
+    motion = stretch.motion
+    return motion.lowpassed(motion.at_rows(motion.command) + motion.interaction)[stretch.keep]
+
+
+def _squares(motion: Motion, keep: NDArray[np.intp], weight: float) -> float:
+    measured = motion.lowpassed(motion.at_rows(motion.command) + motion.interaction)
+    return weight * float(np.sum(measured[keep] ** 2))
