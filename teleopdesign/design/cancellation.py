@@ -17,7 +17,7 @@ from ..realise.acting_bound import largest_acting_force
 from ..realise.friction_interval import FrictionInterval
 from ..realise.reach import Reach
 from .assumptions import Assumptions
-from .chosen import Chosen, Reason
+from .chosen import ProposedController, Reason
 from .rounding import rounded_down, rounded_up
 
 #: part of the largest passive stiffness that a Dahl cancellation takes on a presliding device
@@ -71,7 +71,7 @@ def dahl_cancellation(
     axis: str,
     late: float,
     damping: float,
-) -> Chosen | None:
+) -> ProposedController | None:
     """A Dahl cancellation of that level; None where presliding leaves no stiffness to it.
 
     gain: that acts of a command;  late: delay of its force, s;  damping: of small motion, lower end
@@ -107,7 +107,7 @@ def dahl_cancellation(
     stiffness = rounded_down(limits[why] / gain)
     law = controller("dahl", {"level": level.value, "stiffness": stiffness})
     reason = Reason("dahl.stiffness", stiffness, unit_of("stiffness", axis), why)
-    return Chosen(law, (_named("dahl", level), reason))
+    return ProposedController(law, (_named("dahl", level), reason))
 
 
 def smoothed_cancellation(
@@ -118,7 +118,7 @@ def smoothed_cancellation(
     axis: str,
     period: float,
     filter_bandwidth: float,
-) -> Chosen:
+) -> ProposedController:
     """A smoothed Coulomb cancellation of that level.
 
     period: of sampling, s;  filter_bandwidth: of the filter on the differenced position, Hz
@@ -137,7 +137,7 @@ def smoothed_cancellation(
     values = {"level": level.value, "smoothing_velocity": value}
     law = controller("smoothed_coulomb", values)
     reason = Reason("smoothed_coulomb.smoothing_velocity", value, unit, why)
-    return Chosen(law, (_named("smoothed_coulomb", level), reason))
+    return ProposedController(law, (_named("smoothed_coulomb", level), reason))
 
 
 def _named(law: str, level: Reason) -> Reason:
