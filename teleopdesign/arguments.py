@@ -56,7 +56,7 @@ def checked(target: Target) -> Target:
         """Names by position, the name of what follows them, and the checks by name."""
         names = vars(sys.modules[target.__module__])
         parameters = inspect.signature(function).parameters.values()
-        by_parameter = {p.name: check_of(_resolved(p.annotation, names)) for p in parameters}
+        by_parameter = {p.name: check_of(_resolve(p.annotation, names)) for p in parameters}
         checks = {
             p.name: _or_default(check, p.default)
             for p in parameters
@@ -129,7 +129,7 @@ def _error(module: str, function: str, argument: str, wrong: Refused) -> Excepti
     )
 
 
-def _resolved(annotation: Any, names: Mapping[str, Any]) -> Any:
+def _resolve(annotation: Any, names: Mapping[str, Any]) -> Any:
     if annotation is inspect.Parameter.empty:
         return Any
     if not isinstance(annotation, str):

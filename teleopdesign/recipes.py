@@ -41,10 +41,10 @@ def recipe(thing: Any) -> tuple[Any, ...]:
             f"another process: {nameless} is a function without a name that can be imported; write "
             "it into a file of its own, or define it at the top of a module"
         )
-    return _restored, (type(thing), {f.name: getattr(thing, f.name) for f in fields(thing)})
+    return _remake, (type(thing), {f.name: getattr(thing, f.name) for f in fields(thing)})
 
 
-def _restored(kind: type[Any], values: Mapping[str, Any]) -> Any:
+def _remake(kind: type[Any], values: Mapping[str, Any]) -> Any:
     return kind(**values)
 
 

@@ -165,7 +165,7 @@ def refusal(call, parameter, wrong):
     """Whether the annotation refuses that value: what it takes may start a long computation."""
     found = inspect.unwrap(call if inspect.isfunction(call) else getattr(call, "__init__", call))
     names = vars(inspect.getmodule(found) or inspect.getmodule(call))
-    annotation = arguments._resolved(parameter.annotation, {**names, "__name__": names["__name__"]})
+    annotation = arguments._resolve(parameter.annotation, {**names, "__name__": names["__name__"]})
     check = arguments.check_of(annotation)
     return check is not None and check(wrong) is not None
 

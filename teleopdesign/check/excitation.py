@@ -19,7 +19,7 @@ from ..effects import CONTACT_ROLES, SIGNALS, Effect
 from ..finding import Finding
 from ..model import Model
 from ..quantity import unit_of
-from .motion_facts import RARE, describe_motion, lacking
+from .motion_facts import RARE, describe_motion, missing_excitation
 from .visibility import Visibility, visibilities
 
 #: force that an effect must make, over the measured force, from which it shows "only if large"
@@ -45,7 +45,7 @@ def check_excitation(
         body_motions = [m for m in motions if m.body == body]
         if not body_motions:
             continue
-        poor = lacking(body_motions, base.model, body)
+        poor = missing_excitation(body_motions, base.model, body)
         if place == body:
             findings.append(describe_motion(body_motions, place, poor, base.model.body(place).axis))
             findings += _own_parameters(base, place)

@@ -23,7 +23,16 @@ from ..diagnose.fit import block_numbers, standard_errors
 from ..diagnose.prepare import Prepared, Stretch
 from ..measurement.filtering import Array
 from ..model import Model
-from .force_timing import BANDS, ON_TIME, Along, Settled, along_in, rows_of, settle, with_shifts
+from .force_timing import (
+    BANDS,
+    ON_TIME,
+    Along,
+    BalanceFit,
+    along_in,
+    fit_balance,
+    rows_of,
+    with_shifts,
+)
 
 #: rows below which nothing is said; part of the other force from which a force is there at all
 FEWEST, LEAST = 50, 1e-5
@@ -98,7 +107,7 @@ def force_balance(
     if not forces:
         return None
     measured = float(np.sqrt(np.mean((rows[0] + rows[1]) ** 2)))
-    plain = fit = settle(bands, forces, [], ON_TIME, BANDS[-1:])
+    plain = fit = fit_balance(bands, forces, [], ON_TIME, BANDS[-1:])
     if timed:
         fit = with_shifts(bands, forces, plain, measured)
     numbers = np.unique(_blocks(stretches, parts), return_inverse=True)[1]
@@ -133,7 +142,7 @@ def force_balances(
     return balances
 
 
-def _named(fit: Settled, steps: Sequence[Estimate]) -> dict[str, Estimate]:
+def _named(fit: BalanceFit, steps: Sequence[Estimate]) -> dict[str, Estimate]:
     """The shifts by channel; one that both forces share is the position's, the other way."""
     shifts: dict[str, Estimate] = {}
     for group, step in zip(fit.groups, steps, strict=True):

@@ -83,7 +83,7 @@ def rows_of(parts: Sequence[Along], shifts: Mapping[str, float]) -> Array:
 
 
 @dataclass(frozen=True)
-class Settled:
+class BalanceFit:
     """Shifts that have settled, for groups of forces that share one, and the balance there.
 
     solution: strengths, gain of the other force where there is one, last steps of the shifts
@@ -104,8 +104,8 @@ class Settled:
 
 
 def with_shifts(
-    bands: Mapping[float, list[Along]], forces: Sequence[str], plain: Settled, measured: float
-) -> Settled:
+    bands: Mapping[float, list[Along]], forces: Sequence[str], plain: BalanceFit, measured: float
+) -> BalanceFit:
     """The balance at the fewest shifts that explain what shifts can; `plain` where none does."""
     each = [(f,) for f in forces]
     free = _from_starts(bands, forces, each, measured)
@@ -123,9 +123,9 @@ def _from_starts(
     forces: Sequence[str],
     groups: Sequence[tuple[str, ...]],
     measured: float,
-) -> Settled:
+) -> BalanceFit:
     """Settled from no shift, or from others where that leaves too much."""
-    best = settle(bands, forces, groups, ON_TIME)
+    best = fit_balance(bands, forces, groups, ON_TIME)
     if best.size < STARTS_ANEW * measured:
         return best
     starts = [
@@ -133,24 +133,24 @@ def _from_starts(
         for g in {*groups, tuple(f for g in groups for f in g)}
         for t in (-LATE, -LATE / 2, LATE / 2, LATE)
     ]
-    coarse = [settle(bands, forces, groups, s, BANDS[:2]) for s in starts]
+    coarse = [fit_balance(bands, forces, groups, s, BANDS[:2]) for s in starts]
     start = min(coarse, key=lambda b: b.size).shifts
-    return min(best, settle(bands, forces, groups, start), key=lambda b: b.size)
+    return min(best, fit_balance(bands, forces, groups, start), key=lambda b: b.size)
 
 
-def settle(
+def fit_balance(
     bands: Mapping[float, list[Along]],
     forces: Sequence[str],
     groups: Sequence[tuple[str, ...]],
     shifts: Mapping[str, float],
     steps: Sequence[float] = BANDS,
-) -> Settled:
+) -> BalanceFit:
     """Shifts after a step in each band, no further than an eighth of a second at once."""
     timing, gain = dict(shifts), 1.0
     for band in (*steps, steps[-1]):
         rows = rows_of(bands[band], timing)
         solution, jacobian, left = _solve(rows, forces, groups, gain)
-        now = Settled(groups, dict(timing), rows, solution, jacobian, left)
+        now = BalanceFit(groups, dict(timing), rows, solution, jacobian, left)
         if len(forces) > 1:
             gain = float(solution[len(rows) - 5])
         for group, step in zip(groups, solution[len(solution) - len(groups) :], strict=True):

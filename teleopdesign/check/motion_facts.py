@@ -21,7 +21,7 @@ STEADY = 0.1
 LIGHT = 0.1
 
 
-def lacking(motions: Sequence[Motion], model: Model, place: str) -> dict[str, str]:
+def missing_excitation(motions: Sequence[Motion], model: Model, place: str) -> dict[str, str]:
     """What the motion of one body lacks: signal of a law -> in words, with the number."""
     direction = np.concatenate([m.direction for m in motions])
     speed = np.abs(np.concatenate([m.velocity for m in motions]))

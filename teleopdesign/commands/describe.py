@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..diagnose.fit import Fit
     from ..diagnose.noise_floor import NoiseFloor
     from ..diagnose.prepare import Prepared
-    from ..unexplained import Unexplained
+    from ..unexplained import ResidualDescription
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -49,11 +49,11 @@ def run(options: argparse.Namespace) -> int:
             check_output(path, endings)
     if options.effect_file is not None and not options.effect_file.stem.isidentifier():
         raise ModelError(f"{options.effect_file}: expected a name such as my_effect.py")
-    from ..unexplained import unexplained
+    from ..unexplained import describe_residual
 
-    fit, prepared, floor, said = _fitted(options)
+    fit, prepared, floor, said = _fit_model(options)
     print(f"{said}\n")
-    description = unexplained(fit, prepared, floor)
+    description = describe_residual(fit, prepared, floor)
     print(description)
     if options.json is not None:
         write_json(options.json, {"model": said, **description.as_data()})
@@ -65,7 +65,7 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _fitted(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor | None, str]:
+def _fit_model(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor | None, str]:
     """The fit that is described, its noise floor if a diagnosis told it, and which model it is."""
     from ..diagnose.prepare import prepare
     from ..diagnose.search import estimate_from_starts
@@ -89,7 +89,7 @@ def _fitted(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor | No
     return before, prepared, None, f"Your model, re-estimated ({added} would {why}):"
 
 
-def _write(description: Unexplained, path: Path, folder: Path) -> None:
+def _write(description: ResidualDescription, path: Path, folder: Path) -> None:
     from ..unexplained.effect_file import write_effect
 
     largest = description.largest

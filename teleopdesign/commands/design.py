@@ -13,7 +13,7 @@ from ._diagnosis import add_experiment, diagnosis_of, experiment_of, known_of
 from ._options import check_output, make_folder, say
 
 if TYPE_CHECKING:
-    from ..design import Assumptions, Design, Diagnosed
+    from ..design import Assumptions, Design, DiagnosedModel
     from ..measurement import Experiment
 
 #: assumption -> (unit on the command line, what it is)
@@ -61,7 +61,7 @@ def run(options: argparse.Namespace) -> int:
     assumptions = _assumptions(options)
     experiment = experiment_of(options.folder)
     places = _places(options, experiment)
-    diagnosis = _diagnosed(experiment, options)
+    diagnosis = _read_or_diagnose(experiment, options)
     designs = {}
     for place in places:
         designs[place] = _design(diagnosis, place, assumptions)
@@ -95,18 +95,18 @@ def _places(options: argparse.Namespace, experiment: Experiment) -> list[str]:
     return places
 
 
-def _diagnosed(experiment: Experiment, options: argparse.Namespace) -> Diagnosed:
-    from ..design import diagnosed, read_answer
+def _read_or_diagnose(experiment: Experiment, options: argparse.Namespace) -> DiagnosedModel:
+    from ..design import diagnosed_model, read_answer
 
     if options.answer is not None:
         return read_answer(options.answer, experiment, known_of(options))
     diagnosis = diagnosis_of(experiment, options)
     print(diagnosis)
     print()
-    return diagnosed(diagnosis)
+    return diagnosed_model(diagnosis)
 
 
-def _design(diagnosis: Diagnosed, place: str, assumptions: Assumptions) -> Design:
+def _design(diagnosis: DiagnosedModel, place: str, assumptions: Assumptions) -> Design:
     from ..design import design
 
     say(f"designing for {place}")

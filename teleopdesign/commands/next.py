@@ -17,7 +17,7 @@ from ._options import check_output, say
 
 if TYPE_CHECKING:
     from ..measurement import Experiment
-    from ..next_experiment import Limits, Shown
+    from ..next_experiment import Limits, SimulatedDiagnosis
 
 #: columns of the terminal
 WIDTH = 100
@@ -77,14 +77,14 @@ def run(options: argparse.Namespace) -> int:
     from ..next_experiment import propose, show_in_simulation, write_reference
 
     experiment = experiment_of(options.folder)
-    limits = _limits(_asked(options.limit, experiment), experiment)
+    limits = _limits(_read_limits(options.limit, experiment), experiment)
     diagnosis = diagnosis_of(experiment, options)
     proposal = propose(diagnosis, duration=options.duration, limits=limits, progress=say)
     say("")
     print(diagnosis)
     print()
-    print(_wrapped(repr(proposal)))
-    shown: Sequence[Shown] = ()
+    print(_wrap(repr(proposal)))
+    shown: Sequence[SimulatedDiagnosis] = ()
     if options.simulate is not None:
         shown = show_in_simulation(proposal, seconds=options.simulate, progress=say)
         say("")
@@ -105,13 +105,13 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _wrapped(text: str) -> str:
+def _wrap(text: str) -> str:
     """The sentence within the terminal; the table as it is."""
     first, *rest = text.split("\n")
     return "\n".join([textwrap.fill(first, WIDTH, break_on_hyphens=False), *rest])
 
 
-def _content(proposal: Any, shown: Sequence[Shown]) -> dict[str, Any]:
+def _content(proposal: Any, shown: Sequence[SimulatedDiagnosis]) -> dict[str, Any]:
     from ..next_experiment import proposal_data
 
     simulated = [
@@ -125,7 +125,7 @@ def _content(proposal: Any, shown: Sequence[Shown]) -> dict[str, Any]:
     return {**proposal_data(proposal), "simulation": simulated}
 
 
-def _asked(texts: Sequence[str], experiment: Experiment) -> dict[str, dict[str, float]]:
+def _read_limits(texts: Sequence[str], experiment: Experiment) -> dict[str, dict[str, float]]:
     """Body -> limit -> value (SI), from the command line; ExperimentError says what is wrong."""
     from ..quantity import to_si
 

@@ -89,7 +89,7 @@ def run(options: argparse.Namespace) -> int:
 
     device = identified(*body_of_source(options.source, options))
     compensator = _compensator(options)
-    claims = _settled(options, device, compensator)
+    claims = _all_claims(options, device, compensator)
     limits = margins(device, compensator)
     print(_text(device, claims, limits))
     if options.period is not None and device.damping.low > 0:
@@ -148,7 +148,7 @@ def _compensator(options: argparse.Namespace) -> Compensator | None:
     return None
 
 
-def _settled(
+def _all_claims(
     options: argparse.Namespace, device: IdentifiedDevice, compensator: Compensator | None
 ) -> list[TopicClaim]:
     import numpy as np

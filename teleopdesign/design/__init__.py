@@ -1,34 +1,34 @@
 """From measurement to design: compensation for a device that a diagnosis identified.
 
-from teleopdesign.design import design, diagnosed
+from teleopdesign.design import design
 
-design(diagnosed(find_missing(experiment)))     # C, H, what they do, whether that is passive
+design(find_missing(experiment))     # C, H, what they do, whether that is passive
 """
 
 from ..arguments import check_arguments
 from .assumptions import Assumptions
-from .chosen import Chosen, Reason
+from .chosen import ProposedController, Reason
 from .force_feedback import Loop
-from .from_answer import Diagnosed, diagnosed, read_answer
+from .from_answer import DiagnosedModel, diagnosed_model, read_answer
 from .outcome import Design
 from .prediction import CasePrediction, Prediction
 from .propose import design
 from .residual_friction import ResidualFriction, residual_friction
-from .tune import Tuned, tune
+from .tune import TunedControllers, tune
 
 __all__ = [
     "Assumptions",
     "CasePrediction",
-    "Chosen",
+    "ProposedController",
     "Design",
-    "Diagnosed",
+    "DiagnosedModel",
     "Loop",
     "Prediction",
     "Reason",
     "ResidualFriction",
-    "Tuned",
+    "TunedControllers",
     "design",
-    "diagnosed",
+    "diagnosed_model",
     "read_answer",
     "residual_friction",
     "tune",

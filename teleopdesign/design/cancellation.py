@@ -17,7 +17,7 @@ from ..realise.acting_bound import largest_acting_force
 from ..realise.friction_interval import FrictionInterval
 from ..realise.reach import Reach
 from .assumptions import Assumptions
-from .chosen import Chosen, Reason
+from .chosen import ProposedController, Reason
 from .rounding import rounded_down, rounded_up
 
 #: part of the largest passive stiffness that a Dahl cancellation takes on a presliding device
@@ -71,7 +71,7 @@ def dahl_cancellation(
     axis: str,
     late: float,
     damping: float,
-) -> Chosen | None:
+) -> ProposedController | None:
     """A Dahl cancellation of that level; None where presliding leaves no stiffness to it.
 
     gain: that acts of a command;  late: delay of its force, s;  damping: of small motion, lower end
@@ -109,7 +109,7 @@ def dahl_cancellation(
     made = controller(law.name, {law.bound: level.value, law.bristle_stiffness: stiffness})
     named = f"{law.name}.{law.bristle_stiffness}"
     reason = Reason(named, stiffness, unit_of("stiffness", axis), why)
-    return Chosen(made, (_named(law.name, level), reason))
+    return ProposedController(made, (_named(law.name, level), reason))
 
 
 def smoothed_cancellation(
@@ -120,7 +120,7 @@ def smoothed_cancellation(
     axis: str,
     period: float,
     filter_bandwidth: float,
-) -> Chosen:
+) -> ProposedController:
     """A smoothed Coulomb cancellation of that level.
 
     period: of sampling, s;  filter_bandwidth: of the filter on the differenced position, Hz
@@ -139,7 +139,7 @@ def smoothed_cancellation(
     law = laws_that_declare("smoothing")[0]
     made = controller(law.name, {law.bound: level.value, law.smoothing: value})
     reason = Reason(f"{law.name}.{law.smoothing}", value, unit, why)
-    return Chosen(made, (_named(law.name, level), reason))
+    return ProposedController(made, (_named(law.name, level), reason))
 
 
 def _named(law: str, level: Reason) -> Reason:

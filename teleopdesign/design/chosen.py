@@ -22,7 +22,7 @@ class Reason:
 
 
 @dataclass(frozen=True)
-class Chosen:
+class ProposedController:
     """A controller and the reasons for its numbers."""
 
     controller: Controller

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ..passivity import Claim
 from ..plain_data import plain
 from ..quantity import unit_of
-from .chosen import Chosen
+from .chosen import ProposedController
 from .felt_impedance import FeltImpedance
 from .force_feedback import Loop
 
@@ -80,7 +80,7 @@ def _impedance(felt: FeltImpedance) -> dict[str, Any]:
     return data
 
 
-def _chosen(chosen: Chosen | None) -> dict[str, Any] | None:
+def _chosen(chosen: ProposedController | None) -> dict[str, Any] | None:
     if chosen is None:
         return None
     return {

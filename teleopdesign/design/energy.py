@@ -27,7 +27,7 @@ SIZES, FREQUENCIES = (0.1, 0.3, 1.0), (1.0, 3.0, 10.0, 30.0)
 
 
 @dataclass(frozen=True)
-class Taken:
+class CycleEnergy:
     """Energy that the hand puts in per cycle of a motion, J; -inf: signals grow without bounds."""
 
     motion: StatedMotion
@@ -45,14 +45,14 @@ def motions_around(motion: StatedMotion, reach: Reach) -> Iterator[StatedMotion]
                 yield one
 
 
-def energy_taken(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> Taken:
+def energy_taken(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> CycleEnergy:
     """Energy that the hand puts in over a settled cycle, simulated."""
     try:
         cycle = settled_cycle(diagram, motion, sampling)
     except ModelError:
-        return Taken(motion, float("-inf"))
+        return CycleEnergy(motion, float("-inf"))
     power = cycle["E"].values * cycle[f"{led(diagram, 'L')}_velocity"].values
-    return Taken(motion, float(np.mean(power) / motion.frequency))
+    return CycleEnergy(motion, float(np.mean(power) / motion.frequency))
 
 
 def energy_claim(
@@ -77,5 +77,5 @@ def energy_claim(
     return Claim(statement, Evidence(not gives, searched, shown.energy, "J a cycle"))
 
 
-def _least(trials: list[Taken]) -> Taken:
+def _least(trials: list[CycleEnergy]) -> CycleEnergy:
     return min(trials, key=lambda t: t.energy / t.motion.amplitude)

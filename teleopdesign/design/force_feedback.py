@@ -21,7 +21,7 @@ from ..quantity import unit_of
 from ..realise.lti import S
 from ..realise.reach import Reach
 from .assumptions import Assumptions
-from .chosen import Chosen, Reason
+from .chosen import ProposedController, Reason
 from .rounding import rounded_down, rounded_up
 
 #: largest gain proposed: beyond it what is left of friction is a few percent already
@@ -101,7 +101,7 @@ def force_feedback(
     load: float,
     delay: float,
     smoothing_velocity: float,
-) -> tuple[Chosen, Loop]:
+) -> tuple[ProposedController, Loop]:
     """H for that body and load, and its loop at rest.
 
     load: m_H;  delay: T_d, s;  smoothing_velocity: a of the cancellation beside it, 0: none
@@ -130,4 +130,4 @@ def force_feedback(
         Reason("velocity_schedule.scheduling_velocity", scheduling, speed, above),
         Reason("low_pass.bandwidth", bandwidth, "Hz", "assumed; more bears less gain"),
     )
-    return Chosen(law, reasons), loop
+    return ProposedController(law, reasons), loop

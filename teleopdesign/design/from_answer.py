@@ -15,7 +15,7 @@ from ..model import Model
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosed(ByValue):
+class DiagnosedModel(ByValue):
     """A model, and how well it stands: verdict and what is left, in noise floors."""
 
     experiment: Experiment
@@ -24,18 +24,18 @@ class Diagnosed(ByValue):
     left: float
 
 
-def diagnosed(diagnosis: Diagnosis) -> Diagnosed:
-    """What a diagnosis ends with."""
-    return Diagnosed(diagnosis.experiment, diagnosis.model, diagnosis.verdict, diagnosis.left)
+def diagnosed_model(diagnosis: Diagnosis) -> DiagnosedModel:
+    """The model that a diagnosis ends with, its verdict, and what the model leaves."""
+    return DiagnosedModel(diagnosis.experiment, diagnosis.model, diagnosis.verdict, diagnosis.left)
 
 
 def read_answer(
     path: str | Path, experiment: Experiment, known: Mapping[str, Effect] = EFFECTS
-) -> Diagnosed:
+) -> DiagnosedModel:
     """The model of an answer that `teleopdesign diagnose --json` wrote for that experiment.
 
     raises ExperimentError: no such file, no such answer, one of another experiment, or an effect
         that is not known
     """
     saved = load_answer(path)
-    return Diagnosed(experiment, saved.model(known, experiment), saved.verdict, saved.left)
+    return DiagnosedModel(experiment, saved.model(known, experiment), saved.verdict, saved.left)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from ..diagnose.criteria import CRITERIA
 from ..quantity import unit_of
 from ..realise.friction_interval import FrictionInterval
-from .from_answer import Diagnosed
+from .from_answer import DiagnosedModel
 from .outcome import Design
 from .prediction import CasePrediction
 from .quasi_static import slow_body
@@ -17,13 +17,13 @@ from .quasi_static import slow_body
 CLOSE = 0.1
 
 
-def notes_on(design: Design, answer: Diagnosed) -> tuple[str, ...]:
+def notes_on(design: Design, answer: DiagnosedModel) -> tuple[str, ...]:
     """The notes of a design, those on its model first."""
     makers: tuple[Callable[[Design], list[str]], ...] = (_friction, _sensors, _left_out, _apart)
     return (*_model(design, answer), *(line for make in makers for line in make(design)))
 
 
-def _model(design: Design, answer: Diagnosed) -> list[str]:
+def _model(design: Design, answer: DiagnosedModel) -> list[str]:
     lines = []
     if answer.left > CRITERIA.adequate:
         lines.append(

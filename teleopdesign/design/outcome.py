@@ -19,7 +19,7 @@ from ..realise.friction_interval import FrictionInterval
 from ..realise.reach import Reach
 from ..simulate import Sampling
 from .assumptions import Assumptions
-from .chosen import Chosen
+from .chosen import ProposedController
 from .design_data import design_data
 from .felt_impedance import FeltImpedance
 from .force_feedback import Loop
@@ -52,10 +52,10 @@ class Design(ByValue):
     assumptions: Assumptions
     reach: Reach
     friction: FrictionInterval | None
-    cancellation: Chosen | None
-    other: Chosen | None
+    cancellation: ProposedController | None
+    other: ProposedController | None
     other_left: float
-    force_feedback: Chosen
+    force_feedback: ProposedController
     loop: Loop
     prediction: Prediction
     impedance: FeltImpedance

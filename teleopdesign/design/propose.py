@@ -16,11 +16,11 @@ from ..realise.friction_interval import FrictionInterval, friction_interval
 from ..realise.reach import Reach
 from .assumptions import Assumptions
 from .cancellation import acting_gain, cancelled_level, dahl_cancellation, smoothed_cancellation
-from .chosen import Chosen
+from .chosen import ProposedController
 from .energy import energy_claim
 from .felt_impedance import felt_impedance
 from .force_feedback import Loop, force_feedback, identified_delay, whole_inertia
-from .from_answer import Diagnosed, diagnosed
+from .from_answer import DiagnosedModel, diagnosed_model
 from .linear import transparency
 from .notes import notes_on
 from .outcome import Design
@@ -46,8 +46,8 @@ FILTER, FILTER_SHARE = 50.0, 0.1
 class Trial:
     """One choice of C with the H that goes with it, and what both do."""
 
-    cancellation: Chosen | None
-    force_feedback: Chosen
+    cancellation: ProposedController | None
+    force_feedback: ProposedController
     loop: Loop
     diagram: Diagram
     prediction: Prediction
@@ -60,7 +60,7 @@ class Trial:
 
 
 def design(
-    diagnosis: Diagnosed | Diagnosis,
+    diagnosis: DiagnosedModel | Diagnosis,
     *,
     place: str | None = None,
     assumptions: Assumptions | None = None,
@@ -73,14 +73,14 @@ def design(
     raises ModelError: no such body, an assumption that cannot hold, a motion beyond the records
     """
     if isinstance(diagnosis, Diagnosis):
-        diagnosis = diagnosed(diagnosis)
+        diagnosis = diagnosed_model(diagnosis)
     at = _place(diagnosis.model, place)
     reach = reach_of(diagnosis.experiment, at)
     body = free_space(diagnosis.model.body(at))
-    given = settled(assumptions or Assumptions(), body, reach)
+    given = complete_assumptions(assumptions or Assumptions(), body, reach)
     motion = stated_motion(reach, given, body.axis)
     friction = friction_interval(body, reach, errors=given.errors)
-    options: list[Chosen | None] = [*cancellations(body, friction, reach, given)]
+    options: list[ProposedController | None] = [*cancellations(body, friction, reach, given)]
     trials = [_trial(body, one, motion, reach, given) for one in options or [None]]
     best = min(trials, key=lambda t: t.left)
     others = [t for t in trials if t is not best]
@@ -112,7 +112,7 @@ def design(
     return replace(proposal, notes=notes_on(proposal, diagnosis))
 
 
-def settled(given: Assumptions, body: Body, reach: Reach) -> Assumptions:
+def complete_assumptions(given: Assumptions, body: Body, reach: Reach) -> Assumptions:
     """The assumptions with those that are not stated taken from record and body."""
     period = given.sample_period or reach.sample_period
     mass = whole_inertia(body)
@@ -124,7 +124,7 @@ def settled(given: Assumptions, body: Body, reach: Reach) -> Assumptions:
 
 def cancellations(
     body: Body, friction: FrictionInterval | None, reach: Reach, given: Assumptions
-) -> list[Chosen]:
+) -> list[ProposedController]:
     """The laws of C that are sure to be passive; none where no level is sure."""
     if friction is None:
         return []
@@ -154,7 +154,11 @@ def cancellations(
 
 
 def _trial(
-    body: Body, option: Chosen | None, motion: StatedMotion, reach: Reach, given: Assumptions
+    body: Body,
+    option: ProposedController | None,
+    motion: StatedMotion,
+    reach: Reach,
+    given: Assumptions,
 ) -> Trial:
     assert given.load is not None and given.sample_period is not None and given.delay is not None
     names = option.controller.names() if option else {}

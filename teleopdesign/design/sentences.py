@@ -29,10 +29,10 @@ def design_text(design: Design) -> str:
     ]
     if design.notes:
         parts.append(["to be read with care", *(f"- {n}" for n in design.notes)])
-    return "\n\n".join("\n".join(_wrapped(line) for line in part) for part in parts)
+    return "\n\n".join("\n".join(_wrap(line) for line in part) for part in parts)
 
 
-def _wrapped(line: str) -> str:
+def _wrap(line: str) -> str:
     if len(line) <= WIDTH:
         return line
     indent = " " * (len(line) - len(line.lstrip()) + 2)

@@ -27,7 +27,7 @@ AT_BOUND = 0.01
 
 
 @dataclass(frozen=True, eq=False)
-class Tuned(ByValue):
+class TunedControllers(ByValue):
     """C and H after the search.
 
     before, after: force error of the hybrid as proposed and as tuned, N or N m, rms
@@ -52,7 +52,7 @@ class Tuned(ByValue):
         )
 
 
-def tune(design: Design, *, simulations: int = 60) -> Tuned:
+def tune(design: Design, *, simulations: int = 60) -> TunedControllers:
     """Search from the numbers that a design proposes, which keep every condition.
 
     simulations: most that are run
@@ -103,7 +103,7 @@ def tune(design: Design, *, simulations: int = 60) -> Tuned:
     controllers = {c.name: c.controller for c in best_diagram.controls}
     cancellation, feedback = controllers.get("C"), controllers["H"]
     assert isinstance(feedback, Controller)
-    return Tuned(
+    return TunedControllers(
         cancellation if isinstance(cancellation, Controller) else None,
         feedback,
         before,

@@ -25,13 +25,13 @@ from ..passivity.theorems.lugre import beside_bristle_damping
 from ..realise.damping_interval import damping_interval, small_motion_damping
 from ..realise.friction_interval import FrictionInterval, value_interval
 from ..realise.reach import Reach
-from .chosen import Chosen
+from .chosen import ProposedController
 from .linear import without_friction
 from .rounding import rounded_down, rounded_up
 
 
 def compliant_claim(
-    body: Body, chosen: Chosen, friction: FrictionInterval, *, gain: float
+    body: Body, chosen: ProposedController, friction: FrictionInterval, *, gain: float
 ) -> Claim | None:
     """Is the cancellation passive through the identified compliance? None where there is none.
 
@@ -60,7 +60,7 @@ def compliant_claim(
 
 def cancellation_claims(
     body: Body,
-    chosen: Chosen,
+    chosen: ProposedController,
     friction: FrictionInterval,
     reach: Reach,
     *,
@@ -82,7 +82,7 @@ def cancellation_claims(
 
 def _friction_claims(
     body: Body,
-    chosen: Chosen,
+    chosen: ProposedController,
     friction: FrictionInterval,
     reach: Reach,
     *,

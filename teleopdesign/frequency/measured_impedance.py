@@ -21,7 +21,7 @@ from ..simulate.sampling import SAMPLED
 from .cases import cases_of
 from .grid import Amplitude, Grid
 from .impedance_map import ImpedanceMap
-from .sinusoid import GIVE, Sinusoid, settled_harmonics
+from .sinusoid import GIVE, Sinusoid, steady_harmonics
 
 
 def measured_impedance(
@@ -61,7 +61,7 @@ def measured_impedance(
         source = drive or read
         for at, size, f in grid.points:
             sinusoid = Sinusoid(source, size, f, computer=computer, give=give)
-            one = settled_harmonics(diagram, sinusoid, signals=(force, read))
+            one = steady_harmonics(diagram, sinusoid, signals=(force, read))
             here = (i, *at)
             z[here] = one[force].phasor / one[read].phasor
             distortion[here] = one[force].distortion

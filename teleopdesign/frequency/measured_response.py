@@ -13,7 +13,7 @@ from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
 from .cases import cases_of
 from .response import FrequencyResponse, labelled, ratio_unit
-from .sinusoid import GIVE, Sinusoid, settled_harmonics
+from .sinusoid import GIVE, Sinusoid, steady_harmonics
 
 if TYPE_CHECKING:
     import control
@@ -76,7 +76,7 @@ def simulated_response(
     for i, diagram in enumerate(cases.values()):
         for j, one in enumerate(f):
             drive = Sinusoid(input, amplitude, float(one), computer=computer, give=give)
-            harmonics = settled_harmonics(diagram, drive, signals=(output, input))
+            harmonics = steady_harmonics(diagram, drive, signals=(output, input))
             rows[i, j] = harmonics[output].phasor / harmonics[input].phasor
     unit = ratio_unit(next(iter(cases.values())), output, input)
     return _points(rows, list(cases), f, output, input, unit)

@@ -44,7 +44,7 @@ class Sinusoid:
     tolerance: float = 3e-4
 
 
-def settled_harmonics(
+def steady_harmonics(
     diagram: Diagram, drive: Sinusoid, *, signals: tuple[str, ...]
 ) -> dict[str, Harmonic]:
     """First harmonics of signals once their cycles repeat; phases relative to the drive.

@@ -7,9 +7,9 @@ show_in_simulation(proposal)                # each rival is made the truth, and 
 """
 
 from ..arguments import check_arguments
-from .in_simulation import Shown, show_in_simulation
+from .in_simulation import SimulatedDiagnosis, show_in_simulation
 from .limits import Limits, shown_limits
-from .prediction import Determined, Separation
+from .prediction import DeterminedParameter, Separation
 from .proposal import Proposal, Reference
 from .propose import propose
 from .reference_csv import write_reference
@@ -18,14 +18,14 @@ from .rivals import Rival
 from .words import proposal_data
 
 __all__ = [
-    "Determined",
+    "DeterminedParameter",
     "Limits",
     "Proposal",
     "Reference",
     "Remedy",
     "Rival",
     "Separation",
-    "Shown",
+    "SimulatedDiagnosis",
     "proposal_data",
     "propose",
     "show_in_simulation",

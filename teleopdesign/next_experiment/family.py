@@ -12,7 +12,7 @@ import numpy as np
 
 from ..measurement.filtering import Array
 from .limits import Limits
-from .path import Hold, Move, largest_factor, sines, travel, windowed
+from .path import Hold, Move, largest_factor, sines, travel, with_window
 
 #: shows a value of a quantity ("position", "velocity", "frequency", "time") with its unit
 Show = Callable[[float, str], str]
@@ -204,7 +204,7 @@ def _growing(s: Setting) -> Iterator[Part]:
         if largest < 2 * smallest:
             continue
         grown = smallest * (largest / smallest) ** (t / t[-1])
-        y = windowed(grown * np.sin(2 * np.pi * 1.5 * t), ramp=0.3, sample_time=s.sample_time)
+        y = with_window(grown * np.sin(2 * np.pi * 1.5 * t), ramp=0.3, sample_time=s.sample_time)
         y *= min(1.0, largest_factor(y, s.limits, sample_time=s.sample_time))
         text = (
             f"swing at 1.5 Hz with an amplitude that grows from {s.show(smallest, 'position')} to "

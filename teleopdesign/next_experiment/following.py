@@ -37,7 +37,7 @@ class Servo:
 
 
 @dataclass(frozen=True)
-class Followed:
+class FollowedPath:
     """A path as it is followed, (n,), and the rows [from, to] at which the body sticks."""
 
     path: Array
@@ -66,13 +66,13 @@ def servo_of(model: Model, stretches: Sequence[Stretch], body: str) -> Servo:
     return Servo(time, 0.5 * typical * time**2)
 
 
-def followed(path: Array, servo: Servo, *, sample_time: float) -> Followed:
+def follow_path(path: Array, servo: Servo, *, sample_time: float) -> FollowedPath:
     """The path (n,) that a body takes behind this reference."""
     length = round(2.0 * servo.turn / sample_time)
     if length < 2 or servo.play <= 0.0:
-        return Followed(path, ())
+        return FollowedPath(path, ())
     behind = play(path, servo.play)
-    stuck = _stuck(path, behind)
+    stuck = _sticking_rows(path, behind)
     taken = behind.copy()
     ends = [first for first, _ in stuck[1:]] + [len(path)]
     for (_, last), end in zip(stuck, ends, strict=True):
@@ -81,10 +81,10 @@ def followed(path: Array, servo: Servo, *, sample_time: float) -> Followed:
         s = np.linspace(0.0, 1.0, rows.stop - rows.start)
         share = s**3 * (10 - 15 * s + 6 * s**2)
         taken[rows] = behind[last] + (behind[rows] - behind[last]) * share
-    return Followed(taken, stuck)
+    return FollowedPath(taken, stuck)
 
 
-def _stuck(path: Array, behind: Array) -> tuple[tuple[int, int], ...]:
+def _sticking_rows(path: Array, behind: Array) -> tuple[tuple[int, int], ...]:
     """Stretches of rows in which the reference moves and the body does not."""
     speed = np.abs(np.diff(path))
     stuck = (np.diff(behind) == 0.0) & (speed > MOVING * speed.max())
@@ -92,7 +92,7 @@ def _stuck(path: Array, behind: Array) -> tuple[tuple[int, int], ...]:
     return tuple((int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True))
 
 
-def ramped(force: Array, stuck: Sequence[tuple[int, int]]) -> Array:
+def with_ramps(force: Array, stuck: Sequence[tuple[int, int]]) -> Array:
     """The force (n,) with a smooth change over each stretch of rows."""
     force = force.copy()
     for first, last in stuck:

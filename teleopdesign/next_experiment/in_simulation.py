@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.ladder import find_missing
-from .prediction import extended, run_twice
+from .prediction import run_twice, with_records
 from .proposal import Proposal
 from .rivals import Rival
 
 
 @dataclass(frozen=True)
-class Shown:
+class SimulatedDiagnosis:
     """What a diagnosis of the present and the new records says if one rival is the truth.
 
     named: whether the truth is named, and alone;  diagnosis: all of it
@@ -35,12 +35,12 @@ def show_in_simulation(
     seconds: float = float("inf"),
     progress: Callable[[str], None] | None = None,
     seed: int = 100,
-) -> tuple[Shown, ...]:
+) -> tuple[SimulatedDiagnosis, ...]:
     """Diagnose the present records and those that each rival would give along the motion.
 
     seconds: no further rival is begun after this time;  seed: of the new records' sensor errors
     """
-    shown: list[Shown] = []
+    shown: list[SimulatedDiagnosis] = []
     began = time.perf_counter()
     for i, rival in enumerate(proposal.rivals):
         if proposal.plan is None or time.perf_counter() - began > seconds:
@@ -48,9 +48,9 @@ def show_in_simulation(
         if progress is not None:
             progress(f"simulating: {rival} is right")
         new = run_twice(rival.model, proposal.plan, proposal.bench, seed=seed + i)
-        experiment = extended(proposal.diagnosis.experiment, new)
+        experiment = with_records(proposal.diagnosis.experiment, new)
         diagnosis = find_missing(experiment, proposal.diagnosis.before.model)
-        shown.append(Shown(rival, names_alone(diagnosis, rival), diagnosis))
+        shown.append(SimulatedDiagnosis(rival, names_alone(diagnosis, rival), diagnosis))
     return tuple(shown)
 
 

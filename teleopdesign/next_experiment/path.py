@@ -58,7 +58,7 @@ def travel(legs: Sequence[Move | Hold], limits: Limits, *, sample_time: float) -
     width = window_length(highest - lowest, limits)
     margin = REST + 0.5 * width
     t = np.arange(0.0, times[-1] + 2 * margin, sample_time) - margin
-    return rounded(np.interp(t, times, places), width, sample_time)
+    return round_corners(np.interp(t, times, places), width, sample_time)
 
 
 def window_length(range_of_speed: float, limits: Limits) -> float:
@@ -69,7 +69,7 @@ def window_length(range_of_speed: float, limits: Limits) -> float:
     )
 
 
-def rounded(line: Array, width: float, sample_time: float) -> Array:
+def round_corners(line: Array, width: float, sample_time: float) -> Array:
     """The line through a raised-cosine window of that length (s); its ends stay where they are."""
     samples = max(3, 2 * round(0.5 * width / sample_time) + 1)
     window = np.hanning(samples + 2)[1:-1]
@@ -92,11 +92,11 @@ def sines(
     amplitude = 1.0 / (1.0 + (frequencies / corner) ** 2)
     phase = -np.pi * k * (k + 1) / len(frequencies)
     y = amplitude @ np.sin(2 * np.pi * np.outer(frequencies, t) + phase[:, None])
-    y = windowed(y, ramp=min(0.5, 0.2 * duration), sample_time=sample_time)
+    y = with_window(y, ramp=min(0.5, 0.2 * duration), sample_time=sample_time)
     return share * y * largest_factor(y, limits, sample_time=sample_time)
 
 
-def windowed(y: Array, *, ramp: float, sample_time: float) -> Array:
+def with_window(y: Array, *, ramp: float, sample_time: float) -> Array:
     """The signal faded in and out (s), with a rest before and after."""
     t = np.arange(len(y)) * sample_time
     rise = np.clip(np.minimum(t, t[-1] - t) / ramp, 0.0, 1.0)

@@ -23,7 +23,7 @@ from ..model import Model
 from ..quantity import unit_of
 from .rivals import Rival, pairs
 from .separation import rms_measured
-from .synthesis import Bench, Planned, record_under
+from .synthesis import Bench, PlannedMotion, record_under
 
 #: the two records of a proposed motion
 FIT, CHECK = "next_fit", "next_check"
@@ -51,7 +51,7 @@ class Separation:
 
 
 @dataclass(frozen=True)
-class Determined:
+class DeterminedParameter:
     """A parameter that the present records leave open and the new one settles.
 
     before, after: standard error over value;  unit: of the value
@@ -84,11 +84,13 @@ class Prediction:
 
     truth: int
     separations: tuple[Separation, ...]
-    determined: tuple[Determined, ...]
+    determined: tuple[DeterminedParameter, ...]
     curves: tuple[Curves, ...]
 
 
-def run_twice(truth: Model, plan: Planned, bench: Bench, *, seed: int) -> tuple[Record, Record]:
+def run_twice(
+    truth: Model, plan: PlannedMotion, bench: Bench, *, seed: int
+) -> tuple[Record, Record]:
     """The fit and the check record of the planned motion with this model as the truth."""
     records = [
         record_under(truth, plan, bench, np.random.default_rng([seed, i]), file=name, use=use)
@@ -97,7 +99,7 @@ def run_twice(truth: Model, plan: Planned, bench: Bench, *, seed: int) -> tuple[
     return records[0], records[1]
 
 
-def extended(experiment: Experiment, records: Sequence[Record]) -> Experiment:
+def with_records(experiment: Experiment, records: Sequence[Record]) -> Experiment:
     """The experiment with records more."""
     return replace(experiment, records=(*experiment.records, *records))
 
@@ -137,7 +139,7 @@ def refit(
 
     new: records with the names `FIT` and `CHECK`;  best: rival that the noise floor is taken with
     """
-    prepared = prepare(extended(bench.experiment, new), bandwidth=bench.bandwidth)
+    prepared = prepare(with_records(bench.experiment, new), bandwidth=bench.bandwidth)
     check = tuple(s for s in prepared.stretches if s.motion.file == CHECK)
     fits = tuple(estimate(r.model, prepared) for r in rivals)
     generator = np.random.default_rng(seed)
@@ -148,10 +150,10 @@ def refit(
     return Refit(fits, tuple(error_of(check, r) / floor for r in left), floor, check)
 
 
-def predicted(
+def predict(
     number: int,
     rivals: Sequence[Rival],
-    plan: Planned,
+    plan: PlannedMotion,
     bench: Bench,
     present: Mapping[tuple[int, int], float],
     *,
@@ -176,7 +178,7 @@ def predicted(
         for k, i in enumerate(against, start=1)
     )
     curves = tuple(_curves(truth, fitted, k) for k in range(1, len(fitted.fits)))
-    return Prediction(number, separations, _determined(truth, fitted.fits[0]), curves)
+    return Prediction(number, separations, _determined_parameters(truth, fitted.fits[0]), curves)
 
 
 def _score(other: Fit, truth: Fit) -> float:
@@ -195,9 +197,9 @@ def _curves(truth: Rival, fitted: Refit, other: int) -> Curves:
     return Curves(body, unit, here[0].motion.time[rows], left, noise)
 
 
-def settled(determined: Sequence[Determined]) -> tuple[Determined, ...]:
+def least_determined(determined: Sequence[DeterminedParameter]) -> tuple[DeterminedParameter, ...]:
     """Each parameter once, as the truth that settles it least leaves it."""
-    least: dict[str, Determined] = {}
+    least: dict[str, DeterminedParameter] = {}
     for d in determined:
         if d.name not in least or d.after > least[d.name].after:
             least[d.name] = d
@@ -208,7 +210,7 @@ def settled(determined: Sequence[Determined]) -> tuple[Determined, ...]:
 LEFT_OPEN, SETTLED = 0.25, 0.1
 
 
-def _determined(truth: Rival, fit: Fit) -> tuple[Determined, ...]:
+def _determined_parameters(truth: Rival, fit: Fit) -> tuple[DeterminedParameter, ...]:
     """Parameters of the truth that the present records leave open and all of them settle."""
     rows = []
     for name in fit.free:
@@ -218,5 +220,5 @@ def _determined(truth: Rival, fit: Fit) -> tuple[Determined, ...]:
         before, after = old.stderr / size, new.stderr / size
         # a standard error that is not a number: the records say nothing at all
         if not before < LEFT_OPEN and after < SETTLED:
-            rows.append(Determined(name, new.value, fit.model.unit(name), before, after))
+            rows.append(DeterminedParameter(name, new.value, fit.model.unit(name), before, after))
     return tuple(rows)

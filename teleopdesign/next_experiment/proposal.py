@@ -11,10 +11,10 @@ from ..diagnose.diagnosis import Diagnosis
 from ..finding import Finding
 from ..measurement.filtering import Array
 from .limits import Limits
-from .prediction import DECIDES, SAME, Curves, Determined, Separation
+from .prediction import DECIDES, SAME, Curves, DeterminedParameter, Separation
 from .remedies import Remedy
 from .rivals import Rival
-from .synthesis import Bench, Planned
+from .synthesis import Bench, PlannedMotion
 from .words import proposal_findings, proposal_text
 
 if TYPE_CHECKING:
@@ -58,12 +58,12 @@ class Proposal(ByValue):
     reference: Reference | None
     sentence: str
     separations: tuple[Separation, ...]
-    determined: tuple[Determined, ...]
+    determined: tuple[DeterminedParameter, ...]
     curves: tuple[Curves, ...]
     remedies: Mapping[tuple[int, int], tuple[Remedy, ...]]
     limits: Mapping[str, Limits]
     bench: Bench = field(repr=False)
-    plan: Planned | None = field(default=None, repr=False)
+    plan: PlannedMotion | None = field(default=None, repr=False)
 
     def decides(self, pair: tuple[int, int]) -> bool:
         """Whether the motion separates two rivals, whichever of them is the truth."""

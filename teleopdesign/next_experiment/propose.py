@@ -15,13 +15,13 @@ from ..quantity import si_factor
 from .family import Part, Setting, Show, family
 from .following import servo_of
 from .limits import Limits, course_of, shown_limits
-from .prediction import predicted, settled
+from .prediction import least_determined, predict
 from .proposal import Proposal, Reference
 from .remedies import Remedy, remedies, setups
 from .rivals import Rival, depends_on_time, pairs, rivals_of
-from .search import Tried, composed, joined, tried
+from .search import SafeParts, compose, join_paths, try_parts
 from .separation import floor_force, present_separation
-from .synthesis import Bench, planned
+from .synthesis import Bench, plan_motion
 from .words import sentence_of, unordered
 
 #: s that a proposal may last by default, and that it lasts at least: a short one is repeated, so
@@ -59,12 +59,14 @@ def propose(
     setting = _setting(diagnosis, rivals, bench)
     parts = family(setting)
     say(f"trying {len(parts)} motions")
-    candidates = tried(parts, rivals, diagnosis.prepared, bench, kept, floor=bench.floor, seed=seed)
+    candidates = try_parts(
+        parts, rivals, diagnosis.prepared, bench, kept, floor=bench.floor, seed=seed
+    )
     if not candidates.parts:
         return _finished(diagnosis, rivals, kept, bench)
-    chosen = composed(candidates, duration + setting.repeated, bench.sample_time)
+    chosen = compose(candidates, duration + setting.repeated, bench.sample_time)
     reference, path_parts = _reference([candidates.parts[k] for k in chosen], bench)
-    plan = planned(joined(path_parts), bench)
+    plan = plan_motion(join_paths(path_parts), bench)
     present = {
         (i, j): present_separation(rivals[i], rivals[j], diagnosis.prepared, diagnosis.floor.value)
         for i, j in pairs(rivals)
@@ -72,14 +74,14 @@ def propose(
     predictions = []
     for i, rival in enumerate(rivals):
         say(f"predicting what follows if {rival} is right")
-        predictions.append(predicted(i, rivals, plan, bench, present, seed=seed + 1))
+        predictions.append(predict(i, rivals, plan, bench, present, seed=seed + 1))
     proposal = Proposal(
         diagnosis=diagnosis,
         rivals=rivals,
         reference=reference,
         sentence="",
         separations=tuple(s for p in predictions for s in p.separations),
-        determined=settled([d for p in predictions for d in p.determined]),
+        determined=least_determined([d for p in predictions for d in p.determined]),
         curves=tuple(c for p in predictions for c in p.curves),
         remedies={},
         limits=kept,
@@ -152,7 +154,7 @@ def _reference(parts: Sequence[Part], bench: Bench) -> tuple[Reference, list[Par
     once = sum(len(p.path) for p in parts) * bench.sample_time
     repeats = max(1, int(np.ceil(SHORTEST / once)))
     whole = list(parts) * repeats
-    path = joined(whole)
+    path = join_paths(whole)
     course = bench.course
     return (
         Reference(
@@ -166,7 +168,7 @@ def _reference(parts: Sequence[Part], bench: Bench) -> tuple[Reference, list[Par
 
 
 def _remedies(
-    proposal: Proposal, candidates: Tried, setting: Setting, seed: int
+    proposal: Proposal, candidates: SafeParts, setting: Setting, seed: int
 ) -> dict[tuple[int, int], tuple[Remedy, ...]]:
     """What was tried for the first pairs that the motion does not separate, whichever is true."""
     diagnosis, bench = proposal.diagnosis, proposal.bench

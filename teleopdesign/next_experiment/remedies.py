@@ -22,7 +22,7 @@ from ..quantity import unit_of
 from .family import Setting, family
 from .limits import Limits, course_of
 from .rivals import Rival
-from .search import tried
+from .search import try_parts
 from .separation import Sums
 from .synthesis import Bench
 
@@ -48,7 +48,7 @@ class Remedy:
 
 
 @dataclass(frozen=True)
-class Changed:
+class ChangedSetUp:
     """A set-up to try: what is changed in words, and the bench, setting and limits that follow."""
 
     change: str
@@ -60,7 +60,7 @@ class Changed:
 def remedies(
     pair: tuple[Rival, Rival],
     prepared: Prepared,
-    setups: Sequence[Changed],
+    setups: Sequence[ChangedSetUp],
     along: Sums | None,
     back: Sums | None,
     *,
@@ -74,7 +74,7 @@ def remedies(
     listed = []
     for setup in setups:
         parts = family(setup.setting)[::EVERY]
-        candidates = tried(
+        candidates = try_parts(
             parts, rivals, prepared, setup.bench, setup.limits, floor=setup.bench.floor, seed=seed
         )
         listed.append(Remedy(setup.change, candidates.best((0, 1)) if candidates.parts else 0.0))
@@ -90,11 +90,11 @@ def setups(
     setting: Setting,
     limits: Mapping[str, Limits],
     inertia: Mapping[str, float],
-) -> Iterator[Changed]:
+) -> Iterator[ChangedSetUp]:
     """The set-ups that are tried; places: bodies that the rivals differ at."""
     wide = {b: limit.widened(WIDER) for b, limit in limits.items()}
     course = course_of(wide, prepared)
-    yield Changed(
+    yield ChangedSetUp(
         f"the stroke, speed, acceleration and force may be {WIDER:g} times larger",
         replace(bench, course=course),
         replace(setting, limits=course.limits),
@@ -105,7 +105,7 @@ def setups(
         axis = bench.experiment.axis(place)
         mass = ATTACHED * inertia[place]
         interaction = f"{place}.interaction_force"
-        yield Changed(
+        yield ChangedSetUp(
             f"a known inertia of {mass:.2g} {unit_of(INERTIA.quantity, axis)} is attached to the "
             f"{place} for the new record",
             replace(
@@ -121,7 +121,7 @@ def setups(
             )["force"]
         )
         sensor = bench.sensors.get(interaction, Sensor(noise=SENSOR_NOISE * force))
-        yield Changed(
+        yield ChangedSetUp(
             f"a hand pushes the {place} with {force:.2g} {unit_of('force', axis)} (rms) and that "
             "force is measured",
             replace(bench, push={place: force}, sensors={**bench.sensors, interaction: sensor}),
@@ -130,12 +130,14 @@ def setups(
         )
 
 
-def _finer(place: str, bench: Bench, setting: Setting, limits: Mapping[str, Limits]) -> Changed:
+def _finer(
+    place: str, bench: Bench, setting: Setting, limits: Mapping[str, Limits]
+) -> ChangedSetUp:
     name = f"{place}.position"
     channel, sensor = bench.experiment.channels[name], bench.sensors[name]
     step = None if channel.resolution is None else channel.resolution / FINER
     channels = {**bench.experiment.channels, name: replace(channel, resolution=step)}
-    return Changed(
+    return ChangedSetUp(
         f"the position of the {place} is read {FINER:g} times finer",
         replace(
             bench,

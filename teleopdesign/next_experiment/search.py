@@ -14,14 +14,14 @@ from .family import Part
 from .limits import Limits
 from .rivals import Rival, pairs
 from .separation import Sums, normal_matrix, sums_of
-from .synthesis import Bench, Planned, planned, record_under
+from .synthesis import Bench, PlannedMotion, plan_motion, record_under
 
 #: a part that is added may cost this share of what was reached: it dilutes what others show
 DILUTES = 0.02
 
 
 @dataclass(frozen=True)
-class Tried:
+class SafeParts:
     """The parts that keep within the limits, and how each pair of rivals fares along them.
 
     sums: (truth, other) -> sums over the parts
@@ -48,7 +48,7 @@ class Tried:
         return max(least, default=0.0)
 
 
-def tried(
+def try_parts(
     parts: Sequence[Part],
     rivals: Sequence[Rival],
     prepared: Prepared,
@@ -57,13 +57,13 @@ def tried(
     *,
     floor: float,
     seed: int,
-) -> Tried:
+) -> SafeParts:
     """Let each rival be the truth along each part, and see what the others leave.
 
     floor: force (rms) that sensors leave on the present records;  seed: of the sensors' errors
     """
-    plans = [planned(p.path, bench) for p in parts]
-    simulated = {i: _made(r, plans, bench, seed) for i, r in enumerate(rivals)}
+    plans = [plan_motion(p.path, bench) for p in parts]
+    simulated = {i: _simulate_plans(r, plans, bench, seed) for i, r in enumerate(rivals)}
     safe = [k for k in range(len(parts)) if all(_is_safe(m, k, limits) for m in simulated.values())]
     present = [normal_matrix(r, prepared) for r in rivals]
     sums: dict[tuple[int, int], Sums] = {}
@@ -76,10 +76,12 @@ def tried(
         for j, other in enumerate(rivals):
             if (i, j) in pairs(rivals):
                 sums[i, j] = sums_of(other, residuals, stretches, numbers, present[j], floor)
-    return Tried(tuple(parts[k] for k in safe), sums)
+    return SafeParts(tuple(parts[k] for k in safe), sums)
 
 
-def _made(rival: Rival, plans: Sequence[Planned], bench: Bench, seed: int) -> Prepared:
+def _simulate_plans(
+    rival: Rival, plans: Sequence[PlannedMotion], bench: Bench, seed: int
+) -> Prepared:
     """Records of all plans with this rival as the truth, ready for comparison."""
     records = tuple(
         record_under(
@@ -108,7 +110,7 @@ def _is_safe(simulated: Prepared, part: int, limits: Mapping[str, Limits]) -> bo
     )
 
 
-def composed(candidates: Tried, duration: float, sample_time: float) -> tuple[int, ...]:
+def compose(candidates: SafeParts, duration: float, sample_time: float) -> tuple[int, ...]:
     """Parts chosen one at a time, each the one that gains most, until the time (s) is used up."""
     chosen: list[int] = []
     reached = 0.0
@@ -128,6 +130,6 @@ def composed(candidates: Tried, duration: float, sample_time: float) -> tuple[in
         reached = max(reached, worth)
 
 
-def joined(parts: Sequence[Part]) -> Array:
+def join_paths(parts: Sequence[Part]) -> Array:
     """The path of the parts one after the other."""
     return np.concatenate([p.path for p in parts])

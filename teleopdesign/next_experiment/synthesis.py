@@ -22,7 +22,7 @@ from ..measurement.record import Record
 from ..model import Model
 from ..realise.along_motion import residual_along
 from ..realise.simulated import with_give, without_absent
-from .following import Servo, followed, ramped
+from .following import Servo, follow_path, with_ramps
 from .limits import Course
 
 #: give of an ideal friction, in encoder steps: too small to be read
@@ -77,7 +77,7 @@ def command_along(
     inverse: NDArray[np.complex128] | None = None
     for _ in range(CORRECTIONS):
         along = residual_along(body, replace(motion, command=command))
-        needed = ramped(along.acting.value - along.residual.value, stuck)
+        needed = with_ramps(along.acting.value - along.residual.value, stuck)
         left = along.acting.value - needed
         whole = float(np.std(motion.lowpassed(needed)))
         if inverse is None:
@@ -124,18 +124,18 @@ class Bench:
 
 
 @dataclass(frozen=True)
-class Planned:
+class PlannedMotion:
     """The motion of each body behind one path, and the rows at which it sticks meanwhile."""
 
     exact: Mapping[str, Motion]
     stuck: Mapping[str, tuple[tuple[int, int], ...]]
 
 
-def planned(path: Array, bench: Bench) -> Planned:
+def plan_motion(path: Array, bench: Bench) -> PlannedMotion:
     """The motions of the bodies whose servos follow this path (n,)."""
     exact, stuck = {}, {}
     for body, gain in bench.course.gain.items():
-        follows = followed(
+        follows = follow_path(
             bench.course.middle[body] + gain * path,
             bench.servos.get(body, Servo()),
             sample_time=bench.sample_time,
@@ -145,7 +145,7 @@ def planned(path: Array, bench: Bench) -> Planned:
         )
         exact[body] = replace(motion, interaction=_known_force(motion, bench))
         stuck[body] = follows.stuck
-    return Planned(exact, stuck)
+    return PlannedMotion(exact, stuck)
 
 
 def _known_force(motion: Motion, bench: Bench) -> Array:
@@ -163,7 +163,7 @@ def _known_force(motion: Motion, bench: Bench) -> Array:
 
 def record_under(
     model: Model,
-    plan: Planned,
+    plan: PlannedMotion,
     bench: Bench,
     generator: np.random.Generator,
     *,

@@ -48,7 +48,7 @@ def draw_graph(
     seen: Counter[str] = Counter()
     for series in graph.series:
         default = _colour(series.kind, seen[series.kind], totals)
-        _draw(thinned(series, most), axes, (colours or {}).get(series.name, default))
+        _draw(thin_series(series, most), axes, (colours or {}).get(series.name, default))
         seen[series.kind] += 1
     axes.set_xlabel(graph.x_label, parse_math=False)
     axes.set_ylabel(graph.y_label, parse_math=False)
@@ -56,7 +56,7 @@ def draw_graph(
         _legend(axes)
 
 
-def thinned(series: Series, most: int) -> Series:
+def thin_series(series: Series, most: int) -> Series:
     """The series with at most `most` points: the lowest and the highest of each bucket of them."""
     n = len(series.x)
     if n <= most:

@@ -39,7 +39,7 @@ def plot_teleoperator_onset(data: xarray.Dataset) -> matplotlib.figure.Figure:
         ):
             x = data[name].values
             _grown(axis, x, y, data[f"growth_over_{name}"].values > 0, "simulated swing grows")
-            hatched(axis, x, y[0], 1.0, r"passive, proved: $f_D\leq f_C$")
+            hatch_region(axis, x, y[0], 1.0, r"passive, proved: $f_D\leq f_C$")
             axis.axhline(
                 data.attrs["cycles"],
                 color=GREY,
@@ -77,7 +77,7 @@ def _grown(axis: Axes, x: np.ndarray, y: np.ndarray, grown: np.ndarray, label: s
     axis.plot([], [], "s", color=GROWS, label=label)
 
 
-def hatched(
+def hatch_region(
     axis: Axes, x: np.ndarray, low: float | np.ndarray, high: float | np.ndarray, label: str
 ) -> None:
     """A region that a theorem covers, hatched as in every figure of passivity."""
@@ -106,7 +106,7 @@ def plot_delay_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
         ):
             x = data[name].values
             limit = data[f"limit_over_{name}"].values
-            hatched(axis, x, 0.8 * stiffness[0], limit, "the condition holds")
+            hatch_region(axis, x, 0.8 * stiffness[0], limit, "the condition holds")
             axis.plot(x, limit, color=THEORY, label="limit of the theorem")
             _settled(axis, x, stiffness, data[f"status_over_{name}"].values)
             times = data[f"{name}_simulated"].values
@@ -140,7 +140,7 @@ def plot_period_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
         for axis, letter, late in zip(axes, "ab", data["late"].values, strict=True):
             here = data.sel(late=late)
             limit = here["limit"].values
-            hatched(axis, x, 0.8 * stiffness[0], limit, "both conditions hold")
+            hatch_region(axis, x, 0.8 * stiffness[0], limit, "both conditions hold")
             axis.plot(x, limit, color=THEORY, label="limit of the two conditions")
             _settled(axis, x, stiffness, here["status"].values)
             for ends, marker in zip(data["ends"].values, "^o", strict=True):

@@ -6,7 +6,7 @@ import math
 import textwrap
 from typing import TYPE_CHECKING, Any
 
-from ..unexplained import BodyUnexplained, Unexplained
+from ..unexplained import BodyResidual, ResidualDescription
 from .diagnosis import AFTER, BACKWARD, FORWARD, MEASURED, STYLE
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ COLOURS = {
 }
 
 
-def plot_unexplained(failure: Unexplained) -> Figure:
+def plot_unexplained(failure: ResidualDescription) -> Figure:
     """Views of each body with the sentences above, dependences first."""
     import matplotlib.pyplot as plt
 
@@ -68,7 +68,7 @@ def _plain(text: str) -> str:
     return text.replace("$", r"\$")
 
 
-def _panels(part: BodyUnexplained, *, name: bool) -> list[tuple[str, Graph]]:
+def _panels(part: BodyResidual, *, name: bool) -> list[tuple[str, Graph]]:
     before = f"{part.body}, " if name else ""
     curves = [(before + d.dependence.shape.name, d.graph) for d in part.dependences]
     return curves + [(f"{before}residual over {n}", g) for n, g in part.views.items()]

@@ -29,7 +29,7 @@ class LadderRow:
 
 
 @dataclass(frozen=True)
-class Tried:
+class CandidateScore:
     """How a candidate did on one step; outcome: what of `_outcome` holds, or ""."""
 
     check_error: float
@@ -44,7 +44,7 @@ class CandidateRow:
     effect: str
     at: str
     probability: float
-    steps: tuple[Tried | None, ...]
+    steps: tuple[CandidateScore | None, ...]
 
 
 def ladder_rows(diagnosis: Diagnosis) -> tuple[LadderRow, ...]:
@@ -68,13 +68,13 @@ def candidate_rows(diagnosis: Diagnosis) -> tuple[CandidateRow, ...]:
     """Every effect tried, with its check error on each step: those added, then by probability."""
     steps = [(r, r.ranking) for r in diagnosis.rungs if r.ranking is not None]
     rankings = [*((r, k) for r, k in steps), (None, diagnosis.last)]
-    done: dict[tuple[str, str], list[Tried | None]] = {}
+    done: dict[tuple[str, str], list[CandidateScore | None]] = {}
     for i, (rung, ranking) in enumerate(rankings):
         for ranked in ranking.ranked:
             outcome = _outcome(rung, ranking, ranked)
             # what was added may have been fitted again since: one error for one model
             fit = rung.fit if rung is not None and outcome == "added" else ranked.fit
-            result = Tried(fit.check_error, ranked.score, outcome)
+            result = CandidateScore(fit.check_error, ranked.score, outcome)
             done.setdefault(ranked.candidate.key, [None] * len(rankings))[i] = result
     accepted = [r.added.key for r, _ in steps if r.added is not None]
     rows = [

@@ -12,7 +12,7 @@ from ..diagnose import Diagnosis
 from ..diagnose.answer import answer
 from ..finding import Finding, Graph
 from ..plain_data import plain
-from ..plot.graph import thinned
+from ..plot.graph import thin_series
 from .candidate_table import CandidateRow, LadderRow, candidate_rows, ladder_rows
 from .cannot_tell import cannot_tell
 from .parameter_table import AddedEffect, ParameterRow, added_effects, parameter_rows
@@ -114,7 +114,7 @@ def _bounded(findings: Sequence[Finding]) -> tuple[Finding, ...]:
 
 
 def _thinned(graph: Graph) -> Graph:
-    series = tuple(thinned(s, POINTS) for s in graph.series)
+    series = tuple(thin_series(s, POINTS) for s in graph.series)
     return dataclasses.replace(graph, series=series)
 
 

@@ -1,9 +1,9 @@
 """Where a model fails, and a description of what no candidate explains.
 
-found = unexplained(model, prepared)
-found.findings          sentences, each with its numbers and its graph
-found.parts             per body: views, tests, curves with bands, formulas
-found.plot()            the views and the dependences
+description = describe_residual(model, prepared)
+description.findings    sentences, each with its numbers and its graph
+description.parts       per body: views, tests, curves with bands, formulas
+description.plot()      the views and the dependences
 """
 
 from __future__ import annotations
@@ -20,23 +20,23 @@ from ..diagnose.search import estimate_from_starts
 from ..finding import Finding
 from ..measurement.experiment import Experiment
 from ..model import Model
-from .description import BodyUnexplained, Described, described, findings_of
+from .description import BodyResidual, DescribedDependence, describe_body, findings_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = [
-    "BodyUnexplained",
-    "Described",
-    "Unexplained",
+    "BodyResidual",
+    "DescribedDependence",
+    "ResidualDescription",
     "describe",
-    "unexplained",
+    "describe_residual",
     "where_it_fails",
 ]
 
 
 @dataclass(frozen=True, eq=False)
-class Unexplained(ByValue):
+class ResidualDescription(ByValue):
     """What a fitted model leaves of every body, and what that depends on.
 
     parts: one a body
@@ -44,7 +44,7 @@ class Unexplained(ByValue):
 
     model: Model
     prepared: Prepared
-    parts: tuple[BodyUnexplained, ...]
+    parts: tuple[BodyResidual, ...]
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -53,8 +53,8 @@ class Unexplained(ByValue):
         return tuple(f for p in self.parts for f in findings_of(p, name_body=many))
 
     @property
-    def largest(self) -> tuple[BodyUnexplained, Described] | None:
-        """The dependence that takes most away, with its body; None where none was found."""
+    def largest(self) -> tuple[BodyResidual, DescribedDependence] | None:
+        """The body and the dependence that explain most of the residual; None: no dependence."""
         first_of_body = [(p, p.dependences[0]) for p in self.parts if p.dependences]
         return max(
             first_of_body,
@@ -78,10 +78,10 @@ class Unexplained(ByValue):
         return "\n".join(str(f) for f in self.findings)
 
 
-def unexplained(
+def describe_residual(
     model: Model | Fit, prepared: Prepared, floor: NoiseFloor | None = None, *, seed: int = 0
-) -> Unexplained:
-    """Look at what a fitted model leaves of the force on each body.
+) -> ResidualDescription:
+    """Describe the force residual of a fitted model on each body.
 
     model: with its free parameters re-estimated on the fit records (to first order they move here
     too);  floor: that of a diagnosis that ended with this model: of the bodies' floors the same
@@ -90,24 +90,28 @@ def unexplained(
     chosen = model.model if isinstance(model, Fit) else model
     bodies = [b for b in chosen.bodies if any(s.motion.body == b for s in prepared.of("fit"))]
     counted = 1.0 if floor is None else floor.counted
-    parts = tuple(described(chosen, prepared, b, counted=counted, seed=seed) for b in bodies)
-    return Unexplained(chosen, prepared, parts)
+    parts = tuple(describe_body(chosen, prepared, b, counted=counted, seed=seed) for b in bodies)
+    return ResidualDescription(chosen, prepared, parts)
 
 
 def where_it_fails(
     model: Model | Fit, prepared: Prepared, floor: NoiseFloor | None = None
 ) -> tuple[Finding, ...]:
-    """Plain sentences on where a fitted model fails, made from the numbers; see `unexplained`."""
-    return unexplained(model, prepared, floor).findings
+    """Plain sentences on where a fitted model fails, each with the numbers behind the sentence.
+
+    model, prepared, floor: as for `describe_residual`
+    """
+    return describe_residual(model, prepared, floor).findings
 
 
-def describe(model: Model, experiment: Experiment, *, seed: int = 0) -> Unexplained:
-    """Where the model fails, re-estimated, and what that depends on: sentences with their numbers.
+def describe(model: Model, experiment: Experiment, *, seed: int = 0) -> ResidualDescription:
+    """Estimate the model again, then describe where it fails and what its residual depends on.
 
+    model: starting values;  experiment: its fit records estimate, its check records judge
     seed: of the draws for the noise floor
     """
     prepared = prepare(experiment)
-    return unexplained(estimate_from_starts(model, prepared), prepared, seed=seed)
+    return describe_residual(estimate_from_starts(model, prepared), prepared, seed=seed)
 
 
 check_arguments(globals(), __all__)

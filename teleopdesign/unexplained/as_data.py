@@ -1,4 +1,4 @@
-"""What was found about the residual as plain data, for a JSON file."""
+"""The description of a residual as plain data, for a JSON file."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 from ..plain_data import plain
 from ..quantity import unit_of
-from .description import BodyUnexplained, Described
+from .description import BodyResidual, DescribedDependence
 from .sentences import formula_text
 
 if TYPE_CHECKING:
-    from . import Unexplained
+    from . import ResidualDescription
 
 
-def as_data(description: Unexplained) -> dict[str, Any]:
+def as_data(description: ResidualDescription) -> dict[str, Any]:
     """Sentences, dependences with curves, and every test; SI units."""
     data = {
         "findings": [
@@ -32,7 +32,7 @@ def as_data(description: Unexplained) -> dict[str, Any]:
     return content
 
 
-def _body(part: BodyUnexplained) -> dict[str, Any]:
+def _body(part: BodyResidual) -> dict[str, Any]:
     return {
         "body": part.body,
         "check_error": part.error,
@@ -55,7 +55,7 @@ def _body(part: BodyUnexplained) -> dict[str, Any]:
     }
 
 
-def _dependence(one: Described, axis: str) -> dict[str, Any]:
+def _dependence(one: DescribedDependence, axis: str) -> dict[str, Any]:
     shape, curve = one.dependence.shape, one.curve
     return {
         "dependence": shape.name,

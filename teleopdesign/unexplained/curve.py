@@ -128,7 +128,7 @@ def _means(rows: Rows, shape: Shape, left: Array, x: Array) -> Array:
     return np.array(means).T.reshape(4, -1)
 
 
-def shortened(dependence: Dependence) -> Dependence:
+def without_columns(dependence: Dependence) -> Dependence:
     """The dependence without its columns, which are as long as the records."""
     none = Columns(np.zeros((0, len(dependence.coefficients))), dependence.columns.penalty)
     return replace(dependence, columns=none)

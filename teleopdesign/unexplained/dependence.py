@@ -120,13 +120,13 @@ def held_out(rows: Rows, columns: Columns) -> Array:
     return left[rows.checked]
 
 
-def tested(
+def fit_dependence(
     rows: Rows, beside: Columns, shape: Shape, knots_and_columns: tuple[Array, Columns]
 ) -> Dependence:
     """Learn one dependence beside other columns and hold it against the checked rows."""
     knots, columns = knots_and_columns
     if shape.variable is not None and not shape.is_wave:
-        columns = _smoothed(rows, beside, columns, roughness(shape, knots))
+        columns = _with_smoothness(rows, beside, columns, roughness(shape, knots))
     together = beside.beside(columns)
     before, after = held_out(rows, beside), held_out(rows, together)
     score = gain_score(before, after, rows.blocks[rows.checked])
@@ -143,7 +143,7 @@ def tested(
     )
 
 
-def _smoothed(rows: Rows, beside: Columns, columns: Columns, rough: Array) -> Columns:
+def _with_smoothness(rows: Rows, beside: Columns, columns: Columns, rough: Array) -> Columns:
     """With the weight of roughness that predicts blocks of the rows learnt from best."""
     target = rows.residual * rows.root
     where = np.flatnonzero(rows.learnt)
@@ -176,7 +176,7 @@ def is_not_itself(rows: Rows, beside: Columns, dependence: Dependence) -> bool:
     shape = replace(dependence.shape, variable=expected)
     columns = shape_columns(rows, shape, rows.residual)
     return columns is not None and (
-        tested(rows, beside, shape, columns).explained > NOT_ITSELF * dependence.explained
+        fit_dependence(rows, beside, shape, columns).explained > NOT_ITSELF * dependence.explained
     )
 
 
@@ -215,7 +215,7 @@ def dependences(
             if shape.is_wave and chosen:
                 columns = shape_columns(rows, shape, left)
             if columns is not None:
-                tests.append(tested(rows, beside, shape, columns))
+                tests.append(fit_dependence(rows, beside, shape, columns))
         first = first or tuple(sorted(tests, key=lambda t: t.squares))
         real = [
             t for t in tests if is_real(t, whole, floor_squares) and is_not_itself(rows, beside, t)

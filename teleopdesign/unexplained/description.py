@@ -13,7 +13,7 @@ from ..diagnose.prepare import Prepared
 from ..finding import Finding, Graph
 from ..model import Model
 from .amounts import number
-from .curve import Curve, curve_of, shortened
+from .curve import Curve, curve_of, without_columns
 from .dependence import ALARM, Dependence, dependences, own_columns
 from .formula import Formula, formula_for
 from .qualifiers import Contrast, contrasts
@@ -31,7 +31,7 @@ MOSTLY = 0.5
 
 
 @dataclass(frozen=True)
-class Described:
+class DescribedDependence:
     """One dependence with all that is said about it.
 
     curve: as the residual shows it;  formula: None where none with few terms holds
@@ -47,7 +47,7 @@ class Described:
 
 
 @dataclass(frozen=True)
-class BodyUnexplained:
+class BodyResidual:
     """What the model leaves of one body.
 
     error: relative force error on the check records (blocks of the fit records where none)
@@ -64,7 +64,7 @@ class BodyUnexplained:
     floor: float
     after: float
     at_rest: float
-    dependences: tuple[Described, ...]
+    dependences: tuple[DescribedDependence, ...]
     tests: tuple[Dependence, ...]
     whiteness: Whiteness
     views: Mapping[str, Graph]
@@ -80,12 +80,12 @@ class BodyUnexplained:
         return not self.dependences and self.floors <= CRITERIA.adequate
 
 
-def described(
+def describe_body(
     model: Model, prepared: Prepared, body: str, *, counted: float = 1.0, seed: int = 0
-) -> BodyUnexplained:
-    """Look at what a fitted model leaves of one body; seed: of the draws for the noise floor.
+) -> BodyResidual:
+    """Describe the force residual of a fitted model on one body.
 
-    counted: part of the noise floor that counts
+    counted: part of the noise floor that counts, 0 to 1;  seed: of the draws for the noise floor
     """
     stretches = tuple(s for s in prepared.stretches if s.motion.body == body)
     of_body = replace(prepared, stretches=stretches)
@@ -98,9 +98,9 @@ def described(
     resting = float(np.sum((weight * rows.residual**2)[used & (rows.root == 0)]))
     chosen, tests = dependences(rows, floor**2 * whole)
     whiteness = whiteness_of(rows)
-    descriptions = _described(rows, chosen)
+    descriptions = _describe_dependences(rows, chosen)
     after = descriptions[-1].dependence.squares if descriptions else squares
-    return BodyUnexplained(
+    return BodyResidual(
         body=body,
         axis=rows.axis,
         error=float(np.sqrt(squares / whole)),
@@ -108,31 +108,35 @@ def described(
         after=float(np.sqrt(after / whole)),
         at_rest=resting / max(squares, 1e-300),
         dependences=descriptions,
-        tests=tuple(shortened(t) for t in tests),
+        tests=tuple(without_columns(t) for t in tests),
         whiteness=whiteness,
         views=views_of(rows, whiteness),
     )
 
 
-def _described(rows: Rows, found: tuple[Dependence, ...]) -> tuple[Described, ...]:
+def _describe_dependences(
+    rows: Rows, chosen: tuple[Dependence, ...]
+) -> tuple[DescribedDependence, ...]:
     descriptions = []
     beside = own_columns(rows)
     target = rows.residual * rows.root
-    for i, dependence in enumerate(found):
-        curve = curve_of(rows, dependence, found[:i])
+    for i, dependence in enumerate(chosen):
+        curve = curve_of(rows, dependence, chosen[:i])
         formula = formula_for(rows, beside, dependence)
         left = target - beside.values @ beside.solve(target, rows.learnt)
         sides = contrasts(rows, dependence, left)
-        said = sentence_for(dependence.shape, curve, formula, sides, rows.axis)
-        if not said:
+        sentence = sentence_for(dependence.shape, curve, formula, sides, rows.axis)
+        if not sentence:
             break
         graph = curve_graph(dependence.shape, curve, rows.axis)
-        descriptions.append(Described(shortened(dependence), curve, formula, sides, said, graph))
+        descriptions.append(
+            DescribedDependence(without_columns(dependence), curve, formula, sides, sentence, graph)
+        )
         beside = beside.beside(dependence.columns)
     return tuple(descriptions)
 
 
-def findings_of(part: BodyUnexplained, *, name_body: bool) -> tuple[Finding, ...]:
+def findings_of(part: BodyResidual, *, name_body: bool) -> tuple[Finding, ...]:
     """The sentences about one body, each with its numbers and its graph."""
     where = part.body if name_body else ""
     numbers = {"error": part.error, "noise floor": part.floor, "noise floors": part.floors}
@@ -150,7 +154,7 @@ def findings_of(part: BodyUnexplained, *, name_body: bool) -> tuple[Finding, ...
     return tuple(findings)
 
 
-def _finding(one: Described, where: str) -> Finding:
+def _finding(one: DescribedDependence, where: str) -> Finding:
     d = one.dependence
     numbers = {
         "explained": d.explained,
@@ -168,7 +172,7 @@ def _finding(one: Described, where: str) -> Finding:
     return Finding(topic, "warning", said[0].upper() + said[1:], numbers, where, one.graph)
 
 
-def _rest(part: BodyUnexplained, where: str) -> list[Finding]:
+def _rest(part: BodyResidual, where: str) -> list[Finding]:
     """Where what is left lies in frequency, whether it has a memory, and what stays unexplained."""
     low, high = part.whiteness.band
     numbers = {"low": low, "high": high, "probability of chance": part.whiteness.probability}

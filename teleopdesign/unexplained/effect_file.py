@@ -14,8 +14,8 @@ from ..diagnose.scales import scales
 from ..errors import ModelError
 from ..plain_data import write_text
 from .amounts import between
-from .description import BodyUnexplained, Described
-from .effect_law import drawn, written
+from .description import BodyResidual, DescribedDependence
+from .effect_law import law_of_formula, law_of_points
 from .shapes import COMMAND, FRICTION, LATENESS, LOST, Shape
 
 #: the signal of a law for each variable; what is missing is known to no law
@@ -60,7 +60,7 @@ EFFECT = Effect(
 
 
 def write_effect(
-    path: str | Path, part: BodyUnexplained, described: Described, prepared: Prepared
+    path: str | Path, part: BodyResidual, described: DescribedDependence, prepared: Prepared
 ) -> None:
     """Write the effect file of a dependence; the file's name becomes the effect's.
 
@@ -73,7 +73,7 @@ def write_effect(
     write_text(path, text)
 
 
-def effect_text(part: BodyUnexplained, described: Described, prepared: Prepared) -> str:
+def effect_text(part: BodyResidual, described: DescribedDependence, prepared: Prepared) -> str:
     """The effect file as text; raises ModelError where no law can say the dependence."""
     shape, formula = described.dependence.shape, described.formula
     variable = shape.variable
@@ -85,32 +85,36 @@ def effect_text(part: BodyUnexplained, described: Described, prepared: Prepared)
         )
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     if variable is None or formula is None:
-        law = drawn(described.dependence, part.axis, unit)
+        law = law_of_points(described.dependence, part.axis, unit)
     else:
-        law = written(formula, part.axis, unit)
+        law = law_of_formula(formula, part.axis, unit)
     share = f"{100 * described.dependence.explained:.0f} %"
     return _HEAD.format(
-        title=_wrapped(shape.name[0].upper() + shape.name[1:] + ", as described from a recording."),
+        title=_docstring_line(
+            shape.name[0].upper() + shape.name[1:] + ", as described from a recording."
+        ),
         equation=law.equation,
-        where=_wrapped(f"{said(described.sentence)}. {_known(part, described)}".strip()),
-        source=_wrapped(
+        where=_docstring_line(
+            f"{capitalise(described.sentence)}. {_known_range(part, described)}".strip()
+        ),
+        source=_docstring_line(
             f'Described by `teleopdesign describe` from "{prepared.experiment.title}": it explains '
             f"{share} of what was left there."
         ),
         names=_names(law.text),
-        law=_returned(shape, law.text),
+        law=_return_statement(shape, law.text),
         role=_role(shape),
         parameters="\n".join(law.parameters),
         absent=", ".join(f'"{s}": 0.0' for s in law.strengths),
     )
 
 
-def said(sentence: str) -> str:
+def capitalise(sentence: str) -> str:
     """The sentence with a capital letter."""
     return sentence[:1].upper() + sentence[1:]
 
 
-def _known(part: BodyUnexplained, described: Described) -> str:
+def _known_range(part: BodyResidual, described: DescribedDependence) -> str:
     """The range of the variable that the records cover."""
     variable, x = described.dependence.shape.variable, described.curve.x
     if variable is None:
@@ -133,7 +137,7 @@ def _role(shape: Shape) -> str:
     return "friction_level" if shape.carrier is FRICTION or signed else "force"
 
 
-def _returned(shape: Shape, law: str) -> str:
+def _return_statement(shape: Shape, law: str) -> str:
     variable = shape.variable
     given = f"u = {SIGNALS[variable.name]}\n    " if variable is not None else ""
     if shape.of_command and variable is COMMAND:
@@ -152,7 +156,7 @@ def _names(law: str) -> str:
     return f"from sympy import {', '.join(used)}\n\n" if used else ""
 
 
-def _wrapped(text: str) -> str:
+def _docstring_line(text: str) -> str:
     """The text as it may stand in a docstring: nothing in it can end it, or begin an escape.
 
     It holds titles and file names, which are anybody's.

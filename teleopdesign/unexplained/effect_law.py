@@ -41,7 +41,7 @@ def _parameter(
     )
 
 
-def written(formula: Formula, axis: str, unit: Mapping[str, float]) -> Law:
+def law_of_formula(formula: Formula, axis: str, unit: Mapping[str, float]) -> Law:
     """A formula, its coefficients and numbers as parameters."""
     variable = formula.shape.variable
     assert variable is not None
@@ -118,7 +118,7 @@ def _power(
     return f"p.{strength} * (u / {reach:g}){power}", value * reach**term.number, []
 
 
-def drawn(dependence: Dependence, axis: str, unit: Mapping[str, float]) -> Law:
+def law_of_points(dependence: Dependence, axis: str, unit: Mapping[str, float]) -> Law:
     """A line between points, of which only the size is a parameter; or a constant."""
     shape = dependence.shape
     quantity = shape.carrier.quantity

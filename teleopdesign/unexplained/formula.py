@@ -74,8 +74,8 @@ def formula_for(rows: Rows, beside: Columns, dependence: Dependence) -> Formula 
         # what has no number to be found is simpler
         simple = [t for t in ranked if not t.is_found]
         for term in dict.fromkeys((*simple[:1], ranked[0])):
-            longer = (*chosen, _refined(rows, search, dependence.shape, term))
-            formula = _judged(rows, beside, dependence, longer)
+            longer = (*chosen, _refine_number(rows, search, dependence.shape, term))
+            formula = _checked_formula(rows, beside, dependence, longer)
             if formula is not None:
                 return formula
         chosen = longer
@@ -141,7 +141,7 @@ def _columns(rows: Rows, shape: Shape, terms: tuple[Term, ...]) -> Columns:
     return Columns(values, np.zeros((values.shape[1],) * 2))
 
 
-def _refined(rows: Rows, search: _Search, shape: Shape, term: Term) -> Term:
+def _refine_number(rows: Rows, search: _Search, shape: Shape, term: Term) -> Term:
     """The term with its number searched between its neighbours on the grid."""
     if not term.is_found or term.kind == "wave":  # a wave number is searched already
         return term
@@ -156,7 +156,7 @@ def _refined(rows: Rows, search: _Search, shape: Shape, term: Term) -> Term:
     return Term(term.kind, float(minimum.x))
 
 
-def _judged(
+def _checked_formula(
     rows: Rows, beside: Columns, dependence: Dependence, terms: tuple[Term, ...]
 ) -> Formula | None:
     """The formula of these terms, if each is sure and they hold on the checked rows."""

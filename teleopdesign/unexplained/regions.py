@@ -57,7 +57,7 @@ def regions_of(curve: Curve, *, signed: bool = False) -> tuple[Region, ...]:
     return tuple(regions)
 
 
-def named(regions: tuple[Region, ...]) -> tuple[Region, ...]:
+def largest_regions(regions: tuple[Region, ...]) -> tuple[Region, ...]:
     """The largest ranges, those of a tenth of the squares or more, from low to high."""
     chosen = regions[:1] + tuple(r for r in regions[1:MOST] if r.share > NAMED)
     return tuple(sorted(chosen, key=lambda r: r.low))

@@ -13,7 +13,7 @@ from .curve import Curve
 from .formula import Formula
 from .library import Term
 from .qualifiers import Contrast
-from .regions import Region, goes_up_and_down, named, regions_of
+from .regions import Region, goes_up_and_down, largest_regions, regions_of
 from .shapes import DAMPING, FORCE, FRICTION, LATENESS, LOST, MASS, Shape, Variable
 
 #: symbol of each variable in a formula
@@ -110,7 +110,7 @@ def sentence_for(
         return _constant(shape, float(curve.y[0]), axis)
     regions = regions_of(curve, signed=shape.variable.signed)
     wave = formula is not None and len(formula.terms) == 1 and formula.terms[0].kind == "wave"
-    if shape.is_wave or (wave and len(named(regions)) > 2):
+    if shape.is_wave or (wave and len(largest_regions(regions)) > 2):
         assert formula is not None
         said = _wave(shape, formula, axis)
     elif goes_up_and_down(regions) and shape.variable.name in ("position", "time"):
@@ -127,7 +127,7 @@ def sentence_for(
 def _ranges(shape: Shape, regions: Sequence[Region], axis: str) -> str:
     assert shape.variable is not None
     parts = []
-    for i, region in enumerate(named(tuple(regions))):
+    for i, region in enumerate(largest_regions(tuple(regions))):
         backward = shape.variable.signed and region.backward
         where = place(region, shape.variable, axis)
         size = _size(region.extreme, shape, axis, backward=backward)

@@ -134,12 +134,12 @@ def knots_of(variable: Variable, rows: Rows) -> Array:
         return np.linspace(low, high, variable.knots)
     # the first knot holds rows enough to tell f there, down to rest: as motions are told
     first, top = np.quantile(np.abs(values[shown]), [0.01, 0.9995]).tolist()
-    small = min(resolved(variable, rows), 0.1 * top)
+    small = min(smallest_resolved(variable, rows), 0.1 * top)
     ends = np.arcsinh([first / small, top / small])
     return np.asarray(small * np.sinh(np.linspace(ends[0], ends[1], variable.knots)))
 
 
-def resolved(variable: Variable, rows: Rows) -> float:
+def smallest_resolved(variable: Variable, rows: Rows) -> float:
     """The smallest value of the variable that the comparison resolves."""
     step = max(a.stretch.motion.step for a in rows.alongs)
     time = 1.0 / (2 * np.pi * rows.bandwidth)
@@ -193,10 +193,10 @@ def columns_of(shape: Shape, knots: Array, rows: Rows) -> Array:
 def columns_from(shape: Shape, rows: Rows, functions: Callable[[Along], Array]) -> Array:
     """What the residual would show (n, k) of functions (k, samples) times the shape's carrier."""
     columns = rows.lowpassed(lambda along: shape.carrier.along(along) * functions(along))
-    return _referred(columns, rows) if shape.of_command else columns
+    return _relative_to_force(columns, rows) if shape.of_command else columns
 
 
-def _referred(columns: Array, rows: Rows) -> Array:
+def _relative_to_force(columns: Array, rows: Rows) -> Array:
     """Columns of what changes the acting force, relative to the force that is left to act.
 
     Where no other force is measured, less command with less of everything else leaves less

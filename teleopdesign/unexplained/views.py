@@ -79,12 +79,12 @@ def _view(rows: Rows, signal: str, quantity: str, words: str) -> Graph:
         return Graph(x_label, y_label, tuple(series))
     for name, in_direction in (("mean forward", direction > 0), ("mean backward", direction < 0)):
         used = in_direction & known
-        mean = _binned(x[used], y[used], rows.blocks[used])
+        mean = _bin_means(x[used], y[used], rows.blocks[used])
         series.append(Series(name, mean[0], mean[1], "trend", mean[2], mean[3]))
     return Graph(x_label, y_label, tuple(series))
 
 
-def _binned(x: Array, y: Array, blocks: NDArray[np.intp]) -> Array:
+def _bin_means(x: Array, y: Array, blocks: NDArray[np.intp]) -> Array:
     """Means in bins of equally many rows with bands by blocks: rows x, y, low, high (4, b)."""
     if not len(x):
         return np.zeros((4, 0))

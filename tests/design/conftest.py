@@ -6,7 +6,7 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.blocks import Value
-from teleopdesign.design import Diagnosed
+from teleopdesign.design import DiagnosedModel
 
 #: what a diagnosis of the rod ends with, rounded: value and standard error
 ROD = {
@@ -28,7 +28,7 @@ def rod(experiment):
     """The rod as a diagnosis leaves it, with Stribeck friction."""
     model = td.Model.from_experiment(experiment).with_effect("stribeck")
     model = model.with_values({n: Value(v, stderr=e) for n, (v, e) in ROD.items()})
-    return Diagnosed(experiment, model, "effects_missing", 1.05)
+    return DiagnosedModel(experiment, model, "effects_missing", 1.05)
 
 
 @pytest.fixture(scope="session")

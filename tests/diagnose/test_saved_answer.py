@@ -24,7 +24,7 @@ from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.effects import catalogue
 from teleopdesign.errors import TeleopDesignError
 from teleopdesign.plain_data import write_json
-from teleopdesign.unexplained import unexplained
+from teleopdesign.unexplained import describe_residual
 
 #: what came later than the rest of the format
 LATER = ("experiment", "models", "floor", "open")
@@ -91,8 +91,8 @@ def test_a_diagnosis_is_read_back_with_its_figures(path, diagnosis, experiment):
 @pytest.mark.slow
 def test_what_is_described_is_the_same_from_the_answer(path, diagnosis, experiment):
     found = restored(load_answer(path), experiment, FEW)
-    told = unexplained(found.before, found.prepared, found.floor)
-    live = unexplained(diagnosis.before, diagnosis.prepared, diagnosis.floor)
+    told = describe_residual(found.before, found.prepared, found.floor)
+    live = describe_residual(diagnosis.before, diagnosis.prepared, diagnosis.floor)
     assert told.as_data() == live.as_data()
 
 

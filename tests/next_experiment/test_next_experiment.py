@@ -27,9 +27,9 @@ from teleopdesign.next_experiment import (
     write_reference,
 )
 from teleopdesign.next_experiment.family import Setting, family
-from teleopdesign.next_experiment.following import Servo, followed
+from teleopdesign.next_experiment.following import Servo, follow_path
 from teleopdesign.next_experiment.path import Move, travel, window_length
-from teleopdesign.next_experiment.prediction import extended, refit
+from teleopdesign.next_experiment.prediction import refit, with_records
 from teleopdesign.next_experiment.synthesis import command_along, exact_motion
 
 FEW = {n: EFFECTS[n] for n in ("coulomb", "viscous", "quadratic_drag", "bias", "coulomb_asymmetry")}
@@ -110,7 +110,7 @@ def test_a_body_lies_behind_its_servo_by_the_play_and_catches_up_smoothly():
     t = np.arange(0.0, 3.0, 1e-3)
     path = 0.02 * np.sin(2 * np.pi * t)
     servo = Servo(turn=0.02, play=2e-3)
-    behind = followed(path, servo, sample_time=1e-3)
+    behind = follow_path(path, servo, sample_time=1e-3)
     # half of the play, and the catching up: no more than another play at this acceleration
     assert np.abs(behind.path - path).max() <= 1.5 * servo.play
     assert len(behind.stuck) == 6 + 1  # each turn and the start
@@ -279,7 +279,7 @@ def test_what_is_predicted_is_found_and_then_named(case, number, tmp_path):
     found = after.separation(truth=truth, other=other)
     # found over predicted lay between 0.4 and 1.1 when this was written; the servo is not known
     assert 0.3 * predicted < found < 2.0 * predicted
-    again = diagnosed(extended(experiment, new), MOST)
+    again = diagnosed(with_records(experiment, new), MOST)
     named = {c.effect.name for c in (*again.missing, *(c for g in again.groups for c in g))}
     if predicted >= 1.0:
         assert poor.rivals[number] in named and poor.rivals[1 - number] not in named

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from report.html_page import HtmlPage
 
 from teleopdesign.finding import Graph, Series
-from teleopdesign.plot.graph import draw_graph, extremes, thinned
+from teleopdesign.plot.graph import draw_graph, extremes, thin_series
 from teleopdesign.report.picture import picture
 from teleopdesign.report.scaled import scaled
 
@@ -79,7 +79,7 @@ def test_a_graph_without_series_or_with_gaps_is_drawn():
 @given(st.integers(1, 2000), st.integers(2, 300))
 def test_a_thinned_series_keeps_its_extremes_and_its_order(n, most):
     y = np.sin(np.arange(n) ** 1.3)
-    found = thinned(Series("a", np.arange(float(n)), y, low=y - 1, high=y + 1), most)
+    found = thin_series(Series("a", np.arange(float(n)), y, low=y - 1, high=y + 1), most)
     assert len(found.x) <= max(most, 2)
     assert found.y.min() == y.min() and found.y.max() == y.max()
     assert np.all(np.diff(found.x) > 0)

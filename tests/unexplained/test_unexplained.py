@@ -18,7 +18,7 @@ from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.errors import ModelError
-from teleopdesign.unexplained import unexplained, where_it_fails
+from teleopdesign.unexplained import describe_residual, where_it_fails
 from teleopdesign.unexplained.amounts import amount, number
 from teleopdesign.unexplained.curve import curve_of
 from teleopdesign.unexplained.dependence import Dependence, dependences, own_columns
@@ -60,7 +60,7 @@ def adequate(rod, lacking):
 @pytest.fixture(scope="module")
 def failure(rod, lacking):
     """What the shipped model leaves."""
-    return unexplained(lacking, rod)
+    return describe_residual(lacking, rod)
 
 
 @pytest.fixture(scope="module")
@@ -119,7 +119,7 @@ def test_what_is_left_is_counted_in_the_floors_that_a_diagnosis_kept_to(rod, ade
     floor = noise_floor(adequate.model, rod, np.random.default_rng(0))
     kept = floor.at_most(0.25 * floor.drawn)
     assert kept.held and kept.counted == pytest.approx(0.25)
-    ((whole,), (part,)) = (unexplained(adequate, rod, f).parts for f in (floor, kept))
+    ((whole,), (part,)) = (describe_residual(adequate, rod, f).parts for f in (floor, kept))
     assert part.floor == pytest.approx(0.25 * whole.floor)
     assert whole.is_adequate and not part.is_adequate
 
@@ -328,7 +328,7 @@ def test_a_record_with_its_own_zero_is_not_asked_about_position(rod, adequate):
 
 def test_without_check_records_blocks_are_held_out(rod, lacking):
     seen = replace(rod, stretches=rod.of("fit"))
-    found = unexplained(lacking, seen)
+    found = describe_residual(lacking, seen)
     assert found.largest[1].dependence.shape.name == "friction over speed"
 
 
@@ -401,9 +401,9 @@ def test_bad_files_are_refused_before_the_work(tmp_path, capsys):
 
 
 def test_looking_is_fast(rod, lacking):
-    unexplained(lacking, rod)
+    describe_residual(lacking, rod)
     began = time.process_time()
-    unexplained(lacking, rod)
+    describe_residual(lacking, rod)
     # 0.5 s on one core for 20 s at 1 kHz; threads of a busy machine count several times
     assert time.process_time() - began < 8.0
 
@@ -446,7 +446,7 @@ def test_what_the_independent_simulator_hides_is_said(tmp_path, effect):
     folder = write_own(tmp_path / "case", effect, seed=21)
     prepared = prepare(load_experiment(folder))
     fit = estimate_from_starts(Model.from_experiment(prepared.experiment), prepared)
-    assert unexplained(fit, prepared).largest[1].dependence.shape.name in SAID[effect]
+    assert describe_residual(fit, prepared).largest[1].dependence.shape.name in SAID[effect]
 
 
 @pytest.mark.slow
@@ -456,7 +456,7 @@ def test_where_the_independent_simulator_hides_nothing_nothing_is_said(tmp_path)
         folder = write_own(tmp_path / str(seed), None, seed=1000 + seed)
         prepared = prepare(load_experiment(folder))
         fit = estimate_from_starts(Model.from_experiment(prepared.experiment), prepared)
-        alarms += unexplained(fit, prepared).largest is not None
+        alarms += describe_residual(fit, prepared).largest is not None
     assert alarms <= 1, "2 % of records"
 
 
@@ -467,7 +467,9 @@ def test_a_force_outside_the_catalogue_is_described_written_and_named(tmp_path, 
     experiment = load_experiment(folder)
     prepared = prepare(experiment)
     model = Model.from_experiment(experiment)
-    effect = written(tmp_path, "found", unexplained(estimate(model, prepared), prepared), prepared)
+    effect = written(
+        tmp_path, "found", describe_residual(estimate(model, prepared), prepared), prepared
+    )
     known = {**model.known, "found": effect}
     diagnosis = find_missing(experiment, replace(model, known=known))
     assert "found" in [c.effect.name for c in diagnosis.missing]
