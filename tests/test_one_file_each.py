@@ -1,4 +1,4 @@
-"""To add an effect, a control law, a diagram or a command is to add one file, nothing else."""
+"""An effect, control law, diagram, command or theorem is added by one file and nothing else."""
 
 import os
 import shutil
@@ -30,7 +30,6 @@ EFFECT = Effect(
     role="force",
     energy="dissipates",
     law=law,
-    linear=True,
     parameters={"cubic_damping": Parameter("damping", "c: force per velocity cubed")},
     absent={"cubic_damping": 0.0},
     source="a test",
@@ -88,6 +87,28 @@ def run(options):
     print("HELLO" if options.loudly else "hello")
     return 0
 '''
+
+
+THEOREM = '''"""Throw-away: nothing is settled about any device."""
+
+from ..claims.claim import Claim, Unknown
+from ._theorem import Theorem, TopicClaim
+
+THEOREM = Theorem(
+    applies=lambda question: True,
+    claims=lambda question: [TopicClaim("throw-away", Claim("nothing", Unknown("a test")))],
+    order=1000,
+)
+'''
+
+ASK = """
+from teleopdesign import Body, EFFECTS
+from teleopdesign.passivity.identified import identified
+from teleopdesign.passivity.theorems import Question, settle
+
+body = Body("prismatic", {"inertia": 0.15}).with_effect(EFFECTS["coulomb"], {"level": 0.5})
+print(*[one.topic for one in settle(Question(identified(body)), simulated=False)])
+"""
 
 
 @pytest.fixture(scope="module")
@@ -158,4 +179,14 @@ def test_a_command_is_one_file(copy, add_file):
     assert run(copy, "throw-away", "--loudly") == "HELLO\n"
 
 
-# Theorems become one file each in passivity/theorems; a test like those above belongs here then.
+def test_a_theorem_is_one_file(copy, add_file):
+    def topics():
+        environment = os.environ | {"PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
+        command = [sys.executable, "-c", ASK]
+        done = subprocess.run(command, cwd=copy, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    assert "throw-away" not in topics()
+    add_file("passivity/theorems/throw_away.py", THEOREM)
+    assert "throw-away" in topics()
