@@ -115,6 +115,14 @@ def _read(path: Path) -> Effect:
     return _checked(module, path)
 
 
+#: signal -> roles whose laws may use it; for the others there is no such signal along a motion
+ONLY_IN = {
+    "command": ("actuation",),
+    "level": ("friction_shape",),
+    "penetration": ("contact", "contact_shape"),
+}
+
+
 def _checked(module: ModuleType, path: Path) -> Effect:
     effect = getattr(module, "EFFECT", None)
     if not isinstance(effect, Effect):
@@ -136,6 +144,12 @@ def _checked(module: ModuleType, path: Path) -> Effect:
             known = {s for s in law.free_symbols if s.name.startswith(needed)}
             if strangers := law.free_symbols - allowed - known:
                 raise ModelError(f"{path}: law uses {', '.join(map(str, strangers))}")
+            for signal, roles in ONLY_IN.items():
+                if effect.role not in roles and law.has(SIGNALS[signal]):
+                    raise ModelError(
+                        f"{path}: law uses now.{signal}, which only the role "
+                        f"{' or '.join(roles)} knows; this one is {effect.role}"
+                    )
         for law in effect.corrections().values():
             if strangers := law.free_symbols - allowed - {INERTIA, UNEXPLAINED}:
                 raise ModelError(f"{path}: correction uses {', '.join(map(str, strangers))}")

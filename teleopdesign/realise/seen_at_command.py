@@ -30,7 +30,7 @@ from ..measurement.motion import Motion
 from .along_motion import Residual, measured_along, residual_along
 from .friction_along import level_along
 from .stages_along import Stage, stages_along
-from .traced import Along
+from .traced import Along, slope
 
 #: part of the gain that a law has where it has most, below which a sample is blind. A command ten
 #: times as uncertain as elsewhere is not told; of a larger part a ripple or a soft limit would be
@@ -117,10 +117,10 @@ def _slopes(
     """Derivatives of a law by signals and its states, and of its rates by states and the first."""
     states, rates = list(effect.state_symbols().values()), list(effect.rates().values())
     return (
-        [sp.diff(law, s) for s in signals],
-        [sp.diff(law, z) for z in states],
-        [[sp.diff(rate, z) for z in states] for rate in rates],
-        [sp.diff(rate, signals[0]) for rate in rates],
+        [slope(law, s) for s in signals],
+        [slope(law, z) for z in states],
+        [[slope(rate, z) for z in states] for rate in rates],
+        [slope(rate, signals[0]) for rate in rates],
     )
 
 
@@ -197,8 +197,8 @@ def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
         gain, over = gain - taken.gain, over - taken.dynamics
     if body.level().has(signal):
         level, with_speeds = level_along(body, along)
-        slope = _evaluate(sp.diff(level, signal), with_speeds, len(gain))
-        gain = gain - along.signals[SIGNALS["direction"]].value * slope
+        made_by_it = _evaluate(slope(level, signal), with_speeds, len(gain))
+        gain = gain - along.signals[SIGNALS["direction"]].value * made_by_it
     return _Way(gain, over, 0.0)
 
 

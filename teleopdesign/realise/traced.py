@@ -131,6 +131,11 @@ _SIGNALS = tuple(SIGNALS.values())
 TRACED = frozenset({SIGNALS["command"], SIGNALS["acting_force"], SIGNALS["level"]})
 
 
+def slope(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
+    """Derivative almost everywhere: at a jump, as of sgn, it is that of either side."""
+    return sp.diff(expression, symbol).replace(sp.DiracDelta, lambda *_: sp.S(0))
+
+
 @lru_cache(maxsize=512)
 def law_of(
     expression: sp.Expr,
@@ -143,7 +148,7 @@ def law_of(
     """
     used = tuple(s for s in signals if expression.has(s))
     parameters = tuple(sorted(expression.free_symbols - set(signals), key=str))
-    gradients = [sp.diff(expression, s) if s in traced else sp.S(0) for s in used]
-    gradients += [sp.diff(expression, p) for p in parameters]
+    gradients = [slope(expression, s) if s in traced else sp.S(0) for s in used]
+    gradients += [slope(expression, p) for p in parameters]
     call = sp.lambdify([*used, *parameters], [expression, *gradients], "numpy", cse=True)
     return NumericLaw(used, parameters, call)

@@ -30,6 +30,7 @@ import teleopdesign.effects as folder
 from teleopdesign.effects import (
     BLOCK_EFFECTS,
     EFFECTS,
+    ONLY_IN,
     SIGNALS,
     FitSearch,
     catalogue,
@@ -61,6 +62,18 @@ def test_what_belongs_to_a_block_says_so_and_is_apart_from_the_candidates():
     assert {e.block for e in BLOCK_EFFECTS.values()} == {"hand", "environment"}
     assert {e.block for e in EFFECTS.values()} == {""}
     assert set(with_block_effects()) == {*EFFECTS, *BLOCK_EFFECTS}
+
+
+@pytest.mark.parametrize("signal", sorted(ONLY_IN))
+def test_a_law_may_not_use_a_signal_that_its_role_does_not_know(signal, tmp_path):
+    path = tmp_path / "odd_force.py"
+    path.write_text(
+        "from teleopdesign import Effect, Parameter\n"
+        f"EFFECT = Effect(role='force', law=lambda now, p: p.part * now.{signal},\n"
+        "    parameters={'part': Parameter('dimensionless', 'part')}, absent={'part': 0.0})\n"
+    )
+    with pytest.raises(ModelError, match=f"now.{signal}, which only the role"):
+        load_effect(path)
 
 
 def test_a_law_may_use_parameters_of_effects_that_it_needs_and_of_no_others(tmp_path):
