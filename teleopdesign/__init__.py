@@ -25,7 +25,7 @@ The names that a user types:
                   write_diagram
     controllers   CONTROLLERS, Controller, controller, from_control
     responses     derive_transfers, transfer_functions, bode, measured_impedance,
-                  simulate_diagram, Simulation, Sampling, sine, to_iosystem
+                  simulate_diagram, simulate_many, Simulation, Sampling, sine, to_iosystem
     design        design_compensation, Design, Assumptions
     passivity     diagram_claims, positive_real, Claim, Certificate
     errors        TeleopDesignError, ExperimentError, ModelError
@@ -113,7 +113,7 @@ if TYPE_CHECKING:
     from .next_experiment import propose as propose_experiment
     from .passivity import Certificate, Claim, diagram_claims, positive_real
     from .realise.iosystem import to_iosystem
-    from .simulate import Sampling, Simulation, sine
+    from .simulate import Sampling, Simulation, simulate_many, sine
     from .simulate import simulate as simulate_diagram
     from .unexplained import describe
 
@@ -167,6 +167,7 @@ __all__ = [
     "rank",
     "read_diagram",
     "simulate_diagram",
+    "simulate_many",
     "sine",
     "teleoperator",
     "to_iosystem",
@@ -230,6 +231,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "bode": "frequency",
         "measured_impedance": "frequency",
         "simulate_diagram": "simulate:simulate",
+        "simulate_many": "simulate",
         "Simulation": "simulate",
         "Sampling": "simulate",
         "sine": "simulate",
