@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
-from ..diagrams import Control, Diagram
+from ..diagrams import Attached, Block, Control, Diagram, Moving
 from ..effects import EFFECTS, SIGNALS
 from ..errors import ModelError
 from .tips import with_tips
@@ -69,10 +70,30 @@ def with_give(body: Body, give: float, *, damping_ratio: float = 0.0) -> Body:
 
 def in_computer(diagram: Diagram, period: float) -> Diagram:
     """The diagram with controllers as a computer of that period (s) realises them."""
-    for part in diagram.controls:
-        if isinstance(part.controller, Controller) and not part.analog:
-            diagram = diagram.with_block(part.name, part.controller.sampled(period))
-    return diagram
+    found = {
+        part.name: part.controller.sampled(period)
+        for part in diagram.controls
+        if isinstance(part.controller, Controller) and not part.analog
+    }
+    return _with_blocks(diagram, found)
+
+
+def _with_blocks(diagram: Diagram, found: Mapping[str, Body | Controller]) -> Diagram:
+    """The diagram with these in the places of their names; itself where nothing is another."""
+
+    def placed(part: Block) -> Block:
+        if part.name not in found:
+            return part
+        new = found[part.name]
+        if isinstance(new, Controller) and isinstance(part, Control):
+            same = new is part.controller or new.stages == part.controller.stages  # type: ignore[union-attr]
+            return part if same else replace(part, controller=new)
+        assert isinstance(new, Body) and isinstance(part, Moving | Attached)
+        return part if new is part.body else replace(part, body=new)
+
+    blocks = tuple(map(placed, diagram.blocks))
+    changed = any(new is not old for new, old in zip(blocks, diagram.blocks, strict=True))
+    return replace(diagram, blocks=blocks) if changed else diagram
 
 
 def simulated(diagram: Diagram, give: float, prescribed: Iterable[str] = ()) -> Diagram:
@@ -80,10 +101,11 @@ def simulated(diagram: Diagram, give: float, prescribed: Iterable[str] = ()) -> 
 
     prescribed: motions that are given
     """
+    bodies: dict[str, Body | Controller] = {}
     for part in diagram.blocks:
         found = part.controller if isinstance(part, Control) else part.body
         if not isinstance(found, Body | MatrixImpedance | Controller):
             raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no equations")
         if isinstance(found, Body):
-            diagram = diagram.with_block(part.name, with_give(without_absent(found), give))
-    return with_tips(diagram, prescribed=prescribed)
+            bodies[part.name] = with_give(without_absent(found), give)
+    return with_tips(_with_blocks(diagram, bodies), prescribed=prescribed)
