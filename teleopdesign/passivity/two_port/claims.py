@@ -19,6 +19,7 @@ from ..checker.absolute_stability import conditions
 from ..claims.certificate import absolute_stability_certificate, positive_real_certificate
 from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown, Verdict
 from ..linear.impedance import impedance, readable
+from ..linear.polynomials import halves, where_negative
 from ..linear.positive_real import is_positive_real
 from ..search.growing_wave import GrowingWave, growing_wave, halvings, wave_of
 from .delayed_two_port import late_terms, obstacles
@@ -60,6 +61,8 @@ def passive(system: TwoPort) -> Claim:
     frequencies, margin = _lowest(system, passive_margin)
     hidden = obstacles(system, "passive") if system.has_delay else ()
     if margin < 0 or hidden or not system.has_delay:
+        if not system.has_delay:
+            frequencies += _where_it_gives_out(_rational(system))
         wave = _wave_between(system, frequencies)
         wave = wave or _best(_wave_at(system.z, f) for f in frequencies)
         if wave is not None:
@@ -155,6 +158,21 @@ def _lowest(system: TwoPort, margin: Any) -> tuple[list[float], float]:
         f = np.geomspace(f[max(k - 1, 0)], f[min(k + 1, len(f) - 1)], 401)
         values = margin(system.over(f))
     return [lowest[0], *chosen], lowest[1]
+
+
+def _where_it_gives_out(z: sp.ImmutableMatrix) -> list[float]:
+    """Frequencies (Hz) of negative Re Z11, Re Z22 or det(Z + Z*), wherever on the axis they lie.
+
+    From exact polynomials in x = w^2: residues that are not Hermitian give out energy only next to
+    their pole, below or above every frequency of a grid.
+    """
+    twice = z + z.T.subs(S, -S)  # Z + Z* on the axis
+    squares = []
+    for minor in (twice[0, 0], twice[1, 1], twice.det()):
+        numerator, denominator = sp.fraction(sp.together(minor))
+        product = sp.Poly(numerator * denominator, S, domain="QQ")  # even in s; sign of the minor
+        squares += where_negative(halves(product)[0])
+    return [float(x) ** 0.5 / (2 * np.pi) for x in squares]
 
 
 def _best(waves: Iterable[GrowingWave | None]) -> GrowingWave | None:
