@@ -111,3 +111,11 @@ def test_residues_that_are_not_hermitian_give_out_energy_however_near_to_their_p
     one_sided = two_port([[scale * (1 + 3 * k), scale * 2 * k], [0, scale * (1 + 3 * k)]])
     claim = passive(one_sided)
     assert claim.status == "refuted" and claim.record.replay() > 0
+
+
+@pytest.mark.parametrize("share", ["1/10", "1/10000"])
+def test_masses_that_are_not_positive_give_out_energy_at_fast_growth(share):
+    """det of the masses is -share: only far out on the real axis do they outdo the dampers."""
+    m = S * (1 + sp.Rational(share))
+    claim = passive(two_port([[S + 9, m], [m, S + 1]]))
+    assert claim.status == "refuted" and claim.record.replay() > 0

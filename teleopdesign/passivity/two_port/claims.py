@@ -61,9 +61,11 @@ def passive(system: TwoPort) -> Claim:
     frequencies, margin = _lowest(system, passive_margin)
     hidden = obstacles(system, "passive") if system.has_delay else ()
     if margin < 0 or hidden or not system.has_delay:
+        rates: list[float] = []
         if not system.has_delay:
-            frequencies += _where_it_gives_out(_rational(system))
-        wave = _wave_between(system, frequencies)
+            further, rates = _where_it_gives_out(_rational(system))
+            frequencies += further
+        wave = _wave_between(system, frequencies, rates)
         wave = wave or _best(_wave_at(system.z, f) for f in frequencies)
         if wave is not None:
             f = float(wave.frequency) / (2 * np.pi)
@@ -160,19 +162,21 @@ def _lowest(system: TwoPort, margin: Any) -> tuple[list[float], float]:
     return [lowest[0], *chosen], lowest[1]
 
 
-def _where_it_gives_out(z: sp.ImmutableMatrix) -> list[float]:
-    """Frequencies (Hz) of negative Re Z11, Re Z22 or det(Z + Z*), wherever on the axis they lie.
+def _where_it_gives_out(z: sp.ImmutableMatrix) -> tuple[list[float], list[float]]:
+    """Where Z + Z* is not positive: frequencies (Hz) of the axis, and rates (1/s), wherever.
 
-    From exact polynomials in x = w^2: residues that are not Hermitian give out energy only next to
-    their pole, below or above every frequency of a grid.
+    From exact polynomials in w^2 and in s: a residue that is not Hermitian, or not positive, gives
+    out energy only next to its pole, below or above every frequency of a grid.
     """
-    twice = z + z.T.subs(S, -S)  # Z + Z* on the axis
-    squares = []
-    for minor in (twice[0, 0], twice[1, 1], twice.det()):
-        numerator, denominator = sp.fraction(sp.together(minor))
-        product = sp.Poly(numerator * denominator, S, domain="QQ")  # even in s; sign of the minor
-        squares += where_negative(halves(product)[0])
-    return [float(x) ** 0.5 / (2 * np.pi) for x in squares]
+    axis = [x for p in _minors(z + z.T.subs(S, -S)) for x in where_negative(halves(p)[0])]
+    rates = [x for p in _minors(z + z.T) for x in where_negative(p)]
+    return [float(x) ** 0.5 / (2 * np.pi) for x in axis], [float(x) for x in rates]
+
+
+def _minors(twice: sp.ImmutableMatrix) -> list[sp.Poly]:
+    """Polynomials of the signs of both diagonal entries and of the determinant."""
+    minors = (sp.fraction(sp.together(m)) for m in (twice[0, 0], twice[1, 1], twice.det()))
+    return [sp.Poly(above * below, S, domain="QQ") for above, below in minors]
 
 
 def _best(waves: Iterable[GrowingWave | None]) -> GrowingWave | None:
@@ -202,16 +206,20 @@ def _points(system: TwoPort) -> np.ndarray:
     return np.array([*points_near_poles(ratios)])
 
 
-def _wave_between(system: TwoPort, frequencies: Sequence[float]) -> GrowingWave | None:
-    """A growing wave beside those (Hz), beside a pole or anywhere, the plainest of them."""
+def _wave_between(
+    system: TwoPort, frequencies: Sequence[float], rates: Sequence[float]
+) -> GrowingWave | None:
+    """A growing wave beside those (Hz; 1/s), beside a pole or anywhere, the plainest of them."""
     beside = [2 * np.pi * f * (2.0**-k + 1j) for f in frequencies for k in range(33)]
-    points = np.concatenate([_points(system), beside])
+    points = np.concatenate([_points(system), beside, rates])
     z = system.at(points)
     finite = np.isfinite(z).all(axis=(1, 2))
     points, z = points[finite], z[finite]
     share = passive_margin(z) / np.abs(z).max(axis=(1, 2)) * points.real / np.abs(points)
     size = np.abs(np.log(np.abs(points) / np.median(np.abs(points))))
-    for k in np.lexsort((size, np.round(share, 2)))[:20]:  # of equals, neither slow nor fast ones
+    plainest = np.lexsort((size, np.round(share, 2)))[:20]  # of equals, neither slow nor fast ones
+    strongest = np.argsort(share)[:20]  # where all are weak, the rounded shares are all alike
+    for k in dict.fromkeys([*plainest, *strongest]):
         at = Fraction(points[k].real), Fraction(points[k].imag)
         wave = wave_of(system.z, *at)
         if wave is not None and wave.energy > 0 and (system.has_delay or _takes_out(system, at)):
