@@ -124,7 +124,7 @@ def _error(module: str, function: str, argument: str, wrong: Refused) -> Excepti
     kind = ExperimentError if of_experiment else ModelError
     where = f"{function}: {argument}" if function else argument
     return kind(
-        f"{where}{wrong.place}: found {described(wrong.given)}, expected {wrong.expected}"
+        f"{where}{wrong.place}: found {described(wrong.value)}, expected {wrong.expected}"
         f"{wrong.hint}"
     )
 
@@ -155,12 +155,14 @@ def _for_type_checkers(module: str, name: str) -> Any:
     tree = ast.parse(inspect.getsource(sys.modules[module]))
     for node in (n for block in tree.body if isinstance(block, ast.If) for n in block.body):
         if isinstance(node, ast.ImportFrom):
-            own = next((a.name for a in node.names if (a.asname or a.name) == name), None)
-            if own is not None and node.level:
+            imported = next((a.name for a in node.names if (a.asname or a.name) == name), None)
+            if imported is not None and node.level:
                 package = getattr(sys.modules[module], "__package__", "")
-                return getattr(import_module("." * node.level + (node.module or ""), package), own)
-            if own is not None:
-                return getattr(_Outside(node.module or ""), own)
+                return getattr(
+                    import_module("." * node.level + (node.module or ""), package), imported
+                )
+            if imported is not None:
+                return getattr(_Outside(node.module or ""), imported)
         elif isinstance(node, ast.Import):
             if name in (a.name.partition(".")[0] for a in node.names):
                 return _Outside(name)

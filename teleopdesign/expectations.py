@@ -21,7 +21,7 @@ class Refused:
     """
 
     place: str
-    given: Any
+    value: Any
     expected: str
     hint: str = ""
 
@@ -181,10 +181,10 @@ def _mapping(key: Any, content: Any) -> Check:
             return Refused("", value, 'a mapping, such as {"name": ...}')
         for name, inner in value.items():
             if of_key is not None and (wrong := of_key(name)) is not None:
-                return Refused(": key", wrong.given, wrong.expected, wrong.hint)
+                return Refused(": key", wrong.value, wrong.expected, wrong.hint)
             if of_content is not None and (wrong := of_content(inner)) is not None:
                 place = f'["{name}"]{wrong.place}'
-                return Refused(place, wrong.given, wrong.expected, wrong.hint)
+                return Refused(place, wrong.value, wrong.expected, wrong.hint)
         return None
 
     return check
@@ -203,7 +203,7 @@ def _several(kind: Any, content: Any) -> Check:
             return None
         for i, inner in enumerate(value):
             if (wrong := of_content(inner)) is not None:
-                return Refused(f"[{i}]{wrong.place}", wrong.given, wrong.expected, wrong.hint)
+                return Refused(f"[{i}]{wrong.place}", wrong.value, wrong.expected, wrong.hint)
         return None
 
     return check
@@ -223,7 +223,7 @@ def _fixed(parts: tuple[Any, ...]) -> Check:
             return Refused("", value, f"a tuple of {len(parts)}")
         for i, (one, inner) in enumerate(zip(checks, value, strict=True)):
             if one is not None and (wrong := one(inner)) is not None:
-                return Refused(f"[{i}]{wrong.place}", wrong.given, wrong.expected, wrong.hint)
+                return Refused(f"[{i}]{wrong.place}", wrong.value, wrong.expected, wrong.hint)
         return None
 
     return check

@@ -38,7 +38,7 @@ def check_excitation(
     motions = [s.motion for s in prepared.of("fit")]
     every = candidates(base.model)
     judged = candidates(base.model, motions)
-    seen = visibilities(base, prepared, judged, floor.value)
+    visible_effects = visibilities(base, prepared, judged, floor.value)
     findings: list[Finding] = []
     for place in base.model.places:
         body = base.model.holder(place)
@@ -50,7 +50,7 @@ def check_excitation(
             findings.append(describe_motion(body_motions, place, poor, base.model.body(place).axis))
             findings += _own_parameters(base, place)
         never = [c for c in every if c.at == place and c not in judged]
-        mine = [v for v in seen if v.candidate.at == place]
+        mine = [v for v in visible_effects if v.candidate.at == place]
         if mine or never:
             findings.append(_summary(mine, never, poor, base, floor.value, place))
             findings += _look_alikes(mine, place)
@@ -66,7 +66,7 @@ def _unfolded(prepared: Prepared) -> Prepared:
 
 
 def _summary(
-    seen: Sequence[Visibility],
+    visible_effects: Sequence[Visibility],
     never: Sequence[Candidate],
     poor: Mapping[str, str],
     base: Fit,
@@ -74,10 +74,10 @@ def _summary(
     place: str,
 ) -> Finding:
     """The one sentence for each kind: shown, shown if large, not shown and why."""
-    shown = sorted((v for v in seen if v.size <= LARGE), key=lambda v: v.size)
-    large = sorted((v for v in seen if LARGE < v.size <= 1.0), key=lambda v: v.size)
-    hidden = [v for v in seen if v.size > 1.0]
-    numbers = {v.candidate.effect.name: v.size for v in seen}
+    shown = sorted((v for v in visible_effects if v.size <= LARGE), key=lambda v: v.size)
+    large = sorted((v for v in visible_effects if LARGE < v.size <= 1.0), key=lambda v: v.size)
+    hidden = [v for v in visible_effects if v.size > 1.0]
+    numbers = {v.candidate.effect.name: v.size for v in visible_effects}
     numbers |= {c.effect.name: math.inf for c in never} | {"noise_floor": floor}
     reasons: dict[str, list[str]] = {}
     for v in hidden:
@@ -139,7 +139,7 @@ def _reason(v: Visibility, poor: Mapping[str, str], model: Model) -> str:
     signals = list(needed(v.candidate.effect))
     if v.silent:
         why = "it makes no force here"
-    elif v.own < RARE and v.imitated:
+    elif v.unique_share < RARE and v.imitated:
         imitated = [n.partition(".")[2] for n in v.imitated]
         why = "the same as " + " with ".join(imitated)
         body = model.body(v.candidate.at)
@@ -167,9 +167,9 @@ def needed(effect: Effect) -> tuple[str, ...]:
     return tuple(dict.fromkeys([*more, *names]))
 
 
-def _look_alikes(seen: Sequence[Visibility], place: str) -> list[Finding]:
+def _look_alikes(visible_effects: Sequence[Visibility], place: str) -> list[Finding]:
     """Effects whose marks have the same shape: the record would not say which it is."""
-    visible = [v for v in seen if v.size <= 1.0]
+    visible = [v for v in visible_effects if v.size <= 1.0]
     groups: list[set[str]] = []
     for a, b in combinations(visible, 2):
         if abs(float(a.mark @ b.mark)) < ALIKE:

@@ -46,8 +46,8 @@ __all__ = [
 
 def _laws() -> Mapping[str, ControlLaw]:
     files = sorted(p for p in Path(__file__).parent.glob("*.py") if not p.name.startswith("_"))
-    found = {p.stem: importlib.import_module(f"{__name__}.{p.stem}") for p in files}
-    laws = {n: m.CONTROLLER.named(n, m.__doc__ or "") for n, m in found.items()}
+    modules = {p.stem: importlib.import_module(f"{__name__}.{p.stem}") for p in files}
+    laws = {n: m.CONTROLLER.named(n, m.__doc__ or "") for n, m in modules.items()}
     return Catalogue({n: remember(law, _law, n) for n, law in laws.items()}, "control law")
 
 

@@ -279,8 +279,8 @@ class Controller:
                 continue
             signals = {**moved, "input": value, "period": sp.S(0)}
             equation = Controller((stage,)).equation(prefix, signals)
-            settled = sp.solve([s * x - r for x, r in equation.rates.items()], *equation.rates)
-            value = equation.output.subs(settled) if equation.rates else equation.output
+            states = sp.solve([s * x - r for x, r in equation.rates.items()], *equation.rates)
+            value = equation.output.subs(states) if equation.rates else equation.output
         return sp.simplify(value / drive)
 
     def __repr__(self) -> str:
@@ -306,9 +306,9 @@ def _placed(
 ) -> tuple[SimpleNamespace, SimpleNamespace]:
     """What the law sees, its states among it, and its parameters, as symbols of that block."""
     law = stage.law
-    own = {s: state_symbol(prefix, stage.name, s) for s in law.states}
+    states = {s: state_symbol(prefix, stage.name, s) for s in law.states}
     values = {n: parameter_symbol(prefix, f"{stage.name}.{n}") for n in law.parameters}
-    return SimpleNamespace(**{**signals, **own}), SimpleNamespace(**values)
+    return SimpleNamespace(**{**signals, **states}), SimpleNamespace(**values)
 
 
 def parameter_symbol(prefix: str, name: str) -> sp.Symbol:

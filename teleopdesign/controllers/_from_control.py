@@ -53,10 +53,10 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
             "from_control: the transfer function is improper, its numerator of higher order than "
             "its denominator: add a low-pass, such as 1/(tau s + 1)"
         )
-    found = control.ss(system)
-    period = None if not system.isdtime(strict=True) else 0.0 if found.dt is True else found.dt
-    a, b, c = _scaled(found.A, found.B[:, 0], found.C[0])
-    return Controller((_state_space.stage(name, (a, b, c, float(found.D[0, 0])), period),))
+    form = control.ss(system)
+    period = None if not system.isdtime(strict=True) else 0.0 if form.dt is True else form.dt
+    a, b, c = _scaled(form.A, form.B[:, 0], form.C[0])
+    return Controller((_state_space.stage(name, (a, b, c, float(form.D[0, 0])), period),))
 
 
 def inverted(system: control.LTI, *, bandwidth: float, name: str = "inverse") -> Controller:

@@ -58,6 +58,11 @@ def _on_all(fit: Fit, whole: Prepared) -> Fit:
     check = whole.of("check")
     if not check:
         return replace(fit, fit_error=fit_error)
-    error, seen = force_error(fit.model, check), at_command(fit.model, check)
-    there = replace(fit.seen, error=seen.error, blind=seen.blind, weak=seen.weak)
-    return replace(fit, fit_error=fit_error, check_error=error, seen=there)
+    error, command_error = force_error(fit.model, check), at_command(fit.model, check)
+    on_whole = replace(
+        fit.at_command,
+        error=command_error.error,
+        blind=command_error.blind,
+        weak=command_error.weak,
+    )
+    return replace(fit, fit_error=fit_error, check_error=error, at_command=on_whole)

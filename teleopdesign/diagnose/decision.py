@@ -64,28 +64,31 @@ def is_noise(check_error: float, floor: NoiseFloor, *, criteria: Criteria = CRIT
     return check_error <= criteria.adequate * floor.value
 
 
-def is_a_tone(found: Fit, tone: Tone, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
+def is_a_tone(fit: Fit, tone: Tone, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
     """Whether a plain tone explains all but noise."""
-    squares = check_squares(found)
-    left = found.check_error * float(np.sqrt(tone.squares / squares)) if squares > 0.0 else 0.0
+    squares = check_squares(fit)
+    left = fit.check_error * float(np.sqrt(tone.squares / squares)) if squares > 0.0 else 0.0
     return is_noise(left, floor, criteria=criteria)
 
 
-def is_adequate(found: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
+def is_adequate(fit: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
     """Whether what a model leaves on the check records counts as noise, seen at the command too.
 
     A model that is blind in much of the motion says too little to be adequate.
     """
-    seen = found.seen
-    at_command = seen.error <= criteria.adequate * floor.seen and seen.blind <= criteria.blind
-    return is_noise(found.check_error, floor, criteria=criteria) and at_command
+    command_error = fit.at_command
+    at_command = (
+        command_error.error <= criteria.adequate * floor.value_at_command
+        and command_error.blind <= criteria.blind
+    )
+    return is_noise(fit.check_error, floor, criteria=criteria) and at_command
 
 
-def floors_left(found: Fit, floor: NoiseFloor) -> float:
+def floors_left(fit: Fit, floor: NoiseFloor) -> float:
     """Error that a model leaves on the check records, in noise floors, seen at the command too."""
-    if not (floor.value and math.isfinite(found.seen.error)):
+    if not (floor.value and math.isfinite(fit.at_command.error)):
         return float("inf")
-    return max(found.check_error / floor.value, found.seen.error / floor.seen)
+    return max(fit.check_error / floor.value, fit.at_command.error / floor.value_at_command)
 
 
 def explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
@@ -94,7 +97,10 @@ def explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
     Of the force or seen at the command, the smaller part.
     """
     of_force = _taken_away(before.check_error, after.check_error, floor.value)
-    return min(of_force, _taken_away(before.seen.error, after.seen.error, floor.seen))
+    return min(
+        of_force,
+        _taken_away(before.at_command.error, after.at_command.error, floor.value_at_command),
+    )
 
 
 def _taken_away(before: float, after: float, floor: float) -> float:
@@ -106,10 +112,10 @@ def refusal(base: Fit, other: Fit, *, criteria: Criteria = CRITERIA) -> str:
 
     What makes the recorded force unpredictable has not explained it.
     """
-    already = base.seen.blind if base.seen.blind > criteria.blind else 0.0
-    if other.seen.blind - already > criteria.blind:
+    already = base.at_command.blind if base.at_command.blind > criteria.blind else 0.0
+    if other.at_command.blind - already > criteria.blind:
         return "blind"
-    if other.seen.weak and not base.seen.weak:
+    if other.at_command.weak and not base.at_command.weak:
         return "weak"
     less = check_squares(other) < (1.0 - criteria.relevant) * check_squares(base)
     return "hides" if less and not seen_gain(base, other) > criteria.relevant else ""
@@ -157,21 +163,21 @@ def is_supported(
     needs a parameter of its own at its bound is itself another effect, unless it leaves noise only.
     """
     driven = set(ranked.fit.at_bound) - set(base.at_bound)
-    own = [n for n in driven if n not in base.model.parameters]
+    new = [n for n in driven if n not in base.model.parameters]
     return (
         ranked.is_identifiable
         and not displaced(base, ranked.fit)
         and (
-            all(ranked.fit.model.declared(n).optional for n in own)
+            all(ranked.fit.model.declared(n).optional for n in new)
             or _makes_adequate(base, ranked.fit, floor, criteria)
         )
         and is_better(base, ranked.fit, floor, criteria=criteria)
     )
 
 
-def displaced(base: Fit, found: Fit) -> list[str]:
+def displaced(base: Fit, fit: Fit) -> list[str]:
     """Parameters driven to a bound whose effect the records tell from its absence in the base."""
-    driven = set(found.at_bound) - set(base.at_bound)
+    driven = set(fit.at_bound) - set(base.at_bound)
     return sorted(n for n in driven if n in base.model.parameters and _is_there(base, n))
 
 
@@ -243,12 +249,12 @@ def simplicity(ranked: Ranked) -> tuple[int, int]:
 
 
 def moment_above_noise(
-    found: Fit, prepared: Prepared, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
+    fit: Fit, prepared: Prepared, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
 ) -> Moment | None:
     """The one moment that holds all that a model leaves above noise; None where none does."""
-    if is_adequate(found, floor, criteria=criteria):
+    if is_adequate(fit, floor, criteria=criteria):
         return None
-    moment = worst_moment(found, prepared, floor)
+    moment = worst_moment(fit, prepared, floor)
     return moment if moment is not None and moment.without <= criteria.adequate else None
 
 

@@ -38,9 +38,9 @@ def chance(score: float) -> float:
     return float(ndtr(-score))
 
 
-def check_squares(found: Fit) -> float:
+def check_squares(fit: Fit) -> float:
     """Sum of squares on the check records, relative to the force that acts by the model."""
-    return float(found.check_residual @ found.check_residual)
+    return float(fit.check_residual @ fit.check_residual)
 
 
 def check_score(before: Fit, after: Fit) -> float:
@@ -53,9 +53,9 @@ def seen_score(before: Fit, after: Fit) -> float:
 
     On the rows that both can tell: what a model is blind to speaks for neither.
     """
-    rows = before.seen.sighted & after.seen.sighted
+    rows = before.at_command.sighted & after.at_command.sighted
     return gain_score(
-        before.seen.residual[rows], after.seen.residual[rows], after.check_blocks[rows]
+        before.at_command.residual[rows], after.at_command.residual[rows], after.check_blocks[rows]
     )
 
 
@@ -65,10 +65,10 @@ def seen_gain(before: Fit, after: Fit) -> float:
     No more than the error itself says of each model on its own rows: to be blind to where most is
     left is no gain.
     """
-    rows = before.seen.sighted & after.seen.sighted
-    whole, left = (float(np.sum(f.seen.residual[rows] ** 2)) for f in (before, after))
-    own = 1.0 - (after.seen.error / before.seen.error) ** 2
-    return min(own, 1.0 - left / whole) if whole > 0.0 else 0.0
+    rows = before.at_command.sighted & after.at_command.sighted
+    whole, left = (float(np.sum(f.at_command.residual[rows] ** 2)) for f in (before, after))
+    on_own_rows = 1.0 - (after.at_command.error / before.at_command.error) ** 2
+    return min(on_own_rows, 1.0 - left / whole) if whole > 0.0 else 0.0
 
 
 def whole_score(before: Fit, after: Fit) -> float:

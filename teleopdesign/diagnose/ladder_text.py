@@ -17,16 +17,16 @@ if TYPE_CHECKING:
 def own_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """What records have of their own by the model that the diagnosis ends with."""
     stretches, rows = diagnosis.prepared.stretches, []
-    for group, own in offset_groups(diagnosis.model, stretches):
+    for group, offsets in offset_groups(diagnosis.model, stretches):
         motion = stretches[group[0]].motion
         units = {
-            "position_zero": unit_of("position", own.body.axis),
-            "bias": unit_of("force", own.body.axis),
+            "position_zero": unit_of("position", offsets.body.axis),
+            "bias": unit_of("force", offsets.body.axis),
             "friction_level": "of the model's",
         }
         rows += [
             {"record": motion.file, "at": motion.body, "of": n, "value": v, "unit": units[n]}
-            for n, v in own.values.items()
+            for n, v in offsets.values.items()
         ]
     return rows
 
@@ -41,14 +41,16 @@ def _number(value: float, error: float, unit: str) -> str:
 DIFFERENT = 0.02
 
 
-def seen_text(found: Fit) -> str | None:
+def seen_text(fit: Fit) -> str | None:
     """The error seen at the command and the blind share, where they say more than the error."""
-    seen = found.seen
-    alike = abs(seen.error - found.check_error) <= DIFFERENT * found.check_error
-    if alike and seen.blind == 0.0:
+    command_error = fit.at_command
+    alike = abs(command_error.error - fit.check_error) <= DIFFERENT * fit.check_error
+    if alike and command_error.blind == 0.0:
         return None
-    blind = f", blind in {100 * seen.blind:.2g} % of the motion" if seen.blind else ""
-    return f"check error seen at the command: {_percent(seen.error)}{blind}"
+    blind = (
+        f", blind in {100 * command_error.blind:.2g} % of the motion" if command_error.blind else ""
+    )
+    return f"check error seen at the command: {_percent(command_error.error)}{blind}"
 
 
 def _percent(error: float) -> str:
@@ -61,7 +63,7 @@ def refused_lines(diagnosis: Diagnosis) -> list[str]:
     after = diagnosis.after
     return [
         f"refused: {r.candidate} ({_percent(r.fit.check_error)}; seen at the command "
-        f"{_percent(r.fit.seen.error)}): {REFUSALS[r.refused]}"
+        f"{_percent(r.fit.at_command.error)}): {REFUSALS[r.refused]}"
         for r in diagnosis.last.ranked
         if r.refused and r.fit.check_error < after.check_error
     ]
@@ -85,8 +87,8 @@ def ladder_text(diagnosis: Diagnosis) -> str:
             lines.append(
                 f"      {p} = {_number(value.value, value.stderr, model.unit(full))}{bound}"
             )
-        if (seen := seen_text(rung.fit)) is not None:
-            lines.append(f"      {seen}")
+        if (text := seen_text(rung.fit)) is not None:
+            lines.append(f"      {text}")
         if rung.alternatives:
             others = ", ".join(map(str, rung.alternatives))
             lines.append(f"      no different on these records: {others}")

@@ -65,17 +65,17 @@ def linear_starts(
     absent = models[0].with_values(
         {f"{at}.{effect.name}.{effect.strength}": 0.0, **dict(base.model.parameters)}
     )
-    own, _ = np.linalg.qr(base.jacobian / _size(base.jacobian))
-    left = base.fit_residual - own @ (own.T @ base.fit_residual)
-    found = []
+    basis, _ = np.linalg.qr(base.jacobian / _size(base.jacobian))
+    left = base.fit_residual - basis @ (basis.T @ base.fit_residual)
+    starts = []
     edges = list(range(0, len(probes), AT_ONCE)) + [len(probes)]
     for first, last in pairwise(edges):
         columns = _columns(absent, probes[first:last], prepared)
-        columns -= own @ (own.T @ columns)
+        columns -= basis @ (basis.T @ columns)
         for i in range(0, last - first, len(phases)):
             start = models[(first + i) // len(phases)]
-            found.append(_start(start, effect, at, left, columns[:, i : i + len(phases)]))
-    return sorted(found, key=lambda s: s.promised)
+            starts.append(_start(start, effect, at, left, columns[:, i : i + len(phases)]))
+    return sorted(starts, key=lambda s: s.promised)
 
 
 def _others(

@@ -139,7 +139,7 @@ def _moved(base: Fit, stated: Model) -> bool:
         for n in base.free
         if n in stated.parameters
     ]
-    return any(abs(found - given) > PLAN.moved * abs(given) for found, given in pairs)
+    return any(abs(fitted - value) > PLAN.moved * abs(value) for fitted, value in pairs)
 
 
 def _by_strength(
@@ -188,25 +188,25 @@ def _best_stepped(
     promised: whether the first is the one that promised most: it is kept too, for steps that begin
         far from an optimum may lie above those that never leave the base
     """
-    stretches, found = prepared.of("fit"), []
+    stretches, solutions = prepared.of("fit"), []
     for i, model in enumerate(models):
         free = free_parameters(model)
         solution = solve(model, free, prepared, stretches, EFFORTS.first_steps)
         squares = float(solution.residual @ solution.residual)
-        found.append((squares, i, dict(zip(free, solution.values.tolist(), strict=True))))
-    found.sort(key=lambda f: f[:2])
-    best = found[:kept] + [f for f in found[kept:] if promised and f[1] == 0]
+        solutions.append((squares, i, dict(zip(free, solution.values.tolist(), strict=True))))
+    solutions.sort(key=lambda f: f[:2])
+    best = solutions[:kept] + [f for f in solutions[kept:] if promised and f[1] == 0]
     return [models[i].with_values(values) for _, i, values in best]
 
 
-def _jolted(found: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> Fit:
+def _jolted(fit: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> Fit:
     """The fit at the best place near by: squares that are rugged have many shallow ones.
 
     new: (effect, place) whose parameters are jolted, one at a time
     """
-    stretches, free = prepared.of("fit"), free_parameters(found.model)
+    stretches, free = prepared.of("fit"), free_parameters(fit.model)
     names = [n for effect, at in new for n in free if n.startswith(f"{at}.{effect}.")]
-    model, least = found.model, fit_squares(found)
+    model, least = fit.model, fit_squares(fit)
     for _ in range(PLAN.sweeps):
         before = least
         for name, factor in product(names, PLAN.jolts):
@@ -219,4 +219,4 @@ def _jolted(found: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> F
                 model = model.with_values(values)
         if least > (1.0 - PLAN.onward) * before:
             break
-    return found if model is found.model else estimate(model, prepared, effort=EFFORTS.rough)
+    return fit if model is fit.model else estimate(model, prepared, effort=EFFORTS.rough)

@@ -100,14 +100,16 @@ def _row(weights: np.ndarray, signal: str) -> dict[str, float]:
     return {f"{signal}{k + 1}": float(w) for k, w in enumerate(weights) if abs(w) > 1e-15}
 
 
-def _by_rods(name: str, given: Controllers, size: int) -> dict[tuple[int, int], Controller]:
-    if isinstance(given, Mapping):
-        found = dict(given)
+def _by_rods(name: str, controllers: Controllers, size: int) -> dict[tuple[int, int], Controller]:
+    if isinstance(controllers, Mapping):
+        by_pair = dict(controllers)
     else:
-        if given and len(given) != size:
-            raise ModelError(f"parallel rods: {name}: {len(given)} controllers for {size} rods")
-        found = {(n + 1, n + 1): law for n, law in enumerate(given) if law is not None}
-    for pair in found:
+        if controllers and len(controllers) != size:
+            raise ModelError(
+                f"parallel rods: {name}: {len(controllers)} controllers for {size} rods"
+            )
+        by_pair = {(n + 1, n + 1): law for n, law in enumerate(controllers) if law is not None}
+    for pair in by_pair:
         if not all(1 <= n <= size for n in pair):
             raise ModelError(f"parallel rods: {name}: no rods {pair}, numbers are 1 to {size}")
-    return found
+    return by_pair

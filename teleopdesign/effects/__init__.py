@@ -89,10 +89,10 @@ def _of_file(path: Path, said: Path, expected: str = "") -> Effect:
         raise ModelError(f"{said}: cannot be read: {problem.strerror or problem}") from None
     if expected and digest != expected:
         raise ModelError(f"{said}: the effect file has changed since it was used")
-    found = _LOADED.get((path, digest))
-    if found is None:
-        found = _LOADED[path, digest] = remember(_read(said), _of_file, path, said, digest)
-    return found
+    effect = _LOADED.get((path, digest))
+    if effect is None:
+        effect = _LOADED[path, digest] = remember(_read(said), _of_file, path, said, digest)
+    return effect
 
 
 def _read(path: Path) -> Effect:
@@ -185,8 +185,8 @@ def with_block_effects(effects: Mapping[str, Effect] = EFFECTS) -> Mapping[str, 
 
 def catalogue(extra: Iterable[str | Path | Effect] = ()) -> Mapping[str, Effect]:
     """The package's effects and the given files' (or effects), by name; a user's name wins."""
-    own = (e if isinstance(e, Effect) else load_effect(e) for e in extra)
-    return Catalogue({**EFFECTS, **{e.name: e for e in own}}, "effect")
+    users = (e if isinstance(e, Effect) else load_effect(e) for e in extra)
+    return Catalogue({**EFFECTS, **{e.name: e for e in users}}, "effect")
 
 
 def find_effect(name: str, known: Mapping[str, Effect] = EFFECTS, where: str = "effect") -> Effect:

@@ -280,8 +280,8 @@ class Effect:
 
     def _now(self, signals: Mapping[str, Any] | None) -> SimpleNamespace:
         more = {"inertia": INERTIA, "unexplained": UNEXPLAINED}
-        own = {**SIGNALS, **more, **self.state_symbols()}
-        return SimpleNamespace(**{**own, **(signals or {})})
+        symbols = {**SIGNALS, **more, **self.state_symbols()}
+        return SimpleNamespace(**{**symbols, **(signals or {})})
 
     def _parameters(self, values: Mapping[str, Any] | None) -> SimpleNamespace:
         return SimpleNamespace(**{**self.symbols(), **(values or {})})
@@ -332,8 +332,10 @@ class Effect:
         signals |= dict(interaction_force=sp.S(0))
         states = self.state_symbols()
         law, rates = self.expression(signals, values), self.rates(signals, values)
-        settled = sp.solve([s * states[n] - rate for n, rate in rates.items()], *states.values())
-        law = law.subs(settled) if rates else law
+        states_in_s = sp.solve(
+            [s * states[n] - rate for n, rate in rates.items()], *states.values()
+        )
+        law = law.subs(states_in_s) if rates else law
         law = law.replace(delayed, lambda signal, delay: signal * sp.exp(-s * delay))
         return sp.simplify(law / drive)
 
@@ -382,18 +384,18 @@ def _phase(effect: Effect) -> str | None:
 
 @lru_cache(maxsize=64)
 def _without(effect: Effect, parameter: str) -> Effect:
-    def given(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
+    def at_zero(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
         return lambda now, p: law(now, SimpleNamespace(**{**vars(p), parameter: sp.S(0)}))
 
     def corrected(state: State) -> Callable[[Any, Any], sp.Expr] | None:
-        return None if state.correction is None else given(state.correction)
+        return None if state.correction is None else at_zero(state.correction)
 
     less = replace(
         effect,
-        law=given(effect.law),
-        coupling=None if effect.coupling is None else given(effect.coupling),
+        law=at_zero(effect.law),
+        coupling=None if effect.coupling is None else at_zero(effect.coupling),
         states={
-            n: replace(s, rate=given(s.rate), correction=corrected(s))
+            n: replace(s, rate=at_zero(s.rate), correction=corrected(s))
             for n, s in effect.states.items()
         },
         parameters={n: p for n, p in effect.parameters.items() if n != parameter},

@@ -58,10 +58,10 @@ def first_harmonic(
             f"{law.where}: no describing function, for it depends on {', '.join(strangers)}"
         )
     states = _closed(law, signals, 1 / (float(frequency) * STEPS)) if law.rates else {}
-    given = {**signals, **states}
+    along = {**signals, **states}
     used, call = law.force
     with np.errstate(all="ignore"):  # a piecewise law is computed also where it does not hold
-        force = np.asarray(call(*(given[s] for s in used)), dtype=float)
+        force = np.asarray(call(*(along[s] for s in used)), dtype=float)
     if not np.isfinite(force).all():
         raise ModelError(f"{law.where}: the force is not finite along this motion")
     force = np.broadcast_to(force, np.broadcast_shapes(force.shape, (STEPS,)))

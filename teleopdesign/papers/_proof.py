@@ -62,7 +62,7 @@ class Step:
         """Expressions shown not to be negative, given those in `known`; raises NotProved."""
         raise NotImplementedError
 
-    def told(self) -> str:
+    def as_text(self) -> str:
         """The words, and what is short enough to print of the expressions."""
         return self.words
 
@@ -81,7 +81,7 @@ class Equal(Step):
             raise NotProved(f"{self.words}: no proof that {self.left} = {self.right}")
         return []
 
-    def told(self) -> str:
+    def as_text(self) -> str:
         """With the right side."""
         return self.words + _shown("=", self.right)
 
@@ -90,27 +90,27 @@ class Equal(Step):
 class NotNegative(Step):
     """expression >= 0: it equals `form`, whose sign shows by itself.
 
-    form: built from symbols whose sign sympy knows, and from the symbols of `given`
-    given: symbol >= 0 -> expression that the proof assumes, or showed before, not to be negative
+    form: built from symbols whose sign sympy knows, and from the symbols of `signs`
+    signs: symbol >= 0 -> expression that the proof assumes, or showed before, not to be negative
     """
 
     expression: sp.Expr
     form: sp.Expr
-    given: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    signs: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     strictly: bool = False
 
     def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
         """Sign from sympy's assumptions, equality exactly."""
         form = sp.sympify(self.form)
-        _without_floats(self.expression, form, *self.given.values())
-        for symbol, used in self.given.items():
+        _without_floats(self.expression, form, *self.signs.values())
+        for symbol, used in self.signs.items():
             if not symbol.is_nonnegative:
                 raise NotProved(f"{self.words}: {symbol} is not declared >= 0")
             if not any(vanishes(used - k) for k in known):
                 raise NotProved(f"{self.words}: {used} >= 0 is neither assumed nor shown")
         if not (form.is_positive if self.strictly else form.is_nonnegative):
             raise NotProved(f"{self.words}: the sign of {form} does not show")
-        if not vanishes(self.expression - form.subs(dict(self.given))):
+        if not vanishes(self.expression - form.subs(dict(self.signs))):
             raise NotProved(f"{self.words}: no proof that {self.expression} = {form}")
         return [sp.sympify(self.expression)]
 
@@ -125,7 +125,7 @@ class Grows(Step):
     expression: sp.Expr
     variable: sp.Symbol
     slope: sp.Expr
-    given: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    signs: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
     def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
         """Start by an exact limit from the right, derivative as in NotNegative."""
@@ -133,7 +133,7 @@ class Grows(Step):
         if not start.is_nonnegative:
             raise NotProved(f"{self.words}: starts at {start}")
         derivative = sp.diff(self.expression, self.variable)
-        NotNegative(self.words, derivative, self.slope, self.given).check(known)
+        NotNegative(self.words, derivative, self.slope, self.signs).check(known)
         return [sp.sympify(self.expression)]
 
 
@@ -154,7 +154,7 @@ class Limit(Step):
             raise NotProved(f"{self.words}: the limit is {limit}, not {self.value}")
         return []
 
-    def told(self) -> str:
+    def as_text(self) -> str:
         """With the value."""
         return self.words + _shown("->", self.value)
 
@@ -230,7 +230,7 @@ class Proof:
         _without_floats(*known)
         for step in self.steps:
             known += step.check(known)
-        return tuple(step.told() for step in self.steps)
+        return tuple(step.as_text() for step in self.steps)
 
 
 def proof(*steps: Step | Iterable[Step], assuming: Iterable[sp.Expr] = ()) -> Proof:

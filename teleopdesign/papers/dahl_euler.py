@@ -125,11 +125,11 @@ def bound_of_forward_euler() -> Proof:
     """The bound that passivity rests on fails at half the speed at which the step diverges."""
     step = upwards(FORWARD)
     slow = sp.Symbol("slow", nonnegative=True)  # 1 - q
-    given = {**LEVELS, slow: 1 - q}
+    signs = {**LEVELS, slow: 1 - q}
     lowest = step.subs(f, -f_c)
     return proof(
-        NotNegative("q <= 1: stays below f_c", f_c - step, slow * ABOVE, given),
-        NotNegative("and above -f_c", f_c + step, BELOW + q * ABOVE, given),
+        NotNegative("q <= 1: stays below f_c", f_c - step, slow * ABOVE, signs),
+        NotNegative("and above -f_c", f_c + step, BELOW + q * ABOVE, signs),
         Equal("from -f_c", lowest, (2 * q - 1) * f_c),
         NotNegative(
             "q = 1 + e: beyond f_c", (lowest - f_c).subs(q, 1 + e), 2 * e * f_c, strictly=True

@@ -177,8 +177,8 @@ def limits() -> Proof:
     x = Z_M * Z_H**-1
     q = sp.Symbol("q", positive=True)
 
-    def at(name: str, given: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
-        return sp.sympify(T[name]).subs(given)
+    def at(name: str, values: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
+        return sp.sympify(T[name]).subs(values)
 
     return proof(
         BlocksEqual("C = Z_M: T_MBC = I", at("T_MBC", {C: Z_M}), sp.S(1)),

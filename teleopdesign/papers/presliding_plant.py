@@ -88,17 +88,17 @@ def matched_bristles() -> Proof:
     """Dahl friction compensated by a Dahl compensator on the same position: exactly when the pair
     is passive.
     """
-    given = {LOWER: LEVELS, SOFTER: RATIOS}
+    signs = {LOWER: LEVELS, SOFTER: RATIOS}
     size = sp.Symbol("size", nonnegative=True)  # abs(p - d)
     shrink = dahl_rate(p, w, fC, sP) - dahl_rate(d, w, fC, sP)
     return proof(
         stored_and_lost(fC),
-        NotNegative("which is not negative", LEVELS * RATIOS, LOWER * SOFTER, given),
+        NotNegative("which is not negative", LEVELS * RATIOS, LOWER * SOFTER, signs),
         NotNegative(
             "both conditions together: sigma_p^2 >= sigma_D^2",
             sP**2 - sD**2,
             fC * SOFTER + sD**2 * LOWER / fD,
-            given,
+            signs,
         ),
         Equal(
             "sigma_p = sigma_D leaves f_D = f_C: p - d shrinks at the rate abs(v)/lambda, so "
@@ -143,15 +143,15 @@ def varying_level() -> Proof:
     level, least, most = sp.symbols("F F_min F_max", positive=True)
     up, under = sp.symbols("up under", nonnegative=True)
     low, soft = least - fD, sP**2 / most - sD**2 / fD
-    given = {LOWER: low, SOFTER: soft, up: level - least, under: most - level}
+    signs = {LOWER: low, SOFTER: soft, up: level - least, under: most - level}
     return proof(
         stored_and_lost(level),  # g does not depend on the level: one V for all levels
-        NotNegative("first factor at any level", level - fD, up + LOWER, given),
+        NotNegative("first factor at any level", level - fD, up + LOWER, signs),
         NotNegative(
             "second factor at any level",
             sP**2 / level - sD**2 / fD,
             SOFTER + sP**2 * under / (level * most),
-            given,
+            signs,
         ),
         assuming=[low, soft, level - least, most - level],
     )
@@ -178,7 +178,7 @@ def bristle_damping() -> Proof:
     lost = friction * w - force * rate_
     inside, above, enough, one = sp.symbols("inside above enough one", nonnegative=True)
     margin = s2 - s1 * (FS / fC - 1)
-    given = {inside: FS - force, above: level - fC, enough: margin}
+    signs = {inside: FS - force, above: level - fC, enough: margin}
     bell = sp.exp(-((w / scale) ** 2))
     steepest = stribeck_level(w, fC, extra, scale)
     below = {inside: fC - force}
@@ -201,7 +201,7 @@ def bristle_damping() -> Proof:
             "supply less the rate of sigma_0 z^2/2",
             lost,
             w * force**2 / level + w**2 * (enough + s1 * (FS * above + fC * inside) / (fC * level)),
-            given,
+            signs,
         ),
         assuming=[FS - force, level - fC, margin, fC - force],
     )

@@ -137,7 +137,7 @@ def encoder_steps() -> Proof:
     q = sp.Symbol("q", real=True)
     off = sp.Symbol("off", nonnegative=True)
     slow, dry, inside = sp.symbols("slow dry inside", nonnegative=True)
-    given = {slow: b / T - K / 2, dry: f_c - K * step / 2, inside: step / 2 - off}
+    signs = {slow: b / T - K / 2, dry: f_c - K * step / 2, inside: step / 2 - off}
     steps: list[Step] = []
     for way in (1, -1):
         for side in (1, -1):
@@ -151,7 +151,7 @@ def encoder_steps() -> Proof:
                     f"losses cover work and storage: travel {way:+d}, reading error {side:+d}",
                     left,
                     slow * r**2 + r * (dry + K * spare),
-                    given,
+                    signs,
                 )
             )
     # to and fro over an edge between the readings q and q + Delta, two samples
@@ -169,7 +169,7 @@ def encoder_steps() -> Proof:
             K * step - 2 * f_c,
         ),
         Limit("necessary: wide swings give out", wide / a**2, a, sp.oo, 4 * K - 8 * b / T),
-        assuming=list(given.values()),
+        assuming=list(signs.values()),
     )
 
 
@@ -184,7 +184,7 @@ def controlled_port() -> Numbers:
     port = passivity_controlled(speed, (friction - helps) * way, period=period)
     turned = period * float(np.abs(speed).sum()) * (helps - friction)
     bounded = passivity_controlled(speed, (friction - helps) * way, period=period, largest=0.5)
-    taken = friction * np.abs(speed)
+    friction_power = friction * np.abs(speed)
     figures = [
         Figure("least energy over that turned over", port.energy.min() / turned, low=-1e-12),
         near("and in the end, the deficit is made up", port.energy[-1] / turned, 0.0, 1e-12),
@@ -196,7 +196,7 @@ def controlled_port() -> Numbers:
         held = passivity_controlled(speed, budget, period=period)
         # what the device really takes, and the force that is left of the help
         help_left = counted * way - held.force
-        true = period * float((taken - help_left * speed).sum()) / turned
+        true = period * float((friction_power - help_left * speed).sum()) / turned
         what = f"energy that {counted:g} N counted leaves in the port, true friction 1 N"
         figures.append(
             Figure(what, true, low=0) if counted < friction else Figure(what, true, high=0)

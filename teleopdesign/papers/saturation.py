@@ -133,18 +133,18 @@ def only_saturation_counts() -> Proof:
 def unlimited_motion() -> Proof:
     """The bound is tight where motion is unlimited."""
     s = sp.Symbol("s", positive=True)
-    given = sp.integrate(dahl_step(sp.S(0), s, 1, f_D, sigma) - coulomb(w, f_C), (s, 0, X))
+    energy = sp.integrate(dahl_step(sp.S(0), s, 1, f_D, sigma) - coulomb(w, f_C), (s, 0, X))
     scale = f_D / sigma
     over = sp.Symbol("over", positive=True)
     return proof(
         Equal(
             "energy given out, from f = 0",
-            given,
+            energy,
             (f_D - f_C) * X - f_D * scale * (1 - sp.exp(-X / scale)),
         ),
         Limit(
             "f_D = f_C + over: without bound",
-            given.subs(f_C, f_D - over).subs({f_D: 1, sigma: 1}) / X,
+            energy.subs(f_C, f_D - over).subs({f_D: 1, sigma: 1}) / X,
             X,
             sp.oo,
             over,

@@ -42,8 +42,8 @@ def dithered_cycle() -> sp.Expr:
     again, second = stroke(back, SMALL, 1)
     peak, third = stroke(-again, 2 * u, 1)  # the mirrored stroke that follows
     (steady,) = sp.solve(sp.expand(peak - h), h)
-    given = first + second + third - f_1 * (2 * u + 2 * SMALL)
-    return given.subs(h, steady)
+    energy = first + second + third - f_1 * (2 * u + 2 * SMALL)
+    return energy.subs(h, steady)
 
 
 def stepping_motor() -> Numbers:

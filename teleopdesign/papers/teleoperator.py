@@ -86,13 +86,13 @@ def why_the_criterion_suffices() -> tuple[Step, ...]:
     size, more, enough = sp.symbols("size more enough", nonnegative=True)
     half, tau = sp.symbols("half tau", real=True)
     rho, x = sp.symbols("rho x", positive=True)
-    seen = size * (sp.cos(2 * half) + tau * sp.sin(2 * half)) / (rho * (1 + tau**2))
+    real_part = size * (sp.cos(2 * half) + tau * sp.sin(2 * half)) / (rho * (1 + tau**2))
     largest = size * (1 + sp.cos(2 * half)) / (2 * rho)
     form = size * (tau * sp.cos(half) - sp.sin(half)) ** 2 / (rho * (1 + tau**2))
     grown = sp.Matrix([[1, 1 / x], [1 / x, 1]]).det()
     return (
         NotNegative(
-            "Re(L/n) <= (abs L + Re L)/(2 rho), whatever holds port 2", largest - seen, form
+            "Re(L/n) <= (abs L + Re L)/(2 rho), whatever holds port 2", largest - real_part, form
         ),
         NotNegative(
             "at a pole where n has the residue k_22 + more, z_in has one >= 0",

@@ -148,8 +148,8 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
             ("largest f_D that is passive for every level in the interval", device.lowest.low),
         )
     ]
-    own = device.presliding
-    if own is None:
+    presliding = device.presliding
+    if presliding is None:
         text = "largest f_D that drives no motion, viscous damping counted"
         return [*limits, Margin(text + alone, device.least_resistance.low, force)]
     recoil = device.bristle_damping.high * (device.highest.high - device.lowest.low)
@@ -158,10 +158,10 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
     if compensator is not None and compensator.stage.value_of("bristle_stiffness") is None:
         return []  # no limit is known for such a law on a contact that gives
     level = min(compensator.level if compensator else math.inf, device.lowest.low)
-    softest = own.low * math.sqrt(level / device.highest.high)
+    softest = presliding.low * math.sqrt(level / device.highest.high)
     limits.append(Margin(f"largest sigma_D at f_D = {level:.4g} {force}{alone}", softest, stiff))
     if compensator is not None:
-        least = device.highest.high * (compensator.second / own.low) ** 2
+        least = device.highest.high * (compensator.second / presliding.low) ** 2
         limits.append(
             Margin(f"least f_D at sigma_D = {compensator.second:.4g} {stiff}{alone}", least, force)
         )

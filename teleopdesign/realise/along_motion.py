@@ -93,7 +93,9 @@ def measured_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
     symbols = body.symbols()
     columns = tuple(name if isinstance(name, Probe) else symbols[name] for name in wrt)
     along = Along({}, body.numbers(), columns, motion.sample_time)
-    readings = {SIGNALS[n]: np.asarray(getattr(motion, own), float) for n, own in _MEASURED.items()}
+    readings = {
+        SIGNALS[n]: np.asarray(getattr(motion, column), float) for n, column in _MEASURED.items()
+    }
     return along.with_signals({s: along.constant(reading) for s, reading in readings.items()})
 
 

@@ -132,10 +132,12 @@ def _function(expression: sp.Expr) -> tuple[tuple[sp.Symbol, ...], Any]:
 
 def _evaluate(expression: sp.Expr, along: Along, n: int) -> Array:
     """An expression along the motion (n,); a hidden state that is not given is at rest."""
-    given, values = along.signals, along.values
+    signals, values = along.signals, along.values
     symbols, call = _function(expression)
     # arrays all: what is printed for a Max of a number and an array stacks the two
-    numbers = [given[s].value if s in given else np.full(n, values.get(s, 0.0)) for s in symbols]
+    numbers = [
+        signals[s].value if s in signals else np.full(n, values.get(s, 0.0)) for s in symbols
+    ]
     with np.errstate(all="ignore"):
         return np.asarray(np.broadcast_to(np.asarray(call(*numbers), dtype=float), (n,)))
 
@@ -183,8 +185,8 @@ def _solved(matrices: Array | NDArray[np.complex128], right: Array) -> Any:
 
 
 def _of_stage(stage: Stage, motion: Motion, along: Along) -> _Way:
-    own = replace(along, signals=stage.given)
-    return _way(stage.effect, stage.law, _COMMAND, stage.delays, own, motion, stage.parts)
+    at_stage = replace(along, signals=stage.signals)
+    return _way(stage.effect, stage.law, _COMMAND, stage.delays, at_stage, motion, stage.parts)
 
 
 def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
@@ -193,8 +195,8 @@ def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
     for effect in _taking(body, signal):
         if effect.states and effect.is_absent(along.values):
             continue
-        taken = _way(effect, effect.expression(), signal, {}, along, motion)
-        gain, over = gain - taken.gain, over - taken.dynamics
+        way = _way(effect, effect.expression(), signal, {}, along, motion)
+        gain, over = gain - way.gain, over - way.dynamics
     if body.level().has(signal):
         level, with_speeds = level_along(body, along)
         made_by_it = _evaluate(slope(level, signal), with_speeds, len(gain))
@@ -268,9 +270,9 @@ def _is_weak(body: Body, motion: Motion, model: Residual, along: Along) -> bool:
     return bool(len(whole)) and float(np.median(whole)) > 0.0
 
 
-def blind_share(seen: Sequence[SeenAtCommand], motions: Sequence[Motion]) -> float:
+def blind_share(stretches: Sequence[SeenAtCommand], motions: Sequence[Motion]) -> float:
     """Share of blind samples among those where the body slides; of all, where it never does."""
-    blind = np.concatenate([s.blind for s in seen])
+    blind = np.concatenate([s.blind for s in stretches])
     slides = np.concatenate([m.direction != 0 for m in motions])
     counted = blind[slides] if slides.any() else blind
     return float(counted.mean()) if len(counted) else 0.0

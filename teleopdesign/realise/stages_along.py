@@ -30,13 +30,13 @@ class Stage:
     """A stage of the actuation along a motion: what goes in, what comes out, hidden states between.
 
     law: on symbols, its delayed signals as symbols of their own;  delays: those symbols -> s
-    given: symbols -> signals over `parts` equal parts of each row;  output: as long
+    signals: symbols -> signals over `parts` equal parts of each row;  output: as long
     """
 
     effect: Effect
     law: sp.Expr
     delays: Mapping[sp.Symbol, float]
-    given: Mapping[sp.Symbol, Traced]
+    signals: Mapping[sp.Symbol, Traced]
     parts: int
     output: Traced
 

@@ -98,9 +98,9 @@ class NumericLaw:
     call: Callable[..., Any]
 
     def __call__(self, along: Along) -> Traced:
-        given, values, columns = along.signals, along.values, along.columns
-        arrays = [given[s].value for s in self.signals]
-        n = len(next(iter(given.values())).value)
+        signals, values, columns = along.signals, along.values, along.columns
+        arrays = [signals[s].value for s in self.signals]
+        n = len(next(iter(signals.values())).value)
         with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
             out = self.call(*arrays, *[np.float64(values[p]) for p in self.parameters])
         value = np.broadcast_to(np.asarray(out[0], dtype=float), (n,))
@@ -112,17 +112,17 @@ class NumericLaw:
             if isinstance(column, Probe) and column.symbol in self.parameters:
                 tangent[j] += self._slope(column, arrays, values)
         for s, d in zip(self.signals, out[1 : 1 + len(arrays)], strict=True):
-            if given[s].tangent.any():
-                tangent += d * given[s].tangent
+            if signals[s].tangent.any():
+                tangent += d * signals[s].tangent
         return Traced(value.copy(), tangent)
 
     def _slope(
         self, probe: Probe, arrays: Sequence[Array], values: Mapping[sp.Symbol, float]
     ) -> Any:
         """Derivative by the probe's strength, at the probe's values of the other parameters."""
-        own = [np.float64(probe.values.get(p, values[p])) for p in self.parameters]
+        numbers = [np.float64(probe.values.get(p, values[p])) for p in self.parameters]
         with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
-            out = self.call(*arrays, *own)
+            out = self.call(*arrays, *numbers)
         return out[1 + len(arrays) + self.parameters.index(probe.symbol)]
 
 

@@ -153,11 +153,11 @@ def _with_smoothness(rows: Rows, beside: Columns, columns: Columns, rough: Array
     held = [where[part == fold] for fold in range(FOLDS)]
     normal = np.array([every[k].T @ every[k] for k in held])
     gradient = np.array([every[k].T @ target[k] for k in held])
-    seen = normal.sum(axis=0) - normal + together.penalty
+    others = normal.sum(axis=0) - normal + together.penalty
     size = np.trace(columns.penalty) / (n * SMALLNESS)
 
     def missed(weight: float) -> float:
-        penalised = seen.copy()
+        penalised = others.copy()
         penalised[:, -n:, -n:] += weight * size * rough
         x = solve_normal(penalised, gradient.sum(axis=0) - gradient)
         bent = np.einsum("fi,fij,fj->", x, normal, x)

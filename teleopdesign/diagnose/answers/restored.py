@@ -168,8 +168,8 @@ def _place(candidate: Candidate) -> dict[str, str]:
     return {"effect": effect, "at": at}
 
 
-def _error(told: float | None) -> float:
-    return float("nan") if told is None else float(told)
+def _error(number: float | None) -> float:
+    return float("nan") if number is None else float(number)
 
 
 def _floor(content: Mapping[str, Any]) -> NoiseFloor:
@@ -181,10 +181,10 @@ def _floor(content: Mapping[str, Any]) -> NoiseFloor:
     )
 
 
-def _moment(told: Mapping[str, Any] | None) -> Moment | None:
-    if told is None:
+def _moment(entry: Mapping[str, Any] | None) -> Moment | None:
+    if entry is None:
         return None
-    begin, end = (float(told[key]["value"]) for key in ("begin", "end"))
+    begin, end = (float(entry[key]["value"]) for key in ("begin", "end"))
     return Moment(
-        told["record"], told["at"], begin, end, float(told["left_over_noise_floors_without"])
+        entry["record"], entry["at"], begin, end, float(entry["left_over_noise_floors_without"])
     )

@@ -134,19 +134,19 @@ def _maximum(delay: float, time_constant: float) -> tuple[float, float]:
     if values[k] < grid[-1] / (1 + (grid[-1] * time_constant) ** 2):
         raise AssertionError(f"g is larger beyond {grid[-1]} rad/s")
     near = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
-    found = minimize_scalar(
+    maximum = minimize_scalar(
         lambda w: -float(g(w)[0]), bounds=near, method="bounded", options={"xatol": 1e-9 * near[1]}
     )
-    return float(found.x), -float(found.fun)
+    return float(maximum.x), -float(maximum.fun)
 
 
 def _wave(z: sp.ImmutableMatrix, where: list[float]) -> GrowingWave | None:
     for w in where:
         frequency = Fraction(w)
         for rate in halvings(frequency, 30):
-            found = wave_of(z, rate, frequency)
-            if found is not None:
-                return found
+            wave = wave_of(z, rate, frequency)
+            if wave is not None:
+                return wave
     return None
 
 

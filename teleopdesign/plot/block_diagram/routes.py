@@ -149,7 +149,7 @@ def _into(network: Network, grid: Grid, node: str) -> set[int]:
     """Steps by which a wire may come to a node."""
     kind = network.nodes[node].kind
     ahead = 2 if grid.cells.heading[node] == LEFT else 0
-    if kind == "box" and network.taken(node) <= 1:
+    if kind == "box" and network.count_incoming(node) <= 1:
         return {ahead}
     if kind in ("box", "bar", "sum"):
         return {0, 1, 2, 3} - {(ahead + 2) % 4}
