@@ -21,7 +21,7 @@ from itertools import repeat
 from typing import Any, TypeVar
 
 from .errors import ExperimentError, ModelError
-from .expectations import Check, Refused, check_of, described, number_check, with_article
+from .expectations import Check, WrongValue, check_of, described, number_check, with_article
 
 __all__ = [
     "check_arguments",
@@ -102,7 +102,7 @@ def number(value: Any, where: str) -> float:
 def instance(value: Any, kind: type[Any], where: str, *, expected: str = "") -> None:
     """Refuse with ModelError what is not of that class; expected: in words."""
     if not isinstance(value, kind):
-        raise _error("", "", where, Refused("", value, expected or with_article(kind.__name__)))
+        raise _error("", "", where, WrongValue("", value, expected or with_article(kind.__name__)))
 
 
 def matrix_of(value: Any, where: str) -> Any:
@@ -115,11 +115,11 @@ def matrix_of(value: Any, where: str) -> Any:
     except ValueError:  # rows of different lengths
         matrix = np.empty(0, dtype=object)
     if matrix.dtype.kind not in "iuf" or matrix.ndim != 2 or bool(np.any(matrix != matrix)):
-        raise _error("", "", where, Refused("", value, expected))
+        raise _error("", "", where, WrongValue("", value, expected))
     return matrix.astype(float)
 
 
-def _error(module: str, function: str, argument: str, wrong: Refused) -> Exception:
+def _error(module: str, function: str, argument: str, wrong: WrongValue) -> Exception:
     of_experiment = any(module.startswith(f"{__package__}.{f}") for f in _OF_EXPERIMENTS)
     kind = ExperimentError if of_experiment else ModelError
     where = f"{function}: {argument}" if function else argument

@@ -20,8 +20,8 @@ from ._controller import (
     ControlLaw,
     Controller,
     ControllerEquation,
+    ControllerState,
     Stage,
-    State,
     parameter_symbol,
 )
 from ._from_control import from_control, inverted
@@ -34,7 +34,7 @@ __all__ = [
     "Controller",
     "ControllerEquation",
     "Stage",
-    "State",
+    "ControllerState",
     "controller",
     "from_control",
     "inverted",

@@ -42,7 +42,7 @@ def only_sampled(now: Any, p: Any) -> sp.Expr:
 
 @checked
 @dataclass(frozen=True)
-class State:
+class ControllerState:
     """A hidden state of a control law, whose `now` also carries the states of the law.
 
     rate(now, p): rate of change, or `only_sampled`
@@ -79,7 +79,7 @@ class ControlLaw:
 
     law: Callable[[Any, Any], sp.Expr]
     parameters: Mapping[str, Parameter]
-    states: Mapping[str, State] = field(default_factory=dict)
+    states: Mapping[str, ControllerState] = field(default_factory=dict)
     linear: bool = False
     takes: Literal["", "force"] = ""
     transfer: Callable[[Mapping[str, float], sp.Symbol], sp.Expr] | None = None

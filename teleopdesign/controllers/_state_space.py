@@ -12,7 +12,7 @@ import sympy as sp
 from ..effects import Parameter
 from ..errors import ModelError
 from ..recipes import remember
-from ._controller import ControlLaw, Stage, State, only_sampled
+from ._controller import ControlLaw, ControllerState, Stage, only_sampled
 
 Array = np.ndarray
 
@@ -54,7 +54,7 @@ def _law(name: str, n: int, discrete: bool) -> ControlLaw:
         return lambda now, p: _row(now, p, f"a_{i}_{{}}", n) + getattr(p, f"b_{i}") * now.input
 
     states = {
-        f"x_{i}": State(
+        f"x_{i}": ControllerState(
             "dimensionless",
             only_sampled if discrete else change(i),
             change(i) if discrete else None,

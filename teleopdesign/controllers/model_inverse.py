@@ -13,7 +13,7 @@ from types import SimpleNamespace
 from sympy import exp, pi
 
 from ..effects import EFFECTS, Parameter
-from ._controller import ControlLaw, State
+from ._controller import ControlLaw, ControllerState
 
 _TERMS = EFFECTS["added_inertia"], EFFECTS["viscous"], EFFECTS["spring"]
 
@@ -59,8 +59,8 @@ def law(now, p):
 CONTROLLER = ControlLaw(
     law=law,
     states={
-        "once": State("position", _once),
-        "twice": State("position", _velocity, _twice_ahead),
+        "once": ControllerState("position", _once),
+        "twice": ControllerState("position", _velocity, _twice_ahead),
     },
     linear=True,
     parameters={

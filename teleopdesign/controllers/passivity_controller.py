@@ -17,7 +17,7 @@ Hannaford and Ryu do. The device's inertia has to be put in first: what it gives
 from sympy import Max, Min, S, exp
 
 from ..effects import Parameter
-from ._controller import ControlLaw, State
+from ._controller import ControlLaw, ControllerState
 
 _STANDSTILL = 1e-30  # (m/s)^2: alpha stays finite there, and acts on no velocity
 
@@ -71,8 +71,8 @@ CONTROLLER = ControlLaw(
     law=law,
     takes="force",
     states={
-        "energy": State("energy", energy, energy_after),
-        "last": State("force", nothing, last),
+        "energy": ControllerState("energy", energy, energy_after),
+        "last": ControllerState("force", nothing, last),
     },
     parameters=PARAMETERS,
     source="Hannaford, Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1 (P52)",

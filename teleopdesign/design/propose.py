@@ -19,7 +19,7 @@ from .cancellation import acting_gain, cancelled_level, dahl_cancellation, smoot
 from .chosen import ProposedController
 from .energy import energy_claim
 from .felt_impedance import felt_impedance
-from .force_feedback import Loop, force_feedback, identified_delay, whole_inertia
+from .force_feedback import FeedbackLoop, force_feedback, identified_delay, whole_inertia
 from .from_answer import DiagnosedModel, diagnosed_model
 from .linear import transparency
 from .notes import notes_on
@@ -48,7 +48,7 @@ class Trial:
 
     cancellation: ProposedController | None
     force_feedback: ProposedController
-    loop: Loop
+    loop: FeedbackLoop
     diagram: Diagram
     prediction: Prediction
 

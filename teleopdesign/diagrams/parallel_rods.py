@@ -47,12 +47,7 @@ def parallel_rods(
     raises ModelError: G is no regular n x n matrix, or another block has another size
     """
     size = len(rods)
-    g = matrix_of(geometry, "parallel_rods: geometry")
-    if g.shape != (size, size):
-        raise ModelError(f"parallel rods: geometry is {g.shape}, expected ({size}, {size})")
-    if np.linalg.matrix_rank(g) < size:
-        raise ModelError("parallel rods: the geometry is singular: some motion of the hand is free")
-    inverse = np.linalg.inv(g)
+    inverse = _inverse(geometry, size)
     numbers = range(1, size + 1)
     blocks: list[Block] = []
     junctions: list[Junction] = []
@@ -67,8 +62,8 @@ def parallel_rods(
         blocks.append(Moving(f"Z_M{n}", rod, f"L{n}", f"R_A{n}", loads, f"F_V{n}"))
         junctions.append(Junction(f"E{n}", {f"R_D{n}": 1, f"R_M{n}": -1}))
     laws = (("C", cancellation, "L", "R_MBC"), ("H", force_feedback, "E", "R_FF"))
-    for name, given, read, made in laws:
-        for (i, j), law in _by_rods(name, given, size).items():
+    for name, controllers, read, made in laws:
+        for (i, j), law in _by_rods(name, controllers, size).items():
             force = f"{made}{i}" if i == j else f"{made}{i}_{j}"
             of = f"{name}{i}" if i == j else f"{name}{i}_{j}"
             blocks.append(Control(of, law, f"{read}{j}", force, f"L{j}", name in analog))
@@ -89,6 +84,16 @@ def parallel_rods(
         {f"{signal}{n}": "force" for n in numbers for signal in ("R_D", "F_V")},
         measured=(*_named("L", numbers), *_named("R_M", numbers)),
     )
+
+
+def _inverse(geometry: Any, size: int) -> np.ndarray:
+    """The inverse of G; ModelError where G is no regular matrix of that size."""
+    g = matrix_of(geometry, "parallel_rods: geometry")
+    if g.shape != (size, size):
+        raise ModelError(f"parallel rods: geometry is {g.shape}, expected ({size}, {size})")
+    if np.linalg.matrix_rank(g) < size:
+        raise ModelError("parallel rods: the geometry is singular: some motion of the hand is free")
+    return np.asarray(np.linalg.inv(g))
 
 
 def _named(signal: str, numbers: range) -> tuple[str, ...]:

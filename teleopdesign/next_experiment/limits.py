@@ -100,7 +100,7 @@ def _largest(parts: Sequence[np.ndarray]) -> float:
 
 
 @dataclass(frozen=True)
-class Course:
+class BodyPaths:
     """How one path moves every body: position = middle + gain times the path (SI of the first).
 
     limits: those of the path itself: the stroke is low = -high, the rest the tightest of all bodies
@@ -111,7 +111,7 @@ class Course:
     limits: Limits
 
 
-def course_of(limits: Mapping[str, Limits], prepared: Prepared) -> Course:
+def course_of(limits: Mapping[str, Limits], prepared: Prepared) -> BodyPaths:
     """One path for all bodies: a coupled pair keeps its ratio, others go by their strokes."""
     first = next(iter(limits))
     gain = {b: _ratio(first, b, limits, prepared) for b in limits}
@@ -123,7 +123,7 @@ def course_of(limits: Mapping[str, Limits], prepared: Prepared) -> Course:
     half = min(0.5 * (limit.high - limit.low) / abs(gain[b]) for b, limit in limits.items())
     bounds = {name: tightest(name) for name in ("speed", "acceleration", "jerk")}
     # each body is held to its own force when the force is known
-    return Course(middle, gain, Limits(-half, half, **bounds, force=limits[first].force))
+    return BodyPaths(middle, gain, Limits(-half, half, **bounds, force=limits[first].force))
 
 
 #: correlation of two bodies' positions from which they count as coupled

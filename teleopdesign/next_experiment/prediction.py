@@ -79,7 +79,7 @@ class Curves:
 
 
 @dataclass(frozen=True)
-class Prediction:
+class RivalPrediction:
     """Everything that follows if one rival is the truth."""
 
     truth: int
@@ -158,7 +158,7 @@ def predict(
     present: Mapping[tuple[int, int], float],
     *,
     seed: int,
-) -> Prediction:
+) -> RivalPrediction:
     """Fit every rival to the present and the new records that rival `number` would give.
 
     present: (truth, other) -> separation on the present records
@@ -178,7 +178,9 @@ def predict(
         for k, i in enumerate(against, start=1)
     )
     curves = tuple(_curves(truth, fitted, k) for k in range(1, len(fitted.fits)))
-    return Prediction(number, separations, _determined_parameters(truth, fitted.fits[0]), curves)
+    return RivalPrediction(
+        number, separations, _determined_parameters(truth, fitted.fits[0]), curves
+    )
 
 
 def _score(other: Fit, truth: Fit) -> float:

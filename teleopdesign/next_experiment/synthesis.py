@@ -23,7 +23,7 @@ from ..model import Model
 from ..realise.along_motion import residual_along
 from ..realise.simulated import with_give, without_absent
 from .following import Servo, follow_path, with_ramps
-from .limits import Course
+from .limits import BodyPaths
 
 #: give of an ideal friction, in encoder steps: too small to be read
 GIVE = 0.3
@@ -116,7 +116,7 @@ class Bench:
     bandwidth: float
     sample_time: float
     sensors: Mapping[str, Sensor]
-    course: Course
+    course: BodyPaths
     floor: float = 0.0
     servos: Mapping[str, Servo] = field(default_factory=dict)
     attached: Mapping[str, float] = field(default_factory=dict)

@@ -53,7 +53,7 @@ def _shown(sign: str, expression: sp.Expr) -> str:
 
 
 @dataclass(frozen=True)
-class Step:
+class ProofStep:
     """One exact fact; words: what it says in the chain of the proof."""
 
     words: str
@@ -68,7 +68,7 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Equal(Step):
+class Equal(ProofStep):
     """left = right for all values of the symbols (commuting)."""
 
     left: sp.Expr
@@ -87,7 +87,7 @@ class Equal(Step):
 
 
 @dataclass(frozen=True)
-class NotNegative(Step):
+class NotNegative(ProofStep):
     """expression >= 0: it equals `form`, whose sign shows by itself.
 
     form: built from symbols whose sign sympy knows, and from the symbols of `signs`
@@ -116,7 +116,7 @@ class NotNegative(Step):
 
 
 @dataclass(frozen=True)
-class Grows(Step):
+class Grows(ProofStep):
     """expression >= 0 for variable > 0: it starts at a value >= 0 and its derivative is `slope`.
 
     slope: form of the derivative whose sign shows by itself, as in NotNegative
@@ -138,7 +138,7 @@ class Grows(Step):
 
 
 @dataclass(frozen=True)
-class Limit(Step):
+class Limit(ProofStep):
     """expression -> value as variable -> at (from the right where at is finite)."""
 
     expression: sp.Expr
@@ -160,7 +160,7 @@ class Limit(Step):
 
 
 @dataclass(frozen=True)
-class Holds(Step):
+class Holds(ProofStep):
     """A relation between exact numbers is true: a witness, an example that something can happen.
 
     relation: "==", "!=", "<", "<=", ">" or ">="
@@ -183,7 +183,7 @@ class Holds(Step):
 
 
 @dataclass(frozen=True)
-class BlocksEqual(Step):
+class BlocksEqual(ProofStep):
     """left = right for blocks that need not commute."""
 
     left: sp.Expr
@@ -198,7 +198,7 @@ class BlocksEqual(Step):
 
 
 @dataclass(frozen=True)
-class BlocksDiffer(Step):
+class BlocksDiffer(ProofStep):
     """left != right for some blocks: rational matrices on which they differ exactly."""
 
     left: sp.Expr
@@ -213,13 +213,13 @@ class BlocksDiffer(Step):
 
 
 @dataclass(frozen=True)
-class Proof:
+class ProofSteps:
     """Steps in order.
 
     assuming: expressions that the statement supposes not to be negative, beyond what symbols assume
     """
 
-    steps: tuple[Step, ...]
+    steps: tuple[ProofStep, ...]
     assuming: tuple[sp.Expr, ...] = ()
 
     def verify(self) -> tuple[str, ...]:
@@ -233,23 +233,23 @@ class Proof:
         return tuple(step.as_text() for step in self.steps)
 
 
-def proof(*steps: Step | Iterable[Step], assuming: Iterable[sp.Expr] = ()) -> Proof:
+def proof(*steps: ProofStep | Iterable[ProofStep], assuming: Iterable[sp.Expr] = ()) -> ProofSteps:
     """A proof of these steps; several may be given as one iterable."""
-    flat: list[Step] = []
+    flat: list[ProofStep] = []
     for step in steps:
-        flat += [step] if isinstance(step, Step) else list(step)
-    return Proof(tuple(flat), tuple(assuming))
+        flat += [step] if isinstance(step, ProofStep) else list(step)
+    return ProofSteps(tuple(flat), tuple(assuming))
 
 
 @dataclass(frozen=True)
-class Refutation:
+class Correction:
     """What is printed fails, exactly, and the corrected form is proved.
 
     printed: steps that show the failure;  corrected: proof of what holds instead
     """
 
-    printed: Proof
-    corrected: Proof
+    printed: ProofSteps
+    corrected: ProofSteps
 
     def verify(self) -> tuple[str, ...]:
         """The words of all steps; raises NotProved."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import sympy as sp
 
 from ._laws import bristle_force, bristle_rate, dahl_rate, stribeck_level, viscous
-from ._proof import Equal, Grows, Limit, NotNegative, Proof, Step, proof
+from ._proof import Equal, Grows, Limit, NotNegative, ProofStep, ProofSteps, proof
 from ._statement import DERIVED, shows
 from .dahl_loop import ENERGY, A, f_c
 from .dahl_loop import sigma as STIFFNESS
@@ -40,12 +40,12 @@ def dissipation(level: sp.Expr) -> sp.Matrix:
     return sp.Matrix([[ALPHA * m, side], [side, BETA * n]])
 
 
-def stored_and_lost(level: sp.Expr) -> list[Step]:
+def stored_and_lost(level: sp.Expr) -> list[ProofStep]:
     """V balances the supply with Q, V > 0, and det Q is the product of two factors."""
     q = dissipation(level)
     form = (sp.Matrix([[p, d]]) * q * sp.Matrix([p, d]))[0]
     factors = (level - fD) * (sP**2 / level - sD**2 / fD)
-    steps: list[Step] = [
+    steps: list[ProofStep] = [
         Equal(
             f"supply less dV/dt is w (p d) Q (p d)^T at v = {way:+d} w",
             (p - d) * way * w - rate(STORED, way).subs(fC, level),
@@ -84,7 +84,7 @@ def small_cycles(level: sp.Expr, stiffness: sp.Expr) -> sp.Expr:
     formula="passive iff f_D <= f_C and sigma_D^2/f_D <= sigma_p^2/f_C (then sigma_D <= sigma_p)",
     printed="the proof of the paper supposes ideal Coulomb friction at the measured coordinate",
 )
-def matched_bristles() -> Proof:
+def matched_bristles() -> ProofSteps:
     """Dahl friction compensated by a Dahl compensator on the same position: exactly when the pair
     is passive.
     """
@@ -136,7 +136,7 @@ def matched_bristles() -> Proof:
     place="extends P43",
     formula="sufficient: f_D <= F_min and sigma_D^2/f_D <= sigma_p^2/F_max",
 )
-def varying_level() -> Proof:
+def varying_level() -> ProofSteps:
     """The plant's level may vary in any way between F_min and F_max (speed, position, load,
     drift): compensate the lowest level that can occur.
     """
@@ -165,7 +165,7 @@ def varying_level() -> Proof:
     "sigma_1 (F_S/F_C - 1)",
     assumes="that the condition is also necessary is theirs and is not shown here",
 )
-def bristle_damping() -> Proof:
+def bristle_damping() -> ProofSteps:
     """LuGre friction: what bristle damping adds, and when it is passive by itself with the energy
     of its bristle stored.
     """
@@ -213,7 +213,7 @@ def bristle_damping() -> Proof:
     place="consequence of P43",
     formula="small cycles give out (4/3) A^3 (sigma_D^2/f_D - sigma_p^2/f_C)",
 )
-def stiff_compensator() -> Proof:
+def stiff_compensator() -> ProofSteps:
     """A compensator stiffer than the plant gives out energy in small motion even far below its
     level; a lower sigma_D cures it, a lower f_D makes it worse.
     """

@@ -99,7 +99,9 @@ def _mechanics(
     outputs = {str(s): s for s in moved} | {n: e for n, e in parts.signals.items()}
     outputs |= {str(s): s for s in idle}
     rates = [parts.rates[s] for s in states]
-    return _nlsys(MECHANICS, states, inputs, rates, outputs, names, numbers, parts.joined)
+    return _nlsys(
+        MECHANICS, states, inputs, rates, outputs, names, numbers=numbers, joined=parts.joined
+    )
 
 
 def _known(diagram: Diagram) -> Diagram:
@@ -130,7 +132,9 @@ def _controller(part: Control, numbers: dict[sp.Symbol, float], names: PrivateNa
     used = set().union(*(e.free_symbols for e in (equation.output, *rates)))
     inputs = sorted(used - set(states) - set(numbers) - {TIME}, key=str)
     outputs = {part.output: equation.output}
-    return _nlsys(names.public_name(part.name), states, inputs, rates, outputs, names, numbers)
+    return _nlsys(
+        names.public_name(part.name), states, inputs, rates, outputs, names, numbers=numbers
+    )
 
 
 def _static(part: Junction | Kinematics, names: PrivateNames) -> Any:
@@ -138,7 +142,7 @@ def _static(part: Junction | Kinematics, names: PrivateNames) -> Any:
     inputs = [signal(s) for s in part.inputs]
     value = summed(part, signal)
     name = f"sum_{names.public_name(part.output)}"
-    return _nlsys(name, [], inputs, [], {part.output: value}, names, {})
+    return _nlsys(name, [], inputs, [], {part.output: value}, names, numbers={})
 
 
 def _renamed(system: Any, part: Control, names: PrivateNames) -> Any:
@@ -162,6 +166,7 @@ def _nlsys(
     rates: Sequence[sp.Expr],
     outputs: dict[str, sp.Expr],
     names: PrivateNames,
+    *,
     numbers: dict[sp.Symbol, float],
     joined: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
 ) -> Any:

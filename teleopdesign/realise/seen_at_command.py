@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -29,7 +30,7 @@ from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from .along_motion import Residual, measured_along, residual_along
 from .friction_along import level_along
-from .stages_along import Stage, stages_along
+from .stages_along import ActuationStage, stages_along
 from .traced import Along, slope
 
 #: part of the gain that a law has where it has most, below which a sample is blind. A command ten
@@ -146,9 +147,10 @@ def _way(
     effect: Effect,
     law: sp.Expr,
     signal: sp.Symbol,
-    delays: Mapping[sp.Symbol, float],
     along: Along,
     motion: Motion,
+    *,
+    delays: Mapping[sp.Symbol, float] = MappingProxyType({}),
     parts: int = 1,
 ) -> _Way:
     """The way from a signal through a law, with its hidden states and delayed copies."""
@@ -184,9 +186,10 @@ def _solved(matrices: Array | NDArray[np.complex128], right: Array) -> Any:
         return np.full(right.shape, np.nan)
 
 
-def _of_stage(stage: Stage, motion: Motion, along: Along) -> _Way:
+def _of_stage(stage: ActuationStage, motion: Motion, along: Along) -> _Way:
     at_stage = replace(along, signals=stage.signals)
-    return _way(stage.effect, stage.law, _COMMAND, stage.delays, at_stage, motion, stage.parts)
+    delays, parts = stage.delays, stage.parts
+    return _way(stage.effect, stage.law, _COMMAND, at_stage, motion, delays=delays, parts=parts)
 
 
 def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
@@ -195,7 +198,7 @@ def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
     for effect in _taking(body, signal):
         if effect.states and effect.is_absent(along.values):
             continue
-        way = _way(effect, effect.expression(), signal, {}, along, motion)
+        way = _way(effect, effect.expression(), signal, along, motion)
         gain, over = gain - way.gain, over - way.dynamics
     if body.level().has(signal):
         level, with_speeds = level_along(body, along)
