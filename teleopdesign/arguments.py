@@ -100,7 +100,7 @@ def number(value: Any, where: str) -> float:
 
 
 def instance(value: Any, kind: type[Any], where: str, *, expected: str = "") -> None:
-    """Refuse with ModelError what is not of that class; expected: in words."""
+    """Raise ModelError unless the value is of that class; expected: in words."""
     if not isinstance(value, kind):
         raise _error("", "", where, WrongValue("", value, expected or with_article(kind.__name__)))
 

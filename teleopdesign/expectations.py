@@ -31,7 +31,7 @@ Check = Callable[[Any], WrongValue | None]
 
 
 def described(value: Any) -> str:
-    """What was given, in words: 'the number 0.15', 'the text "C"', 'a Body'."""
+    """A value in words: 'the number 0.15', 'the text "C"', 'a Body'."""
     if value is None or isinstance(value, bool):
         return str(value)
     if isinstance(value, str):
@@ -56,7 +56,7 @@ def with_article(name: str) -> str:
 
 
 def check_of(annotation: Any) -> Check | None:
-    """The check of a resolved annotation; None where anything goes."""
+    """The check of a resolved annotation; None where every value is right."""
     origin, inner = get_origin(annotation), get_args(annotation)
     if annotation is Any or annotation is object or isinstance(annotation, TypeVar | str):
         return None

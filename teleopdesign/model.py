@@ -151,7 +151,7 @@ class Model:
         return self.body(place).unit(local_name)
 
     def from_absence(self, name: str) -> float:
-        """How far the parameter of that full name is from where its effect is absent, or from 0."""
+        """Distance of a parameter from the value at which its effect is absent, or from 0."""
         place, local_name = self.locate(name)
         effect, _, parameter = local_name.partition(".")
         value = abs(self.parameters[name].value)
@@ -201,7 +201,7 @@ class Model:
         return (*self.bodies, CONTACT.name) if touched else tuple(self.bodies)
 
     def holder(self, at: str) -> str:
-        """The body that holds what is at a place: of the environment, the one that touches it."""
+        """The body at a place; for the environment, the body that touches it."""
         if at not in self.places:
             raise ModelError(
                 f'model: no body "{at}", has {", ".join(self.places)}'
@@ -212,7 +212,7 @@ class Model:
         return next(p for p, b in self.bodies.items() if b.has(CONTACT.name))
 
     def _place_of(self, holder: str, local_name: str) -> str:
-        """What stands before a body's parameter in its full name, with its dot."""
+        """Prefix, with its dot, of a body's parameter in its full name."""
         effect, _, parameter = local_name.partition(".")
         if effect == CONTACT.name:
             return ""
@@ -250,7 +250,7 @@ class Model:
 
 
 def _touching(body: Body, description: EnvironmentDescription, known: Mapping[str, Effect]) -> Body:
-    """The body with the environment that it runs into; damping is none unless one is given."""
+    """The body with the environment that it runs into; without a stated damping it has none."""
     if "stiffness" not in description.values:
         raise ExperimentError(f"{description.where}: no stiffness given")
     values = {

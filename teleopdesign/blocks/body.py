@@ -151,7 +151,7 @@ class Body:
 
     @checked
     def with_effect(self, effect: Effect, values: Mapping[str, float] | None = None) -> Body:
-        """The body with one effect more, at the given values (default: where it is absent).
+        """The body with one more effect, at these values (default: those at which it is absent).
 
         A shape of friction, or a structure, replaces another one that was there.
         raises ModelError: the effect is there already, or has no such parameter
@@ -198,7 +198,7 @@ class Body:
         return replace(self, effects=tuple(effects), parameters=kept)
 
     def with_values(self, values: Mapping[str, float | Value]) -> Body:
-        """The body with other parameter values; `fixed` is kept where a plain number is given."""
+        """The body with other parameter values; a plain number keeps the parameter's `fixed`."""
         instance(values, Mapping, "with_values", expected='such as {"inertia": 0.15}')
         new = {}
         for name, number_or_value in values.items():
@@ -222,7 +222,7 @@ class Body:
         return {s: self.parameters[n].value for n, s in self.symbols().items()}
 
     def level(self) -> sp.Expr:
-        """Friction level: laws added, each times its factors, at the speed that the level follows.
+        """Friction level: the sum of the laws, each times its factors, at the speed it depends on.
 
         A factor scales the levels that it needs ("coulomb"), all of them where it needs none.
         """
@@ -337,7 +337,7 @@ def _refuse_axis(axis: object) -> None:
 
 
 def _effects(effects: object) -> tuple[Effect, ...]:
-    """A tuple of effects; a list will do, a name will not."""
+    """A tuple of effects; a list is taken too, a name is refused."""
     expected = 'a tuple of effects, such as (EFFECTS["coulomb"],)'
     if not isinstance(effects, tuple):
         instance(effects, list, "Body: effects", expected=expected)

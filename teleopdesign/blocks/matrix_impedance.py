@@ -121,7 +121,7 @@ def matrix_impedance(
 
 
 def _refuse_other(matrix: Any, name: str) -> None:
-    """Neither a number nor a matrix of numbers."""
+    """Refuse what is neither a number nor a matrix of numbers."""
     try:
         array = np.asarray(matrix)
         right = array.dtype.kind in "iuf" and array.ndim in (0, 2) and bool(np.all(array == array))

@@ -58,7 +58,7 @@ def check_excitation(
 
 
 def _unfolded(prepared: Prepared) -> Prepared:
-    """Without a check record, errors of held-out blocks would be made, which nothing here uses."""
+    """Records with one as check record: errors of held-out blocks are not needed here."""
     if prepared.of("check"):
         return prepared
     again = tuple(replace(s, use="check") for s in prepared.of("fit"))
@@ -111,7 +111,7 @@ def _summary(
 
 
 def _waiting(model: Model, place: str) -> list[str]:
-    """Effects that need another one beside them which the model does not have."""
+    """Effects that need another effect which the model lacks."""
     body = model.body(place)
     return [
         f"{e.name} ({', '.join(n for n in sorted(e.needs) if not body.has(n))})"
@@ -123,7 +123,7 @@ def _waiting(model: Model, place: str) -> list[str]:
 
 
 def _least(v: Visibility, model: Model, share: float | None = None) -> str:
-    """An effect with the least strength that shows, and the force that it then makes."""
+    """An effect in words, with its smallest visible strength and the force at that strength."""
     effect = v.candidate.effect
     name, value = next(iter(v.strength.items()))
     unit = unit_of(effect.parameters[name].quantity, model.body(v.candidate.at).axis)
@@ -135,7 +135,7 @@ def _least(v: Visibility, model: Model, share: float | None = None) -> str:
 
 
 def _reason(v: Visibility, poor: Mapping[str, str], model: Model) -> str:
-    """Why an effect cannot be seen: its numbers, and what it or what hides it does not get."""
+    """Why an effect is invisible: its numbers, and what the motion lacks."""
     signals = list(needed(v.candidate.effect))
     if v.silent:
         why = "it makes no force here"

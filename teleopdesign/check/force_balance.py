@@ -47,7 +47,7 @@ class Estimate:
 
     @property
     def sure(self) -> int:
-        """Its sign where it is told from zero by five standard errors, else 0."""
+        """Sign of an estimate that is five standard errors away from zero, else 0."""
         return int(np.sign(self.value)) if abs(self.value) > 5.0 * self.error else 0
 
 

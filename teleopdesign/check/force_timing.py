@@ -86,7 +86,7 @@ def rows_of(parts: Sequence[BandTransforms], shifts: Mapping[str, float]) -> Arr
 
 @dataclass(frozen=True)
 class BalanceFit:
-    """Shifts that have settled, for groups of forces that share one, and the balance there.
+    """Time shifts of groups of forces after iteration, and the force balance at these shifts.
 
     solution: strengths, gain of the other force where there is one, last steps of the shifts
     left: force left unexplained on each row;  jacobian: of it, by the solution
@@ -111,7 +111,7 @@ def with_shifts(
     plain: BalanceFit,
     measured: float,
 ) -> BalanceFit:
-    """The balance at the fewest shifts that explain what shifts can; `plain` where none does."""
+    """The balance with the fewest shifts that explain the residual; `plain` where none does."""
     each = [(f,) for f in forces]
     free = _from_starts(bands, forces, each, measured)
     if free.size > REMAINS * plain.size:

@@ -37,7 +37,7 @@ WEAKEST, STRONGEST, FARTHEST = 1e-6, 1e4, 7.0
 
 @dataclass(frozen=True)
 class Visibility:
-    """What it takes for one effect to be seen.
+    """The smallest visible strength of one effect.
 
     size: force that the effect makes at the least strength that shows, relative to the measured
         force (both rms, low-passed); inf where no strength shows
@@ -89,7 +89,7 @@ class _Trial:
 def visibilities(
     base: Fit, prepared: Prepared, candidates: Sequence[Candidate], floor: float
 ) -> list[Visibility]:
-    """What it takes for each candidate to be seen on the fit records.
+    """The smallest visible strength of each candidate on the fit records.
 
     floor: noise floor of these records, a relative force error
     """
@@ -165,7 +165,7 @@ def _bounded(model: Model, values: dict[str, float]) -> Model:
 
 
 def _trial(candidate: Candidate, shaped: Model, factor: float, scene: _Scene) -> _Trial:
-    """The effect at `factor` times its first strength; where that is absent already, beside it."""
+    """The effect at `factor` times its first strength; next to it where that means absence."""
     effect, place = candidate.effect, candidate.at
     values = {}
     for name, absent in effect.absent.items():

@@ -69,7 +69,7 @@ def controller(name: str, values: Mapping[str, float]) -> Controller:
 
 
 def laws_that_declare(ability: Ability) -> tuple[ControlLaw, ...]:
-    """The laws of the catalogue that can do that, in the order of their names."""
+    """The laws of the catalogue that declare this ability, in the order of their names."""
     return tuple(law for law in CONTROLLERS.values() if getattr(law, ability))
 
 

@@ -36,7 +36,7 @@ SIGNALS = {
 
 
 def only_sampled(now: Any, p: Any) -> sp.Expr:
-    """The rate of a state that has none: it exists in a computer only."""
+    """Stands for the rate of a state that exists in a computer only."""
     return sp.nan
 
 
@@ -160,7 +160,7 @@ class Stage:
         object.__setattr__(self, "values", Frozen(self.values))
 
     def value_of(self, ability: Ability) -> float | None:
-        """Value (SI) of the parameter that the law declares for it; None where it declares none."""
+        """Value (SI) of the parameter that the law declares for this ability; None without one."""
         parameter = getattr(self.law, ability)
         return float(self.values[parameter]) if parameter else None
 
@@ -267,7 +267,7 @@ class Controller:
         return ControllerEquation(value, Frozen(rates), Frozen(steps), frozenset(before))
 
     def linear_form(self, prefix: str, s: sp.Symbol, speed: sp.Expr) -> sp.Expr | None:
-        """Transfer function at frozen speed; None where a law declares no linear form."""
+        """Transfer function at constant speed; None where a law declares no linear form."""
         if not all(stage.law.linear for stage in self.stages):
             return None
         drive = sp.Symbol("drive")
@@ -304,7 +304,7 @@ class Controller:
 def _placed(
     stage: Stage, prefix: str, signals: Mapping[str, sp.Expr]
 ) -> tuple[SimpleNamespace, SimpleNamespace]:
-    """What the law sees, its states among it, and its parameters, as symbols of that block."""
+    """The signals and states that the law reads, and its parameters, as symbols of that block."""
     law = stage.law
     states = {s: state_symbol(prefix, stage.name, s) for s in law.states}
     values = {n: parameter_symbol(prefix, f"{stage.name}.{n}") for n in law.parameters}

@@ -92,7 +92,7 @@ def inverted(system: control.LTI, *, bandwidth: float, name: str = "inverse") ->
 def _scaled(
     a: np.ndarray, b: np.ndarray, c: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """States in units of their own, by powers of two: what a polynomial gives spans decades.
+    """States scaled by powers of two: the coefficients of a polynomial can span decades.
 
     A Butterworth low-pass of order 8 at 100 Hz loses 1e-8 of its step without, 3e-15 with it.
     """

@@ -20,7 +20,7 @@ from ._controller import ControlLaw, ControllerState
 
 
 def _power(force, velocity, p):
-    """What friction takes, less what the force gives, W."""
+    """Power that friction dissipates less power that the force supplies, W."""
     return p.counted_level * Abs(velocity) - force * velocity
 
 

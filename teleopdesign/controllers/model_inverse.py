@@ -27,7 +27,7 @@ def _once(now, p):
 
 
 def _twice_ahead(now, p):
-    """The double pole solved for the input held: exact, as `once` is not held meanwhile."""
+    """Exact solution of the double pole for a held input; `once` changes within the sample."""
     decay = 2 * pi * p.bandwidth * now.period
     left = (now.twice - now.input) + (now.once - now.input) * decay
     return now.input + left * exp(-decay)

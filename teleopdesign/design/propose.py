@@ -44,7 +44,7 @@ FILTER, FILTER_SHARE = 50.0, 0.1
 
 @dataclass(frozen=True)
 class Trial:
-    """One choice of C with the H that goes with it, and what both do."""
+    """One choice of C with its H, and the predicted force error of both."""
 
     cancellation: ProposedController | None
     force_feedback: ProposedController
@@ -113,7 +113,7 @@ def design(
 
 
 def complete_assumptions(assumptions: Assumptions, body: Body, reach: Reach) -> Assumptions:
-    """The assumptions with those that are not stated taken from record and body."""
+    """The assumptions; missing ones are derived from record and body."""
     period = assumptions.sample_period or reach.sample_period
     mass = whole_inertia(body)
     delay = period if assumptions.delay is None else assumptions.delay
@@ -127,7 +127,7 @@ def complete_assumptions(assumptions: Assumptions, body: Body, reach: Reach) -> 
 def cancellations(
     body: Body, friction: FrictionInterval | None, reach: Reach, assumptions: Assumptions
 ) -> list[ProposedController]:
-    """The laws of C that are sure to be passive; none where no level is sure."""
+    """The laws of C that are passive within all intervals; none without a guaranteed level."""
     if friction is None:
         return []
     gain = acting_gain(body, reach, errors=assumptions.errors)

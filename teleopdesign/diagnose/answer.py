@@ -67,7 +67,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
 
 
 def _open(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """What the records leave open: an accepted effect, and others with the models they were in."""
+    """The open questions: an accepted effect, and its rivals with their models."""
     return [
         {
             "added": None if question.added is None else _place(question.added.key),
@@ -80,7 +80,7 @@ def _open(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 
 def _moment(moment: Moment | None) -> dict[str, Any] | None:
-    """The moment that holds all that is left above noise."""
+    """The moment that holds all residual above noise."""
     if moment is None:
         return None
     return {
@@ -119,7 +119,7 @@ def _parameters(fit: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
 
 
 def _candidates(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """Every effect tried, most probable first: on the step that accepted it, or its best one."""
+    """Every candidate, most probable first: at the step that accepted it, or at its best step."""
     best: dict[tuple[str, str], CandidateEvidence] = {}
     for one in evidence_of(diagnosis):
         before = best.setdefault(one.ranked.candidate.key, one)
@@ -130,7 +130,7 @@ def _candidates(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 
 def _evidence(one: CandidateEvidence) -> dict[str, Any]:
-    """What the probability of a candidate rests on, a row a step that took it seriously."""
+    """Evidence behind the probability of a candidate, one row for each step that considered it."""
     return _place(one.ranked.candidate.key) | {
         "accepted": one.accepted,
         "as_good": one.as_good,

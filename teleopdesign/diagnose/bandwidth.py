@@ -8,7 +8,7 @@ from ..measurement.experiment import Experiment
 
 
 def default_bandwidth(experiment: Experiment) -> float:
-    """Bandwidth (Hz) where none is given: as far as the position still tells an acceleration.
+    """Default bandwidth (Hz): the highest frequency at which positions still show acceleration.
 
     The highest frequency below a tenth of the sample rate at which the acceleration's spectrum
     stands 10 dB above what white reading noise would leave there.

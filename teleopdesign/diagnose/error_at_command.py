@@ -25,7 +25,7 @@ from .record_offsets import along_offsets, offset_groups
 
 @dataclass(frozen=True)
 class AtCommand:
-    """What a model leaves on some stretches, as an error of the recorded forces.
+    """Residual of a model on some stretches, as an error of the recorded forces.
 
     residual: per stretch, low-passed, on the rows that count; in blind rows as it acts
     sighted: per stretch, the rows that are not blind
@@ -42,7 +42,7 @@ class AtCommand:
 
 
 def at_command(model: Model, stretches: Sequence[Stretch]) -> AtCommand:
-    """What the model leaves, as an error of the recorded forces: see `seen_at_command`.
+    """Residual of the model as an error of the recorded forces: see `seen_at_command`.
 
     Equal to `residuals` where nothing stands between the recorded forces and the body. What a model
     keeps of the interaction force from a body is made up for by the scale of the rest.
@@ -90,7 +90,7 @@ def _seen(body: Body, motion: Motion) -> SeenAtCommand:
 def _made_up_for(
     stretches: Sequence[Stretch], values: list[Array], command_errors: Sequence[SeenAtCommand]
 ) -> list[Array]:
-    """Residuals at the scale that they have where all of the interaction force reaches the body."""
+    """Residuals scaled as if all of the interaction force reached the body."""
     values = list(values)
     for body in {s.motion.body for s in stretches}:
         mine = [i for i, s in enumerate(stretches) if s.motion.body == body]

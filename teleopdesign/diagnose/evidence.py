@@ -44,12 +44,12 @@ def check_squares(fit: Fit) -> float:
 
 
 def check_score(before: Fit, after: Fit) -> float:
-    """How surely `after` has the smaller error on the check records."""
+    """Score by which `after` has the smaller force error on the check records."""
     return gain_score(before.check_residual, after.check_residual, after.check_blocks)
 
 
 def seen_score(before: Fit, after: Fit) -> float:
-    """How surely `after` has the smaller error on the check records, seen at the command.
+    """Score by which `after` has the smaller error at the command, on the check records.
 
     On the rows that both can tell: what a model is blind to speaks for neither.
     """
@@ -60,7 +60,7 @@ def seen_score(before: Fit, after: Fit) -> float:
 
 
 def seen_gain(before: Fit, after: Fit) -> float:
-    """Part of the squares seen at the command that `after` takes away, on rows that both tell.
+    """Share of the squares at the command that `after` removes, on rows sighted in both fits.
 
     No more than the error itself says of each model on its own rows: to be blind to where most is
     left is no gain.
@@ -72,7 +72,7 @@ def seen_gain(before: Fit, after: Fit) -> float:
 
 
 def whole_score(before: Fit, after: Fit) -> float:
-    """How surely `after` has the smaller error on all records together."""
+    """Score by which `after` has the smaller force error on all records together."""
     shift = int(after.fit_blocks.max()) + 1
     return gain_score(
         np.concatenate([before.fit_residual, before.check_residual]),

@@ -39,7 +39,7 @@ class Exchange:
 
 
 def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """The ladder with one effect exchanged for a better, less what that makes superfluous."""
+    """The ladder after the best exchange, without effects that it makes superfluous; None: none."""
     criteria, prepared, floor = search.criteria, search.prepared, state.floor
     if state.exchanges >= search.plan.exchanges or is_adequate(state.fit, floor, criteria=criteria):
         return None
@@ -71,7 +71,7 @@ def rivals_of(
     *,
     criteria: Criteria = CRITERIA,
 ) -> list[Candidate]:
-    """What the records supported in a ranking besides the one that was added, and is not there."""
+    """Supported candidates of a ranking besides the accepted one, if the final model lacks them."""
     keys = {c.key for c in there}
     supported = [
         r.candidate
@@ -89,7 +89,7 @@ def best_exchange(
     *,
     step: int = 1,
 ) -> Exchange | None:
-    """The exchange that lowers the error on the check records most; None where none does clearly.
+    """The exchange with the smallest check error; None where none lowers it clearly.
 
     present: the fit with all that was accepted
     rivals: accepted effect -> what may take its place;  step: number of the rung that is sought

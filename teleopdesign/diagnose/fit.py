@@ -26,7 +26,7 @@ BLOCK = 0.25
 
 @dataclass(frozen=True, eq=False)
 class Seen(ByValue):
-    """What a model leaves on the check records, seen at the command.
+    """Residual of a model on the check records, as an error at the command.
 
     residual: of `Fit.check_residual`'s rows;  sighted: those of them that are not blind
     error, blind, weak: as `AtCommand` has them
@@ -158,7 +158,7 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine)
 
 
 def seen_on(model: Model, stretches: Sequence[Stretch]) -> Seen:
-    """What the model leaves on these stretches, seen at the command."""
+    """Residual of the model on these stretches, as an error at the command."""
     error = at_command(model, stretches)
     return _in_one(stretches, error)
 
@@ -172,7 +172,7 @@ def _in_one(stretches: Sequence[Stretch], error: AtCommand) -> Seen:
 def _held_out(
     fitted: Model, free: tuple[str, ...], prepared: Prepared
 ) -> tuple[tuple[Stretch, ...], list[Array], float, Seen]:
-    """Residuals of blocks of the fit records, each from a fit that has not seen it; the errors."""
+    """Residuals and errors of blocks of the fit records, each from a fit without that block."""
     held: list[Stretch] = []
     parts: list[Array] = []
     command_errors: list[AtCommand] = []
@@ -204,7 +204,7 @@ def solve(
     stretches: Sequence[Stretch],
     effort: Effort,
 ) -> Solution:
-    """Bounded least squares on the relative_residuals residuals of these stretches."""
+    """Bounded least squares on the relative residuals of these stretches."""
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     declared = [model.declared(n) for n in free]
     scale = np.array([unit[d.scale] for d in declared])

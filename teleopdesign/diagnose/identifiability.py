@@ -9,7 +9,7 @@ from .fit import Fit
 
 
 def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bool:
-    """Whether the new parameters are determined and do what the base's cannot imitate.
+    """Whether the new parameters are determined and the base's parameters cannot imitate them.
 
     Each must be further from absence than its standard error (an angle within half a turn) unless
     the effect is there without it, what is essential to it surely so, and some must change the

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def own_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """What records have of their own by the model that the diagnosis ends with."""
+    """Offsets of single records by the final model of the diagnosis."""
     stretches, rows = diagnosis.prepared.stretches, []
     for group, offsets in offset_groups(diagnosis.model, stretches):
         motion = stretches[group[0]].motion
@@ -42,7 +42,7 @@ DIFFERENT = 0.02
 
 
 def seen_text(fit: Fit) -> str | None:
-    """The error seen at the command and the blind share, where they say more than the error."""
+    """The error at the command and the blind share, if they differ from the check error."""
     command_error = fit.at_command
     alike = abs(command_error.error - fit.check_error) <= DIFFERENT * fit.check_error
     if alike and command_error.blind == 0.0:
@@ -54,12 +54,12 @@ def seen_text(fit: Fit) -> str | None:
 
 
 def _percent(error: float) -> str:
-    """An error in percent; that of a model that is blind everywhere is not told."""
+    """An error in percent; unknown for a model that is blind everywhere."""
     return f"{100 * error:.2f} %" if math.isfinite(error) else "not told"
 
 
 def refused_lines(diagnosis: Diagnosis) -> list[str]:
-    """What left less force than the model that the ladder ends with, and why it does not count."""
+    """Candidates with a smaller force error than the final model, and why they do not count."""
     after = diagnosis.after
     return [
         f"refused: {r.candidate} ({_percent(r.fit.check_error)}; seen at the command "

@@ -29,7 +29,7 @@ AT_ONCE = 48
 
 @dataclass(frozen=True)
 class LinearStart:
-    """Where the new effect has its best strength, and the squares that one step leaves.
+    """A start with the best strength of the new effect, and the squares left after one step.
 
     form: the model with the effect's other parameters;  best: strength, and phase, by full name
     """
@@ -47,7 +47,7 @@ class LinearStart:
 def linear_starts(
     models: list[Model], effect: Effect, at: str, prepared: Prepared, base: Fit
 ) -> list[LinearStart]:
-    """Each model with the strength (and phase) that leaves least, to first order; best first.
+    """Each model with its best strength (and phase) to first order; smallest error first.
 
     models: the same model with the effect's other parameters at different values
     base: the fit without the effect; its parameters take part in the step

@@ -50,7 +50,7 @@ class NoiseFloor(ByValue):
 
     @property
     def counted(self) -> float:
-        """Part of what the drawn readings left that counts."""
+        """Share of the drawn floor that counts as noise."""
         return self.value / self.drawn if self.drawn else 1.0
 
     def at_most(self, value: float) -> NoiseFloor:

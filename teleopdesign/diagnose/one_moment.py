@@ -37,7 +37,7 @@ class Moment:
 
 
 def worst_moment(fit: Fit, prepared: Prepared, floor: NoiseFloor) -> Moment | None:
-    """The two blocks in a row that leave most; None of fewer than `MOMENTS`, or without check."""
+    """The two consecutive blocks with the largest residual; None: fewer than `MOMENTS` blocks."""
     stretches = prepared.of("check")
     if not stretches or not floor.value:
         return None

@@ -30,13 +30,13 @@ from .search_plan import PLAN
 
 
 def acts_by_the_clock(effect: Effect) -> bool:
-    """Whether an effect depends on time itself, so that a tone may be what it says there is."""
+    """Whether an effect depends on time itself, so that it may describe an outside tone."""
     return bool(effect.expression().has(SIGNALS["time"]))
 
 
 @dataclass(frozen=True)
 class Tone:
-    """What the best tone on one of the bodies leaves of the check records' residuals.
+    """Residuals of the check records after the best tone on one of the bodies.
 
     residual: as `Fit.check_residual`; None: there is none that the motion does not hold itself
     """
@@ -56,7 +56,7 @@ class Tone:
 
 
 def best_tone(fitted: Fit, prepared: Prepared) -> Tone:
-    """The tone that leaves least of what a model does.
+    """The tone that removes most of the residual of a model.
 
     Its frequency is found on the fit records; amplitude and phase are those of each check stretch.
     """

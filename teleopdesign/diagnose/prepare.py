@@ -42,7 +42,7 @@ class Stretch(ByValue):
 
     @property
     def own_zero(self) -> bool:
-        """Whether its position cannot be compared with that of other records."""
+        """Whether the encoder's zero of this record differs from that of other records."""
         return "position_zero" in self.offset_names
 
 

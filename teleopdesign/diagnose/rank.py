@@ -30,7 +30,7 @@ def _is_part_of(small: Candidate, large: Candidate) -> bool:
 def _from_kin(
     attempt: tuple[Candidate, Fit], attempts: Collection[tuple[Candidate, Fit]], prepared: Prepared
 ) -> tuple[Candidate, Fit]:
-    """Started anew where an effect that it is a part of has come to lie lower.
+    """The fit, started again from a larger effect that contains this one and has a smaller error.
 
     The larger one may find a way round: a gap that closes leads to the compliance behind it.
     """
@@ -55,7 +55,7 @@ def _refined(
     prepared: Prepared,
     stated: Model | None,
 ) -> tuple[Candidate, Fit]:
-    """Fitted finely, where it leaves no more than `leading` and less than `worthless` squares."""
+    """A fine fit, for a candidate with at most `leading` and less than `worthless` squares."""
     candidate, rough = attempt
     present = (candidate.effect.name, candidate.at) not in rough.model.absent
     if not present or fit_squares(rough) > leading:

@@ -67,7 +67,7 @@ def coordinates(model: Model, names: tuple[str, ...]) -> Array:
 def reading_error(
     fit: Fit, prepared: Prepared, generator: np.random.Generator
 ) -> ReadingError | None:
-    """By how much estimates from simulated readings miss what was simulated.
+    """Error of estimates from simulated readings, whose true values are known.
 
     None: the model's motion cannot be simulated
     """
@@ -156,7 +156,7 @@ def _taken_off(fit: Fit, shift: Array) -> tuple[Model, Array]:
 def _settled(
     fit: Fit, error: ReadingError, prepared: Prepared, generator: np.random.Generator
 ) -> tuple[ReadingError, Model, Array]:
-    """The error at the values that it leads to, with the model there and which of them moved.
+    """The error at the corrected values, the model there, and which values moved.
 
     generator: each simulation draws the same from it, so that values alone make the difference
     """
@@ -188,7 +188,7 @@ def with_reading_error(
     *,
     adequate: Callable[[Fit], bool],
 ) -> Fit:
-    """The fit with standard errors that hold what its readings do, and the shift taken off it.
+    """The fit with the shift by its readings removed and standard errors that include their spread.
 
     adequate: whether a fit leaves only noise. One that leaves more is not the model whose readings
         would be simulated: there, as where a corrected fit would leave more, and for estimates that

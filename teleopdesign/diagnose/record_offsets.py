@@ -36,7 +36,7 @@ Residual = Callable[[Body, Motion, int], Array]
 
 @dataclass(frozen=True)
 class RecordOffsets:
-    """A body along the motions of one record, with what it has there of its own.
+    """A body along the motions of one record, with the offsets of that record.
 
     values: "position_zero" (shift of the position, m or rad), "bias" (force that acts, N or N m),
         "friction_level" (over the model's)
@@ -66,7 +66,7 @@ class RecordOffsets:
 def find_offsets(
     body: Body, motions: Sequence[Motion], names: Collection[str], residual: Residual
 ) -> RecordOffsets:
-    """Find what a record has of its own.
+    """Find the offsets of one record.
 
     motions: the body's, all of one record;  names: of "position_zero", "bias", "friction_level"
     """
@@ -93,7 +93,7 @@ def find_offsets(
 
 
 def _steps(body: Body, motions: Sequence[Motion], names: Collection[str]) -> dict[str, float]:
-    """What can be found, and the step of each over which its slope is taken."""
+    """Offsets that the record determines -> step over which the slope is taken."""
     steps = {}
     if "position_zero" in names and any(
         e.expression().has(SIGNALS["position"]) for e in body.effects
@@ -122,7 +122,7 @@ def _with(
 def offset_groups(
     model: Model, stretches: Sequence[Stretch]
 ) -> list[tuple[list[int], RecordOffsets]]:
-    """(places of the stretches, what they have of their own) for each record that has any."""
+    """(places of the stretches, their offsets) for each record with offsets."""
     groups: dict[tuple[str, str], list[int]] = {}
     for i, stretch in enumerate(stretches):
         if stretch.offset_names:
@@ -142,7 +142,7 @@ def offset_groups(
 
 
 def along_with_offsets(model: Model, stretches: Sequence[Stretch]) -> list[tuple[Body, Motion]]:
-    """Body and motion of each stretch, with what its record has of its own."""
+    """Body and motion of each stretch, with the offsets of its record."""
     return along_offsets(model, stretches, offset_groups(model, stretches))
 
 

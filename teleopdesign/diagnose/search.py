@@ -75,7 +75,7 @@ def at_stated(model: Model, stated: Model) -> Model:
 
 
 def unchanged(model: Model, base: Fit) -> Fit:
-    """The fit of a model whose new effects stay absent: what the base leaves, all of it."""
+    """The fit of a model whose new effects stay absent: the residual of the base."""
     return replace(base, model=model.with_values(dict(base.model.parameters)))
 
 
@@ -103,7 +103,7 @@ def _promising(
 
 
 def _varied(model: Model, ordered: list[Model]) -> list[Model]:
-    """The starts with the first at each value of what the new effects cannot do without in front.
+    """The starts; first those at each value of parameters that the new effects need.
 
     A search that begins at a gap too narrow closes it, and never opens it again.
     """
@@ -133,7 +133,7 @@ def _with_strength(model: Model, base: Fit) -> tuple[Effect, str] | None:
 
 
 def _moved(base: Fit, stated: Model) -> bool:
-    """Whether a parameter of the base lies further from its user's value than users are wrong."""
+    """Whether the base moved a parameter further from the user's value than users usually err."""
     pairs = [
         (base.model.parameters[n].value, stated.parameters[n].value)
         for n in base.free
@@ -145,7 +145,7 @@ def _moved(base: Fit, stated: Model) -> bool:
 def _by_strength(
     models: list[Model], effect: Effect, at: str, prepared: Prepared, base: Fit, worth: float
 ) -> list[Model]:
-    """The best starts of an effect that is linear in its strength; none where none is worth it."""
+    """The best starts of an effect that is linear in its strength; none if no gain is expected."""
     strength = f"{at}.{effect.name}.{effect.strength}"
     distinct: dict[tuple[float, ...], Model] = {}
     for model in models:
@@ -183,7 +183,7 @@ def _left(columns: Array, residual: Array) -> float:
 def _best_stepped(
     models: list[Model], prepared: Prepared, kept: int, *, promised: bool
 ) -> list[Model]:
-    """The starts that lie lowest after a few real steps, where these steps have led them.
+    """The best starts after a few steps of the fit, at the values that these steps reached.
 
     promised: whether the first is the one that promised most: it is kept too, for steps that begin
         far from an optimum may lie above those that never leave the base
@@ -200,7 +200,7 @@ def _best_stepped(
 
 
 def _jolted(fit: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> Fit:
-    """The fit at the best place near by: squares that are rugged have many shallow ones.
+    """The best fit near by: a rugged sum of squares has many shallow minima.
 
     new: (effect, place) whose parameters are jolted, one at a time
     """

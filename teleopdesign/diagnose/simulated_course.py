@@ -29,7 +29,7 @@ STEPS, MOST_STEPS = 20, 400
 
 @dataclass(frozen=True)
 class Course:
-    """Position and command (n,) of a body as they truly were."""
+    """True position and command (n,) of a simulated body."""
 
     position: Array
     command: Array

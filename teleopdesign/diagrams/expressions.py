@@ -108,12 +108,12 @@ def read_expression(text: str, *, where: str) -> sp.Expr:
 
 
 class _Endless(BaseException):
-    """Out of work; no `Exception`, so that nothing on the way takes it for one of its own."""
+    """The limit of work is reached; not an `Exception`, so that no library catches it."""
 
 
 @contextmanager
 def _bounded_work() -> Iterator[None]:
-    """Ends what takes more than `_MOST_CALLS` calls of Python; the same on every machine."""
+    """Stop a computation after `_MOST_CALLS` calls of Python; the same on every machine."""
     left, before = _MOST_CALLS, sys.getprofile()
 
     def count(frame: FrameType, event: str, argument: object) -> None:

@@ -177,7 +177,7 @@ class Diagram:
         return name
 
     def without(self, *names: str) -> Diagram:
-        """The diagram without these blocks: what they gave is zero. Absent ones are no matter."""
+        """The diagram without these blocks: their outputs are zero. Unknown names are ignored."""
         gone = {s for n in names if self.has(n) for s in self.block(n).outputs}
         junctions = tuple(
             replace(j, terms={s: g for s, g in j.terms.items() if s not in gone})
@@ -198,7 +198,7 @@ class Diagram:
         )
 
     def opened(self, *names: str) -> Diagram:
-        """The diagram with the outputs of these controllers from outside instead. Absent: as is."""
+        """The diagram with these controllers' outputs from outside; unknown names are ignored."""
         free = {s: "force" for n in names if self.has(n) for s in self.block(n).outputs}
         kept = tuple(b for b in self.blocks if b.name not in names)
         return _pruned(replace(self, blocks=kept, outside={**self.outside, **free}))

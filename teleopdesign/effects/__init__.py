@@ -179,12 +179,12 @@ BLOCK_EFFECTS: Mapping[str, Effect] = Catalogue(
 
 
 def with_block_effects(effects: Mapping[str, Effect] = EFFECTS) -> Mapping[str, Effect]:
-    """Those effects and the ones of blocks, by name; one given wins."""
+    """These effects and those that belong to blocks, by name; of one name, these win."""
     return Catalogue({**BLOCK_EFFECTS, **effects}, "effect")
 
 
 def catalogue(extra: Iterable[str | Path | Effect] = ()) -> Mapping[str, Effect]:
-    """The package's effects and the given files' (or effects), by name; a user's name wins."""
+    """Effects by name: the package's, and the user's files or effects; a user's name wins."""
     users = (e if isinstance(e, Effect) else load_effect(e) for e in extra)
     return Catalogue({**EFFECTS, **{e.name: e for e in users}}, "effect")
 

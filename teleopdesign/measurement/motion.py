@@ -102,7 +102,7 @@ def reading_step(position: Array) -> float:
 
 
 def told_direction(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:
-    """+1 or -1 where consecutive readings tell a motion that way, 0 where they cannot.
+    """+1 or -1 where consecutive readings show a direction of motion, else 0.
 
     A motion is told by changes of the reading that go the same way, no more than `patience` samples
     apart, over at least `TRAVEL` steps; a shorter one may be the give of a contact that holds.
@@ -135,7 +135,7 @@ def beside(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def play(position: Array, width: float) -> Array:
-    """Position behind a play of total `width`: it follows only what exceeds it (hysteresis)."""
+    """Position behind a play (hysteresis) of total `width`, which follows only larger motions."""
     half = 0.5 * width
     out = np.empty_like(position)
     here = position[0]

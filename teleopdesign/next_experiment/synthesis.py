@@ -68,7 +68,7 @@ def exact_motion(
 def command_along(
     body: Body, motion: Motion, *, deflection: float, stuck: Sequence[tuple[int, int]] = ()
 ) -> Array:
-    """The command (n,) with which the body of this model moves so, below the motion's smoothing.
+    """The command (n,) that makes the model move along this motion, within its bandwidth.
 
     deflection: of an ideal friction (SI);  stuck: rows in which the servo's force turns round
     """

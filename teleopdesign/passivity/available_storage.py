@@ -32,7 +32,7 @@ _BLUR = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class AvailableStorage(ByValue):
-    """What the iteration came to.
+    """The result of the iteration: available storage on a grid of forces.
 
     storage: J, an axis for each force with a state, compensator first, from -level to level
     gain: energy given out per travel once everything has settled, N; 0 where it is finite
@@ -105,7 +105,7 @@ def _compliance(element: Element) -> float:
 
 
 def _held(stateful: Sequence[Element], points: int) -> Array:
-    """What the springs of friction hold at each node, less that of the compensator, J."""
+    """Energy in the springs of friction at each node, less that of the compensator's, J."""
     total: Array = np.zeros((1,) * len(stateful))
     for axis, element in enumerate(stateful):
         forces = np.linspace(-element.level, element.level, points)

@@ -47,7 +47,7 @@ class Compensator:
 
 @dataclass(frozen=True)
 class Margin:
-    """A number that a designer asks for, and what it is; value: SI, in `unit`."""
+    """A margin for the designer, with its meaning in words; value: SI, in `unit`."""
 
     text: str
     value: float
@@ -76,7 +76,7 @@ def compensation_claims(
 def friction_claims(
     device: IdentifiedDevice, compensator: Compensator, *, computer: Sampling | None = None
 ) -> list[TopicClaim]:
-    """What theorems say of a device's friction with a compensator; nothing is simulated.
+    """Claims by theorems about a device's friction with a compensator; without simulation.
 
     computer: as in `compensation_claims`
     """
@@ -91,7 +91,7 @@ def _searched(
     rng: np.random.Generator,
     tries: int,
 ) -> TopicClaim:
-    """The whole device with its compensator, as simulated."""
+    """The claim about the whole device with its compensator by a search in simulation."""
     topic, lengths = "search by simulation", [device.lowest.estimate / _RIGID]
     if device.presliding is not None:
         lengths = [device.lowest.estimate / device.presliding.estimate]
@@ -117,7 +117,7 @@ def _searched(
 
 
 def device_claims(device: IdentifiedDevice) -> list[TopicClaim]:
-    """Claims about the device itself: LuGre friction, where all of its parts were identified."""
+    """Claims about the device alone, if all parts of LuGre friction are identified."""
     return settle(Question(device))
 
 
@@ -129,7 +129,7 @@ def wall_claims(
     computer: Sampling,
     cancelled: float = 0.0,
 ) -> list[TopicClaim]:
-    """Claims about a virtual wall: the sampled law, and its encoder steps beside friction.
+    """Claims about a virtual wall: its sampled law, and its encoder steps with friction.
 
     stiffness, damping: K, N/m, and B, N s/m;  cancelled: friction that a compensator takes, N
     """
@@ -138,7 +138,7 @@ def wall_claims(
 
 
 def margins(device: IdentifiedDevice, compensator: Compensator | None = None) -> Sequence[Margin]:
-    """What may be chosen so that it is passive for every value within the 95 % intervals."""
+    """Largest and smallest design values that are passive for all values in the 95 % intervals."""
     force, stiff = device.force_unit, device.stiffness_unit
     alone = f", for friction without {', '.join(device.set_aside)}" if device.set_aside else ""
     limits = [

@@ -56,7 +56,7 @@ class Search:
 
 @dataclass(frozen=True)
 class DiagramClaims:
-    """Ports of a diagram, what in it is not linear, and the claims as they are settled."""
+    """Ports of a diagram, its nonlinear parts, and the claims with their verdicts."""
 
     diagram: Diagram
     ports: tuple[Port, ...]
@@ -76,7 +76,7 @@ class DiagramClaims:
 def diagram_claims(
     diagram: Diagram, *, rng: np.random.Generator, search: Search | None = None
 ) -> DiagramClaims:
-    """Settle what can be said about the ports of a diagram, all other outside signals zero.
+    """Claims about the ports of a diagram, with all other outside signals zero.
 
     Hand and environment (`Z_H`, `Z_E`) hold a port and are no part of what is judged; in the
     search, which is made where nothing settles all ports, those at other ports stay.

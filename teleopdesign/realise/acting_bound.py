@@ -15,7 +15,7 @@ from .simulated import without_absent
 def largest_acting_force(
     body: Body, command: float, reach: Reach | None = None, *, errors: float
 ) -> float:
-    """Bound of abs(acting force), N, under any command of at most that size (N), late ones too.
+    """Upper bound of abs(acting force), N, under any command of at most this size (N), also late.
 
     errors: standard errors of the parameters to either side;  inf: where no bound is known
     """

@@ -40,7 +40,7 @@ _MEASURED = {
 
 @dataclass(frozen=True)
 class Residual:
-    """What the model leaves along one motion (n samples), SI, tangents (p, n).
+    """Residual of the model along one motion (n samples), SI, with tangents (p, n).
 
     residual: force that acts beyond what the model needs;  friction: the model's friction force
     acting: acting force at the rows;  moving: less the friction that it makes itself

@@ -49,7 +49,7 @@ _INTERACTION = SIGNALS["interaction_force"]
 
 @dataclass(frozen=True)
 class SeenAtCommand:
-    """What a model leaves along one motion (n samples), as an error of the recorded command.
+    """Residual of a model along one motion (n samples), as an error of the recorded command.
 
     residual: mapped back, SI; in blind samples only through what the command passes elsewhere
     blind: samples in which the command has next to no influence on what moves the body
@@ -193,7 +193,7 @@ def _of_stage(stage: ActuationStage, motion: Motion, along: Along) -> _Way:
 
 
 def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
-    """From a force to what is left of it to move the body, less what it makes laws take away."""
+    """The way from a force to the part of it that moves the body, after all forces it causes."""
     gain, over = np.ones(len(motion.time)), np.ones(len(motion.spectrum.frequency), dtype=complex)
     for effect in _taking(body, signal):
         if effect.states and effect.is_absent(along.values):
@@ -236,7 +236,7 @@ def _from_rest(way: _Way) -> NDArray[np.complex128]:
 
 
 def _through(force: Array, way: _Way, motion: Motion) -> Array:
-    """What a way passes of a force; a resonance adds nothing that was not recorded."""
+    """The part of a force that a way transmits; a resonance does not amplify it."""
     # a coupling that is open somewhere along the motion has no dynamics at rest: it is passed whole
     gain = np.where(np.isfinite(way.gain), way.gain, 1.0)
     dynamics = np.where(np.isfinite(way.dynamics), way.dynamics, 1.0)

@@ -14,7 +14,7 @@ from .tips import with_tips
 
 
 def without_absent(body: Body, *, surely: bool = False) -> Body:
-    """The body without effects that are absent at their values, what needs those, and zeros.
+    """The body without absent effects, effects that need them, and parameters that are zero.
 
     An optional parameter at zero is left out too, for the equations are simpler without it.
     surely: keep those whose values have a standard error, so that they may be there

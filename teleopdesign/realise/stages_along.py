@@ -27,7 +27,7 @@ PARTS = 4
 
 @dataclass(frozen=True)
 class ActuationStage:
-    """A stage of the actuation along a motion: what goes in, what comes out, hidden states between.
+    """A stage of the actuation along a motion: its input, hidden states and output.
 
     law: on symbols, its delayed signals as symbols of their own;  delays: those symbols -> s
     signals: symbols -> signals over `parts` equal parts of each row;  output: as long

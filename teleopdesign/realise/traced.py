@@ -58,7 +58,7 @@ class Probe:
 
 @dataclass(frozen=True)
 class Along:
-    """What laws are evaluated on along one motion of n samples.
+    """Signals and values for laws along one motion of n samples.
 
     signals: symbol -> signal with its tangents;  values: parameter symbol -> value (SI)
     columns: the p parameters and probes that the tangents (p, n) are by;  step: s between samples
@@ -70,7 +70,7 @@ class Along:
     step: float
 
     def with_signals(self, signals: Mapping[sp.Symbol, Traced]) -> Along:
-        """The same with signals more, or others."""
+        """The same with additional or other signals."""
         return replace(self, signals={**self.signals, **signals})
 
     def constant(self, signal: Array) -> Traced:
@@ -132,7 +132,7 @@ TRACED = frozenset({SIGNALS["command"], SIGNALS["acting_force"], SIGNALS["level"
 
 
 def slope(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
-    """Derivative almost everywhere: at a jump, as of sgn, it is that of either side."""
+    """Derivative almost everywhere; at a jump, such as that of sgn, the derivative of its sides."""
     return sp.diff(expression, symbol).replace(sp.DiracDelta, lambda *_: sp.S(0))
 
 

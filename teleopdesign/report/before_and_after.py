@@ -85,7 +85,7 @@ def _profile(rows: BodySamples, residual: Array) -> list[tuple[float, float, flo
 
 
 def excerpt(rows: BodySamples, axis: str, bandwidth: float) -> Graph:
-    """Measured and modelled force where most was taken away (or is left) of the force there."""
+    """Measured and modelled force where the residual fell most (or is largest)."""
     window = _window(rows, bandwidth)
     kept = window[:: max(1, len(window) // EXCERPT_POINTS)]  # low-passed: neighbours are alike
     force = scaled(unit_of("force", axis), size_of(rows.measured[window]))

@@ -92,7 +92,7 @@ def candidate_rows(diagnosis: Diagnosis) -> tuple[CandidateRow, ...]:
 
 
 def _outcome(rung: Rung | None, ranking: Ranking, ranked: Ranked) -> str:
-    """What became of a candidate on a step, where its error alone does not say it."""
+    """Outcome of a candidate at a step, where the error alone does not show it."""
     key = ranked.candidate.key
     if rung is not None and rung.added is not None and rung.added.key == key:
         return "added"

@@ -98,7 +98,7 @@ def _terms(rows: Rows, beside: Columns, dependence: Dependence) -> list[Term]:
 
 @dataclass(frozen=True)
 class _Search:
-    """What is left on the rows learnt from, beside columns that move freely.
+    """Residual on the learning rows, beside columns with free coefficients.
 
     span: orthonormal columns (n, k);  left: (n,), orthogonal to them
     """

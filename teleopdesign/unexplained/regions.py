@@ -69,7 +69,7 @@ def goes_up_and_down(regions: tuple[SignRegion, ...]) -> bool:
 
 
 def _runs(sign: Array) -> list[slice]:
-    """Runs of one sign; what is not sure between two of the same sign parts them not."""
+    """Runs of one sign; an uncertain part between two runs of one sign does not split them."""
     edges = np.flatnonzero(np.diff(sign)) + 1
     runs: list[slice] = []
     for a, b in zip([0, *edges], [*edges, len(sign)], strict=True):

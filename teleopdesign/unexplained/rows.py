@@ -74,7 +74,7 @@ class Rows:
 
     @property
     def checked(self) -> NDArray[np.bool_]:
-        """The rows that something learnt elsewhere is held against."""
+        """The rows on which learnt dependences are tested."""
         return np.asarray(sum(test for _, test in self.splits), dtype=bool)
 
     @property

@@ -39,7 +39,7 @@ def digest(experiment: Experiment) -> str:
 
 
 def difference(expected: Mapping[str, Any], experiment: Experiment) -> str | None:
-    """How the experiment that was told of differs from this one, in words; None where it is it."""
+    """How the expected experiment differs from this one, in words; None where they are the same."""
     present = experiment_data(experiment)
     for key, words in (("title", "title"), ("axes", "bodies"), ("records", "records")):
         if expected[key] != present[key]:

@@ -30,7 +30,7 @@ _NEEDED = ("models", "floor", "open", "bandwidth")
 
 @dataclass(frozen=True)
 class _Steps:
-    """What an answer says of a diagnosis, before any residual is computed.
+    """The content of an answer as objects, before any residual is computed.
 
     models: of each rung;  estimated: the last before what its readings do was taken off
     added, equals: of each rung;  open: candidates with the models that they were compared by
@@ -46,7 +46,7 @@ class _Steps:
 def restored(
     saved: SavedAnswer, experiment: Experiment, known: Mapping[str, Effect] = EFFECTS
 ) -> Diagnosis:
-    """The diagnosis that an answer tells of, with its figures; fits are evaluated, not made.
+    """The diagnosis in an answer, with its figures; residuals are computed, nothing is estimated.
 
     known: effects by name, the user's own among them
     It has no rankings: what was tried is in the answer, what is left open in `Diagnosis.open`.
@@ -90,7 +90,7 @@ def restored(
 
 
 def evaluated(model: Model, prepared: Prepared) -> Fit:
-    """What a fitted model leaves of these records, and its derivatives; the model stays as it is.
+    """A fit with the residuals of a model and their derivatives; no parameter changes.
 
     Without check records, what is held out is fitted from here, as `estimate` does.
     """

@@ -64,7 +64,7 @@ class SavedAnswer:
         return model if experiment is None else _as_stated(model, experiment, known)
 
     def require(self, experiment: Experiment) -> None:
-        """Refuse the answer to another experiment; of an older answer, what is there is compared.
+        """Refuse the answer to another experiment; an older answer is compared as far as it goes.
 
         raises ExperimentError: with what differs
         """
@@ -176,7 +176,7 @@ def _as_stated(model: Model, experiment: Experiment, known: Mapping[str, Effect]
 
 
 def _older_difference(saved: SavedAnswer, experiment: Experiment) -> str | None:
-    """What of an older answer cannot be of this experiment; None: nothing that it tells."""
+    """How an older answer contradicts this experiment, in words; None where it does not."""
     content = saved.content
     parameters = content["model_parameters"]
     places = dict.fromkeys(name.partition(".")[0] for name in parameters)

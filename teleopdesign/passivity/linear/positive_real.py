@@ -82,7 +82,7 @@ class Excess:
 
 
 def damping_excess(system: Any, *, motion: Motion = "velocity") -> Excess:
-    """Damping (N s/m) that may be taken from an impedance, or that it lacks (< 0), to be passive.
+    """Excess of damping of a passive impedance, N s/m; < 0: damping that it lacks.
 
     This is the infimum of Re Z over frequency (the index of input passivity, velocity being the
     input), or -inf. Its bounds are verified by the exact test and differ by 1e-12 of its size.

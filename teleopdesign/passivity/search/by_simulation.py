@@ -132,7 +132,7 @@ def confirmed_motion(
     computer: Computer = "continuous",
     give: float = 1e-7,
 ) -> SimulatedMotion | None:
-    """These strokes, repeated as often as it takes, if they give out energy beyond numerical doubt.
+    """These strokes, repeated as needed, if they give out more energy than the numerical error.
 
     From rest, with hidden states at zero, to rest: so what comes out was never put in. It must come
     out with half the step, and with a tenth of the give too, and be thrice what these change.

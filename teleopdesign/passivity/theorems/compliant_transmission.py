@@ -35,7 +35,7 @@ def any_environment(
     link_inertia: Any = 1,
     transmission_damping: Any = 0,
 ) -> Claim:
-    """Is the joint passive for any environment and any stroke: iff f_D <= f_1, whatever k and f_2.
+    """Is the joint passive for any environment and any stroke? Iff f_D <= f_1, for all k and f_2.
 
     f_1, f_2, N;  k, N/m;  f_D, N;  sigma_D, N/m;  kg, kg, N s/m
     refuted, where it is, with the link clamped and the spring's force left to the environment

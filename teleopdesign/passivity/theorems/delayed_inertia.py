@@ -46,7 +46,7 @@ def damping_given_out(
 def largest_passive_inertia(
     *, damping: float, delay: float, time_constant: float = 0.0, order: Order = 2
 ) -> float:
-    """Most inertia (kg) that damping B pays for at every frequency; inertia of the device aside.
+    """Largest cancelled inertia (kg) that damping B covers at every frequency.
 
     B T for r = 1; for r = 2 B over the maximum of g, at least 2 B T; without low-pass 0 with
     any delay, and without delay inf (the device's own inertia is then the bound)

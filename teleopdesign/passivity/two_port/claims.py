@@ -76,7 +76,7 @@ def passive(system: TwoPort) -> Claim:
 
 
 def absolutely_stable(system: TwoPort) -> Claim:
-    """Does it not grow, whatever passive holds its ports (Llewellyn, and residues on the axis)?
+    """Is the two-port stable between any passive terminations (Llewellyn, residues on the axis)?
 
     What is claimed, and why it follows, stands in `checker/absolute_stability.py`. A refutation is
     a motion that grows by itself between the two passive terminations that the method names; with
