@@ -58,13 +58,13 @@ class Layout:
 def slopes(equations: Equations) -> dict[sp.Symbol, sp.Expr]:
     """Hidden state -> A, where its rate is A z + B with A free of the state."""
     moving = {f(m) for m in equations.motions for f in (signal, velocity)}
-    found = {}
+    by_state = {}
     for state, rate in equations.rates.items():
         # as it stands: simplified, exp(-u) may come out as 1/exp(u), which overflows
         slope = sp.diff(rate, state) if state not in moving else sp.S(0)
         if slope != 0 and not slope.has(state):
-            found[state] = slope
-    return found
+            by_state[state] = slope
+    return by_state
 
 
 def needed_steps(
@@ -72,12 +72,12 @@ def needed_steps(
 ) -> dict[sp.Symbol, sp.Expr]:
     """Those of the named steps that the results are written in, in their order."""
     wanted = set().union(*(sp.sympify(r, strict=True).free_symbols for r in results))
-    found = {}
+    needed = {}
     for symbol, expression in reversed(list(joined.items())):
         if symbol in wanted:
-            found[symbol] = expression
+            needed[symbol] = expression
             wanted |= expression.free_symbols
-    return dict(reversed(list(found.items())))
+    return dict(reversed(list(needed.items())))
 
 
 def _function(
@@ -93,9 +93,9 @@ def _function(
     needed = {names[s]: e for s, e in needed_steps(results, joined).items()}
     out = {f"out{i}": sp.sympify(r, strict=True) for i, r in enumerate(results)}
     lines = [*assignments(needed, names), *assignments(out, names, shared="k")]
-    given = ", ".join(names[a] for a in arguments)
+    parameters = ", ".join(names[a] for a in arguments)
     body = indented([*lines, f"return ({', '.join(out)},)"], 4)
-    return f"@jitted\ndef {name}({given}):\n{body}\n\n\n"
+    return f"@jitted\ndef {name}({parameters}):\n{body}\n\n\n"
 
 
 class Generator:
@@ -153,11 +153,11 @@ class Generator:
     def _names(self) -> dict[sp.Symbol, str]:
         """Private name of every symbol that the equations hold."""
         e = self.equations
-        own = {p: f"p{i}" for i, p in enumerate(self.parameters)}
-        own |= {s: f"j{i}_" for i, s in enumerate(e.joined)} | {TIME: "time", PERIOD: "period"}
+        names = {p: f"p{i}" for i, p in enumerate(self.parameters)}
+        names |= {s: f"j{i}_" for i, s in enumerate(e.joined)} | {TIME: "time", PERIOD: "period"}
         used = set().union(*(x.free_symbols for x in self._expressions()))
         used |= {*self.analog, *self.reads}
-        return own | {s: self.variables[s.name] for s in used if s not in own}
+        return names | {s: self.variables[s.name] for s in used if s not in names}
 
     def variable(self, quantity: sp.Symbol | str) -> str:
         """The variable of the source that holds a quantity."""

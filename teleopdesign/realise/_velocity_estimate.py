@@ -22,13 +22,13 @@ def gains(order: int) -> list[str]:
     ]
 
 
-def start(order: int, position: str, seen: str) -> list[str]:
+def start(order: int, position: str, reading: str) -> list[str]:
     """Lines at the first sample, where the estimate is the true velocity."""
     bend = f"{position}_bend = 0.0" if order == 3 else ""
-    return [f"{position}_observed = {seen}", bend] if order else []
+    return [f"{position}_observed = {reading}", bend] if order else []
 
 
-def update(order: int, position: str, seen: str, rate: str, known: str) -> list[str]:
+def update(order: int, position: str, reading: str, rate: str, known: str) -> list[str]:
     """Lines at every other sample that bring `known`, the estimate, up to it."""
     if order == 0:
         return [f"{known} = smoothing * {known} + (1.0 - smoothing) * {rate}"]
@@ -37,7 +37,7 @@ def update(order: int, position: str, seen: str, rate: str, known: str) -> list[
     return [
         f"{observed} += {ahead}",
         f"{known} += period * {bend}" if order == 3 else "",
-        f"y = {seen} - {observed}",
+        f"y = {reading} - {observed}",
         f"{observed} += position_gain * y",
         f"{known} += velocity_gain * y",
         f"{bend} += bend_gain * y" if order == 3 else "",

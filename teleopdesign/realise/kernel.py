@@ -97,12 +97,12 @@ def program(
     jit: False runs the same generated source in plain Python, some hundred times slower
     """
     names = private_names(diagram)
-    given = tuple(names.private.get(motion, motion) for motion in prescribed)
-    key = (_structure(names.diagram), given, sampled, observer, jit)
+    motions = tuple(names.private.get(motion, motion) for motion in prescribed)
+    key = (_structure(names.diagram), motions, sampled, observer, jit)
     if key not in _programs:
         with names.in_errors():
-            found = equations(names.diagram, prescribed=given, sampled=sampled)
-        generator = Generator(found, observer=observer)
+            private = equations(names.diagram, prescribed=motions, sampled=sampled)
+        generator = Generator(private, observer=observer)
         loop = loop_source(generator)
         source = generator.source(jit=jit) + loop
         plain = _executed(generator.source(jit=False) + loop)
@@ -121,8 +121,8 @@ def _in_public(private: Program, names: PrivateNames) -> Program:
         for field in fields(layout)
     }
     parameters = private.equations.parameters
-    told = {symbol: names.public_name(name) for symbol, name in parameters.items()}
-    equations = replace(private.equations, parameters=told)
+    public_parameters = {symbol: names.public_name(name) for symbol, name in parameters.items()}
+    equations = replace(private.equations, parameters=public_parameters)
     return replace(private, equations=equations, layout=Layout(**public))
 
 
