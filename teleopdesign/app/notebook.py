@@ -14,7 +14,7 @@ def _():
     from teleopdesign.app.workbench import Workbench
     from teleopdesign.errors import TeleopDesignError
 
-    folder = settings.folder(mo.cli_args())
+    folder = settings.folder(mo.cli_args().to_dict())
     return Task, TeleopDesignError, Workbench, charts, export, files, folder, mo, pages
 
 

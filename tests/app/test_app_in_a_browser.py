@@ -46,6 +46,7 @@ def served(tmp_path):
     finally:
         process.send_signal(signal.SIGINT)
         process.wait(30)
+        process.stdout.close()
 
 
 def status(address):
