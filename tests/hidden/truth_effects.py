@@ -33,6 +33,7 @@ OTHERS = (
     "quadratic_drag", "viscous_asymmetry", "position_dependent_friction", "load_dependent_friction",
     "friction_drift", "friction_memory", "hardening_spring", "cogging", "transmission_compliance",
     "backlash", "actuator_saturation", "actuator_gain", "torque_ripple",
+    "gravity",
 )  # fmt: skip
 CONTACT = ("contact_damping", "contact_hardening")
 OUTSIDE = ("outside_hum", "outside_position_dependent_damping", "outside_slow_force")
@@ -92,6 +93,7 @@ PUBLIC: dict[str, dict[str, tuple[str, str]]] = {
         "period": ("ripple_period", "length"),
         "phase": ("ripple_phase", "angle"),
     },
+    "gravity": {"amplitude": ("gravity", "force"), "phase": ("gravity_phase", "angle")},
     "contact_damping": {"damping": ("contact_damping", "damping")},
     "contact_hardening": {"power": ("contact_power", "ratio")},
     "outside_hum": {"amplitude": ("hum", "force"), "frequency": ("hum_frequency", "frequency")},
@@ -102,6 +104,8 @@ PUBLIC: dict[str, dict[str, tuple[str, str]]] = {
     },
 }
 NO_INVERSE = {"transmission_compliance", "backlash", "friction_memory", *OUTSIDE}
+#: effects of a revolute axis alone
+REVOLUTE = {"gravity"}
 NEEDS_LEVEL = {
     "coulomb_asymmetry", "stribeck", "presliding", "position_dependent_friction",
     "load_dependent_friction", "friction_drift", "friction_memory",
@@ -192,6 +196,8 @@ def draw(effect: str, base: Values, scale: Scale, strength: float, q: Values) ->
         return {"gain": 1 + q["sign"] * 0.4 * s}
     if effect == "torque_ripple":
         return {"ripple": 0.6 * s, "ripple_period": d * (0.5 + 2 * a), "ripple_phase": turn}
+    if effect == "gravity":
+        return {"gravity": 2.0 * s * f, "gravity_phase": turn}
     if effect == "contact_damping":
         return {"contact_damping": 0.05 * s * base["contact_stiffness"]}
     if effect == "contact_hardening":
