@@ -86,6 +86,10 @@ TERMS: dict[str, Term] = {
     "stribeck": Term(lambda now, speed: [_falling(now, speed)], _speeds),
     "viscous_asymmetry": Term(lambda now, _: [np.abs(now.velocity)]),
     "quadratic_drag": Term(lambda now, _: [now.velocity * np.abs(now.velocity)]),
+    "shear_thinning": Term(
+        lambda now, n: [np.sign(now.velocity) * np.abs(now.velocity) ** n],
+        lambda _: np.linspace(0.2, 0.8, 4),
+    ),
     "position_dependent_friction": Term(lambda now, p: _wave(now, p, now.sign), _periods),
     "load_dependent_friction": Term(lambda now, _: [now.sign * np.abs(now.command)]),
     "friction_drift": Term(

@@ -32,6 +32,7 @@ OTHER = {
     "friction_drift.time_constant": 0.4,  # s; part of a record
     "backlash.gap": 1e-3,  # m; part of the travel
     "contact_hardening.power": 1.5,
+    "shear_thinning.exponent": 0.5,
     "environment.damping": 0.0,
     "environment.contact_position": 2e-3,  # m; part of the travel
 }

@@ -11,6 +11,7 @@ from teleopdesign.effects import EFFECTS
 
 #: effect -> those that it is mistaken for
 MISTAKEN_FOR = {
+    "shear_thinning": ("quadratic_drag", "stribeck", "actuator_saturation", "actuator_gain"),
     "gravity": ("bias", "spring", "cogging", "coulomb_asymmetry"),
 }
 

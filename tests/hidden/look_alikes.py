@@ -16,6 +16,7 @@ TWINS = {"bias": "coulomb_asymmetry", "coulomb_asymmetry": "bias"}
 FAMILIES = (
     {"actuation_delay", "actuator_lag"}, {"spring", "hardening_spring"}, {"stribeck", "presliding"},
     {"viscous", "quadratic_drag", "load_dependent_friction"},
+    {"shear_thinning", "viscous", "coulomb", "actuator_saturation", "load_dependent_friction"},
     {"actuator_gain", "actuator_saturation"}, {"gravity", "bias", "spring"},
 )  # fmt: skip
 PERIODIC = {"cogging", "torque_ripple", "position_dependent_friction"}

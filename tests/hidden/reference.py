@@ -151,6 +151,8 @@ class Track:
         force = (
             force + p.get("bias", 0.0) + p.get("spring", 0.0) * x + p.get("hardening", 0.0) * x**3
         )
+        if p.get("thinning"):
+            force = force + p["thinning"] * np.sign(v) * np.abs(v) ** p["thinning_power"]
         if p.get("gravity"):
             force = force + p["gravity"] * np.sin(x + p["gravity_phase"])
         if p.get("cogging"):
