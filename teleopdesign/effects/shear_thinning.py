@@ -9,7 +9,6 @@ the two together by speeds over more than a decade. Mistaken for `actuator_satur
 
 from ._effect import Effect, FitSearch, Parameter
 
-
 #: m/s or rad/s; a power has no slope at rest. Far below the speeds that records resolve; lower, a
 #: simulation needs shorter steps
 STRAIGHT = 1e-5

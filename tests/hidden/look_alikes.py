@@ -17,7 +17,7 @@ FAMILIES = (
     {"actuation_delay", "actuator_lag"}, {"spring", "hardening_spring"}, {"stribeck", "presliding"},
     {"viscous", "quadratic_drag", "load_dependent_friction"},
     {"shear_thinning", "viscous", "coulomb", "actuator_saturation", "load_dependent_friction"},
-    {"actuator_gain", "actuator_saturation"}, {"gravity", "bias", "spring"},
+    {"actuator_gain", "actuator_saturation"}, {"gravity", "bias"}, {"gravity", "spring"},
 )  # fmt: skip
 PERIODIC = {"cogging", "torque_ripple", "position_dependent_friction"}
 # check error with effects added to the model of each body, after so many steps of the re-estimate
