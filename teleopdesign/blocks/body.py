@@ -100,6 +100,11 @@ class Body:
         for effect in self.effects:
             if missing := effect.needs - set(names):
                 raise ModelError(f'body: "{effect.name}" needs "{min(missing)}" beside it')
+            if self.axis in effect.elsewhere:
+                raise ModelError(
+                    f'body: "{effect.name}" holds on no {self.axis} axis: there it is '
+                    f'"{effect.elsewhere[self.axis]}"'
+                )
         expected = [name for name, _ in self.declared()]
         for name in self.parameters:
             if name not in expected:

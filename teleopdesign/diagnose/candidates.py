@@ -47,7 +47,7 @@ def candidates(model: Model, motions: Sequence[Motion] = ()) -> tuple[Candidate,
         for effect in model.known.values():
             if (place in model.bodies) == (effect.role in CONTACT_ROLES):
                 continue
-            if body.has(effect.name) or effect.role in roles:
+            if body.has(effect.name) or effect.role in roles or body.axis in effect.elsewhere:
                 continue
             if effect.expression().has(SIGNALS["position"]) and not _comes_back(place, motions):
                 continue

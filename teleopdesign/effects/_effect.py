@@ -193,6 +193,8 @@ class Effect:
     absent: parameter values at which the effect is not there at all.
     canonical: of parameter values that mean the same, those to report.
     needs: effects that the model must have for this one to mean anything.
+    elsewhere: an axis that the law does not hold on ("prismatic" or "revolute") -> the effect that
+        says the same there
     coupling: of a structure, coupling(now, p), which its law and states are made from
         (`make_structure`)
     led: inertia(p) of a body among the hidden states whose position is corrected: the force that it
@@ -208,6 +210,7 @@ class Effect:
     states: Mapping[str, State] = field(default_factory=dict)
     linear: bool = False
     needs: frozenset[str] = frozenset()
+    elsewhere: Mapping[str, str] = field(default_factory=dict)
     always: frozenset[str] = frozenset()
     canonical: Callable[[Mapping[str, float]], dict[str, float]] = dict
     led: Callable[[Any], sp.Expr] | None = None
