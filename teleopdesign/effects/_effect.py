@@ -139,7 +139,7 @@ class Parameter:
 
     @property
     def scale(self) -> str:
-        """What a search counts this in: a scale of the record, by default its quantity's."""
+        """Unit of the search: a scale of the record, by default the scale of the quantity."""
         return self.search.scale or self.quantity
 
 
@@ -255,7 +255,7 @@ class Effect:
 
     @property
     def strength(self) -> str | None:
-        """The parameter that is zero where the effect is absent and that its law is linear in.
+        """The parameter in which the law is linear and that is zero where the effect is absent.
 
         None where there is no such parameter, or where hidden states depend on it.
         """
@@ -263,7 +263,7 @@ class Effect:
 
     @property
     def phase(self) -> str | None:
-        """The angle phi of a law that is strength times sin(... + phi); None where none is."""
+        """Name of the angle phi in a law strength * sin(... + phi); None for other laws."""
         return _phase(self)
 
     @property
@@ -272,12 +272,12 @@ class Effect:
         return self.text.strip().split("\n")[0]
 
     def default(self, parameter: str) -> float:
-        """Value of a parameter that none is given for: where the effect is absent, if that says."""
+        """Value of a parameter that the user leaves out: where the effect is absent, if known."""
         plain = 0.0 if self.parameters[parameter].optional else 1.0
         return self.absent.get(parameter, plain)
 
     def without(self, parameter: str) -> Effect:
-        """The effect with an optional parameter left out: zero, for good."""
+        """The effect without an optional parameter, which is zero everywhere in the law."""
         return _without(self, parameter)
 
     def symbols(self) -> dict[str, sp.Symbol]:
@@ -290,8 +290,8 @@ class Effect:
 
     def _now(self, signals: Mapping[str, Any] | None) -> SimpleNamespace:
         more = {"inertia": INERTIA, "unexplained": UNEXPLAINED}
-        own = {**SIGNALS, **more, **self.state_symbols()}
-        return SimpleNamespace(**{**own, **(signals or {})})
+        symbols = {**SIGNALS, **more, **self.state_symbols()}
+        return SimpleNamespace(**{**symbols, **(signals or {})})
 
     def _parameters(self, values: Mapping[str, Any] | None) -> SimpleNamespace:
         return SimpleNamespace(**{**self.symbols(), **(values or {})})
@@ -299,7 +299,7 @@ class Effect:
     def expression(
         self, signals: Mapping[str, Any] | None = None, values: Mapping[str, Any] | None = None
     ) -> sp.Expr:
-        """The law on symbols, or on whatever is given in their place."""
+        """The law on symbols, or on the signals and values in their place."""
         if signals is None and values is None:
             return _expression(self)
         return sp.sympify(self.law(self._now(signals), self._parameters(values)), strict=True)
@@ -307,7 +307,7 @@ class Effect:
     def rates(
         self, signals: Mapping[str, Any] | None = None, values: Mapping[str, Any] | None = None
     ) -> dict[str, sp.Expr]:
-        """Hidden state -> its rate of change, on symbols or on what is given."""
+        """Hidden state -> its rate of change, on symbols or on the signals in their place."""
         if signals is None and values is None:
             return dict(_rates(self))
         now, p = self._now(signals), self._parameters(values)
@@ -315,7 +315,7 @@ class Effect:
         return {name: sp.sympify(rate, strict=True) for name, rate in rates.items()}
 
     def corrections(self) -> dict[str, sp.Expr]:
-        """Hidden state -> rate by which it is corrected, on symbols; {} where all run free."""
+        """Hidden state -> rate of its correction, on symbols; {} where no state is corrected."""
         return dict(_corrections(self))
 
     def dry_bounds(self) -> dict[str, sp.Expr]:
@@ -323,7 +323,7 @@ class Effect:
         return dict(_dry_bounds(self))
 
     def led_momentum(self) -> sp.Expr:
-        """Momentum that corrections stand for, on symbols; 0 where there are none."""
+        """Momentum of the body that corrections lead, on symbols; 0 without corrections."""
         if self.led is None:
             return sp.S(0)
         return self.led(self._parameters(None)) * sum(self.corrections().values(), sp.S(0))
@@ -346,8 +346,10 @@ class Effect:
         signals |= dict(interaction_force=sp.S(0))
         states = self.state_symbols()
         law, rates = self.expression(signals, values), self.rates(signals, values)
-        settled = sp.solve([s * states[n] - rate for n, rate in rates.items()], *states.values())
-        law = law.subs(settled) if rates else law
+        states_in_s = sp.solve(
+            [s * states[n] - rate for n, rate in rates.items()], *states.values()
+        )
+        law = law.subs(states_in_s) if rates else law
         law = law.replace(delayed, lambda signal, delay: signal * sp.exp(-s * delay))
         return sp.simplify(law / drive)
 
@@ -406,18 +408,18 @@ def _phase(effect: Effect) -> str | None:
 
 @lru_cache(maxsize=64)
 def _without(effect: Effect, parameter: str) -> Effect:
-    def given(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
+    def at_zero(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
         return lambda now, p: law(now, SimpleNamespace(**{**vars(p), parameter: sp.S(0)}))
 
     def if_any(law: Callable[[Any, Any], sp.Expr] | None) -> Callable[[Any, Any], sp.Expr] | None:
-        return None if law is None else given(law)
+        return None if law is None else at_zero(law)
 
     less = replace(
         effect,
-        law=given(effect.law),
+        law=at_zero(effect.law),
         coupling=if_any(effect.coupling),
         states={
-            n: replace(s, rate=given(s.rate), correction=if_any(s.correction), dry=if_any(s.dry))
+            n: replace(s, rate=at_zero(s.rate), correction=if_any(s.correction), dry=if_any(s.dry))
             for n, s in effect.states.items()
         },
         parameters={n: p for n, p in effect.parameters.items() if n != parameter},
