@@ -100,6 +100,11 @@ class Body:
         for effect in self.effects:
             if missing := effect.needs - set(names):
                 raise ModelError(f'body: "{effect.name}" needs "{min(missing)}" beside it')
+            if self.axis in effect.elsewhere:
+                raise ModelError(
+                    f'body: "{effect.name}" holds on no {self.axis} axis: there it is '
+                    f'"{effect.elsewhere[self.axis]}"'
+                )
         expected = [name for name, _ in self.declared()]
         for name in self.parameters:
             if name not in expected:
@@ -121,8 +126,8 @@ class Body:
 
     def declared(self) -> list[tuple[str, Parameter]]:
         """Every parameter of the body by its name in answers, with its declaration."""
-        own = [(f"{e.name}.{n}", p) for e in self.effects for n, p in e.parameters.items()]
-        return [("inertia", INERTIA), *own]
+        of_effects = [(f"{e.name}.{n}", p) for e in self.effects for n, p in e.parameters.items()]
+        return [("inertia", INERTIA), *of_effects]
 
     def parameter(self, name: str) -> Parameter:
         """Declaration of the parameter of that name; ModelError with the nearest one."""
@@ -151,7 +156,7 @@ class Body:
 
     @checked
     def with_effect(self, effect: Effect, values: Mapping[str, float] | None = None) -> Body:
-        """The body with one effect more, at the given values (default: where it is absent).
+        """The body with one more effect, at these values (default: those at which it is absent).
 
         A shape of friction, or a structure, replaces another one that was there.
         raises ModelError: the effect is there already, or has no such parameter
@@ -160,14 +165,14 @@ class Body:
             raise ModelError(
                 f'body: effect "{effect.name}" is there already: with_values changes its values'
             )
-        given = dict(values or {})
-        unknown = set(given) - set(effect.parameters)
+        stated = dict(values or {})
+        unknown = set(stated) - set(effect.parameters)
         if unknown:
             raise ModelError(
                 f'{effect.name}: no parameter "{min(unknown)}"'
                 f"{did_you_mean(min(unknown), effect.parameters)}"
             )
-        start = {n: effect.default(n) for n in effect.parameters} | given
+        start = {n: effect.default(n) for n in effect.parameters} | stated
         kept = self
         if effect.role in ONE_ONLY:
             for other in self.effects:
@@ -198,37 +203,41 @@ class Body:
         return replace(self, effects=tuple(effects), parameters=kept)
 
     def with_values(self, values: Mapping[str, float | Value]) -> Body:
-        """The body with other parameter values; `fixed` is kept where a plain number is given."""
+        """The body with other parameter values; a plain number keeps the parameter's `fixed`."""
         instance(values, Mapping, "with_values", expected='such as {"inertia": 0.15}')
         new = {}
-        for name, given in values.items():
+        for name, number_or_value in values.items():
             if name not in self.parameters:
                 raise _no_parameter(name, self.parameters)
-            value = _value(given, name)
+            value = _value(number_or_value, name)
             new[name] = (
-                value if value is given else replace(self.parameters[name], value=value.value)
+                value
+                if value is number_or_value
+                else replace(self.parameters[name], value=value.value)
             )
         return replace(self, parameters={**self.parameters, **new})
 
     def symbols(self) -> dict[str, sp.Symbol]:
         """Parameter name -> sympy symbol of the equation: "coulomb.level" -> coulomb_level."""
-        own = {f"{e.name}.{n}": s for e in self.effects for n, s in e.symbols().items()}
-        return {"inertia": sp.Symbol("inertia", real=True), **own}
+        of_effects = {f"{e.name}.{n}": s for e in self.effects for n, s in e.symbols().items()}
+        return {"inertia": sp.Symbol("inertia", real=True), **of_effects}
 
     def numbers(self) -> dict[sp.Symbol, float]:
         """Parameter symbol -> value, to substitute in the equation."""
         return {s: self.parameters[n].value for n, s in self.symbols().items()}
 
     def level(self) -> sp.Expr:
-        """Friction level: laws added, each times its factors, at the speed that the level follows.
+        """Friction level: the sum of the laws, each times its factors, at the speed it depends on.
 
         A factor scales the levels that it needs ("coulomb"), all of them where it needs none.
         """
         factors = ordered(self.effects, "friction_factor")
         level = sp.S(0)
         for effect in ordered(self.effects, "friction_level"):
-            own = [f.expression() for f in factors if not f.needs or effect.name in f.needs]
-            level += effect.expression() * sp.Mul(*own)
+            of_this_level = [
+                f.expression() for f in factors if not f.needs or effect.name in f.needs
+            ]
+            level += effect.expression() * sp.Mul(*of_this_level)
         for effect in ordered(self.effects, "friction_speed"):
             level = level.subs(SIGNALS["velocity"], effect.expression())
         return level
@@ -249,13 +258,13 @@ class Body:
         acting: sp.Expr = SIGNALS["command"]
         stages: list[sp.Symbol] = []
         for effect in self.effects:
-            given = {"level": level} if effect.role == "friction_shape" else {}
+            level_symbol = {"level": level} if effect.role == "friction_shape" else {}
             if effect.role == "actuation":
                 continue
             symbols = effect.state_symbols()
-            rates |= {symbols[n]: r for n, r in effect.rates(given).items()}
+            rates |= {symbols[n]: r for n, r in effect.rates(level_symbol).items()}
             if effect.role == "friction_shape":
-                friction = effect.expression(given)
+                friction = effect.expression(level_symbol)
         for effect in ordered(self.effects, "actuation"):
             symbols = effect.state_symbols()
             rates |= {symbols[n]: r for n, r in effect.rates({"command": acting}).items()}
@@ -312,10 +321,10 @@ class Body:
         return {name: self.parameters[name].value for name, _ in self.declared()}
 
 
-def _value(given: object, name: object) -> Value:
-    if isinstance(given, Value):
-        return given
-    return Value(number(given, f"body: {name}"))
+def _value(number_or_value: object, name: object) -> Value:
+    if isinstance(number_or_value, Value):
+        return number_or_value
+    return Value(number(number_or_value, f"body: {name}"))
 
 
 def _no_parameter(name: object, known: Iterable[str]) -> ModelError:
@@ -332,15 +341,15 @@ def _refuse_axis(axis: object) -> None:
     )
 
 
-def _effects(given: object) -> tuple[Effect, ...]:
-    """A tuple of effects; a list will do, a name will not."""
+def _effects(effects: object) -> tuple[Effect, ...]:
+    """A tuple of effects; a list is taken too, a name is refused."""
     expected = 'a tuple of effects, such as (EFFECTS["coulomb"],)'
-    if not isinstance(given, tuple):
-        instance(given, list, "Body: effects", expected=expected)
-    assert isinstance(given, tuple | list)
-    for i, effect in enumerate(given):
+    if not isinstance(effects, tuple):
+        instance(effects, list, "Body: effects", expected=expected)
+    assert isinstance(effects, tuple | list)
+    for i, effect in enumerate(effects):
         instance(effect, Effect, f"Body: effects[{i}]", expected="an Effect, of EFFECTS or a file")
-    return tuple(given)
+    return tuple(effects)
 
 
 __all__ = ["INERTIA", "Body", "BodyEquation", "Value"]

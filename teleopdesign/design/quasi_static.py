@@ -87,7 +87,7 @@ def quasi_static_error(diagram: Diagram, motion: StatedMotion, *, rows: int = 20
 
 
 def left_over(diagram: Diagram, force: Array, velocity: Array) -> Array:
-    """Of a force against the motion, what C and H leave to the hand in slow motion, (n,)."""
+    """The part, (n,), of a resisting force that C and H leave to the hand in slow motion."""
     gain = np.zeros_like(force)
     for block in diagram.controls:
         assert isinstance(block.controller, Controller)

@@ -137,7 +137,7 @@ class Parameter:
 
     @property
     def scale(self) -> str:
-        """What a search counts this in: a scale of the record, by default its quantity's."""
+        """Unit of the search: a scale of the record, by default the scale of the quantity."""
         return self.search.scale or self.quantity
 
 
@@ -193,6 +193,8 @@ class Effect:
     absent: parameter values at which the effect is not there at all.
     canonical: of parameter values that mean the same, those to report.
     needs: effects that the model must have for this one to mean anything.
+    elsewhere: an axis that the law does not hold on ("prismatic" or "revolute") -> the effect that
+        says the same there
     coupling: of a structure, coupling(now, p), which its law and states are made from
         (`make_structure`)
     led: inertia(p) of a body among the hidden states whose position is corrected: the force that it
@@ -208,6 +210,7 @@ class Effect:
     states: Mapping[str, State] = field(default_factory=dict)
     linear: bool = False
     needs: frozenset[str] = frozenset()
+    elsewhere: Mapping[str, str] = field(default_factory=dict)
     always: frozenset[str] = frozenset()
     canonical: Callable[[Mapping[str, float]], dict[str, float]] = dict
     led: Callable[[Any], sp.Expr] | None = None
@@ -245,7 +248,7 @@ class Effect:
 
     @property
     def strength(self) -> str | None:
-        """The parameter that is zero where the effect is absent and that its law is linear in.
+        """The parameter in which the law is linear and that is zero where the effect is absent.
 
         None where there is no such parameter, or where hidden states depend on it.
         """
@@ -253,7 +256,7 @@ class Effect:
 
     @property
     def phase(self) -> str | None:
-        """The angle phi of a law that is strength times sin(... + phi); None where none is."""
+        """Name of the angle phi in a law strength * sin(... + phi); None for other laws."""
         return _phase(self)
 
     @property
@@ -262,12 +265,12 @@ class Effect:
         return self.text.strip().split("\n")[0]
 
     def default(self, parameter: str) -> float:
-        """Value of a parameter that none is given for: where the effect is absent, if that says."""
+        """Value of a parameter that the user leaves out: where the effect is absent, if known."""
         plain = 0.0 if self.parameters[parameter].optional else 1.0
         return self.absent.get(parameter, plain)
 
     def without(self, parameter: str) -> Effect:
-        """The effect with an optional parameter left out: zero, for good."""
+        """The effect without an optional parameter, which is zero everywhere in the law."""
         return _without(self, parameter)
 
     def symbols(self) -> dict[str, sp.Symbol]:
@@ -280,8 +283,8 @@ class Effect:
 
     def _now(self, signals: Mapping[str, Any] | None) -> SimpleNamespace:
         more = {"inertia": INERTIA, "unexplained": UNEXPLAINED}
-        own = {**SIGNALS, **more, **self.state_symbols()}
-        return SimpleNamespace(**{**own, **(signals or {})})
+        symbols = {**SIGNALS, **more, **self.state_symbols()}
+        return SimpleNamespace(**{**symbols, **(signals or {})})
 
     def _parameters(self, values: Mapping[str, Any] | None) -> SimpleNamespace:
         return SimpleNamespace(**{**self.symbols(), **(values or {})})
@@ -289,7 +292,7 @@ class Effect:
     def expression(
         self, signals: Mapping[str, Any] | None = None, values: Mapping[str, Any] | None = None
     ) -> sp.Expr:
-        """The law on symbols, or on whatever is given in their place."""
+        """The law on symbols, or on the signals and values in their place."""
         if signals is None and values is None:
             return _expression(self)
         return sp.sympify(self.law(self._now(signals), self._parameters(values)), strict=True)
@@ -297,7 +300,7 @@ class Effect:
     def rates(
         self, signals: Mapping[str, Any] | None = None, values: Mapping[str, Any] | None = None
     ) -> dict[str, sp.Expr]:
-        """Hidden state -> its rate of change, on symbols or on what is given."""
+        """Hidden state -> its rate of change, on symbols or on the signals in their place."""
         if signals is None and values is None:
             return dict(_rates(self))
         now, p = self._now(signals), self._parameters(values)
@@ -305,11 +308,11 @@ class Effect:
         return {name: sp.sympify(rate, strict=True) for name, rate in rates.items()}
 
     def corrections(self) -> dict[str, sp.Expr]:
-        """Hidden state -> rate by which it is corrected, on symbols; {} where all run free."""
+        """Hidden state -> rate of its correction, on symbols; {} where no state is corrected."""
         return dict(_corrections(self))
 
     def led_momentum(self) -> sp.Expr:
-        """Momentum that corrections stand for, on symbols; 0 where there are none."""
+        """Momentum of the body that corrections lead, on symbols; 0 without corrections."""
         if self.led is None:
             return sp.S(0)
         return self.led(self._parameters(None)) * sum(self.corrections().values(), sp.S(0))
@@ -332,8 +335,10 @@ class Effect:
         signals |= dict(interaction_force=sp.S(0))
         states = self.state_symbols()
         law, rates = self.expression(signals, values), self.rates(signals, values)
-        settled = sp.solve([s * states[n] - rate for n, rate in rates.items()], *states.values())
-        law = law.subs(settled) if rates else law
+        states_in_s = sp.solve(
+            [s * states[n] - rate for n, rate in rates.items()], *states.values()
+        )
+        law = law.subs(states_in_s) if rates else law
         law = law.replace(delayed, lambda signal, delay: signal * sp.exp(-s * delay))
         return sp.simplify(law / drive)
 
@@ -382,18 +387,18 @@ def _phase(effect: Effect) -> str | None:
 
 @lru_cache(maxsize=64)
 def _without(effect: Effect, parameter: str) -> Effect:
-    def given(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
+    def at_zero(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
         return lambda now, p: law(now, SimpleNamespace(**{**vars(p), parameter: sp.S(0)}))
 
     def corrected(state: State) -> Callable[[Any, Any], sp.Expr] | None:
-        return None if state.correction is None else given(state.correction)
+        return None if state.correction is None else at_zero(state.correction)
 
     less = replace(
         effect,
-        law=given(effect.law),
-        coupling=None if effect.coupling is None else given(effect.coupling),
+        law=at_zero(effect.law),
+        coupling=None if effect.coupling is None else at_zero(effect.coupling),
         states={
-            n: replace(s, rate=given(s.rate), correction=corrected(s))
+            n: replace(s, rate=at_zero(s.rate), correction=corrected(s))
             for n, s in effect.states.items()
         },
         parameters={n: p for n, p in effect.parameters.items() if n != parameter},

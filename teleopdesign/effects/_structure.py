@@ -79,7 +79,7 @@ def make_structure(
 
 @lru_cache(maxsize=64)  # laws compare by identity: one structure, one kernel
 def touching(structure: Effect, contact: sp.Expr) -> Effect:
-    """A structure whose tip, not its body, is what the contact force is taken from.
+    """A structure whose tip, and not the actuator's side, touches the environment.
 
     contact: force that an environment takes, on the body's motion in `SIGNALS`
     """
@@ -115,7 +115,7 @@ def _accelerate(coupling: Coupling, contact: sp.Expr = sp.S.Zero) -> Coupling:
 
 
 def _lead_back(following: float) -> Coupling:
-    """Velocity of a tip towards where the unexplained force says that it is."""
+    """Velocity that corrects a tip's position by the force that the model leaves unexplained."""
 
     def towards(now: Any, p: Any) -> sp.Expr:
         rate = following * sp.sqrt(p.stiffness / p.tip_inertia) * p.tip_inertia / now.inertia

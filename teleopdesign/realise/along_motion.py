@@ -40,7 +40,7 @@ _MEASURED = {
 
 @dataclass(frozen=True)
 class Residual:
-    """What the model leaves along one motion (n samples), SI, tangents (p, n).
+    """Residual of the model along one motion (n samples), SI, with tangents (p, n).
 
     residual: force that acts beyond what the model needs;  friction: the model's friction force
     acting: acting force at the rows;  moving: less the friction that it makes itself
@@ -93,7 +93,9 @@ def measured_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
     symbols = body.symbols()
     columns = tuple(name if isinstance(name, Probe) else symbols[name] for name in wrt)
     along = Along({}, body.numbers(), columns, motion.sample_time)
-    readings = {SIGNALS[n]: np.asarray(getattr(motion, own), float) for n, own in _MEASURED.items()}
+    readings = {
+        SIGNALS[n]: np.asarray(getattr(motion, column), float) for n, column in _MEASURED.items()
+    }
     return along.with_signals({s: along.constant(reading) for s, reading in readings.items()})
 
 

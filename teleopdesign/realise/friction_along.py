@@ -53,7 +53,7 @@ def bound_friction(
 
 
 def _bound_sliding(motion: Motion, forward: Traced, backward: Traced) -> tuple[Traced, Traced]:
-    """sgn v times the level where the motion is told, anything up to it where it is not."""
+    """sgn v times the level where the direction is known; elsewhere any force up to the level."""
     ahead, back = motion.direction > 0, motion.direction < 0
     low = Traced(
         np.where(ahead, forward.value, -backward.value),

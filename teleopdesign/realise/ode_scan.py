@@ -46,11 +46,11 @@ def _drivers(effect: Effect) -> list[str]:
 @lru_cache(maxsize=256)
 def _parameters(effect: Effect) -> tuple[sp.Symbol, ...]:
     """The effect's parameters, and others that its rates hold: an inertia, an environment's."""
-    own = effect.symbols().values()
+    of_effect = effect.symbols().values()
     laws = (*effect.rates().values(), *effect.corrections().values())
-    known = {*own, *SIGNALS.values(), *effect.state_symbols().values(), UNEXPLAINED}
+    known = {*of_effect, *SIGNALS.values(), *effect.state_symbols().values(), UNEXPLAINED}
     others = set().union(*(law.free_symbols for law in laws)) - known
-    return (*own, *sorted(others, key=str))
+    return (*of_effect, *sorted(others, key=str))
 
 
 def _slopes(
@@ -66,7 +66,7 @@ def _slopes(
     returns: lines that compute slopes; the sum over states in column c, from theirs, d[j, c]; place
         of a parameter -> its slope
     """
-    lines, terms, own = [], [], {}
+    lines, terms, by_parameter = [], [], {}
     for j, symbol in enumerate((*states, *parameters)):
         slope = sp.diff(law, symbol)
         if slope == 0:
@@ -75,8 +75,8 @@ def _slopes(
         if j < len(states):
             terms.append(f"{name}_{j} * d[{j}, c]")
         else:
-            own[j - len(states)] = f"{name}_{j}"
-    return lines, " + ".join(terms) or "0.0", own
+            by_parameter[j - len(states)] = f"{name}_{j}"
+    return lines, " + ".join(terms) or "0.0", by_parameter
 
 
 #: private name of the force that is left unexplained
@@ -113,10 +113,13 @@ def _rate_lines(effect: Effect) -> list[str]:
     for i, (name, rate) in enumerate(effect.rates().items()):
         whole = rate + corrections.get(name, sp.S(0))
         lines += assignments({f"f[{i}]": whole}, names)
-        before, moved, own = _slopes(f"by_{i}", whole, states, parameters, names)
+        before, moved, by_parameter = _slopes(f"by_{i}", whole, states, parameters, names)
         lines += before
         by_left = sp.diff(whole, UNEXPLAINED)
-        ends += [f"if columns[{j}] >= 0:\n    g[{i}, columns[{j}]] += {k}" for j, k in own.items()]
+        ends += [
+            f"if columns[{j}] >= 0:\n    g[{i}, columns[{j}]] += {k}"
+            for j, k in by_parameter.items()
+        ]
         if by_left != 0:
             lines += assignments({f"by_{i}_left": by_left}, names)
             moved += f" + by_{i}_left * d{left}"
@@ -255,15 +258,22 @@ def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[
     rest: what corrections need: force at the rows that the effect and friction have to take up,
         and the least and largest that friction can; with tangents
     """
-    own, given, step, columns = _parameters(effect), along.signals, along.step, along.columns
-    parameters = np.array([along.values[s] for s in own], dtype=float)
+    parameters_of_effect, signals, step, columns = (
+        _parameters(effect),
+        along.signals,
+        along.step,
+        along.columns,
+    )
+    parameters = np.array([along.values[s] for s in parameters_of_effect], dtype=float)
     symbols = [getattr(c, "symbol", c) for c in columns]  # of a probe: its strength
-    places = np.array([symbols.index(s) if s in symbols else -1 for s in own], dtype=int)
+    places = np.array(
+        [symbols.index(s) if s in symbols else -1 for s in parameters_of_effect], dtype=int
+    )
     fastest = _fastest(effect, along, parameters)
     covered = step * fastest
     steps = int(np.clip(np.ceil(covered / MODE_STEP), 1, MOST_STEPS))
     corrected = rest if effect.corrections() else ()
-    drivers = [given[SIGNALS[n]].value for n in _drivers(effect)]
+    drivers = [signals[SIGNALS[n]].value for n in _drivers(effect)]
     drive = np.ascontiguousarray([*drivers, *(r.value for r in corrected)])
     bends = _bends(drive, [_slope_of(n, along) for n in _drivers(effect)], step)
     n, count = drive.shape[1], len(effect.states)
@@ -271,7 +281,7 @@ def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[
     for i, r in enumerate(corrected):
         moving[i] = r.tangent.T
     start = np.array(
-        [given[SIGNALS[s.start]].value[0] if s.start else 0.0 for s in effect.states.values()]
+        [signals[SIGNALS[s.start]].value[0] if s.start else 0.0 for s in effect.states.values()]
     )
     out, tangent = np.empty((count, n)), np.empty((count, len(columns), n))
     # a difference of one in position goes with one of the fastest mode's rate in velocity

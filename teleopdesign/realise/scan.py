@@ -59,8 +59,8 @@ def _used(effect: Effect) -> list[str]:
 
 def _slopes_by(effect: Effect, signal: str) -> dict[str, sp.Symbol]:
     """What slopes are taken by: a signal, and the parameters by their number."""
-    own = {str(i): s for i, s in enumerate(effect.symbols().values())}
-    return {signal: SIGNALS[signal], **own}
+    parameters = {str(i): s for i, s in enumerate(effect.symbols().values())}
+    return {signal: SIGNALS[signal], **parameters}
 
 
 def _own(effect: Effect, what: str) -> str:
@@ -110,9 +110,10 @@ def stage(h, columns, {", ".join([*parameters, *(f"{n}_" for n in used)])}, dcom
 
 def columns_of(effect: Effect, columns: Sequence[Any]) -> Array:
     """Row of the tangents that belongs to each parameter of the effect; -1 where none does."""
-    own = effect.symbols()
+    symbols = effect.symbols()
     return np.array(
-        [columns.index(own[n]) if own[n] in columns else -1 for n in effect.parameters], dtype=int
+        [columns.index(symbols[n]) if symbols[n] in columns else -1 for n in effect.parameters],
+        dtype=int,
     )
 
 

@@ -14,7 +14,7 @@ from .tips import with_tips
 
 
 def without_absent(body: Body, *, surely: bool = False) -> Body:
-    """The body without effects that are absent at their values, what needs those, and zeros.
+    """The body without absent effects, effects that need them, and parameters that are zero.
 
     An optional parameter at zero is left out too, for the equations are simpler without it.
     surely: keep those whose values have a standard error, so that they may be there
@@ -45,8 +45,8 @@ def without_absent(body: Body, *, surely: bool = False) -> Body:
     return body
 
 
-def with_give(body: Body, give: float, *, damping_ratio: float = 0.0) -> Body:
-    """Ideal Coulomb friction realised by a bristle that gives by `give` before it slides.
+def with_give(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> Body:
+    """Ideal Coulomb friction realised by a bristle that gives by `deflection` before it slides.
 
     damping_ratio: of the inertia on this bristle while it sticks
     """
@@ -55,7 +55,7 @@ def with_give(body: Body, give: float, *, damping_ratio: float = 0.0) -> Body:
         return body
     at_rest = dict.fromkeys(SIGNALS.values(), 0) | dict.fromkeys(body.equation().rates, 0)
     level = float(body.equation().level.subs(at_rest).subs(body.numbers()))
-    lugre, stiffness = EFFECTS["presliding"], level / give
+    lugre, stiffness = EFFECTS["presliding"], level / deflection
     if not damping_ratio:
         return body.with_effect(lugre.without("bristle_damping"), {"stiffness": stiffness})
     damping = 2.0 * damping_ratio * (stiffness * body.parameters["inertia"].value) ** 0.5
@@ -70,15 +70,15 @@ def in_computer(diagram: Diagram, period: float) -> Diagram:
     return diagram
 
 
-def simulated(diagram: Diagram, give: float, prescribed: Iterable[str] = ()) -> Diagram:
+def simulated(diagram: Diagram, deflection: float, prescribed: Iterable[str] = ()) -> Diagram:
     """The diagram with bodies as they are simulated: absent effects out, ideal friction given.
 
     prescribed: motions that are given
     """
     for part in diagram.blocks:
-        found = part.controller if isinstance(part, Control) else part.body
-        if not isinstance(found, Body | MatrixImpedance | Controller):
+        content = part.controller if isinstance(part, Control) else part.body
+        if not isinstance(content, Body | MatrixImpedance | Controller):
             raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no equations")
-        if isinstance(found, Body):
-            diagram = diagram.with_block(part.name, with_give(without_absent(found), give))
+        if isinstance(content, Body):
+            diagram = diagram.with_block(part.name, with_give(without_absent(content), deflection))
     return with_tips(diagram, prescribed=prescribed)

@@ -87,10 +87,10 @@ def _parted(diagram: Diagram, part: Moving, body: Body, structure: Effect) -> Di
     device, end = _sides(diagram, part, body, structure)
     values = body.parameters
     law = transmission(structure)
-    given = {n: values[f"{structure.name}.{n}"].value for n in law.parameters}
+    numbers = {n: values[f"{structure.name}.{n}"].value for n in law.parameters}
     here, there = part.motion, tip(part.motion)
     force, twist = f"{part.name}_transmission", f"{here}_twist"
-    joining = Controller((Stage(law, given),))
+    joining = Controller((Stage(law, numbers),))
     split: list[Block] = [
         replace(part, body=device, loads={force: -1}),
         Moving(f"{part.name}_tip", end, there, force, part.loads, part.driver),

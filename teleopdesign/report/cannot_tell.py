@@ -24,7 +24,7 @@ PAIRS = 6
 
 
 def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
-    """Effects, parameters and candidates that these records leave open; may be empty."""
+    """Effects, parameters and candidates that these records cannot decide; may be empty."""
     groups = [_group(r) for r in diagnosis.rungs if r.added is not None and r.alternatives]
     rest = [
         *_at_bound(diagnosis),

@@ -38,7 +38,7 @@ class Curve:
 
 
 def curve_of(rows: Rows, dependence: Dependence, earlier: tuple[Dependence, ...] = ()) -> Curve:
-    """The curve that the residual shows once the earlier dependences are taken out.
+    """The curve in the residual without the earlier dependences.
 
     A constant, a sinusoid and what the command loses are given at their full size, that is with the
     model's own parameters free beside them; other lines are what the model as it is leaves.

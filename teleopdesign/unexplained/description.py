@@ -48,7 +48,7 @@ class DescribedDependence:
 
 @dataclass(frozen=True)
 class BodyResidual:
-    """What the model leaves of one body.
+    """Residual of the model on one body, described.
 
     error: relative force error on the check records (blocks of the fit records where none)
     floor: what sensors alone would leave of it;  after: error once what was found is taken out,
@@ -76,7 +76,7 @@ class BodyResidual:
 
     @property
     def is_adequate(self) -> bool:
-        """Whether nothing is left that sensors would not leave."""
+        """Whether the residual is no larger than sensor noise."""
         return not self.dependences and self.floors <= CRITERIA.adequate
 
 
@@ -173,7 +173,7 @@ def _finding(one: DescribedDependence, where: str) -> Finding:
 
 
 def _rest(part: BodyResidual, where: str) -> list[Finding]:
-    """Where what is left lies in frequency, whether it has a memory, and what stays unexplained."""
+    """Findings on the rest: its frequencies, its correlation in time, and its size."""
     low, high = part.whiteness.band
     numbers = {"low": low, "high": high, "probability of chance": part.whiteness.probability}
     said = f"Half of what is left lies between {number(low)} and {number(high)} Hz"

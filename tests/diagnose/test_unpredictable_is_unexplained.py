@@ -187,7 +187,7 @@ def test_the_figure_that_counts_does_not_fall_by_a_force_that_is_thrown_away(nam
         plain.append(found.check_error)
         # a texture drawn anew is matched by chance to a few percent, as any model's is
         lower = seen_gain(base, found) > 2 * CRITERIA.relevant
-        assert refusal(base, found) in ("blind", "weak") or not lower, (value, found.seen)
+        assert refusal(base, found) in ("blind", "weak") or not lower, (value, found.at_command)
         assert not is_better(base, found, floor)
     if name in ("actuator_saturation", "soft_limit", "feeds_back", "takes_up_what_acts"):
         assert min(plain) < 0.5 * base.check_error, "the plain error could be cheated"
@@ -240,4 +240,4 @@ def test_a_machine_that_has_the_effect_is_still_believed(name, tmp_path):
         base, prepared, among=[Candidate(EFFECTS[name], "device")], stated=model
     ).ranked
     assert not ranked.refused and is_supported(base, ranked, floor)
-    assert ranked.fit.seen.error < 0.5 * base.seen.error
+    assert ranked.fit.at_command.error < 0.5 * base.at_command.error

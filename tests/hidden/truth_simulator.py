@@ -31,6 +31,7 @@ NAMES = (
     "has_contact", "contact_stiffness", "contact_position", "contact_damping", "contact_power",
     "hum", "hum_frequency", "hum_phase", "place_damping", "slow_force", "slow_frequency",
     "resolution", "grid_offset", "kp", "kd", "derivative_weight", "command_step",
+    "gravity", "gravity_phase", "thinning", "thinning_power",
 )  # fmt: skip
 INDEX = {n: i for i, n in enumerate(NAMES)}
 DEFAULTS = dict(
@@ -49,7 +50,7 @@ DEFAULTS = dict(
 (
     M, B, BD, D, FC, HD, FS, VS, SIG, SIG1, MU, DRF, DRT, MEM, EW, EP, EF, BIAS, K, K3, CA, CP, CF,
     TIP, TM, TK, TB, GAP, DEL, LAG, LIM, GAIN, RA, RP, RF, HAND, HM, GK, GB, AK, AB,
-    ENV, EK, EX, EB, EN, HUM, HUF, HUP, PD, SLO, SLF, RES, OFF, KP, KD, DW, UQ,
+    ENV, EK, EX, EB, EN, HUM, HUF, HUP, PD, SLO, SLF, RES, OFF, KP, KD, DW, UQ, GR, GRP, TH, THN,
 ) = range(len(NAMES))  # fmt: skip
 TWO_PI = 2.0 * math.pi
 COLUMNS = ("x", "v", "friction", "acting", "interaction", "x_tip", "v_tip", "z", "contact")
@@ -121,6 +122,8 @@ def _forces(p, s, level, acting, place, hand_x, hand_v, direct, out):
     v = s[1]
     total = acting - place - _friction(p, level, v, s[2])
     total -= v * (p[B] + p[D] * abs(v) + p[PD] * s[0] * s[0]) + p[BD] * abs(v)
+    if p[TH] != 0.0:
+        total -= math.copysign(p[TH] * abs(v) ** p[THN], v)
     tip = p[TIP] != 0.0
     xc = s[5] if tip else s[0]
     vc = s[6] if tip else v
@@ -146,6 +149,8 @@ def _forces(p, s, level, acting, place, hand_x, hand_v, direct, out):
 @njit(cache=True)
 def _place(p, x, t):
     f = p[BIAS] + p[K] * x + p[K3] * x * x * x
+    if p[GR] != 0.0:  # a weight on a lever that turns through one turn in 2 pi
+        f += p[GR] * math.sin(x + p[GRP])
     if p[CA] != 0.0:
         f += p[CA] * math.sin(TWO_PI * x / p[CP] + p[CF])
     if p[HUM] != 0.0:

@@ -4,7 +4,7 @@ import control
 import numpy as np
 import pytest
 from devices import CANCELLATION, FEEDBACK, body
-from effects.along import KNOWN
+from effects.along import KNOWN, axis_of
 
 from teleopdesign.blocks import Body, Value
 from teleopdesign.diagrams import Diagram, Junction, Moving, four_cases, haptic_interface
@@ -49,7 +49,7 @@ def device(*names, absent=False):
             if absent and name in names:
                 value = effect.absent.get(parameter, value)
             values[f"{name}.{parameter}"] = Value(value)
-    return Body("prismatic", values, tuple(KNOWN[n] for n in wanted))
+    return Body(axis_of(*wanted), values, tuple(KNOWN[n] for n in wanted))
 
 
 def push(t):

@@ -321,7 +321,7 @@ def test_lines_between_knots_reproduce_a_straight_line_and_beyond(values):
 
 def test_a_record_with_its_own_zero_is_not_asked_about_position(rod, adequate):
     zero = frozenset({"position_zero"})
-    own = replace(rod, stretches=tuple(replace(s, own=zero) for s in rod.stretches))
+    own = replace(rod, stretches=tuple(replace(s, offset_names=zero) for s in rod.stretches))
     rows = rows_of(adequate.model, own, "device")
     assert len(knots_of(POSITION, rows)) == 0
 

@@ -43,8 +43,8 @@ def read_content(path: str | Path) -> dict[str, Any]:
         check_answer(content)
     except ExperimentError as error:
         raise ExperimentError(f"{path}: {error}") from None
-    found: dict[str, Any] = content
-    return found
+    answer: dict[str, Any] = content
+    return answer
 
 
 def check_answer(content: object) -> None:

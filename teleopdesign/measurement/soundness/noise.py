@@ -36,14 +36,14 @@ def check_noise(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
 
     others: channels of the same record and unit, one of which may be the noisy one instead
     """
-    stated, seen = signal.channel.noise, seen_noise(signal)
+    stated, scatter = signal.channel.noise, seen_noise(signal)
     # rounding scatters by 0.29 steps at most
     rounding = 0.29 * (signal.channel.resolution or signal.step)
-    numbers = {"stated": stated or float("nan"), "seen": seen}
+    numbers = {"stated": stated or float("nan"), "seen": scatter}
     if stated is None:
         return []
     expected = float(np.hypot(stated, rounding if signal.channel.resolution else 0.0))
-    ratio = seen / expected
+    ratio = scatter / expected
     if 1 / FACTOR < ratio < FACTOR:
         return []
     alike = [o for o in others if o.channel.noise is None and o.unit == signal.unit]
@@ -54,7 +54,7 @@ def check_noise(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
         Finding(
             "noise",
             "warning",
-            f"{signal.name} scatters by {seen:.3g} {signal.unit} rms, {stated:.3g} is stated: a "
+            f"{signal.name} scatters by {scatter:.3g} {signal.unit} rms, {stated:.3g} is stated: a "
             f"noise floor that is wrong {effect}.{hint}",
             {**numbers, "ratio": ratio},
             signal.record.file,
