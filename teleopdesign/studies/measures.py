@@ -335,10 +335,10 @@ def _claim(point: Point) -> Any:
         raise ModelError(
             f"measure claim: found {described(point.given)}, expected a model that returns a Claim"
         )
-    return _settled(point.given, "claim")
+    return _of_claim(point.given, "claim")
 
 
-def _settled(claim: Any, name: str) -> dict[str, Amount]:
+def _of_claim(claim: Any, name: str) -> dict[str, Amount]:
     verdict = claim.verdict
     margin, unit = getattr(verdict, "margin", float("nan")), getattr(verdict, "unit", "")
     holds = float("nan") if claim.holds is None else float(claim.holds)
@@ -358,12 +358,12 @@ def _passivity(point: Point, *, stroke: float, speed: float, tries: int) -> Any:
 
     case = point.case
     search = Search(stroke, speed, tries, case.computer)
-    settled = diagram_claims(case.diagram, rng=point.rng(), search=search).settled
-    whole = [s.claim for s in settled if s.topic in WHOLE] or [s.claim for s in settled]
+    topics = diagram_claims(case.diagram, rng=point.rng(), search=search).claims
+    whole = [s.claim for s in topics if s.topic in WHOLE] or [s.claim for s in topics]
     order = ("refuted", "unknown", "evidence", "proved")
-    against = [s.claim for s in settled if s.topic.startswith("search") and s.claim.holds is False]
+    against = [s.claim for s in topics if s.topic.startswith("search") and s.claim.holds is False]
     chosen = min(against or whole, key=lambda claim: order.index(claim.status))
-    return _settled(chosen, "passivity")
+    return _of_claim(chosen, "passivity")
 
 
 def _verdict(point: Point) -> Any:
