@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import socket
 import threading
 import webbrowser
@@ -12,6 +13,8 @@ import uvicorn
 
 from ..errors import ExperimentError
 
+#: s that open pages are given to close
+LEAVING = 2.0
 NOTEBOOK = Path(__file__).with_name("notebook.py")
 
 
@@ -33,4 +36,14 @@ def serve(host: str, port: int, token: str, *, open_browser: bool) -> None:
     if open_browser:
         threading.Timer(1.0, webbrowser.open, (address,)).start()
     config = uvicorn.Config(page.build(), log_level="error", timeout_graceful_shutdown=1)
-    uvicorn.Server(config).run(sockets=[listener])
+    server = uvicorn.Server(config)
+    serving = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
+    serving.start()
+    try:
+        while serving.is_alive():
+            serving.join(0.2)
+    except KeyboardInterrupt:
+        server.should_exit = True
+        serving.join(LEAVING)
+    print("stopped", flush=True)
+    os._exit(0)  # kernels of open pages may still compute; what they write is written whole

@@ -47,11 +47,11 @@ def candidates(model: Model, motions: Sequence[Motion] = ()) -> tuple[Candidate,
         for effect in model.known.values():
             if (place in model.bodies) == (effect.role in CONTACT_ROLES):
                 continue
-            if body.has(effect.name) or effect.role in roles:
+            if body.has(effect.name) or effect.role in roles or body.axis in effect.elsewhere:
                 continue
             if effect.expression().has(SIGNALS["position"]) and not _comes_back(place, motions):
                 continue
-            if all(body.has(need) for need in effect.needs):
+            if not body.lacks(effect):
                 possible.append(Candidate(effect, place))
     return tuple(possible)
 

@@ -101,7 +101,7 @@ def reading_step(position: Array) -> float:
     return min(step, rounding) if is_noisy and moving and step > 3.0 * rounding else step
 
 
-def told_direction(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:
+def direction_of(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:
     """+1 or -1 where consecutive readings show a direction of motion, else 0.
 
     A motion is told by changes of the reading that go the same way, no more than `patience` samples
@@ -177,7 +177,7 @@ def motion_of(
     differentiated = smoothing * s.derivative(1)
     velocity = s.back(transformed * s.derivative(1))
     noise_left = step / np.sqrt(12.0) * float(np.sqrt(np.mean(np.abs(differentiated) ** 2)))
-    direction = told_direction(reading, change, step, patience)
+    direction = direction_of(reading, change, step, patience)
     direction[beside(np.abs(velocity) < SLOW * noise_left)] = 0
     return Motion(
         body=body,
