@@ -62,6 +62,7 @@ The folders, each importing only from those before it:
     papers        statements of the two papers, each with its proof or check
     plot          draws result objects, computes nothing
     report        the diagnosis as one page that needs nothing else
+    app           the page in the browser: a diagnosis step by step
     commands      what `teleopdesign COMMAND` does: one file each
 """
 
@@ -71,6 +72,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from . import app as app
     from . import blocks as blocks
     from . import check as check
     from . import controllers as controllers
@@ -290,6 +292,7 @@ GROUPS: dict[str, dict[str, str]] = {
 _HOMES = {name: home for group in GROUPS.values() for name, home in group.items()}
 #: folders that are there as `td.NAME`, imported when first used
 _FOLDERS = (
+    "app",
     "blocks",
     "check",
     "controllers",

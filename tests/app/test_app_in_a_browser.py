@@ -102,10 +102,10 @@ def test_from_a_folder_to_the_exported_report(served):
         press("Add")
         page.get_by_text("+ stribeck at device").first.wait_for()
         page.get_by_role("tab", name="Parameters").click()
-        page.get_by_text("as estimated").wait_for()
+        page.get_by_text("as estimated").first.wait_for()
         page.get_by_role("tab", name="Export").click()
         press("Write report, answer, model and script")
-        page.get_by_text("written to results/rod").wait_for()
+        page.get_by_text("written to results/rod").first.wait_for()
         page.screenshot(path=folder / "exported.png")
         browser.close()
     results = folder / "results" / "rod"
