@@ -29,6 +29,7 @@ FLAGS = (
 def served(tmp_path):
     """(address with its token, folder) of a page that is served until the test ends."""
     pytest.importorskip("marimo", reason="needs the extra app")
+    tmp_path = tmp_path / "laboratory"
     shutil.copytree(example("rod"), tmp_path / "rod")
     process = subprocess.Popen(
         [sys.executable, "-m", "teleopdesign.cli", "app", str(tmp_path), "--no-browser"],
@@ -102,7 +103,7 @@ def test_from_a_folder_to_the_exported_report(served):
         press("Add")
         page.get_by_text("+ stribeck at device").first.wait_for()
         page.get_by_role("tab", name="Parameters").click()
-        page.get_by_text("as estimated").first.wait_for()
+        page.get_by_role("columnheader", name="as estimated").wait_for()
         page.get_by_role("tab", name="Export").click()
         press("Write report, answer, model and script")
         page.get_by_text("written to results/rod").first.wait_for()
