@@ -9,13 +9,13 @@ app = marimo.App(width="medium", app_title="teleopdesign")
 def _():
     import marimo as mo
 
-    from teleopdesign.app import charts, export, files, pages, settings
+    from teleopdesign.app import charts, export, files, logs, pages, settings
     from teleopdesign.app.task import Task
     from teleopdesign.app.workbench import Workbench
     from teleopdesign.errors import TeleopDesignError
 
     folder = settings.folder(mo.cli_args().to_dict())
-    return Task, TeleopDesignError, Workbench, charts, export, files, folder, mo, pages
+    return Task, TeleopDesignError, Workbench, charts, export, files, folder, logs, mo, pages
 
 
 @app.cell
@@ -36,7 +36,7 @@ def _(TeleopDesignError, files, folder, mo, set_names, set_note):
             except TeleopDesignError as error:
                 set_note(str(error))
             else:
-                set_note(f"{name} is written; describe its columns below")
+                set_note(f"{name} is written; its columns are shown below")
         set_names(lambda n: n + 1)
 
     drop = mo.ui.file(kind="area", multiple=True, on_change=keep, label="Drop a log here")
@@ -70,14 +70,75 @@ def _(Task, Workbench, choice, files, folder, mo, set_note, set_task):
 
 
 @app.cell
-def _(choice, drop, folder, mo, names, open_button):
+def _(files, folder, get_names, mo):
+    get_names()
+    known_logs = files.logs_in(folder)
+    log = mo.ui.dropdown(
+        options=known_logs, value=known_logs[-1] if known_logs else None, label="Log"
+    )
+    return (log,)
+
+
+@app.cell
+def _(TeleopDesignError, folder, log, logs, mo):
+    columns, trouble = (), ""
+    if log.value is not None:
+        try:
+            columns = logs.preview(folder, log.value).columns
+        except TeleopDesignError as error:
+            trouble = str(error)
+    form = mo.ui.dictionary(
+        {
+            "axis": mo.ui.dropdown(["prismatic", "revolute"], label="axis"),
+            **{n: mo.ui.dropdown(columns, label=n, searchable=True) for n in logs.ASKED},
+            "torque constant": mo.ui.text(label="torque constant (N*m/A)"),
+            "gear ratio": mo.ui.text(label="gear ratio"),
+        }
+    )
+    return columns, form, trouble
+
+
+@app.cell
+def _(TeleopDesignError, columns, drop, folder, form, log, logs, mo, set_names, set_note, trouble):
+    parts = [drop]
+    if log.value is not None:
+        parts.append(log)
+    if columns:
+        try:
+            understood = logs.preview(folder, log.value, logs.choices_of(form.value))
+        except TeleopDesignError as error:
+            parts += [form, mo.callout(str(error), kind="warn")]
+        else:
+
+            def make(_):
+                try:
+                    set_note(f"{logs.make_experiment(folder, understood)} is made: open it above")
+                except TeleopDesignError as error:
+                    set_note(str(error))
+                set_names(lambda n: n + 1)
+
+            parts += [
+                mo.md("What is left empty is found. Choose what was found wrongly:"),
+                mo.hstack(list(form.elements.values()), wrap=True, justify="start"),
+                mo.md(understood.table()),
+                understood.plot(),
+                mo.ui.button(label="Make the experiment", on_click=make, kind="success"),
+            ]
+    elif trouble:
+        parts.append(mo.callout(trouble, kind="warn"))
+    log_view = mo.vstack(parts)
+    return (log_view,)
+
+
+@app.cell
+def _(choice, folder, log_view, mo, names, open_button):
     mo.vstack(
         [
             mo.md(f"# teleopdesign\n\nWhat does the model lack? Folder: `{folder.name}`"),
             mo.hstack([choice, open_button], justify="start")
             if names
-            else mo.md("No experiment here yet: drop a log, and describe its columns."),
-            mo.accordion({"Bring a log of your own": drop}),
+            else mo.md("No experiment here yet: drop a log, and look at its columns."),
+            mo.accordion({"Bring a log of your own": log_view}),
         ]
     )
     return
