@@ -11,6 +11,8 @@ from ..notebook import html_table
 from ..quantity import unit_of
 from .channel import BODY_QUANTITIES, Channel, channels_from, frequency_from, sample_rate_from
 from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from
+from .doors.bag import is_bag
+from .reading import ReadingStep, reading_table
 from .record import OWN, Record, read_record
 from .toml_table import Table, read_toml
 
@@ -45,6 +47,11 @@ class Experiment(ByValue):
         """Records that errors are reported on, never fitted; may be empty."""
         return tuple(record for record in self.records if record.use == "check")
 
+    @property
+    def reading(self) -> tuple[ReadingStep, ...]:
+        """What was done to the logs to make even records of them; empty: used as they are."""
+        return tuple(step for record in self.records for step in record.reading)
+
     def axis(self, body: str) -> str:
         """Axis of a body: "prismatic" or "revolute"; raises ExperimentError: no such body."""
         if body not in self.bodies:
@@ -77,6 +84,7 @@ class Experiment(ByValue):
                     unit = unit_of(BODY_QUANTITIES[quantity], body.axis)
                     lines.append(f"    {quantity} in {unit}{_exactness(channel, unit)}")
         lines += [f"  {record!r}" for record in self.records]
+        lines += reading_table(self.reading)
         return "\n".join(lines)
 
 
@@ -175,7 +183,7 @@ def _check_path(table: Table, folder: Path, file: str) -> None:
     try:
         path = (folder / file).resolve()
         inside = path.is_relative_to(folder)
-        exists = path.is_file()
+        exists = path.is_file() or is_bag(path)
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", None) or str(problem)
         raise ExperimentError(f"{where}: {quoted(file)} cannot be read: {reason}") from None
