@@ -14,6 +14,7 @@ from .description import BodyDescription
 from .log_clock import clock_of_log
 from .reading import ReadingStep
 from .signals_of_log import signals_of_log
+from .spans import cut_to
 from .tables import LogColumns, read_columns
 
 #: what a record may have of its own: "own" at these keys of [[records]]
@@ -64,14 +65,19 @@ def read_record(
     channels: Mapping[str, Channel],
     bodies: Mapping[str, BodyDescription],
     sample_rate: float | None,
+    span: tuple[float, ...] | None = None,
 ) -> Record:
     """Read one record file of an experiment's folder.
 
     sample_rate: Hz; None: the channel "time" says
+    span: (begin, end) in s from the log's first row; None: all of it
     raises ExperimentError: see `read_columns` and `clock_of`
     """
     name = f"{folder.name}/{file}"
     columns = read_columns(folder / file, name, wanted_columns(channels))
+    if span is not None:
+        columns = cut_to(columns, span, channels, bodies, sample_rate, name)
+        file = f"{file} {span[0]:g}-{span[1]:g} s"
     return record_of(
         columns,
         name,

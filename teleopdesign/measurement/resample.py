@@ -21,6 +21,9 @@ Rule = Literal["held", "position", "line"]
 #: longer
 #: seen one by one, and the rounding of a reading is smaller than the motion between two
 STEPS = 2.5
+#: pairs of rows that must say the same before that counts, part of those between the same two
+#: changes that must, and step in which the phase is searched, in samples
+_SEEN, _ALIKE, _PHASE = 20, 0.95, 0.005
 #: rows that are taken away and filled again, to see by how much filling errs
 TRIALS = 2000
 
@@ -62,6 +65,54 @@ def placed(
     if rule == "position":
         return _position(values, at, grid, step)
     return np.interp(grid, at, values)
+
+
+def command_phase(values: Array, clock: Clock) -> float | None:
+    """Phase of the even clock on which a command changes, in samples; None: it follows the rows.
+
+    A log may read the command of a controller at instants of its own. Then two rows between the
+    same two changes say the same, and some commands are in no row. The phase is the one for which
+    rows say the same exactly where they lie between the same two changes.
+    values: (m,) of the clock's rows, whose stamps are true
+    """
+    at = clock.places + (clock.stamps - clock.time[clock.places]) / clock.sample_time
+    pairs = np.concatenate(
+        [np.arange(rows.start, rows.stop - 1) for rows in clock.of_rows], dtype=np.intp
+    )
+    pairs = pairs[np.diff(clock.places)[pairs] == 1]
+    equal = values[pairs] == values[pairs + 1]
+    if equal.sum() < _SEEN:
+        return None
+    best: tuple[float, float] | None = None
+    for phase in np.arange(-0.5, 0.5, _PHASE):
+        cell = np.floor(at - phase)
+        same = cell[pairs] == cell[pairs + 1]
+        if same.sum() < _SEEN or same.all():
+            continue
+        within, across = float(equal[same].mean()), float(equal[~same].mean())
+        if (
+            within > _ALIKE
+            and across < 0.5 * within
+            and (best is None or within - across > best[0])
+        ):
+            best = (within - across, float(phase))
+    return None if best is None else best[1]
+
+
+def commands_on_clock(values: Array, clock: Clock, phase: float) -> tuple[Array, float]:
+    """A command that changes on an even clock, on the record's grid, and the part in no row.
+
+    values: (m,) of the clock's rows;  phase: of the command's clock (`command_phase`)
+    """
+    at = clock.places + (clock.stamps - clock.time[clock.places]) / clock.sample_time
+    out = np.empty(len(clock.time))
+    unseen = 0
+    for rows, samples in zip(clock.of_rows, clock.segments, strict=True):
+        cells, first = np.unique(np.floor(at[rows] - phase), return_index=True)
+        unseen += int(cells[-1] - cells[0]) + 1 - len(cells)
+        grid = np.arange(samples.start, samples.stop, dtype=np.float64)
+        out[samples] = _held(*_filled(values[rows][first], cells + phase), grid)
+    return out, unseen / len(clock.time)
 
 
 def _filled(values: Array, at: Array) -> tuple[Array, Array]:

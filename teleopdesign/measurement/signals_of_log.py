@@ -12,7 +12,14 @@ from .conversion import Conversion
 from .encoder import reading_step
 from .log_clock import LogClock
 from .reading import ReadingStep, count_of
-from .resample import Rule, filling_error, on_grid, placed
+from .resample import (
+    Rule,
+    command_phase,
+    commands_on_clock,
+    filling_error,
+    on_grid,
+    placed,
+)
 from .tables import LogColumns
 
 Array = NDArray[np.float64]
@@ -48,10 +55,35 @@ def signals_of_log(
             continue
         rows = clock.clock.rows
         values = conversion.signal({c: columns.values[c][rows] for c in conversion.columns})
-        signals[key] = _on_grid(values, channel, conversion, clock)
+        phase = None
+        if clock.stamped and channel.quantity == "actuator_force" and not conversion.delay:
+            phase = command_phase(values, clock.clock)
+        if phase is None:
+            signals[key] = _on_grid(values, channel, conversion, clock)
+            continue
+        signals[key], unseen = commands_on_clock(values, clock.clock, phase)
+        steps.append(_on_own_clock(values, clock, phase, unseen, file, name))
     if clock.clock.lost:
         steps.append(_lost(columns, channels, conversions, clock, file))
     return signals, steps
+
+
+def _on_own_clock(
+    values: Array, clock: LogClock, phase: float, unseen: float, file: str, name: str
+) -> ReadingStep:
+    """What is said of a command that changes on an even clock while rows are read at others."""
+    wrong = filling_error(values, clock.clock, "held", step=0.0)
+    size = float(np.sqrt(unseen)) * wrong / max(float(np.sqrt(np.mean(values**2))), 1e-300)
+    return ReadingStep(
+        file,
+        f"{name} changes on an even clock, rows are read at others",
+        f"each row tells the command between two changes; {100 * unseen:.2g} % are in no row and "
+        "are filled by the line between",
+        f"adds at most {100 * size:.2g} % of the force",
+        size,
+        "sample clock",
+        (("phase", phase * clock.clock.sample_time), ("unseen", unseen), ("force_error", size)),
+    )
 
 
 def rule_of(channel: Channel, values: Array) -> Rule:
