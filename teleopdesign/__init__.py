@@ -16,14 +16,15 @@
 
 The names that a user types:
 
-    experiments   Experiment, Record, load_experiment, check_experiment, example, fetch
+    experiments   Experiment, Record, experiment, load_experiment, check_experiment, example,
+                  fetch
     models        Model, Body, Value
     effects       EFFECTS, Effect, Parameter, FitSearch, State, load_effect
     diagnosis     fit, compare, rank, find_missing, describe, propose_experiment, Comparison,
                   Ranking, Diagnosis
     diagrams      Diagram, ANY, haptic_interface, teleoperator, hand, read_diagram,
                   write_diagram
-    controllers   CONTROLLERS, Controller, controller, from_control
+    controllers   CONTROLLERS, Controller, controller, load_controller, from_control
     responses     derive_transfers, transfer_functions, bode, measured_impedance,
                   simulate_diagram, Simulation, Sampling, sine, to_iosystem
     design        design_compensation, Design, Assumptions
@@ -94,7 +95,7 @@ if TYPE_CHECKING:
     from . import unexplained as unexplained
     from .blocks import Body, Value, hand
     from .check import check_experiment
-    from .controllers import CONTROLLERS, Controller, controller, from_control
+    from .controllers import CONTROLLERS, Controller, controller, from_control, load_controller
     from .derive import all_transfers as derive_transfers
     from .derive import transfer_functions
     from .design import Assumptions, Design
@@ -114,6 +115,7 @@ if TYPE_CHECKING:
     from .examples import example
     from .frequency import bode, measured_impedance
     from .measurement import Experiment, Record, load_experiment
+    from .measurement.from_arrays import experiment
     from .measurement.recordings import fetch
     from .model import Model
     from .next_experiment import propose as propose_experiment
@@ -172,6 +174,7 @@ __all__ = [
     "design_compensation",
     "diagram_claims",
     "example",
+    "experiment",
     "fetch",
     "find_missing",
     "fit",
@@ -179,6 +182,7 @@ __all__ = [
     "hand",
     "haptic_interface",
     "latin_hypercube",
+    "load_controller",
     "load_effect",
     "load_experiment",
     "measure",
@@ -206,6 +210,7 @@ GROUPS: dict[str, dict[str, str]] = {
     "experiments": {
         "Experiment": "measurement",
         "Record": "measurement",
+        "experiment": "measurement.from_arrays",
         "load_experiment": "measurement",
         "check_experiment": "check",
         "example": "examples",
@@ -248,6 +253,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "CONTROLLERS": "controllers",
         "Controller": "controllers",
         "controller": "controllers",
+        "load_controller": "controllers",
         "from_control": "controllers",
     },
     "responses": {
