@@ -25,6 +25,7 @@ from ._controller import (
     parameter_symbol,
 )
 from ._from_control import from_control, inverted
+from ._from_file import load_controller
 
 __all__ = [
     "CONTROLLERS",
@@ -39,6 +40,7 @@ __all__ = [
     "from_control",
     "inverted",
     "laws_that_declare",
+    "load_controller",
     "parameter_symbol",
     "scheduled_force_feedback",
 ]
@@ -58,8 +60,13 @@ def _law(name: str) -> ControlLaw:
 CONTROLLERS: Mapping[str, ControlLaw] = _laws()
 
 
-def controller(name: str, values: Mapping[str, float]) -> Controller:
-    """The control law of that name with these parameter values (SI)."""
+def controller(name: str | ControlLaw, values: Mapping[str, float]) -> Controller:
+    """A control law with these parameter values (SI).
+
+    name: of a law of the catalogue, or a law of one's own (`load_controller`)
+    """
+    if isinstance(name, ControlLaw):
+        return Controller((Stage(name, values),))
     if name not in CONTROLLERS:
         raise ModelError(
             f'controller: no law "{name}", has {", ".join(CONTROLLERS)}'

@@ -19,7 +19,7 @@ from .answers.bodies import model_data
 from .answers.fingerprint import experiment_data
 from .diagnosis import Diagnosis
 from .fit import Fit
-from .ladder_text import own_rows
+from .ladder_text import offset_rows
 from .one_moment import Moment
 from .open_questions import open_questions
 from .probability import CandidateEvidence, evidence_of
@@ -50,7 +50,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "bandwidth": {"value": diagnosis.prepared.bandwidth, "unit": "Hz"},
         "candidates": _candidates(diagnosis),
         "indistinguishable": [[_place(c.key) for c in g] for g in diagnosis.groups],
-        "own": own_rows(diagnosis),
+        "own": offset_rows(diagnosis),
         "model_parameters": _parameters(diagnosis.after, _added(diagnosis)),
         "left_over_noise_floors": plain(diagnosis.left),
         "one_moment": _moment(diagnosis.moment),

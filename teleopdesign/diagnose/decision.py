@@ -15,7 +15,14 @@ import numpy as np
 
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
-from .evidence import chance, check_score, check_squares, seen_gain, seen_score, whole_score
+from .evidence import (
+    chance,
+    check_score,
+    check_squares,
+    gain_at_command,
+    score_at_command,
+    whole_score,
+)
 from .fit import Fit
 from .noise_floor import NoiseFloor
 from .one_moment import Moment, worst_moment
@@ -118,7 +125,7 @@ def refusal(base: Fit, other: Fit, *, criteria: Criteria = CRITERIA) -> str:
     if other.at_command.weak and not base.at_command.weak:
         return "weak"
     less = check_squares(other) < (1.0 - criteria.relevant) * check_squares(base)
-    return "hides" if less and not seen_gain(base, other) > criteria.relevant else ""
+    return "hides" if less and not gain_at_command(base, other) > criteria.relevant else ""
 
 
 def is_better(base: Fit, other: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
@@ -143,7 +150,7 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor, *, criteria: Criteria = 
         not refusal(base, other, criteria=criteria)
         and other.check_error < base.check_error
         and is_enough(of_force, check_score(base, other))
-        and is_enough(seen_gain(base, other), seen_score(base, other))
+        and is_enough(gain_at_command(base, other), score_at_command(base, other))
     )
 
 

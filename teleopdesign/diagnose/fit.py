@@ -25,7 +25,7 @@ BLOCK = 0.25
 
 
 @dataclass(frozen=True, eq=False)
-class Seen(ByValue):
+class CommandError(ByValue):
     """Residual of a model on the check records, as an error at the command.
 
     residual: of `Fit.check_residual`'s rows;  sighted: those of them that are not blind
@@ -60,7 +60,7 @@ class Fit(ByValue):
     at_bound: tuple[str, ...]
     fit_residual: Array
     check_residual: Array
-    at_command: Seen
+    at_command: CommandError
     fit_blocks: NDArray[np.intp]
     check_blocks: NDArray[np.intp]
     jacobian: Array
@@ -138,7 +138,7 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine)
     if check:
         parts = [v for v, _ in relative_residuals(fitted, check)]
         check_error = force_error(fitted, check)
-        command_error = seen_on(fitted, check)
+        command_error = command_error_of(fitted, check)
     else:
         check, parts, check_error, command_error = _held_out(fitted, free, prepared)
     return Fit(
@@ -157,21 +157,21 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine)
     )
 
 
-def seen_on(model: Model, stretches: Sequence[Stretch]) -> Seen:
+def command_error_of(model: Model, stretches: Sequence[Stretch]) -> CommandError:
     """Residual of the model on these stretches, as an error at the command."""
     error = at_command(model, stretches)
     return _in_one(stretches, error)
 
 
-def _in_one(stretches: Sequence[Stretch], error: AtCommand) -> Seen:
+def _in_one(stretches: Sequence[Stretch], error: AtCommand) -> CommandError:
     sighted = np.concatenate(error.sighted) if error.sighted else np.zeros(0, dtype=bool)
     residual = weighted(stretches, error.residual)
-    return Seen(residual, sighted, error.error, error.blind, error.weak)
+    return CommandError(residual, sighted, error.error, error.blind, error.weak)
 
 
 def _held_out(
     fitted: Model, free: tuple[str, ...], prepared: Prepared
-) -> tuple[tuple[Stretch, ...], list[Array], float, Seen]:
+) -> tuple[tuple[Stretch, ...], list[Array], float, CommandError]:
     """Residuals and errors of blocks of the fit records, each from a fit without that block."""
     held: list[Stretch] = []
     parts: list[Array] = []

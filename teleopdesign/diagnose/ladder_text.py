@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from .diagnosis import Diagnosis
 
 
-def own_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+def offset_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """Offsets of single records by the final model of the diagnosis."""
     stretches, rows = diagnosis.prepared.stretches, []
     for group, offsets in offset_groups(diagnosis.model, stretches):
@@ -41,7 +41,7 @@ def _number(value: float, error: float, unit: str) -> str:
 DIFFERENT = 0.02
 
 
-def seen_text(fit: Fit) -> str | None:
+def command_error_text(fit: Fit) -> str | None:
     """The error at the command and the blind share, if they differ from the check error."""
     command_error = fit.at_command
     alike = abs(command_error.error - fit.check_error) <= DIFFERENT * fit.check_error
@@ -87,14 +87,14 @@ def ladder_text(diagnosis: Diagnosis) -> str:
             lines.append(
                 f"      {p} = {_number(value.value, value.stderr, model.unit(full))}{bound}"
             )
-        if (text := seen_text(rung.fit)) is not None:
+        if (text := command_error_text(rung.fit)) is not None:
             lines.append(f"      {text}")
         if rung.alternatives:
             others = ", ".join(map(str, rung.alternatives))
             lines.append(f"      no different on these records: {others}")
     lines += [
         f"own of {o['record']}: {o['of'].replace('_', ' ')} {o['value']:.4g} {o['unit']}"
-        for o in own_rows(diagnosis)
+        for o in offset_rows(diagnosis)
     ]
     lines.append(
         f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"

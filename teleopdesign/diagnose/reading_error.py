@@ -153,7 +153,7 @@ def _taken_off(fit: Fit, shift: Array) -> tuple[Model, Array]:
     return model.with_values(dict(zip(fit.free, there, strict=True))), moved
 
 
-def _settled(
+def _converge(
     fit: Fit, error: ReadingError, prepared: Prepared, generator: np.random.Generator
 ) -> tuple[ReadingError, Model, Array]:
     """The error at the corrected values, the model there, and which values moved.
@@ -201,7 +201,7 @@ def with_reading_error(
         return fit
     better, moved = fit, np.zeros(len(fit.free), dtype=bool)
     if adequate(fit):
-        error, model, shifted = _settled(fit, error, prepared, generator)
+        error, model, shifted = _converge(fit, error, prepared, generator)
         again = estimate(model, prepared, effort=EFFORTS.stay)
         if adequate(again):
             better, moved = again, shifted

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..by_value import ByValue
+from .encoder import reading_noise, reading_step
 from .filtering import Array, Spectrum, spectrum
 from .record import Record
 
@@ -76,32 +77,7 @@ class Motion(ByValue):
         return zero_phase(y, self.bandwidth, self.sample_time)
 
 
-def reading_noise(position: Array) -> float:
-    """Rms noise of one position reading, from its content near the Nyquist frequency."""
-    fourth = np.diff(position, 4)
-    # white noise passes a fourth difference with gain sqrt(70); the median ignores sharp motion
-    return float(np.median(np.abs(fourth)) / 0.6745 / np.sqrt(70.0))
-
-
-def reading_step(position: Array) -> float:
-    """Smallest step between neighbouring values that the readings take: the encoder's, if any.
-
-    In a motion that never comes back to a place, values lie apart by the travel of a sample: then
-    the step is the one whose rounding looks like the noise that is seen.
-    """
-    values = np.unique(position)
-    if len(values) < 2:
-        return 0.0
-    gaps = np.diff(values)
-    step = float(np.quantile(gaps[gaps > 1e-9 * np.ptp(values)], 0.002))
-    rounding = float(np.sqrt(12.0)) * reading_noise(position)
-    moving = float(np.mean(np.diff(position) != 0)) > 0.5
-    # readings that are all alike in their fourth difference show no noise at all
-    is_noisy = rounding > 1e-9 * float(np.ptp(position))
-    return min(step, rounding) if is_noisy and moving and step > 3.0 * rounding else step
-
-
-def told_direction(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:
+def direction_of(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:
     """+1 or -1 where consecutive readings show a direction of motion, else 0.
 
     A motion is told by changes of the reading that go the same way, no more than `patience` samples
@@ -177,7 +153,7 @@ def motion_of(
     differentiated = smoothing * s.derivative(1)
     velocity = s.back(transformed * s.derivative(1))
     noise_left = step / np.sqrt(12.0) * float(np.sqrt(np.mean(np.abs(differentiated) ** 2)))
-    direction = told_direction(reading, change, step, patience)
+    direction = direction_of(reading, change, step, patience)
     direction[beside(np.abs(velocity) < SLOW * noise_left)] = 0
     return Motion(
         body=body,

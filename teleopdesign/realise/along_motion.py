@@ -21,7 +21,7 @@ import numpy as np
 from ..blocks import Body
 from ..effects import SIGNALS, UNEXPLAINED, Effect, rubbing, touching
 from ..measurement.motion import Motion
-from .friction_along import balance_friction, bound_friction, level_along, own_friction
+from .friction_along import balance_friction, bound_friction, friction_of_acting_force, level_along
 from .ode_scan import ode_scan
 from .stages_along import acting_along
 from .traced import Along, Probe, Traced, through
@@ -83,7 +83,7 @@ def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
     residual = needed - friction
     for effect in structures:
         residual = residual - _led(effect, motion, along, residual)
-    moving = acting - own_friction(level, friction, along)
+    moving = acting - friction_of_acting_force(level, friction, along)
     return Residual(motion, residual, friction, acting, moving)
 
 

@@ -63,7 +63,7 @@ def _slopes_by(effect: Effect, signal: str) -> dict[str, sp.Symbol]:
     return {signal: SIGNALS[signal], **parameters}
 
 
-def _own(effect: Effect, what: str) -> str:
+def _by_parameter(effect: Effect, what: str) -> str:
     """Slope by the parameter that column j stands for."""
     terms = (f"{what}_{i} * (columns[{i}] == j)" for i in range(len(effect.parameters)))
     return " + ".join(terms) or "0.0"
@@ -97,8 +97,8 @@ def stage(h, columns, {", ".join([*parameters, *(f"{n}_" for n in used)])}, dcom
         mean[k] = z * p1 + b * h * p2
         end[k] = z
         for j in range(p):
-            da = a_command * dcommand[j, k] + {_own(effect, "a")}
-            db = b_command * dcommand[j, k] + {_own(effect, "b")}
+            da = a_command * dcommand[j, k] + {_by_parameter(effect, "a")}
+            db = b_command * dcommand[j, k] + {_by_parameter(effect, "b")}
             if starting:
                 dz[j] = (b * da / a - db) / a
             dmean[j, k] = dz[j] * p1 + z * s1 * h * da + h * p2 * db + b * h * s2 * h * da
@@ -199,11 +199,11 @@ def shape(h, half_step, columns, position, velocity, direction, {", ".join(argum
         high[k] = above if direction[k] != 0 else min(above, forward[k])
         for j in range(p):
             dlevel = dforward[j, k] if ahead else dbackward[j, k]
-            da = a_level * dlevel + {_own(effect, "a")}
-            db = b_level * dlevel + {_own(effect, "b")}
+            da = a_level * dlevel + {_by_parameter(effect, "a")}
+            db = b_level * dlevel + {_by_parameter(effect, "b")}
             dz[j] = dz[j] * e + before * e * h * da + h * p1 * db + b * h * s1 * h * da
-            df = slope * dz[j] + f_level * dlevel + {_own(effect, "f")}
-            dg = free * copysign(1.0, slope) * (g_level * dlevel + {_own(effect, "g")})
+            df = slope * dz[j] + f_level * dlevel + {_by_parameter(effect, "f")}
+            dg = free * copysign(1.0, slope) * (g_level * dlevel + {_by_parameter(effect, "g")})
             dlow[j, k] = df - dg if low[k] == below else -dbackward[j, k]
             dhigh[j, k] = df + dg if high[k] == above else dforward[j, k]
 """

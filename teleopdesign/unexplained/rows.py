@@ -176,7 +176,7 @@ def _along(model: Model, stretch: Stretch) -> StretchSignals:
     }
     push, grip = -along.residual.tangent
     grip = grip * (motion.direction != 0)
-    if not stretch.own_zero:
+    if not stretch.has_zero_offset:
         return StretchSignals(stretch, signals, push, grip)
     # its position cannot be compared with that of other records: nothing is said of it
     return StretchSignals(

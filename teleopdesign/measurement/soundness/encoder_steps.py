@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 
 from ...finding import Finding
+from ..encoder import reading_step
 from ..filtering import Array
-from ..motion import reading_step
 from .signal import Signal
 
 #: how close the readings lie to a grid: mean of exp(2 pi i x/step), 1 on it, 0 anywhere
