@@ -33,6 +33,13 @@ OTHER = {
     "backlash.gap": 1e-3,  # m; part of the travel
     "contact_hardening.power": 1.5,
     "shear_thinning.exponent": 0.5,
+    # N, N/m: of elements that slip in turn, together less than `LEVEL`
+    "maxwell_slip.level_2": 0.1,
+    "maxwell_slip.level_3": 0.06,
+    "maxwell_slip.level_4": 0.04,
+    "maxwell_slip.stiffness_2": 500.0,
+    "maxwell_slip.stiffness_3": 100.0,
+    "maxwell_slip.stiffness_4": 40.0,
     "environment.damping": 0.0,
     "environment.contact_position": 2e-3,  # m; part of the travel
 }
