@@ -48,21 +48,21 @@ def candidates(
         the way comes back to the same place of its period
     own_zero: files whose positions cannot be compared with those of others
     """
-    found = []
+    possible = []
     for place in model.places:
         body = model.body(place)
-        taken = {e.role for e in body.effects} & set(ONE_ONLY)
+        roles = {e.role for e in body.effects} & set(ONE_ONLY)
         own = [m for m in motions if m.body == model.holder(place)]
         for effect in model.known.values():
             if (place in model.bodies) == (effect.role in CONTACT_ROLES):
                 continue
-            if body.has(effect.name) or effect.role in taken:
+            if body.has(effect.name) or effect.role in roles or body.axis in effect.elsewhere:
                 continue
-            if not all(body.has(need) for need in effect.needs):
+            if body.lacks(effect):
                 continue
             if _is_seen_in_place(effect, own, own_zero):
-                found.append(Candidate(effect, place))
-    return tuple(found)
+                possible.append(Candidate(effect, place))
+    return tuple(possible)
 
 
 def _is_seen_in_place(effect: Effect, motions: Sequence[Motion], own_zero: Collection[str]) -> bool:

@@ -68,7 +68,7 @@ def _added(search: LadderSearch, state: LadderState, best: Ranked) -> LadderStat
 
 
 def remove(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """Without an effect that those added later have made superfluous; the rest fitted again."""
+    """Remove an effect that later effects made superfluous, and fit the others again."""
     last = state.fit
     for rung in state.rungs[1:-1]:
         without = estimate_without(last.model, rung, search.prepared)

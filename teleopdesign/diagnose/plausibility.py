@@ -72,7 +72,7 @@ def _comparable_positions(stretches: Sequence[Stretch]) -> list[np.ndarray]:
     """Positions of all records together; those with an encoder zero of their own stand alone."""
     groups: dict[str, list[np.ndarray]] = {}
     for s in stretches:
-        groups.setdefault(s.motion.file if s.own_zero else "", []).append(s.motion.position)
+        groups.setdefault(s.motion.file if s.has_zero_offset else "", []).append(s.motion.position)
     return [np.concatenate(own) for own in groups.values()]
 
 

@@ -56,7 +56,7 @@ class Ranked(ByValue):
 
     @property
     def note(self) -> str:
-        """What is to be said beside the numbers; "" where nothing is."""
+        """A remark beside the numbers; "" for none."""
         if self.candidate.key in self.fit.model.absent:
             return "gains nothing"
         if self.refused or self.implausible:
