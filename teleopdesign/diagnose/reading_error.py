@@ -71,7 +71,8 @@ def reading_error(
 
     None: the model's motion cannot be simulated
     """
-    truth = _with_whole_dead_times(found.model, prepared)
+    # what is simulated is logged in time
+    truth = _with_whole_dead_times(found.model.with_record_shift({}), prepared)
     true = coordinates(truth, found.free)
     made = [_simulated(truth, prepared, g, d) for g, d in product(GIVES, DAMPED)]
     exact = [stretches for stretches in made if stretches is not None]
@@ -82,8 +83,7 @@ def reading_error(
         drawn = [as_read(s, prepared, own) for s in stretches]
         again = replace(prepared, stretches=tuple(drawn))
         solution = solve(truth, found.free, again, drawn, EFFORTS.again)
-        there = truth.with_values(dict(zip(found.free, solution.values, strict=True)))
-        by = coordinates(there, found.free) - true
+        by = coordinates(solution.model, found.free) - true
         for i, name in enumerate(found.free):
             if truth.declared(name).quantity == "angle":
                 by[i] = (by[i] + np.pi) % (2.0 * np.pi) - np.pi
