@@ -24,6 +24,7 @@ from .one_moment import Moment
 from .open_questions import open_questions
 from .probability import CandidateEvidence, evidence_of
 from .record_offsets import along_with_offsets
+from .record_shift import shift_data
 from .rung import Rung
 
 
@@ -53,6 +54,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "candidates": _candidates(diagnosis),
         "indistinguishable": [[_place(c.key) for c in g] for g in diagnosis.groups],
         "own": offset_rows(diagnosis),
+        "record_shift": shift_data(diagnosis.model, diagnosis.prepared.stretches),
         "model_parameters": _parameters(diagnosis.after, _added(diagnosis)),
         "left_over_noise_floors": plain(diagnosis.left),
         "one_moment": _moment(diagnosis.moment),

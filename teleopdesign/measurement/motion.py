@@ -34,6 +34,7 @@ class Motion(ByValue):
     direction: +1, -1, or 0 where the reading cannot tell a motion
     step: what one reading leaves open of the position (encoder step, or twice its noise)
     rows: the samples' place in the record;  bandwidth: of the comparison, Hz
+    command_late: s by which the log of the command is later than that of the position
     """
 
     body: str
@@ -50,6 +51,7 @@ class Motion(ByValue):
     spectrum: Spectrum
     smoothing: Array
     bandwidth: float
+    command_late: float = 0.0
 
     @property
     def sample_time(self) -> float:
@@ -59,12 +61,14 @@ class Motion(ByValue):
     def at_rows(self, staircase: Array) -> Array:
         """A held signal, value of each row until the next, as a smooth one at the rows (..., n).
 
+        It is read `command_late` later than logged: so it was then.
         staircase: (..., n), or (..., k n) with k values in turn for equal parts of each row
         """
         parts = staircase.shape[-1] // len(self.time)
+        smoothing = self.smoothing * self.spectrum.ahead(self.command_late)
         held = (
             self.spectrum.multiply(
-                staircase[..., k::parts], self.spectrum.hold(parts, k) * self.smoothing
+                staircase[..., k::parts], self.spectrum.hold(parts, k) * smoothing
             )
             for k in range(parts)
         )
