@@ -165,7 +165,9 @@ class StudyPlots:
                 where = {**(at or {}), third: self.data[third].values[k]}
                 self._marks(axis, one, (across, up), over, where)
                 unit = unit_text(self.data[third].attrs.get("units", ""))
-                title = f"({letter}) {third} = {_number(self.data[third].values[k])} {unit}"
+                title = (
+                    f"({letter}) {self._name(third)} = {_number(self.data[third].values[k])} {unit}"
+                )
                 axis.set_title(title, loc="left", pad=3)
                 axis.label_outer()
             for axis in axes.flat[len(shown) :]:
@@ -239,11 +241,12 @@ class StudyPlots:
                         label=label,
                         error_kw={"linewidth": 0.7},
                     )
-                axis.set_yticks(place, [str(p) for p in ranked["parameter"].values])
+                shown = [self._name(str(p)) for p in ranked["parameter"].values]
+                axis.set_yticks(place, shown)
                 axis.tick_params(axis="y", length=0)
                 axis.set_xlim(min(0.0, axis.get_xlim()[0]), None)
                 axis.axvline(0.0, color="black", linewidth=0.6)
-                axis.set_xlabel(f"share of the variance of {_words(name)} (1)")
+                axis.set_xlabel(f"share of the variance of {self._name(name)} (1)")
             axes[0, 0].legend(loc="lower right")
         return figure
 
@@ -252,6 +255,9 @@ class StudyPlots:
     @property
     def _axes(self) -> list[str]:
         return list(json.loads(self.data.attrs["axes"]))
+
+    def _name(self, name: str) -> str:
+        return _words(self.data[name].attrs.get("long_name") or name)
 
     def _is_number(self, *names: str) -> bool:
         return all(self.data[n].dtype.kind in "biuf" for n in names)
@@ -387,7 +393,7 @@ def _edges(values: np.ndarray, ends: tuple[float, float] | None = None) -> np.nd
 
 def _label(array: xarray.DataArray) -> str:
     unit = array.attrs.get("units", "")
-    name = _words(array.attrs.get("text") or str(array.name))
+    name = _words(array.attrs.get("long_name") or str(array.name))
     return f"{name} ({unit_text(unit)})" if unit else name
 
 

@@ -296,13 +296,13 @@ def _limit_cycle_amplitude(point: Point, *, signal: str, last: float) -> Amount:
 
 
 def _growth(point: Point, *, signal: str) -> Amount:
-    """growth of a swing: rms in the last third of the simulation over the middle third, less 1
+    """growth of a swing: range in the last third of the simulation over the middle third, less 1
 
-    infinite where signals grow beyond all bounds
+    -1 where the swing has died out, infinite where signals grow beyond all bounds
     """
     from .onset import growth
 
-    text = f"rms of {signal} in the last third over the middle third, less 1"
+    text = f"range of {signal} in the last third over the middle third, less 1"
     return Amount(growth(lambda: point.simulation, signal), "1", text)
 
 

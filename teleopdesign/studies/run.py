@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
 from ..diagrams import Diagram
-from ..errors import ExperimentError, ModelError
+from ..errors import ExperimentError, ModelError, did_you_mean
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from .case import SimulatedCase
@@ -38,6 +39,7 @@ def study(
     give: float = 1e-5,
     every_step: bool = False,
     units: Mapping[str, str] | None = None,
+    labels: Mapping[str, str] | None = None,
     seed: int = 0,
     workers: int | None = None,
     scheduler: str = "",
@@ -53,7 +55,7 @@ def study(
         together (`latin_hypercube`, `sobol`, ...); or a sequence of such, whose product is taken
     measures: names of `MEASURES`, `measure(...)`, functions; several in a list, or by name
     duration ... every_step: how a diagram is simulated, as in `simulate`; no duration: not at all
-    units: of a function's parameters and of measures, by name
+    units: of a function's parameters and of measures, by name;  labels: names in figures
     seed: of measures that need randomness
     workers: processes of this machine; None: as many as it has cores, none where that is as fast
     scheduler: address of a Dask cluster, "tcp://..."; the points are computed there
@@ -77,9 +79,18 @@ def study(
     }
     _check_places(workers, scheduler)
     task = _task(model, settings, axes, measures, seed)
-    by_name, target = dict(units or {}), None if out is None else Path(out)
+    by_name = _Words(dict(units or {}), dict(labels or {}))
+    target = None if out is None else Path(out)
     run = partial(_run, task, workers=workers, scheduler=scheduler, progress=progress)
     return _with_file(task, by_name, target, run)
+
+
+@dataclass(frozen=True)
+class _Words:
+    """Units and labels that a user gives, by parameter or measure."""
+
+    units: Mapping[str, str]
+    labels: Mapping[str, str]
 
 
 def _check_places(workers: int | None, scheduler: str) -> None:
@@ -102,10 +113,10 @@ def _task(model: Any, settings: Mapping[str, Any], axes: Any, measures: Any, see
 
 
 def _with_file(
-    task: Task, units: Mapping[str, str], target: Path | None, run: Callable[[Journal], None]
+    task: Task, words: _Words, target: Path | None, run: Callable[[Journal], None]
 ) -> Study:
     """Run what the file and the journal beside it do not hold yet, and label it all."""
-    attributes = _attributes(task, units)
+    attributes = _attributes(task, words)
     key, part = str(attributes["study"]), None
     if target is not None:
         check_netcdf()
@@ -117,9 +128,9 @@ def _with_file(
     journal = Journal(part, key, len(task.points))
     try:
         run(journal)
-        by_axis = _units(task, units)
+        by_axis = _units(task, words.units)
         result = labelled(task.points, journal.outcomes, units=by_axis, attributes=attributes)
-        _with_units(result, units)
+        _write_words(result, words)
         if target is not None:
             result.to_netcdf(target)
             journal.remove()
@@ -172,14 +183,26 @@ def _units(task: Task, units: Mapping[str, str]) -> dict[str, str]:
     return {n: units.get(n, "1") for n in task.points.names}
 
 
-def _with_units(result: Study, units: Mapping[str, str]) -> None:
-    """Units of measures that a user's functions cannot say themselves."""
-    for name in result.measures:
-        if name in units:
-            result.data[name].attrs["units"] = units[name]
+def _write_words(result: Study, words: _Words) -> None:
+    """Units of measures that a user's functions cannot say themselves, and labels.
+
+    raises ModelError: a label or unit of something that is not there
+    """
+    names = [*map(str, result.data.variables), *json.loads(result.data.attrs["fixed"])]
+    for name in {**words.units, **words.labels}:
+        if name not in names and result.measures:
+            raise ModelError(
+                f'study: units, labels: no measure or parameter "{name}", has {", ".join(names)}'
+                f"{did_you_mean(name, names)}"
+            )
+    for name in map(str, result.data.variables):
+        if name in words.units:
+            result.data[name].attrs["units"] = words.units[name]
+        if name in words.labels:
+            result.data[name].attrs["long_name"] = words.labels[name]
 
 
-def _attributes(task: Task, units: Mapping[str, str]) -> dict[str, Any]:
+def _attributes(task: Task, words: _Words) -> dict[str, Any]:
     """What stands beside the numbers: enough to compute them again."""
     points, model = task.points, task.model
     values: dict[str, Any] = dict(points.fixed)
@@ -202,7 +225,7 @@ def _attributes(task: Task, units: Mapping[str, str]) -> dict[str, Any]:
             points.fixed,
             task.measures,
             task.seed,
-            units,
+            words,
             made_with,
         ),
         "axes": json.dumps(list(points.columns)),
