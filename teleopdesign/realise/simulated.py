@@ -36,8 +36,13 @@ def without_absent(body: Body, *, surely: bool = False) -> Body:
     if levels <= gone:
         gone |= {e.name for e in body.effects if e.role == "friction_shape"}
     needed = {n for e in body.effects if e.name not in gone for n in e.needs}
-    for name in gone - needed:
-        body = body.without_effect(name)
+    gone -= needed
+    # what needs others goes before them
+    while gone:
+        held = {n for e in body.effects for n in e.needs}
+        for name in sorted(gone - held):
+            body = body.without_effect(name)
+        gone &= held
     for effect in body.effects:
         for name, parameter in effect.parameters.items():
             if parameter.optional and equals(f"{effect.name}.{name}", 0.0):
