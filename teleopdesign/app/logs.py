@@ -99,13 +99,16 @@ def choices_of(answers: dict[str, str | None]) -> Choices:
     answers: of `ASKED`, "axis", "torque constant" (N m/A) and "gear ratio"
     raises ExperimentError: a constant that is no number
     """
-    columns = {key: answers.get(name) or None for name, key in ASKED.items()}
     constant = _number(answers.get("torque constant"), "torque constant")
+    column = {key: answers.get(name) or None for name, key in ASKED.items()}
     return Choices(
         axis=answers.get("axis") or None,
+        time=column["time"],
+        position=column["position"],
+        actuator_force=column["actuator_force"],
+        interaction_force=column["interaction_force"],
         torque_constant=None if constant is None else (constant, "N*m/A"),
         gear_ratio=_number(answers.get("gear ratio"), "gear ratio"),
-        **columns,
     )
 
 

@@ -47,9 +47,7 @@ def _(TeleopDesignError, files, folder, mo, set_names, set_note):
 def _(files, folder, get_names, mo):
     get_names()
     names = files.experiments_in(folder)
-    choice = mo.ui.dropdown(
-        options=names, value=names[0] if names else None, label="Experiment", searchable=True
-    )
+    choice = mo.ui.dropdown(options=names, value=names[-1] if names else None, label="Experiment")
     return choice, names
 
 
@@ -90,7 +88,7 @@ def _(TeleopDesignError, folder, log, logs, mo):
     form = mo.ui.dictionary(
         {
             "axis": mo.ui.dropdown(["prismatic", "revolute"], label="axis"),
-            **{n: mo.ui.dropdown(columns, label=n, searchable=True) for n in logs.ASKED},
+            **{n: mo.ui.dropdown(columns, label=n) for n in logs.ASKED},
             "torque constant": mo.ui.text(label="torque constant (N*m/A)"),
             "gear ratio": mo.ui.text(label="gear ratio"),
         }

@@ -30,7 +30,7 @@ def served(tmp_path):
     """(address with its token, folder) of a page that is served until the test ends."""
     pytest.importorskip("marimo", reason="needs the extra app")
     tmp_path = tmp_path / "laboratory"
-    shutil.copytree(example("rod"), tmp_path / "rod")
+    tmp_path.mkdir()
     process = subprocess.Popen(
         [sys.executable, "-m", "teleopdesign.cli", "app", str(tmp_path), "--no-browser"],
         stdout=subprocess.PIPE,
@@ -74,7 +74,7 @@ def test_the_page_is_for_this_machine_and_for_whoever_has_the_token(served):
 
 @pytest.mark.slow
 @pytest.mark.skipif(CHROMIUM is None, reason=WHY)
-def test_from_a_folder_to_the_exported_report(served):
+def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
     address, folder = served
     api = pytest.importorskip("playwright.sync_api", reason="needs playwright")
     with api.sync_playwright() as playwright:
@@ -89,7 +89,15 @@ def test_from_a_folder_to_the_exported_report(served):
             button.focus()
             page.keyboard.press("Enter")
 
-        page.get_by_role("button", name="Open", exact=True).wait_for()
+        page.get_by_text("Bring a log of your own").click()
+        log = shutil.copy(example("rod") / "fit.csv.gz", tmp_path / "swing.csv.gz")
+        page.locator("input[type=file]").set_input_files(log)
+        page.get_by_role("cell", name="actuator_force").wait_for()
+        page.get_by_label("hand force").select_option("f_h")
+        page.get_by_role("cell", name="interaction_force").wait_for()
+        page.screenshot(path=folder / "log.png", full_page=True)
+        press("Make the experiment")
+        page.get_by_text("swing_experiment is made").wait_for()
         press("Open")
         page.get_by_text("noise floor").first.wait_for()
         page.locator("canvas, svg.marks").first.wait_for()  # the charts are drawn
@@ -106,10 +114,10 @@ def test_from_a_folder_to_the_exported_report(served):
         page.get_by_role("columnheader", name="as estimated").wait_for()
         page.get_by_role("tab", name="Export").click()
         press("Write report, answer, model and script")
-        page.get_by_text("written to results/rod").first.wait_for()
+        page.get_by_text("written to results/swing_experiment").first.wait_for()
         page.screenshot(path=folder / "exported.png")
         browser.close()
-    results = folder / "results" / "rod"
+    results = folder / "results" / "swing_experiment"
     assert {p.name for p in results.iterdir()} == {
         "report.html",
         "answer.json",
