@@ -16,17 +16,20 @@
 
 The names that a user types:
 
-    experiments   Experiment, Record, load_experiment, check_experiment, example, fetch
+    experiments   Experiment, Record, experiment, load_experiment, check_experiment, example,
+                  fetch
     models        Model, Body, Value
     effects       EFFECTS, Effect, Parameter, FitSearch, State, load_effect
     diagnosis     fit, compare, rank, find_missing, describe, propose_experiment, Comparison,
                   Ranking, Diagnosis
     diagrams      Diagram, ANY, haptic_interface, teleoperator, hand, read_diagram,
                   write_diagram
-    controllers   CONTROLLERS, Controller, controller, from_control
+    controllers   CONTROLLERS, Controller, controller, load_controller, from_control
     responses     derive_transfers, transfer_functions, bode, measured_impedance,
                   simulate_diagram, simulate_many, Simulation, Sampling, sine, to_iosystem
     design        design_compensation, Design, Assumptions
+    studies       study, Study, read_study, measure, MEASURES, latin_hypercube, sobol,
+                  random_samples, sensitivity_samples
     passivity     diagram_claims, positive_real, Claim, Certificate
     errors        TeleopDesignError, ExperimentError, ModelError
 
@@ -56,9 +59,11 @@ The folders, each importing only from those before it:
     unexplained   after it: where a model fails, and what that depends on
     next_experiment  what to measure next, so that rivals are told apart
     design        from a diagnosed model to controllers, predictions and claims
+    studies       a model at every point of named parameters, on one machine or many
     papers        statements of the two papers, each with its proof or check
     plot          draws result objects, computes nothing
     report        the diagnosis as one page that needs nothing else
+    app           the page in the browser: a diagnosis step by step
     commands      what `teleopdesign COMMAND` does: one file each
 """
 
@@ -68,6 +73,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from . import app as app
     from . import blocks as blocks
     from . import check as check
     from . import controllers as controllers
@@ -85,10 +91,11 @@ if TYPE_CHECKING:
     from . import realise as realise
     from . import report as report
     from . import simulate as simulate
+    from . import studies as studies
     from . import unexplained as unexplained
     from .blocks import Body, Value, hand
     from .check import check_experiment
-    from .controllers import CONTROLLERS, Controller, controller, from_control
+    from .controllers import CONTROLLERS, Controller, controller, from_control, load_controller
     from .derive import all_transfers as derive_transfers
     from .derive import transfer_functions
     from .design import Assumptions, Design
@@ -108,6 +115,7 @@ if TYPE_CHECKING:
     from .examples import example
     from .frequency import bode, measured_impedance
     from .measurement import Experiment, Record, load_experiment
+    from .measurement.from_arrays import experiment
     from .measurement.recordings import fetch
     from .model import Model
     from .next_experiment import propose as propose_experiment
@@ -115,6 +123,17 @@ if TYPE_CHECKING:
     from .realise.iosystem import to_iosystem
     from .simulate import Sampling, Simulation, simulate_many, sine
     from .simulate import simulate as simulate_diagram
+    from .studies import (
+        MEASURES,
+        Study,
+        latin_hypercube,
+        measure,
+        random_samples,
+        read_study,
+        sensitivity_samples,
+        sobol,
+        study,
+    )
     from .unexplained import describe
 
 __all__ = [
@@ -134,6 +153,7 @@ __all__ = [
     "Experiment",
     "ExperimentError",
     "FitSearch",
+    "MEASURES",
     "Model",
     "ModelError",
     "Parameter",
@@ -142,6 +162,7 @@ __all__ = [
     "Sampling",
     "Simulation",
     "State",
+    "Study",
     "TeleopDesignError",
     "Value",
     "bode",
@@ -153,22 +174,31 @@ __all__ = [
     "design_compensation",
     "diagram_claims",
     "example",
+    "experiment",
     "fetch",
     "find_missing",
     "fit",
     "from_control",
     "hand",
     "haptic_interface",
+    "latin_hypercube",
+    "load_controller",
     "load_effect",
     "load_experiment",
+    "measure",
     "measured_impedance",
     "positive_real",
     "propose_experiment",
+    "random_samples",
     "rank",
     "read_diagram",
+    "read_study",
+    "sensitivity_samples",
     "simulate_diagram",
     "simulate_many",
     "sine",
+    "sobol",
+    "study",
     "teleoperator",
     "to_iosystem",
     "transfer_functions",
@@ -181,6 +211,7 @@ GROUPS: dict[str, dict[str, str]] = {
     "experiments": {
         "Experiment": "measurement",
         "Record": "measurement",
+        "experiment": "measurement.from_arrays",
         "load_experiment": "measurement",
         "check_experiment": "check",
         "example": "examples",
@@ -223,6 +254,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "CONTROLLERS": "controllers",
         "Controller": "controllers",
         "controller": "controllers",
+        "load_controller": "controllers",
         "from_control": "controllers",
     },
     "responses": {
@@ -242,6 +274,17 @@ GROUPS: dict[str, dict[str, str]] = {
         "Design": "design",
         "Assumptions": "design",
     },
+    "studies": {
+        "study": "studies",
+        "Study": "studies",
+        "read_study": "studies",
+        "measure": "studies",
+        "MEASURES": "studies",
+        "latin_hypercube": "studies",
+        "sobol": "studies",
+        "random_samples": "studies",
+        "sensitivity_samples": "studies",
+    },
     "passivity": {
         "diagram_claims": "passivity",
         "positive_real": "passivity",
@@ -257,6 +300,7 @@ GROUPS: dict[str, dict[str, str]] = {
 _HOMES = {name: home for group in GROUPS.values() for name, home in group.items()}
 #: folders that are there as `td.NAME`, imported when first used
 _FOLDERS = (
+    "app",
     "blocks",
     "check",
     "controllers",
@@ -274,6 +318,7 @@ _FOLDERS = (
     "realise",
     "report",
     "simulate",
+    "studies",
     "unexplained",
 )
 __version__ = "0.1.0.dev0"

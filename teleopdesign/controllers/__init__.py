@@ -20,11 +20,12 @@ from ._controller import (
     ControlLaw,
     Controller,
     ControllerEquation,
+    ControllerState,
     Stage,
-    State,
     parameter_symbol,
 )
 from ._from_control import from_control, inverted
+from ._from_file import load_controller
 
 __all__ = [
     "CONTROLLERS",
@@ -34,11 +35,12 @@ __all__ = [
     "Controller",
     "ControllerEquation",
     "Stage",
-    "State",
+    "ControllerState",
     "controller",
     "from_control",
     "inverted",
     "laws_that_declare",
+    "load_controller",
     "parameter_symbol",
     "scheduled_force_feedback",
 ]
@@ -46,8 +48,8 @@ __all__ = [
 
 def _laws() -> Mapping[str, ControlLaw]:
     files = sorted(p for p in Path(__file__).parent.glob("*.py") if not p.name.startswith("_"))
-    found = {p.stem: importlib.import_module(f"{__name__}.{p.stem}") for p in files}
-    laws = {n: m.CONTROLLER.named(n, m.__doc__ or "") for n, m in found.items()}
+    modules = {p.stem: importlib.import_module(f"{__name__}.{p.stem}") for p in files}
+    laws = {n: m.CONTROLLER.named(n, m.__doc__ or "") for n, m in modules.items()}
     return Catalogue({n: remember(law, _law, n) for n, law in laws.items()}, "control law")
 
 
@@ -58,8 +60,13 @@ def _law(name: str) -> ControlLaw:
 CONTROLLERS: Mapping[str, ControlLaw] = _laws()
 
 
-def controller(name: str, values: Mapping[str, float]) -> Controller:
-    """The control law of that name with these parameter values (SI)."""
+def controller(name: str | ControlLaw, values: Mapping[str, float]) -> Controller:
+    """A control law with these parameter values (SI).
+
+    name: of a law of the catalogue, or a law of one's own (`load_controller`)
+    """
+    if isinstance(name, ControlLaw):
+        return Controller((Stage(name, values),))
     if name not in CONTROLLERS:
         raise ModelError(
             f'controller: no law "{name}", has {", ".join(CONTROLLERS)}'
@@ -69,7 +76,7 @@ def controller(name: str, values: Mapping[str, float]) -> Controller:
 
 
 def laws_that_declare(ability: Ability) -> tuple[ControlLaw, ...]:
-    """The laws of the catalogue that can do that, in the order of their names."""
+    """The laws of the catalogue that declare this ability, in the order of their names."""
     return tuple(law for law in CONTROLLERS.values() if getattr(law, ability))
 
 

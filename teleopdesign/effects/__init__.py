@@ -38,7 +38,9 @@ from ._effect import (
     ordered,
     parameter_symbol,
 )
-from ._structure import make_structure, touching
+from ._facts import RecordFacts, repeats_within_travel
+from ._position import depends_on_position, period
+from ._structure import make_structure, rubbing, touching
 
 __all__ = [
     "BLOCK_EFFECTS",
@@ -50,15 +52,20 @@ __all__ = [
     "Effect",
     "FitSearch",
     "Parameter",
+    "RecordFacts",
     "Role",
     "State",
     "catalogue",
     "delayed",
+    "depends_on_position",
     "find_effect",
     "load_effect",
     "make_structure",
     "ordered",
     "parameter_symbol",
+    "period",
+    "repeats_within_travel",
+    "rubbing",
     "touching",
     "with_block_effects",
 ]
@@ -89,10 +96,10 @@ def _of_file(path: Path, said: Path, expected: str = "") -> Effect:
         raise ModelError(f"{said}: cannot be read: {problem.strerror or problem}") from None
     if expected and digest != expected:
         raise ModelError(f"{said}: the effect file has changed since it was used")
-    found = _LOADED.get((path, digest))
-    if found is None:
-        found = _LOADED[path, digest] = remember(_read(said), _of_file, path, said, digest)
-    return found
+    effect = _LOADED.get((path, digest))
+    if effect is None:
+        effect = _LOADED[path, digest] = remember(_read(said), _of_file, path, said, digest)
+    return effect
 
 
 def _read(path: Path) -> Effect:
@@ -179,22 +186,54 @@ BLOCK_EFFECTS: Mapping[str, Effect] = Catalogue(
 
 
 def with_block_effects(effects: Mapping[str, Effect] = EFFECTS) -> Mapping[str, Effect]:
-    """Those effects and the ones of blocks, by name; one given wins."""
+    """These effects and those that belong to blocks, by name; of one name, these win."""
     return Catalogue({**BLOCK_EFFECTS, **effects}, "effect")
 
 
 def catalogue(extra: Iterable[str | Path | Effect] = ()) -> Mapping[str, Effect]:
-    """The package's effects and the given files' (or effects), by name; a user's name wins."""
-    own = (e if isinstance(e, Effect) else load_effect(e) for e in extra)
-    return Catalogue({**EFFECTS, **{e.name: e for e in own}}, "effect")
+    """Effects by name: the package's, and the user's files or effects; a user's name wins."""
+    users = (e if isinstance(e, Effect) else load_effect(e) for e in extra)
+    return Catalogue({**EFFECTS, **{e.name: e for e in users}}, "effect")
+
+
+#: words of other texts -> effect that is meant
+OTHER_NAMES: Mapping[str, str] = {
+    "stiction": "stribeck",
+    "static_friction": "stribeck",
+    "breakaway": "stribeck",
+    "dry_friction": "coulomb",
+    "kinetic_friction": "coulomb",
+    "damping": "viscous",
+    "damper": "viscous",
+    "lugre": "presliding",
+    "dahl": "presliding",
+    "hysteresis": "presliding",
+    "drag": "quadratic_drag",
+    "delay": "actuation_delay",
+    "dead_time": "actuation_delay",
+    "latency": "actuation_delay",
+    "lag": "actuator_lag",
+    "saturation": "actuator_saturation",
+    "play": "backlash",
+    "flexibility": "transmission_compliance",
+    "elasticity": "transmission_compliance",
+    "compliance": "transmission_compliance",
+    "counterweight": "bias",
+    "offset": "bias",
+    "mass": "added_inertia",
+    "payload": "added_inertia",
+    "warm_up": "friction_drift",
+    "temperature": "friction_drift",
+    "detent": "cogging",
+}
 
 
 def find_effect(name: str, known: Mapping[str, Effect] = EFFECTS, where: str = "effect") -> Effect:
     """The effect of that name; raises ModelError with the nearest known name."""
     if name not in known:
-        raise ModelError(
-            f'{where}: no effect "{name}"{did_you_mean(name, known)} (see `teleopdesign effects`)'
-        )
+        meant = OTHER_NAMES.get(name.lower().replace(" ", "_"))
+        hint = f'; did you mean "{meant}"?' if meant in known else did_you_mean(name, known)
+        raise ModelError(f'{where}: no effect "{name}"{hint} (see `teleopdesign effects`)')
     return known[name]
 
 

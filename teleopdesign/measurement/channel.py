@@ -6,6 +6,7 @@ from typing import Any
 
 from ..errors import ExperimentError, did_you_mean, quoted
 from ..quantity import si_factor, to_si
+from .conversion import KEYS, Conversion, conversion_of
 from .description import ONE_BODY, BodyDescription
 from .toml_table import Table
 
@@ -26,9 +27,11 @@ class Channel:
 
     quantity: "position", "velocity", "actuator_force", "interaction_force", "time" or "segment"
     body: None for time and segment
-    column: header, variable or dataset name in the record files; `unit`: the unit it is written in
+    column: header, variable or dataset name in the record files ("i_1 + i_2" of a sum)
+    unit: the unit it is written in
     resolution: step of the encoder or converter, SI; None: not stated
     noise: rms, SI; None: not stated
+    conversion: how the columns become the signal; None: one column times the unit's factor
     """
 
     quantity: str
@@ -37,6 +40,17 @@ class Channel:
     unit: str
     resolution: float | None
     noise: float | None
+    conversion: Conversion | None = None
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The columns that the signal is made of."""
+        return (self.column,) if self.conversion is None else self.conversion.columns
+
+    @property
+    def delay(self) -> float:
+        """By how much the log has the signal late, s."""
+        return 0.0 if self.conversion is None else self.conversion.delay
 
 
 def channels_from(table: Table, bodies: Mapping[str, BodyDescription]) -> dict[str, Channel]:
@@ -75,26 +89,35 @@ def factor_of(channel: Channel, bodies: Mapping[str, BodyDescription], where: st
     return si_factor(channel.unit, quantity=quantity, axis=axis, where=where)
 
 
+def conversion_to_si(
+    channel: Channel, bodies: Mapping[str, BodyDescription], where: str
+) -> Conversion:
+    """How the channel's columns become its signal in SI; errors of `factor_of`."""
+    if channel.conversion is not None:
+        return channel.conversion
+    return Conversion((channel.column,), (1.0,), factor=factor_of(channel, bodies, where))
+
+
 def sample_rate_from(experiment: Table, channels: Table) -> float | None:
     """`sample_rate` in Hz, written under [channels] or at the top of the file; None if absent.
 
     Exactly one of it and the channel `time` must be there.
     """
-    given = [table for table in (channels, experiment) if "sample_rate" in table.content]
-    if "time" in channels.content and given:
+    tables = [table for table in (channels, experiment) if "sample_rate" in table.content]
+    if "time" in channels.content and tables:
         raise ExperimentError(
-            f"{given[0].where('sample_rate')}: found beside channels.time, expected one of the two"
+            f"{tables[0].where('sample_rate')}: found beside channels.time, expected one of the two"
         )
-    if len(given) == 2:
+    if len(tables) == 2:
         raise ExperimentError(f"{experiment.where('sample_rate')}: is given twice")
-    if not given:
+    if not tables:
         if "time" not in channels.content:
             raise ExperimentError(
                 f'{channels.where()}: no "time", expected {{ column = ..., unit = "s" }} '
                 'or sample_rate = { value = 1000, unit = "Hz" }'
             )
         return None
-    return frequency_from(given[0], "sample_rate")
+    return frequency_from(tables[0], "sample_rate")
 
 
 def frequency_from(table: Table, key: str) -> float:
@@ -133,20 +156,31 @@ def _channel(table: Table, name: str, bodies: Mapping[str, BodyDescription]) -> 
     body, _, quantity = name.rpartition(".")
     if quantity in _OF_THE_RECORD:
         table.allow(("column", "unit"))
-    else:
-        table.allow(("column", "unit", "resolution", "noise"))
-    unit = table.text("unit", "1" if quantity == "segment" else None)
-    written = Channel(quantity, body or None, table.text("column"), unit, None, None)
-    factor = factor_of(written, bodies, table.where("unit"))
+        unit = table.text("unit", "1" if quantity == "segment" else None)
+        written = Channel(quantity, None, table.text("column"), unit, None, None)
+        factor_of(written, bodies, table.where("unit"))
+        return written
+    table.allow(("column", "unit", "resolution", "noise", *KEYS))
+    unit = table.text("unit")
+    conversion, count = conversion_of(
+        table,
+        quantity=quantity,
+        kind=BODY_QUANTITIES[quantity],
+        axis=bodies[body].axis,
+        unit=unit,
+    )
     resolution = table.number_or_none("resolution", above=0)
     noise = table.number_or_none("noise", above=0)
+    factor = abs(conversion.factor)
+    plain = conversion.is_plain and not any(key in table.content for key in KEYS)
     return Channel(
         quantity,
-        written.body,
-        written.column,
+        body,
+        " + ".join(conversion.columns),
         unit,
-        None if resolution is None else resolution * factor,
+        count if resolution is None else resolution * factor,
         None if noise is None else noise * factor,
+        None if plain else conversion,
     )
 
 
@@ -164,8 +198,9 @@ def _refuse_missing(
 def _refuse_shared_columns(table: Table, channels: Mapping[str, Channel]) -> None:
     first_use: dict[str, str] = {}
     for name, channel in channels.items():
-        other = first_use.setdefault(channel.column, name)
-        if other != name:
-            raise ExperimentError(
-                f"{table.where(name)}: found column {quoted(channel.column)}, which {other} uses"
-            )
+        for column in channel.columns:
+            other = first_use.setdefault(column, name)
+            if other != name:
+                raise ExperimentError(
+                    f"{table.where(name)}: found column {quoted(column)}, which {other} uses"
+                )

@@ -52,13 +52,13 @@ class Layout:
 def slopes(equations: Equations) -> dict[sp.Symbol, sp.Expr]:
     """Hidden state -> A, where its rate is A z + B with A free of the state."""
     moving = {f(m) for m in equations.motions for f in (signal, velocity)}
-    found = {}
+    by_state = {}
     for state, rate in equations.rates.items():
         # as it stands: simplified, exp(-u) may come out as 1/exp(u), which overflows
         slope = sp.diff(rate, state) if state not in moving else sp.S(0)
         if slope != 0 and not slope.has(state):
-            found[state] = slope
-    return found
+            by_state[state] = slope
+    return by_state
 
 
 def needed_steps(
@@ -66,12 +66,12 @@ def needed_steps(
 ) -> dict[sp.Symbol, sp.Expr]:
     """Those of the named steps that the results are written in, in their order."""
     wanted = set().union(*(sp.sympify(r, strict=True).free_symbols for r in results))
-    found = {}
+    needed = {}
     for symbol, expression in reversed(list(joined.items())):
         if symbol in wanted:
-            found[symbol] = expression
+            needed[symbol] = expression
             wanted |= expression.free_symbols
-    return dict(reversed(list(found.items())))
+    return dict(reversed(list(needed.items())))
 
 
 #: symbol -> the text that reads it
@@ -164,13 +164,13 @@ class Generator:
     def _names(self) -> dict[sp.Symbol, str]:
         """Private name of every symbol that the equations hold."""
         e = self.equations
-        own = {p: f"p{i}" for i, p in enumerate(self.parameters)}
-        own |= {s: f"j{i}_" for i, s in enumerate(e.joined)} | {TIME: "time", PERIOD: "period"}
+        names = {p: f"p{i}" for i, p in enumerate(self.parameters)}
+        names |= {s: f"j{i}_" for i, s in enumerate(e.joined)} | {TIME: "time", PERIOD: "period"}
         used = set().union(*(x.free_symbols for x in self._expressions()))
         used |= {*self.states, *self.computer_states, *e.inputs, *e.commands.values(), *self.late}
         used |= {*self.sensors, *self.sampled_inputs, *self.motion_signals}
         used |= {f(m) for m in self.motions for f in (travel_rate, estimate)}
-        return own | {s: self.variables[s.name] for s in used if s not in own}
+        return names | {s: self.variables[s.name] for s in used if s not in names}
 
     def _computer_expressions(self) -> list[sp.Expr]:
         computer = self.equations.computer
@@ -259,8 +259,8 @@ class Generator:
     def _now(self) -> dict[sp.Symbol, sp.Expr]:
         """Accelerations and signals of continuous time, by their symbols."""
         e = self.equations
-        found = {acceleration(m): e.rates[velocity(m)] for m in e.motions}
-        return found | {signal(name): x for name, x in e.signals.items()}
+        accelerations = {acceleration(m): e.rates[velocity(m)] for m in e.motions}
+        return accelerations | {signal(name): x for name, x in e.signals.items()}
 
     def _made(self) -> dict[str, sp.Expr]:
         """Signals of the computer."""
@@ -322,9 +322,9 @@ class Generator:
         read = {x: f"sampled[{i}, n]" for i, x in enumerate(self.sampled_inputs)}
         places = _places(rows) | read | self._parameter_places()
         writer = _Writer(tuple(DIGITAL), places, self.names)
-        own = {x.name: text for x, text in read.items()}
-        own |= {name: _entry("MADE", i) for i, name in enumerate(made)}
-        commands = [f"{_entry('to', i)} = {own[c]}" for i, c in enumerate(self.commands)]
+        sources = {x.name: text for x, text in read.items()}
+        sources |= {name: _entry("MADE", i) for i, name in enumerate(made)}
+        commands = [f"{_entry('to', i)} = {sources[c]}" for i, c in enumerate(self.commands)]
         parts = [
             self._stepped(writer, "computer_before", True),
             writer.function("computer_signals", to=made.values()),

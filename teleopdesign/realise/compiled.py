@@ -19,8 +19,8 @@ from typing import Any
 
 def cache_folder() -> Path:
     """Where generated kernels are kept: TELEOPDESIGN_CACHE, or the platform's cache folder."""
-    if given := os.environ.get("TELEOPDESIGN_CACHE"):
-        folder = Path(given)
+    if path := os.environ.get("TELEOPDESIGN_CACHE"):
+        folder = Path(path)
     else:
         import pooch
 

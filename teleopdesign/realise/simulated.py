@@ -5,17 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import lru_cache
 
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..diagrams import Attached, Block, Control, Diagram, Moving
-from ..effects import EFFECTS, SIGNALS
+from ..effects import EFFECTS, SIGNALS, Effect
 from ..errors import ModelError
 from .tips import with_tips
 
 
 def without_absent(body: Body, *, surely: bool = False) -> Body:
-    """The body without effects that are absent at their values, what needs those, and zeros.
+    """The body without absent effects, effects that need them, and parameters that are zero.
 
     An optional parameter at zero is left out too, for the equations are simpler without it.
     surely: keep those whose values have a standard error, so that they may be there
@@ -36,6 +37,8 @@ def without_absent(body: Body, *, surely: bool = False) -> Body:
     levels = {e.name for e in body.effects if e.role == "friction_level"}
     if levels <= gone:
         gone |= {e.name for e in body.effects if e.role == "friction_shape"}
+    if any(e.role == "structure" for e in body.effects if e.name in gone):
+        gone |= {e.name for e in body.effects if e.role == "tip_level"}
     needed = {n for e in body.effects if e.name not in gone for n in e.needs}
     gone -= needed
     # what needs others goes before them
@@ -51,8 +54,15 @@ def without_absent(body: Body, *, surely: bool = False) -> Body:
     return body
 
 
-def with_give(body: Body, give: float, *, damping_ratio: float = 0.0) -> Body:
-    """Ideal Coulomb friction realised by a bristle that gives by `give` before it slides.
+@lru_cache(maxsize=2)  # laws compare by identity
+def _bristle(of_any_level: bool) -> Effect:
+    """Presliding, or presliding of any friction level: of a tip's, of a user's own."""
+    bristle = EFFECTS["presliding"]
+    return replace(bristle, needs=frozenset()) if of_any_level else bristle
+
+
+def with_give(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> Body:
+    """Ideal Coulomb friction realised by a bristle that gives by `deflection` before it slides.
 
     damping_ratio: of the inertia on this bristle while it sticks
     """
@@ -61,7 +71,8 @@ def with_give(body: Body, give: float, *, damping_ratio: float = 0.0) -> Body:
         return body
     at_rest = dict.fromkeys(SIGNALS.values(), 0) | dict.fromkeys(body.equation().rates, 0)
     level = float(body.equation().level.subs(at_rest).subs(body.numbers()))
-    lugre, stiffness = EFFECTS["presliding"], level / give
+    lugre = _bristle(bool(body.lacks(EFFECTS["presliding"])))
+    stiffness = level / deflection
     if not damping_ratio:
         return body.with_effect(lugre.without("bristle_damping"), {"stiffness": stiffness})
     damping = 2.0 * damping_ratio * (stiffness * body.parameters["inertia"].value) ** 0.5
@@ -70,21 +81,21 @@ def with_give(body: Body, give: float, *, damping_ratio: float = 0.0) -> Body:
 
 def in_computer(diagram: Diagram, period: float) -> Diagram:
     """The diagram with controllers as a computer of that period (s) realises them."""
-    found = {
+    realised = {
         part.name: part.controller.sampled(period)
         for part in diagram.controls
         if isinstance(part.controller, Controller) and not part.analog
     }
-    return _with_blocks(diagram, found)
+    return _with_blocks(diagram, realised)
 
 
-def _with_blocks(diagram: Diagram, found: Mapping[str, Body | Controller]) -> Diagram:
+def _with_blocks(diagram: Diagram, contents: Mapping[str, Body | Controller]) -> Diagram:
     """The diagram with these in the places of their names; itself where nothing is another."""
 
     def placed(part: Block) -> Block:
-        if part.name not in found:
+        if part.name not in contents:
             return part
-        new = found[part.name]
+        new = contents[part.name]
         if isinstance(new, Controller) and isinstance(part, Control):
             same = new is part.controller or new.stages == part.controller.stages  # type: ignore[union-attr]
             return part if same else replace(part, controller=new)
@@ -96,16 +107,19 @@ def _with_blocks(diagram: Diagram, found: Mapping[str, Body | Controller]) -> Di
     return replace(diagram, blocks=blocks) if changed else diagram
 
 
-def simulated(diagram: Diagram, give: float, prescribed: Iterable[str] = ()) -> Diagram:
+def simulated(diagram: Diagram, deflection: float, prescribed: Iterable[str] = ()) -> Diagram:
     """The diagram with bodies as they are simulated: absent effects out, ideal friction given.
 
     prescribed: motions that are given
     """
     bodies: dict[str, Body | Controller] = {}
     for part in diagram.blocks:
-        found = part.controller if isinstance(part, Control) else part.body
-        if not isinstance(found, Body | MatrixImpedance | Controller):
+        content = part.controller if isinstance(part, Control) else part.body
+        if not isinstance(content, Body | MatrixImpedance | Controller):
             raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no equations")
-        if isinstance(found, Body):
-            bodies[part.name] = with_give(without_absent(found), give)
-    return with_tips(_with_blocks(diagram, bodies), prescribed=prescribed)
+        if isinstance(content, Body):
+            bodies[part.name] = with_give(without_absent(content), deflection)
+    apart = with_tips(_with_blocks(diagram, bodies), prescribed=prescribed)
+    # of a tip that dry friction holds
+    tips = {b.name: with_give(b.body, deflection) for b in apart.bodies if isinstance(b.body, Body)}
+    return _with_blocks(apart, dict(tips))

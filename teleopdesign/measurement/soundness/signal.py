@@ -14,9 +14,9 @@ from ...finding import Graph, Series
 from ...quantity import unit_of
 from ..channel import BODY_QUANTITIES, Channel
 from ..description import ONE_BODY
+from ..encoder import reading_step
 from ..experiment import Experiment
 from ..filtering import Array
-from ..motion import reading_step
 from ..record import Record
 
 #: chance of a false warning about one channel of one record
