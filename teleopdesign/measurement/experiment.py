@@ -140,8 +140,13 @@ def load_experiment(folder: str | Path) -> Experiment:
 
 def _found_folder(path: Path) -> Path:
     try:
-        if path.name == _FILE and path.is_file():
+        if path.is_file() and (path.parent / _FILE).is_file():
             path = path.parent
+        elif path.is_file() and path.suffix not in (".toml", ".json"):
+            raise ExperimentError(
+                f"{path.name}: a log with no {_FILE} beside it; to make one: "
+                f"teleopdesign new {path.name}"
+            )
         path = path.resolve()
         if path.is_dir():
             names = sorted(entry.name for entry in path.iterdir())
