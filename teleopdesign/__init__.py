@@ -26,8 +26,10 @@ The names that a user types:
                   write_diagram
     controllers   CONTROLLERS, Controller, controller, load_controller, from_control
     responses     derive_transfers, transfer_functions, bode, measured_impedance,
-                  simulate_diagram, Simulation, Sampling, sine, to_iosystem
+                  simulate_diagram, simulate_many, Simulation, Sampling, sine, to_iosystem
     design        design_compensation, Design, Assumptions
+    studies       study, Study, read_study, measure, MEASURES, latin_hypercube, sobol,
+                  random_samples, sensitivity_samples
     passivity     diagram_claims, positive_real, Claim, Certificate
     errors        TeleopDesignError, ExperimentError, ModelError
 
@@ -57,9 +59,11 @@ The folders, each importing only from those before it:
     unexplained   after it: where a model fails, and what that depends on
     next_experiment  what to measure next, so that rivals are told apart
     design        from a diagnosed model to controllers, predictions and claims
+    studies       a model at every point of named parameters, on one machine or many
     papers        statements of the two papers, each with its proof or check
     plot          draws result objects, computes nothing
     report        the diagnosis as one page that needs nothing else
+    app           the page in the browser: a diagnosis step by step
     commands      what `teleopdesign COMMAND` does: one file each
 """
 
@@ -69,6 +73,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from . import app as app
     from . import blocks as blocks
     from . import check as check
     from . import controllers as controllers
@@ -86,6 +91,7 @@ if TYPE_CHECKING:
     from . import realise as realise
     from . import report as report
     from . import simulate as simulate
+    from . import studies as studies
     from . import unexplained as unexplained
     from .blocks import Body, Value, hand
     from .check import check_experiment
@@ -115,8 +121,19 @@ if TYPE_CHECKING:
     from .next_experiment import propose as propose_experiment
     from .passivity import Certificate, Claim, diagram_claims, positive_real
     from .realise.iosystem import to_iosystem
-    from .simulate import Sampling, Simulation, sine
+    from .simulate import Sampling, Simulation, simulate_many, sine
     from .simulate import simulate as simulate_diagram
+    from .studies import (
+        MEASURES,
+        Study,
+        latin_hypercube,
+        measure,
+        random_samples,
+        read_study,
+        sensitivity_samples,
+        sobol,
+        study,
+    )
     from .unexplained import describe
 
 __all__ = [
@@ -136,6 +153,7 @@ __all__ = [
     "Experiment",
     "ExperimentError",
     "FitSearch",
+    "MEASURES",
     "Model",
     "ModelError",
     "Parameter",
@@ -144,6 +162,7 @@ __all__ = [
     "Sampling",
     "Simulation",
     "State",
+    "Study",
     "TeleopDesignError",
     "Value",
     "bode",
@@ -162,16 +181,24 @@ __all__ = [
     "from_control",
     "hand",
     "haptic_interface",
+    "latin_hypercube",
     "load_controller",
     "load_effect",
     "load_experiment",
+    "measure",
     "measured_impedance",
     "positive_real",
     "propose_experiment",
+    "random_samples",
     "rank",
     "read_diagram",
+    "read_study",
+    "sensitivity_samples",
     "simulate_diagram",
+    "simulate_many",
     "sine",
+    "sobol",
+    "study",
     "teleoperator",
     "to_iosystem",
     "transfer_functions",
@@ -236,6 +263,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "bode": "frequency",
         "measured_impedance": "frequency",
         "simulate_diagram": "simulate:simulate",
+        "simulate_many": "simulate",
         "Simulation": "simulate",
         "Sampling": "simulate",
         "sine": "simulate",
@@ -245,6 +273,17 @@ GROUPS: dict[str, dict[str, str]] = {
         "design_compensation": "design:design",
         "Design": "design",
         "Assumptions": "design",
+    },
+    "studies": {
+        "study": "studies",
+        "Study": "studies",
+        "read_study": "studies",
+        "measure": "studies",
+        "MEASURES": "studies",
+        "latin_hypercube": "studies",
+        "sobol": "studies",
+        "random_samples": "studies",
+        "sensitivity_samples": "studies",
     },
     "passivity": {
         "diagram_claims": "passivity",
@@ -261,6 +300,7 @@ GROUPS: dict[str, dict[str, str]] = {
 _HOMES = {name: home for group in GROUPS.values() for name, home in group.items()}
 #: folders that are there as `td.NAME`, imported when first used
 _FOLDERS = (
+    "app",
     "blocks",
     "check",
     "controllers",
@@ -278,6 +318,7 @@ _FOLDERS = (
     "realise",
     "report",
     "simulate",
+    "studies",
     "unexplained",
 )
 __version__ = "0.1.0.dev0"

@@ -53,10 +53,10 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
             "from_control: the transfer function is improper, its numerator of higher order than "
             "its denominator: add a low-pass, such as 1/(tau s + 1)"
         )
-    found = control.ss(system)
-    period = None if not system.isdtime(strict=True) else 0.0 if found.dt is True else found.dt
-    a, b, c = _scaled(found.A, found.B[:, 0], found.C[0])
-    return Controller((_state_space.stage(name, (a, b, c, float(found.D[0, 0])), period),))
+    form = control.ss(system)
+    period = None if not system.isdtime(strict=True) else 0.0 if form.dt is True else form.dt
+    a, b, c = _scaled(form.A, form.B[:, 0], form.C[0])
+    return Controller((_state_space.stage(name, (a, b, c, float(form.D[0, 0])), period),))
 
 
 def inverted(system: control.LTI, *, bandwidth: float, name: str = "inverse") -> Controller:
@@ -92,7 +92,7 @@ def inverted(system: control.LTI, *, bandwidth: float, name: str = "inverse") ->
 def _scaled(
     a: np.ndarray, b: np.ndarray, c: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """States in units of their own, by powers of two: what a polynomial gives spans decades.
+    """States scaled by powers of two: the coefficients of a polynomial can span decades.
 
     A Butterworth low-pass of order 8 at 100 Hz loses 1e-8 of its step without, 3e-15 with it.
     """

@@ -24,7 +24,7 @@ def with_values(
     given: str | tuple[str, ...] = "",
     speed: float = 0.0,
 ) -> tuple[sp.Expr, LinearBlocks]:
-    """Transfer function in `realise.lti.S` with numbers, and the linear forms that it rests on.
+    """Transfer function in `realise.lti.S` with numbers, and the linear forms of its blocks.
 
     One degree of freedom. given: motions that are prescribed
     speed: m/s or rad/s, at which smoothed friction and schedules are frozen
@@ -48,7 +48,7 @@ def transfer_function(
     speed: float = 0.0,
     delay_order: int = 4,
 ) -> tuple[control.TransferFunction, tuple[str, ...]]:
-    """The transfer function as a python-control system, and what has no linear form.
+    """The transfer function as a python-control system, and the names without linear form.
 
     Arguments as in `with_values`;  delay_order: of the Pade approximation of dead times
     """

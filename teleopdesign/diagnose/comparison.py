@@ -17,6 +17,7 @@ from ..realise.along_motion import residual_along
 from .error import force_error
 from .noise_floor import NoiseFloor, noise_floor
 from .prepare import Prepared, prepare
+from .record_offsets import as_logged
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Comparison(ByValue):
-    """A model held against an experiment, as it stands.
+    """A model compared with an experiment, without estimation.
 
     fit_error, check_error: relative force errors (NaN where there is no such record)
     data: per sample of every record and body (dimension "sample"): record, body, segment, time,
@@ -67,7 +68,7 @@ class Comparison(ByValue):
 
 
 def compare(model: Model, experiment: Experiment, *, seed: int = 0) -> Comparison:
-    """Hold the model, as it stands, against every record of the experiment.
+    """Compare the model with every record of the experiment, without estimation.
 
     seed: of the draws for the noise floor
     raises ExperimentError: the experiment lacks what the comparison needs
@@ -90,7 +91,7 @@ def residual_data(model: Model, prepared: Prepared) -> Dataset:
     columns: dict[str, list[Any]] = {}
     for number, stretch in enumerate(prepared.stretches):
         motion = stretch.motion
-        along = residual_along(model.body(motion.body), motion)
+        along = residual_along(model.body(motion.body), as_logged(model, motion))
         measured = motion.lowpassed(motion.at_rows(motion.command) + motion.interaction)
         residual = motion.lowpassed(along.residual.value)
         n = len(motion.time)

@@ -19,7 +19,7 @@ from .ladder_state import LadderSearch, LadderState
 from .moves import remove
 from .noise_floor import NoiseFloor
 from .ranking import Ranked, Ranking
-from .rung import Rung
+from .rung import Replaced, Rung
 from .rungs import estimate_without, falling, refitted
 
 
@@ -28,17 +28,18 @@ class Exchange:
     """One effect for another.
 
     dropped: the one that gives way;  without: the fit that both are compared on
-    taken: the one in its place, with the model fitted with it;  ranking: all that were tried there
+    replacement: the one in its place, with the model fitted with it
+    ranking: all candidates for that place
     """
 
     dropped: Candidate
     without: Fit
-    taken: Ranked
+    replacement: Ranked
     ranking: Ranking
 
 
 def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """The ladder with one effect exchanged for a better, less what that makes superfluous."""
+    """The ladder after the best exchange, without effects that it makes superfluous; None: none."""
     criteria, prepared, floor = search.criteria, search.prepared, state.floor
     if state.exchanges >= search.plan.exchanges or is_adequate(state.fit, floor, criteria=criteria):
         return None
@@ -49,14 +50,15 @@ def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
         for r in state.rungs[1:-1]
         if r.added is not None and r.ranking is not None
     }
-    best = best_exchange(search, state.fit, rivals, floor, step=state.step)
+    replaced = {r.added: r.replaced for r in state.rungs if r.added is not None}
+    best = best_exchange(search, state.fit, rivals, floor, step=state.step, replaced=replaced)
     if best is None:
         return None
-    taken, without = best.taken, best.without
-    alternatives = alternatives_of(taken, best.ranking, without, floor, criteria=criteria)
-    rung = Rung(taken.candidate, taken.fit, best.ranking, alternatives)
+    replacement, without = best.replacement, best.without
+    alternatives = alternatives_of(replacement, best.ranking, without, floor, criteria=criteria)
+    rung = Rung(replacement.candidate, replacement.fit, best.ranking, alternatives)
     kept = [r for r in state.rungs if r.added is not best.dropped]
-    order = falling(refitted([*kept, rung], taken.fit, prepared), prepared)
+    order = falling(refitted([*kept, rung], replacement.fit, prepared), prepared)
     if order is None:
         return None
     moved = replace(state.with_rungs(order), exchanges=state.exchanges + 1)
@@ -70,7 +72,7 @@ def rivals_of(
     *,
     criteria: Criteria = CRITERIA,
 ) -> list[Candidate]:
-    """What the records supported in a ranking besides the one that was added, and is not there."""
+    """Supported candidates of a ranking besides the accepted one, if the final model lacks them."""
     keys = {c.key for c in there}
     supported = [
         r.candidate
@@ -87,27 +89,31 @@ def best_exchange(
     floor: NoiseFloor,
     *,
     step: int = 1,
+    replaced: Mapping[Candidate, Replaced | None] | None = None,
 ) -> Exchange | None:
-    """The exchange that lowers the error on the check records most; None where none does clearly.
+    """The exchange with the smallest check error; None where none lowers it clearly.
 
     present: the fit with all that was accepted
     rivals: accepted effect -> what may take its place;  step: number of the rung that is sought
+    replaced: accepted effect -> what comes back to the model where the effect goes
     """
     criteria, exchanges = search.criteria, []
     for dropped, among in rivals.items():
         if not among:
             continue
-        without = estimate_without(present.model, dropped, search.prepared)
+        rung = Rung(dropped, present, replaced=(replaced or {}).get(dropped))
+        without = estimate_without(present.model, rung, search.prepared)
         if without is None:
             continue
         ranking = search.rank(without, step=step, among=among)
         better = [
             r
             for r in ranking.ranked
-            if is_supported(without, r, floor, criteria=criteria)
+            if r.instead_of is None
+            and is_supported(without, r, floor, criteria=criteria)
             and is_better(present, r.fit, floor, criteria=criteria)
         ]
         if better:
-            taken = min(better, key=lambda r: check_squares(r.fit))
-            exchanges.append(Exchange(dropped, without, taken, ranking))
-    return min(exchanges, key=lambda e: check_squares(e.taken.fit), default=None)
+            replacement = min(better, key=lambda r: check_squares(r.fit))
+            exchanges.append(Exchange(dropped, without, replacement, ranking))
+    return min(exchanges, key=lambda e: check_squares(e.replacement.fit), default=None)

@@ -13,12 +13,12 @@ from .ladder_state import LadderSearch, LadderState
 from .noise_floor import NoiseFloor
 from .outside_tone import best_tone
 from .ranking import Ranking
-from .rung import Rung
+from .rung import Rung, replaced_by
 from .rungs import estimate_without, falling
 
 
 def add_pair(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """Two effects that are supported together on the user's model though neither is alone.
+    """Add two effects that the records support only together.
 
     Beside effects that are accepted already a pair costs more time than it is worth.
     """
@@ -29,7 +29,7 @@ def add_pair(search: LadderSearch, state: LadderState) -> LadderState | None:
 
 
 def replace_by_pair(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """Two effects that leave only noise, once, in place of rungs that leave more.
+    """Replace the rungs, once, by two effects that leave only noise.
 
     Where two are missing, a third can explain more than either does alone, and stand in their way.
     They are sought among those that explained something of their own.
@@ -52,7 +52,7 @@ def _best_pair(
     ranking: Ranking,
     among: Collection[Candidate] | None = None,
 ) -> tuple[Rung, ...] | None:
-    """The two rungs on the user's model that leave least; None where no pair is supported.
+    """The best pair of rungs on the user's model; None where no pair is supported.
 
     The best few of the ranking beside the user's model are added on trial, and everything (or those
     in `among`) is ranked anew beside each; a pair counts where it explains most of what is missing
@@ -69,13 +69,19 @@ def _best_pair(
         supported = (
             r for r in beside.ranked if is_supported(first.fit, r, floor, criteria=criteria)
         )
-        second = next(supported, None)
+        second = next((r for r in supported if r.instead_of != first.candidate), None)
         if second is None:
             continue
         alternatives = alternatives_of(second, beside, first.fit, floor, criteria=criteria)
         rungs = (
-            Rung(first.candidate, first.fit, ranking),
-            Rung(second.candidate, second.fit, beside, alternatives),
+            Rung(first.candidate, first.fit, ranking, replaced=replaced_by(first, here.model)),
+            Rung(
+                second.candidate,
+                second.fit,
+                beside,
+                alternatives,
+                replaced=replaced_by(second, first.fit.model),
+            ),
         )
         if _needs_both(search, here, rungs, floor):
             order = falling((base, *rungs), search.prepared)
@@ -87,8 +93,7 @@ def _needs_both(
     search: LadderSearch, base: Fit, rungs: tuple[Rung, ...], floor: NoiseFloor
 ) -> bool:
     """Whether two effects together explain most of what is missing and both are needed."""
-    both, first, criteria = rungs[-1].fit, rungs[0].added, search.criteria
-    assert first is not None
+    both, first, criteria = rungs[-1].fit, rungs[0], search.criteria
     if not is_better(base, both, floor, criteria=criteria):
         return False
     if explained(base, both, floor) < criteria.mostly:

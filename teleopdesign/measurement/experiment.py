@@ -124,13 +124,13 @@ def load_experiment(folder: str | Path) -> Experiment:
             folder,
             file,
             use=use,
-            own=own,
+            offset_names=offset_names,
             channels=channels,
             bodies=bodies,
             sample_rate=sample_rate,
             span=span,
         )
-        for file, use, own, span in _record_entries(experiment, folder)
+        for file, use, offset_names, span in _record_entries(experiment, folder)
     )
     _check_bandwidth(bandwidth, records, comparison)
     guessed = experiment.table("guessed")

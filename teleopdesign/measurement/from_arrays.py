@@ -117,7 +117,7 @@ def in_memory(
                 f"{_WHERE}: {name}",
                 file=name,
                 use=use,
-                own=frozenset(),
+                offset_names=frozenset(),
                 channels=channels,
                 bodies=bodies,
                 sample_rate=rate,

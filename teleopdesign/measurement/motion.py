@@ -34,6 +34,7 @@ class Motion(ByValue):
     direction: +1, -1, or 0 where the reading cannot tell a motion
     step: what one reading leaves open of the position (encoder step, or twice its noise)
     rows: the samples' place in the record;  bandwidth: of the comparison, Hz
+    command_late: s by which the log of the command is later than that of the position
     """
 
     body: str
@@ -50,6 +51,7 @@ class Motion(ByValue):
     spectrum: Spectrum
     smoothing: Array
     bandwidth: float
+    command_late: float = 0.0
 
     @property
     def sample_time(self) -> float:
@@ -59,12 +61,14 @@ class Motion(ByValue):
     def at_rows(self, staircase: Array) -> Array:
         """A held signal, value of each row until the next, as a smooth one at the rows (..., n).
 
+        It is read `command_late` later than logged: so it was then.
         staircase: (..., n), or (..., k n) with k values in turn for equal parts of each row
         """
         parts = staircase.shape[-1] // len(self.time)
+        smoothing = self.smoothing * self.spectrum.ahead(self.command_late)
         held = (
             self.spectrum.multiply(
-                staircase[..., k::parts], self.spectrum.hold(parts, k) * self.smoothing
+                staircase[..., k::parts], self.spectrum.hold(parts, k) * smoothing
             )
             for k in range(parts)
         )
@@ -77,8 +81,8 @@ class Motion(ByValue):
         return zero_phase(y, self.bandwidth, self.sample_time)
 
 
-def told_direction(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:
-    """+1 or -1 where consecutive readings tell a motion that way, 0 where they cannot.
+def direction_of(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:
+    """+1 or -1 where consecutive readings show a direction of motion, else 0.
 
     A motion is told by changes of the reading that go the same way, no more than `patience` samples
     apart, over at least `TRAVEL` steps; a shorter one may be the give of a contact that holds.
@@ -111,7 +115,7 @@ def beside(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def play(position: Array, width: float) -> Array:
-    """Position behind a play of total `width`: it follows only what exceeds it (hysteresis)."""
+    """Position behind a play (hysteresis) of total `width`, which follows only larger motions."""
     half = 0.5 * width
     out = np.empty_like(position)
     here = position[0]
@@ -153,7 +157,7 @@ def motion_of(
     differentiated = smoothing * s.derivative(1)
     velocity = s.back(transformed * s.derivative(1))
     noise_left = step / np.sqrt(12.0) * float(np.sqrt(np.mean(np.abs(differentiated) ** 2)))
-    direction = told_direction(reading, change, step, patience)
+    direction = direction_of(reading, change, step, patience)
     direction[beside(np.abs(velocity) < SLOW * noise_left)] = 0
     return Motion(
         body=body,

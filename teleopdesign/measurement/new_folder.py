@@ -80,7 +80,7 @@ def _first_values(survey: Survey, folder: Path, records: Sequence[Mapping[str, A
             folder,
             r["file"],
             use="fit",
-            own=frozenset(),
+            offset_names=frozenset(),
             channels=channels,
             bodies=bodies,
             sample_rate=rate,

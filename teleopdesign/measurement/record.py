@@ -26,8 +26,8 @@ OWN = ("position_zero", "bias", "friction_level")
 class Record(ByValue):
     """n samples; "fit": parameters are estimated on them, "check": never fitted.
 
-    own: of "position_zero", "bias" and "friction_level", those in which this record may differ from
-        the others
+    offset_names: of "position_zero", "bias" and "friction_level", those in which this record may
+        differ from the others
     time: s, shape (n,), uniform within each segment with step `sample_time` (s)
     segments: stretches without interruption; hidden states start anew at each
     signals: "device.position", "master.actuator_force" ... -> shape (n,), SI, signs of the format
@@ -36,7 +36,7 @@ class Record(ByValue):
 
     file: str
     use: str
-    own: frozenset[str]
+    offset_names: frozenset[str]
     time: NDArray[np.float64]
     sample_time: float
     segments: tuple[slice, ...]
@@ -61,7 +61,7 @@ def read_record(
     file: str,
     *,
     use: str,
-    own: frozenset[str],
+    offset_names: frozenset[str],
     channels: Mapping[str, Channel],
     bodies: Mapping[str, BodyDescription],
     sample_rate: float | None,
@@ -83,7 +83,7 @@ def read_record(
         name,
         file=file,
         use=use,
-        own=own,
+        offset_names=offset_names,
         channels=channels,
         bodies=bodies,
         sample_rate=sample_rate,
@@ -105,7 +105,7 @@ def record_of(
     *,
     file: str,
     use: str,
-    own: frozenset[str],
+    offset_names: frozenset[str],
     channels: Mapping[str, Channel],
     bodies: Mapping[str, BodyDescription],
     sample_rate: float | None,
@@ -130,7 +130,7 @@ def record_of(
     return Record(
         file,
         use,
-        own,
+        offset_names,
         clock.clock.time,
         clock.clock.sample_time,
         clock.clock.segments,

@@ -96,7 +96,7 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
     lines.append("")
     for record, name in zip(experiment.records, names, strict=True):
         lines += ["[[records]]", f"file = {_text(name)}", f"use = {_text(record.use)}"]
-        lines += [f'{own} = "own"' for own in sorted(record.own)]
+        lines += [f'{own} = "own"' for own in sorted(record.offset_names)]
     return "\n".join(lines) + "\n"
 
 

@@ -27,8 +27,8 @@ class Rival:
 
     @property
     def model(self) -> Model:
-        """The fitted model."""
-        return self.fit.model
+        """The fitted model, for records whose clock is right."""
+        return self.fit.model.with_record_shift({})
 
     def __str__(self) -> str:
         return str(self.candidate)
@@ -82,7 +82,7 @@ def _instead(diagnosis: Diagnosis, added: Candidate, other: Candidate, fit: Fit)
 
 
 def depends_on_time(rivals: Sequence[Rival]) -> bool:
-    """Whether the law of what is in question depends on time itself, as a warm-up does."""
+    """Whether the law of a questioned effect depends on time itself, as a warm-up does."""
     return any(r.candidate.effect.expression().has(SIGNALS["time"]) for r in rivals)
 
 

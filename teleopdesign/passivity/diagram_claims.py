@@ -56,19 +56,19 @@ class Search:
 
 @dataclass(frozen=True)
 class DiagramClaims:
-    """Ports of a diagram, what in it is not linear, and the claims as they are settled."""
+    """Ports of a diagram, its nonlinear parts, and the claims with their verdicts."""
 
     diagram: Diagram
     ports: tuple[Port, ...]
     nonlinear: tuple[str, ...]
-    settled: tuple[TopicClaim, ...]
+    claims: tuple[TopicClaim, ...]
 
     def __repr__(self) -> str:
-        lines = [f"{s.claim.status:<9} {s.topic}: {s.claim.statement}" for s in self.settled]
+        lines = [f"{s.claim.status:<9} {s.topic}: {s.claim.statement}" for s in self.claims]
         return "\n".join([f"Claims on the {self.diagram.name}", *lines])
 
     def _repr_html_(self) -> str:
-        rows = [(s.claim.status, s.topic, s.claim.statement, s.claim.verdict) for s in self.settled]
+        rows = [(s.claim.status, s.topic, s.claim.statement, s.claim.verdict) for s in self.claims]
         head = ("status", "on", "statement", "by")
         return html_table(f"Claims on the {self.diagram.name}", head, rows)
 
@@ -76,7 +76,7 @@ class DiagramClaims:
 def diagram_claims(
     diagram: Diagram, *, rng: np.random.Generator, search: Search | None = None
 ) -> DiagramClaims:
-    """Settle what can be said about the ports of a diagram, all other outside signals zero.
+    """Claims about the ports of a diagram, with all other outside signals zero.
 
     Hand and environment (`Z_H`, `Z_E`) hold a port and are no part of what is judged; in the
     search, which is made where nothing settles all ports, those at other ports stay.
@@ -86,21 +86,21 @@ def diagram_claims(
     whole = judged(diagram)
     alone = without_holding(whole)
     all_ports, bent = ports(alone), nonlinear_parts(alone)
-    settled: list[TopicClaim] = []
+    claims: list[TopicClaim] = []
     sampled = search.computer != "continuous" and any(not c.analog for c in alone.controls)
     if not bent:
-        settled += linear_claims(alone, all_ports)
+        claims += linear_claims(alone, all_ports)
     else:
         pairs = friction_pairs(alone)
         for pair in pairs:
-            own = f"friction of {pair.body.name}"
-            settled += [replace(s, topic=own) for s in device_claims(pair.device)]
-            settled += pair_claims(pair)
+            topic = f"friction of {pair.body.name}"
+            claims += [replace(s, topic=topic) for s in device_claims(pair.device)]
+            claims += pair_claims(pair)
         if (composed := _composed(alone, all_ports, pairs)) is not None:
-            settled.append(composed)
-    if sampled or not any(s.topic in WHOLE and s.claim.status != "unknown" for s in settled):
-        settled += [_searched(whole, port, rng, search) for port in all_ports]
-    return DiagramClaims(diagram, all_ports, bent, tuple(settled))
+            claims.append(composed)
+    if sampled or not any(s.topic in WHOLE and s.claim.status != "unknown" for s in claims):
+        claims += [_searched(whole, port, rng, search) for port in all_ports]
+    return DiagramClaims(diagram, all_ports, bent, tuple(claims))
 
 
 def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:

@@ -73,14 +73,14 @@ def _joined(names: PrivateNames, prescribed: tuple[str, ...]) -> control.Interco
     systems += [_static(p, names) for p in static if p.inputs]
     driven = {f"{m}{end}" for m in parts.prescribed for end in ("", "_velocity", "_acceleration")}
     outside = [s for s in diagram.outside if s not in parts.signals]
-    given = names.public_names(*outside, *sorted(driven))
-    taken = {s for system in systems for s in system.input_labels}
+    outside_names = names.public_names(*outside, *sorted(driven))
+    read = {s for system in systems for s in system.input_labels}
     made = [s for system in systems for s in system.output_labels]
     labels = [*parts.inputs, *parts.signals, *parts.computer.signals, *parts.rates]
     names.public_names(*map(str, labels))
     return control.interconnect(
         systems,
-        inputs=[s for s in given if s in taken],
+        inputs=[s for s in outside_names if s in read],
         outputs=made,
         name=names.public_name(diagram.name).replace(" ", "_"),
     )
@@ -93,13 +93,15 @@ def _mechanics(
     names: PrivateNames,
 ) -> Any:
     moved = [s for m in parts.motions for s in (signal(m), velocity(m))]
-    given = [s for s in (*parts.inputs, *parts.commands.values()) if s not in idle]
+    inputs = [s for s in (*parts.inputs, *parts.commands.values()) if s not in idle]
     states = sorted(parts.rates, key=lambda state: names.public_name(str(state)))
     # a signal that the system takes and gives under one name would be wired to itself
     outputs = {str(s): s for s in moved} | {n: e for n, e in parts.signals.items()}
     outputs |= {str(s): s for s in idle}
     rates = [parts.rates[s] for s in states]
-    return _nlsys(MECHANICS, states, given, rates, outputs, names, numbers, parts.joined)
+    return _nlsys(
+        MECHANICS, states, inputs, rates, outputs, names, numbers=numbers, joined=parts.joined
+    )
 
 
 def _known(diagram: Diagram) -> Diagram:
@@ -128,17 +130,19 @@ def _controller(part: Control, numbers: dict[sp.Symbol, float], names: PrivateNa
     states = sorted(equation.rates, key=str)
     rates = [equation.rates[s] for s in states]
     used = set().union(*(e.free_symbols for e in (equation.output, *rates)))
-    given = sorted(used - set(states) - set(numbers) - {TIME}, key=str)
+    inputs = sorted(used - set(states) - set(numbers) - {TIME}, key=str)
     outputs = {part.output: equation.output}
-    return _nlsys(names.public_name(part.name), states, given, rates, outputs, names, numbers)
+    return _nlsys(
+        names.public_name(part.name), states, inputs, rates, outputs, names, numbers=numbers
+    )
 
 
 def _static(part: Junction | Kinematics, names: PrivateNames) -> Any:
     """A sum or a position without states."""
-    given = [signal(s) for s in part.inputs]
+    inputs = [signal(s) for s in part.inputs]
     value = summed(part, signal)
     name = f"sum_{names.public_name(part.output)}"
-    return _nlsys(name, [], given, [], {part.output: value}, names, {})
+    return _nlsys(name, [], inputs, [], {part.output: value}, names, numbers={})
 
 
 def _renamed(system: Any, part: Control, names: PrivateNames) -> Any:
@@ -162,26 +166,27 @@ def _nlsys(
     rates: Sequence[sp.Expr],
     outputs: dict[str, sp.Expr],
     names: PrivateNames,
+    *,
     numbers: dict[sp.Symbol, float],
     joined: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
 ) -> Any:
     import control
 
     def function(expressions: Sequence[sp.Expr]) -> Callable[..., Any]:
-        found = [sp.sympify(e, strict=True).subs(numbers) for e in expressions]
+        printed = [sp.sympify(e, strict=True).subs(numbers) for e in expressions]
         steps = [(s, e.subs(numbers)) for s, e in needed_steps(expressions, joined).items()]
 
         def shared(results: list[sp.Expr]) -> tuple[list[Any], list[sp.Expr]]:
             common, out = sp.cse(results)
             return [*steps, *common], out
 
-        call = sp.lambdify([TIME, list(states), list(inputs)], found, "math", cse=shared)
+        call = sp.lambdify([TIME, list(states), list(inputs)], printed, "math", cse=shared)
 
         def values(t: float, x: np.ndarray, u: np.ndarray, params: object) -> np.ndarray:
             return np.array(call(t, x, u), dtype=float)
 
         # a contact's law is evaluated where nothing touches too
-        one_sided = any(e.has(sp.Piecewise) for e in (*found, *(e for _, e in steps)))
+        one_sided = any(e.has(sp.Piecewise) for e in (*printed, *(e for _, e in steps)))
         return np.errstate(all="ignore")(values) if one_sided else values
 
     return control.nlsys(

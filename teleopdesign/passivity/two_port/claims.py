@@ -76,7 +76,7 @@ def passive(system: TwoPort) -> Claim:
 
 
 def absolutely_stable(system: TwoPort) -> Claim:
-    """Does it not grow, whatever passive holds its ports (Llewellyn, and residues on the axis)?
+    """Is the two-port stable between any passive terminations (Llewellyn, residues on the axis)?
 
     What is claimed, and why it follows, stands in `checker/absolute_stability.py`. A refutation is
     a motion that grows by itself between the two passive terminations that the method names; with
@@ -243,8 +243,8 @@ def _terminated_elsewhere(system: TwoPort) -> Iterator[tuple[str, GrowingWave]]:
     for s, second, turned in candidates(values, points)[:40]:
         far = far_termination(s, second)
         z11, z12, z21, z22 = reversed(list(system.z)) if turned else system.z
-        seen = z11 if far.clamped else z11 - z12 * z21 / (z22 + far.expression)
-        wave = wave_of(sp.ImmutableMatrix([[seen]]), *rounded(s))
+        at_port = z11 if far.clamped else z11 - z12 * z21 / (z22 + far.expression)
+        wave = wave_of(sp.ImmutableMatrix([[at_port]]), *rounded(s))
         if wave is not None and wave.energy > 0:
             yield (f"{far}" if not turned else f"moved, port 1 {far}"), wave
             return
@@ -261,13 +261,13 @@ def _terminated(system: TwoPort, frequency: float) -> Iterator[tuple[str, Growin
     if r2 > 0 and loop != 0:
         reactance = (2 * r2 / (1 + np.exp(-1j * np.angle(loop))) - value[1, 1]).imag
         held = _reactive(reactance, 2 * np.pi * frequency)
-        seen = z[0, 0] - z[0, 1] * z[1, 0] / (z[1, 1] + held)
-        choices.append((f"held by {readable(held)} N s/m", seen))
-    for text, seen in choices:
-        if seen.has(sp.exp):
-            wave = _wave_at(sp.ImmutableMatrix([[seen]]), frequency)
+        at_port = z[0, 0] - z[0, 1] * z[1, 0] / (z[1, 1] + held)
+        choices.append((f"held by {readable(held)} N s/m", at_port))
+    for text, at_port in choices:
+        if at_port.has(sp.exp):
+            wave = _wave_at(sp.ImmutableMatrix([[at_port]]), frequency)
         else:
-            one = impedance(seen)
+            one = impedance(at_port)
             wave = None if is_positive_real(one) else growing_wave(one)
         if wave is not None:
             yield text, wave

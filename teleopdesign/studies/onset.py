@@ -1,0 +1,46 @@
+"""Onset of instability: whether a swing grows, and the least of a parameter at which it does."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from ..errors import GrowsWithoutBound
+from ..simulate import Simulation
+
+#: share of the largest swing below which a swing has died out: what is left there is creep of
+#: bristles and rounding, whose ratios mean nothing
+DIED_OUT = 1e-3
+
+
+def growth(simulated: Callable[[], Simulation], signal: str) -> float:
+    """Range of the signal in the last third of the simulation over the middle third, less 1.
+
+    -1 where the swing has died out;  infinite where signals grow beyond all bounds
+    """
+    try:
+        values = simulated()[signal].values
+    except GrowsWithoutBound:
+        return math.inf
+    middle, last = (float(np.ptp(part)) for part in np.array_split(values, 3)[1:])
+    if last <= DIED_OUT * np.ptp(values):
+        return -1.0
+    return last / middle - 1 if middle > 0 else math.inf
+
+
+def least_that_grows(
+    grows: Callable[[float], bool], *, within: tuple[float, float], steps: int
+) -> float:
+    """By bisection of the logarithm, to the upper end; NaN where it is not within.
+
+    within: > 0;  steps: halvings: the result is within (high/low)^(2^-steps) of the onset
+    """
+    low, high = within
+    if not grows(high) or grows(low):
+        return float("nan")
+    for _ in range(steps):
+        middle = math.sqrt(low * high)
+        low, high = (low, middle) if grows(middle) else (middle, high)
+    return high

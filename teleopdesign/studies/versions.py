@@ -1,0 +1,19 @@
+"""Versions of what can change a number."""
+
+from __future__ import annotations
+
+import platform
+from importlib.metadata import PackageNotFoundError, version
+
+_COUNTED = ("teleopdesign", "numpy", "scipy", "sympy", "numba", "xarray")
+
+
+def versions() -> dict[str, str]:
+    """Package -> version, "" where it is used without an installation; Python among them."""
+    by_name = {"python": platform.python_version()}
+    for name in _COUNTED:
+        try:
+            by_name[name] = version(name)
+        except PackageNotFoundError:
+            by_name[name] = ""
+    return by_name
