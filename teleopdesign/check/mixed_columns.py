@@ -50,11 +50,11 @@ def check_mixed_columns(experiment: Experiment) -> Iterator[Finding]:
         )
         if force.std() == 0.0 or position.std() == 0.0:
             continue
-        given = explain_force(force, position, record.sample_time)
-        other = explain_force(position, force, record.sample_time)
+        as_logged = explain_force(force, position, record.sample_time)
+        exchanged = explain_force(position, force, record.sample_time)
         # in both orders a constant and a slope explain something: only an inertia tells a motion
-        inertia = other.inertia > 5.0 * other.errors[0] and other.level > 0
-        if given.explained < AS_GIVEN and other.explained > EXCHANGED and inertia:
+        inertia = exchanged.inertia > 5.0 * exchanged.errors[0] and exchanged.level > 0
+        if as_logged.explained < AS_GIVEN and exchanged.explained > EXCHANGED and inertia:
             keys = [f"{body}.{q}" for q in ("position", "actuator_force")]
             names = [written(experiment, key) for key in keys]
             columns = [experiment.channels[key].column for key in keys]
@@ -62,10 +62,10 @@ def check_mixed_columns(experiment: Experiment) -> Iterator[Finding]:
                 "swapped columns",
                 "warning",
                 f"the columns of {names[0]} and {names[1]} seem swapped: motion explains "
-                f"{100 * max(given.explained, 0.0):.2g} % of the force, "
-                f"{100 * other.explained:.2g} % the other way round; write "
+                f"{100 * max(as_logged.explained, 0.0):.2g} % of the force, "
+                f"{100 * exchanged.explained:.2g} % the other way round; write "
                 f'column = "{columns[1]}" at channels.{names[0]} and column = "{columns[0]}" at '
                 f"channels.{names[1]}.",
-                {"as_given": given.explained, "swapped": other.explained},
+                {"as_given": as_logged.explained, "swapped": exchanged.explained},
                 body,
             )

@@ -89,8 +89,8 @@ def _unreadable(folder: Path, problem: ExperimentError) -> tuple[Finding, ...]:
         part = "unit" if same else "column"
         if stated.get(part) == entry[part]:
             continue
-        found, given = entry[part], stated.get(part)
-        text = f'channels.{key}: the log looks like {part} = "{found}", found "{given}".'
+        seems, written = entry[part], stated.get(part)
+        text = f'channels.{key}: the log looks like {part} = "{seems}", found "{written}".'
         findings.append(Finding("reading", "note", text, where=files[0]))
     if len(findings) == 1:
         return ()

@@ -175,9 +175,11 @@ def _record_entries(
         table.allow(("file", "use", "span", *OWN))
         file, span = table.text("file"), _span(table)
         _check_path(table, folder, file)
-        for other, _, _, taken in entries:
-            if file == other and (span is None or taken is None or _overlap(span, taken)):
-                what = "is listed twice" if span == taken else "is listed with spans that overlap"
+        for other, _, _, other_span in entries:
+            if file == other and (span is None or other_span is None or _overlap(span, other_span)):
+                what = (
+                    "is listed twice" if span == other_span else "is listed with spans that overlap"
+                )
                 raise ExperimentError(f"{table.where('file')}: {quoted(file)} {what}")
         use = _choice(table, "use", ("fit", "check"))
         separate = {
