@@ -12,6 +12,7 @@ from typing import Any, TextIO
 
 import numpy as np
 
+from ..measurement.reading import reading_data
 from ..model import Model
 from ..plain_data import plain, replacing, write_json
 from ..realise.along_motion import residual_along
@@ -61,6 +62,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "at_bound": list(diagnosis.after.at_bound),
         "evidence": [_evidence(one) for one in evidence_of(diagnosis) if one.share > 0],
         "experiment": experiment_data(diagnosis.experiment),
+        "reading": reading_data(diagnosis.experiment.reading),
         "models": {
             "ladder": [model_data(r.fit.model) for r in diagnosis.rungs],
             "estimated": model_data(diagnosis.estimated.model),
