@@ -38,11 +38,12 @@ def candidates(model: Model, motions: Sequence[Motion] = ()) -> tuple[Candidate,
     """Effects that the model lacks and could take, at each of its places.
 
     motions: those that decide; where a body only ever goes on, place and time are one, and no
-    effect of the place can be told from a drift: it is no candidate there
+    effect of the place can be told from a drift: it is no candidate there; nor is one whose law
+    uses a channel that they have not
     """
     possible = []
     for place in model.places:
-        body = model.body(place)
+        body, holder = model.body(place), model.holder(place)
         roles = {e.role for e in body.effects} & set(ONE_ONLY)
         for effect in model.known.values():
             if (place in model.bodies) == (effect.role in CONTACT_ROLES):
@@ -50,6 +51,8 @@ def candidates(model: Model, motions: Sequence[Motion] = ()) -> tuple[Candidate,
             if body.has(effect.name) or effect.role in roles or body.axis in effect.elsewhere:
                 continue
             if effect.expression().has(SIGNALS["position"]) and not _comes_back(place, motions):
+                continue
+            if any(not effect.channels() <= set(m.further) for m in motions if m.body == holder):
                 continue
             if not body.lacks(effect):
                 possible.append(Candidate(effect, place))

@@ -237,8 +237,8 @@ def _stopped_source(effect: Effect) -> str:
         ]
     turn: list[str] = []
     for i in range(m):
-        by_stop = f"s{i}_level * dlevel + {_own(effect, f's{i}')}"
-        by_rate = f"r{i}_level * dlevel + {_own(effect, f'r{i}')}"
+        by_stop = f"s{i}_level * dlevel + {_by_parameter(effect, f's{i}')}"
+        by_rate = f"r{i}_level * dlevel + {_by_parameter(effect, f'r{i}')}"
         turn += [
             f"if held_{i}:",
             f"    dz[{i}, j] = copysign(1.0, z_{i}) * ({by_stop})",
@@ -275,8 +275,8 @@ def shape(h, half_step, columns, position, velocity, direction, {", ".join(argum
         for j in range(p):
             dlevel = dforward[j, k] if ahead else dbackward[j, k]
 {indented(turn, 12)}
-            df = {moved} + f_level * dlevel + {_own(effect, "f")}
-            dg = free * copysign(1.0, slope) * (g_level * dlevel + {_own(effect, "g")})
+            df = {moved} + f_level * dlevel + {_by_parameter(effect, "f")}
+            dg = free * copysign(1.0, slope) * (g_level * dlevel + {_by_parameter(effect, "g")})
             dlow[j, k] = df - dg if low[k] == below else -dbackward[j, k]
             dhigh[j, k] = df + dg if high[k] == above else dforward[j, k]
 """
