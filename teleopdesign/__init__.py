@@ -26,7 +26,7 @@ The names that a user types:
                   write_diagram
     controllers   CONTROLLERS, Controller, controller, load_controller, from_control
     responses     derive_transfers, transfer_functions, bode, measured_impedance,
-                  simulate_diagram, Simulation, Sampling, sine, to_iosystem
+                  simulate_diagram, simulate_many, Simulation, Sampling, sine, to_iosystem
     design        design_compensation, Design, Assumptions
     studies       study, Study, read_study, measure, MEASURES, latin_hypercube, sobol,
                   random_samples, sensitivity_samples
@@ -63,6 +63,7 @@ The folders, each importing only from those before it:
     papers        statements of the two papers, each with its proof or check
     plot          draws result objects, computes nothing
     report        the diagnosis as one page that needs nothing else
+    app           the page in the browser: a diagnosis step by step
     commands      what `teleopdesign COMMAND` does: one file each
 """
 
@@ -72,6 +73,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from . import app as app
     from . import blocks as blocks
     from . import check as check
     from . import controllers as controllers
@@ -119,7 +121,7 @@ if TYPE_CHECKING:
     from .next_experiment import propose as propose_experiment
     from .passivity import Certificate, Claim, diagram_claims, positive_real
     from .realise.iosystem import to_iosystem
-    from .simulate import Sampling, Simulation, sine
+    from .simulate import Sampling, Simulation, simulate_many, sine
     from .simulate import simulate as simulate_diagram
     from .studies import (
         MEASURES,
@@ -193,6 +195,7 @@ __all__ = [
     "read_study",
     "sensitivity_samples",
     "simulate_diagram",
+    "simulate_many",
     "sine",
     "sobol",
     "study",
@@ -260,6 +263,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "bode": "frequency",
         "measured_impedance": "frequency",
         "simulate_diagram": "simulate:simulate",
+        "simulate_many": "simulate",
         "Simulation": "simulate",
         "Sampling": "simulate",
         "sine": "simulate",
@@ -296,6 +300,7 @@ GROUPS: dict[str, dict[str, str]] = {
 _HOMES = {name: home for group in GROUPS.values() for name, home in group.items()}
 #: folders that are there as `td.NAME`, imported when first used
 _FOLDERS = (
+    "app",
     "blocks",
     "check",
     "controllers",

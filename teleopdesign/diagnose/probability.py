@@ -15,7 +15,7 @@ import numpy as np
 
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
-from .decision import displaced
+from .decision import displaced, helps_but_is_barred
 from .diagnosis import Diagnosis
 from .evidence import chance
 from .ranking import Ranked, Ranking
@@ -30,6 +30,7 @@ class CandidateEvidence:
     share: its part among the candidates that this step cannot tell apart; they sum to one
     explained: part of the squares above the noise floor that it takes away on this step
     left: error after the last step, in noise floors
+    barred: which check it failed on this step, whatever it explains; "" where none
     """
 
     ranked: Ranked
@@ -38,6 +39,7 @@ class CandidateEvidence:
     share: float
     explained: float
     left: float
+    barred: str = ""
 
     def probability(self, *, criteria: Criteria = CRITERIA) -> float:
         """Probability that the effect is missing, 0 to 1."""
@@ -61,14 +63,17 @@ def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
         share = shares(ranking, rung)
         for ranked in ranking.ranked:
             key = ranked.candidate.key
+            accepted = rung is not None and rung.added is not None and rung.added.key == key
+            barred = "" if accepted else helps_but_is_barred(ranking.base, ranked, diagnosis.floor)
             evidence.append(
                 CandidateEvidence(
                     ranked=ranked,
-                    accepted=rung is not None and rung.added is not None and rung.added.key == key,
+                    accepted=accepted,
                     as_good=rung is not None and key in {c.key for c in rung.alternatives},
                     share=share[key],
                     explained=_explained(diagnosis, ranking, ranked),
                     left=diagnosis.left,
+                    barred=barred,
                 )
             )
     return evidence

@@ -39,6 +39,8 @@ from ._effect import (
     ordered,
     parameter_symbol,
 )
+from ._facts import RecordFacts, repeats_within_travel
+from ._position import depends_on_position, period
 from ._structure import make_structure, rubbing, touching
 
 __all__ = [
@@ -52,15 +54,19 @@ __all__ = [
     "Effect",
     "FitSearch",
     "Parameter",
+    "RecordFacts",
     "Role",
     "State",
     "catalogue",
     "delayed",
+    "depends_on_position",
     "find_effect",
     "load_effect",
     "make_structure",
     "ordered",
     "parameter_symbol",
+    "period",
+    "repeats_within_travel",
     "rubbing",
     "touching",
     "with_block_effects",

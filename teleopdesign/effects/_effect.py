@@ -33,6 +33,7 @@ from ..errors import ModelError, did_you_mean
 from ..notebook import html_table
 from ..quantity import QUANTITIES, unit_of
 from ..recipes import recipe, remember
+from ._facts import RecordFacts
 
 Role = Literal[
     "actuation",
@@ -228,6 +229,9 @@ class Effect:
         says the same there
     coupling: of a structure, coupling(now, p), which its law and states are made from
         (`make_structure`)
+    plausible: plausible(p, facts), what its parameters must obey to deserve the effect's name: None
+        where they do, else one sentence that says what they stand for instead. A diagnosis names no
+        effect that its own file does not believe
     led: inertia(p) of a body among the hidden states whose position is corrected: the force that it
         would take to lead it so is left unexplained as well
     """
@@ -246,6 +250,7 @@ class Effect:
     canonical: Callable[[Mapping[str, float]], dict[str, float]] = dict
     led: Callable[[Any], sp.Expr] | None = None
     coupling: Callable[[Any, Any], sp.Expr] | None = None
+    plausible: Callable[[Any, RecordFacts], str | None] | None = None
     source: str = ""
     name: str = ""
     text: str = ""

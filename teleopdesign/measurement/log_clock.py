@@ -185,17 +185,18 @@ def _stamps(
     slope, error = stamps_are_true(clock, positions)
     text = f"stamps {100 * clock.jitter / h:.2g} % of a row off an even clock"
     told = f"{slope:.2f} +- {error:.1g} of what they say"
-    if slope - 0.5 > SURE * error:
+    sure = abs(slope - 0.5) > SURE * error
+    stamped = slope > 0.5 and math.isfinite(error)
+    if stamped:
         rule = (
             f"the position was read at its stamps ({told}): positions interpolated, commands held"
         )
-        effect, stamped = _own_stamps(clock, positions), True
-    elif 0.5 - slope > SURE * error:
-        rule, stamped = f"an even clock: the position does not follow the stamps ({told})", False
-        effect = "none"
+        effect = _own_stamps(clock, positions)
     else:
-        rule, stamped = "an even clock", False
-        effect = "too small for the position to tell"
+        rule = f"an even clock: the position does not follow the stamps ({told})"
+        effect = "none"
+    if not sure:
+        effect = "the position hardly tells, so that it makes little difference"
     numbers = (("jitter", clock.jitter), ("rate", 1.0 / h), ("followed", slope))
     return stamped, [ReadingStep(file, text, rule, effect, topic="sample clock", numbers=numbers)]
 

@@ -36,6 +36,7 @@ class Motion(ByValue):
     step: what one reading leaves open of the position (encoder step, or twice its noise)
     rows: the samples' place in the record;  bandwidth: of the comparison, Hz
     further: of channels besides: "temperature", "other_position" and its rates, smoothed alike
+    command_late: s by which the log of the command is later than that of the position
     """
 
     body: str
@@ -52,6 +53,7 @@ class Motion(ByValue):
     spectrum: Spectrum
     smoothing: Array
     bandwidth: float
+    command_late: float = 0.0
     further: Mapping[str, Array] = field(default_factory=dict)
 
     @property
@@ -62,12 +64,14 @@ class Motion(ByValue):
     def at_rows(self, staircase: Array) -> Array:
         """A held signal, value of each row until the next, as a smooth one at the rows (..., n).
 
+        It is read `command_late` later than logged: so it was then.
         staircase: (..., n), or (..., k n) with k values in turn for equal parts of each row
         """
         parts = staircase.shape[-1] // len(self.time)
+        smoothing = self.smoothing * self.spectrum.ahead(self.command_late)
         held = (
             self.spectrum.multiply(
-                staircase[..., k::parts], self.spectrum.hold(parts, k) * self.smoothing
+                staircase[..., k::parts], self.spectrum.hold(parts, k) * smoothing
             )
             for k in range(parts)
         )

@@ -40,10 +40,11 @@ FIT_PART = 0.6
 
 @dataclass(frozen=True)
 class Column:
-    """One column on the even grid of the survey: `values` (n,), as written."""
+    """One column on the even grid of the survey: `values` (n,); `readings` (m,) as written."""
 
     name: str
     values: Array
+    readings: Array
     unit: str | None
 
 
@@ -220,7 +221,7 @@ def _on_one_grid(
         if fine.sum() < 2:
             continue
         said = choices.units.get(name) or log.units.get(name) or unit_in_name(name)
-        columns[name] = Column(name, np.interp(clock.time, at[fine], x[fine]), said)
+        columns[name] = Column(name, np.interp(clock.time, at[fine], x[fine]), x[fine], said)
     return clock.time, columns
 
 
@@ -361,7 +362,7 @@ def _describe_position(
         entry["counts_per_turn"] = per_turn
     else:
         factor = si_factor(unit, quantity="position", axis=axis)
-        step = _seen_step(column.values, survey)
+        step = _seen_step(column.readings)
         if step > 0:
             entry["resolution"] = float(f"{step:.5g}")
             survey.notes.append(f"{position!r} moves in steps of {step:.4g} {unit}")
@@ -380,9 +381,9 @@ def _describe_position(
             survey.channels["velocity"] = {"column": velocity, "unit": said, **more}
 
 
-def _seen_step(values: Array, survey: Survey) -> float:
+def _seen_step(values: Array) -> float:
     """Step of an encoder that the readings show; 0 where they are too fine to show one."""
-    raw = values[np.isfinite(values)][:20_000]
+    raw = values[:20_000]
     some = raw[np.r_[True, np.diff(raw) != 0]]
     step = reading_step(raw)
     if step <= 0 or len(some) < 10:

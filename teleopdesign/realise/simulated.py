@@ -40,9 +40,13 @@ def without_absent(body: Body, *, surely: bool = False) -> Body:
     if any(e.role == "structure" for e in body.effects if e.name in gone):
         gone |= {e.name for e in body.effects if e.role == "tip_level"}
     needed = {n for e in body.effects if e.name not in gone for n in e.needs}
-    needing = {e.name for e in body.effects if e.needs}
-    for name in sorted(gone - needed, key=lambda n: n not in needing):
-        body = body.without_effect(name)
+    gone -= needed
+    # what needs others goes before them
+    while gone:
+        held = {n for e in body.effects for n in e.needs}
+        for name in sorted(gone - held):
+            body = body.without_effect(name)
+        gone &= held
     for effect in body.effects:
         for name, parameter in effect.parameters.items():
             if parameter.optional and equals(f"{effect.name}.{name}", 0.0):

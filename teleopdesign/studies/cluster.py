@@ -83,16 +83,16 @@ def run_on_cluster(task: Task, todo: list[int], sink: Sink, address: str) -> Non
 
 
 def _check_versions(client: Any, address: str) -> None:
-    found = client.run(versions)
-    if not found:
+    by_worker = client.run(versions)
+    if not by_worker:
         raise ExperimentError(f"study: the scheduler at {address} has no worker")
     here = versions()
-    for worker, there in found.items():
-        for name, own in here.items():
-            if there.get(name) != own:
+    for worker, there in by_worker.items():
+        for name, version_here in here.items():
+            if there.get(name) != version_here:
                 raise ModelError(
-                    f"study: worker {worker} has {name} {there.get(name)}, here is {own}: results "
-                    "could differ"
+                    f"study: worker {worker} has {name} {there.get(name)}, here is "
+                    f"{version_here}: results could differ"
                 )
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..diagrams import Diagram
 from ..errors import ModelError, TeleopDesignError, did_you_mean
-from .case import Case
+from .case import SimulatedCase
 from .journal import Outcome
 from .measures import Amount, Measure, Point
 from .points import Points
@@ -25,7 +25,7 @@ class Task:
     case: how a diagram that the function returns is simulated
     """
 
-    model: Case | Callable[..., Any]
+    model: SimulatedCase | Callable[..., Any]
     case: Mapping[str, Any]
     points: Points
     measures: tuple[Measure, ...]
@@ -39,7 +39,7 @@ def evaluate(task: Task, index: int) -> Outcome:
     """
     try:
         values = task.points.at(index)
-        point = Point(_given(task, values), values, (task.seed, index))
+        point = Point(_content(task, values), values, (task.seed, index))
         amounts: dict[str, Amount] = {}
         for measure in task.measures:
             for name, amount in measure(point).items():
@@ -68,11 +68,11 @@ def evaluate_all(task: Task, indices: Iterable[int]) -> list[Outcome]:
     return [evaluate(task, i) for i in indices]
 
 
-def _given(task: Task, values: Mapping[str, Any]) -> Any:
-    if isinstance(task.model, Case):
+def _content(task: Task, values: Mapping[str, Any]) -> Any:
+    if isinstance(task.model, SimulatedCase):
         return task.model.with_values(values)
-    found = task.model(**values)
-    return Case(found, **task.case) if isinstance(found, Diagram) else found
+    result = task.model(**values)
+    return SimulatedCase(result, **task.case) if isinstance(result, Diagram) else result
 
 
 def check_parameters(model: Callable[..., Any], points: Points) -> None:

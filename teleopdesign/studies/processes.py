@@ -127,7 +127,7 @@ class _Worker:
     batch: deque[int] = field(default_factory=deque)
     seconds: float = 0.0
     points: int = 0
-    asked: float = 0.0
+    start_of_batch: float = 0.0
 
 
 class _Pool:
@@ -154,7 +154,7 @@ class _Pool:
                     self._start()
             elif what == "ready":
                 if worker.points:
-                    self.each = (time.monotonic() - worker.asked) / worker.points
+                    self.each = (time.monotonic() - worker.start_of_batch) / worker.points
                 self._ask(worker)
             else:
                 self._bury(worker)
@@ -202,7 +202,7 @@ class _Pool:
         ]
         if not batch:
             return
-        worker.batch, worker.points, worker.asked = deque(batch), 0, time.monotonic()
+        worker.batch, worker.points, worker.start_of_batch = deque(batch), 0, time.monotonic()
         try:
             send(cast(BinaryIO, worker.process.stdin), batch)
         except OSError:

@@ -14,15 +14,15 @@ def main() -> None:
     """Take a task and then numbers of points, give back what becomes of each at once."""
     # Ctrl-C goes to all processes of a terminal: the one that asked decides what happens
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    asked = os.fdopen(os.dup(0), "rb")
+    questions = os.fdopen(os.dup(0), "rb")
     answers = os.fdopen(os.dup(1), "wb")
     # what a user's function prints must not come between answers
     os.dup2(2, 1)
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     try:
-        task: Task = pickle.loads(receive(asked))
+        task: Task = pickle.loads(receive(questions))
         while True:
-            for index in receive(asked):
+            for index in receive(questions):
                 send(answers, evaluate(task, index))
             send(answers, None)
     except (EOFError, OSError):
