@@ -26,6 +26,7 @@ from ..names import check_name
 from ..recipes import remember
 from ._effect import (
     CONTACT_ROLES,
+    FURTHER,
     INERTIA,
     SIGNALS,
     UNEXPLAINED,
@@ -46,6 +47,7 @@ __all__ = [
     "BLOCK_EFFECTS",
     "CONTACT_ROLES",
     "EFFECTS",
+    "FURTHER",
     "INERTIA",
     "SIGNALS",
     "UNEXPLAINED",
