@@ -24,6 +24,7 @@ from ._controller import (
     State,
     parameter_symbol,
 )
+from ._exact import as_written, in_exact_numbers, resolvent
 from ._from_control import from_control, inverted
 
 __all__ = [
@@ -35,11 +36,14 @@ __all__ = [
     "ControllerEquation",
     "Stage",
     "State",
+    "as_written",
     "controller",
     "from_control",
+    "in_exact_numbers",
     "inverted",
     "laws_that_declare",
     "parameter_symbol",
+    "resolvent",
     "scheduled_force_feedback",
 ]
 

@@ -20,7 +20,7 @@ from ..notebook import html_table
 from .claims.claim import Claim, Proof, Refutation, Unknown
 from .device_claims import device_claims
 from .friction_pairs import FrictionPair, friction_pairs, pair_claims
-from .linear.positive_real import positive_real
+from .linear.positive_real import NEARBY, positive_real
 from .ports import (
     Port,
     impedance_matrix,
@@ -104,7 +104,43 @@ def diagram_claims(
 
 
 def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
-    """Passivity of a linear diagram at its ports, and absolute stability where there are two."""
+    """Passivity of a linear diagram at its ports, and absolute stability where there are two.
+
+    What is refuted is so for all values nearby, too: none rests on the rounding of a number.
+    """
+    settled = _linear_claims(diagram, all_ports)
+    if not any(one.claim.status == "refuted" for one in settled):
+        return settled
+    nearby = [_linear_claims(other, all_ports) for other in _nearby(diagram)]
+    return [
+        one if all(other[k].claim.status == "refuted" for other in nearby) else _on_rounding(one)
+        for k, one in enumerate(settled)
+    ]
+
+
+def _nearby(diagram: Diagram) -> list[Diagram]:
+    """The diagram with its values a few last digits of a float away, in turn to either side."""
+    values = diagram.values
+    return [
+        diagram.with_values(
+            {
+                name: value * (1 + side * (-1) ** (k >> bit) * NEARBY)
+                for k, (name, value) in enumerate(values.items())
+            }
+        )
+        for bit in range(2)
+        for side in (1, -1)
+    ]
+
+
+def _on_rounding(one: TopicClaim) -> TopicClaim:
+    if one.claim.status != "refuted":
+        return one
+    why = f"it fails by less than a change of {NEARBY:.1g} of its values decides: rounding"
+    return replace(one, claim=Claim(one.claim.statement, Unknown(why)))
+
+
+def _linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
     if len(all_ports) > 2:
         statement = f"{diagram.name}: its {len(all_ports)} ports are passive together"
         why = "the exact tests are for one port or two"
@@ -185,7 +221,7 @@ def _searched(whole: Diagram, port: Port, rng: np.random.Generator, search: Sear
         )
     except ModelError as problem:  # what this simulation does not take
         return TopicClaim(topic, Claim(statement, Unknown(str(problem))))
-    record = claim.verdict.record if isinstance(claim.verdict, Refutation) else None
-    if not isinstance(record, SimulatedMotion):
-        return TopicClaim(topic, claim)
-    return TopicClaim(topic, claim, record.replay(), record)
+    verdict = claim.verdict
+    if isinstance(verdict, Refutation) and isinstance(verdict.record, SimulatedMotion):
+        return TopicClaim(topic, claim, verdict.replayed, verdict.record)
+    return TopicClaim(topic, claim)

@@ -86,7 +86,9 @@ def test_the_question_alone_decides_which_theorems_speak():
 def test_another_theorem_is_asked_and_its_refutation_simulated():
     """Given as an object with the same fields as a file of the folder states."""
     motion = SimpleNamespace(energy=0.25)
-    refuted = Claim("it is passive", Refutation("a motion", SimpleNamespace(energy=0.2)))
+    refuted = Claim(
+        "it is passive", Refutation("a motion", SimpleNamespace(energy=0.2, replay=lambda: 0.2))
+    )
     holds = Claim("it is lucky", Evidence(True, "nothing", float("nan")))
     another = Theorem(
         applies=lambda question: question.wall is not None,

@@ -36,7 +36,11 @@ from ._theorem import Question, Theorem, TopicClaim
 
 #: forward shift by one sample
 Z = sp.Symbol("z")
-_SAMPLES = 4000  # of a replayed motion, at most
+#: of a replayed motion, at most: a second of computing; one that is cut off does not begin at rest
+_SAMPLES = 1_000_000
+_LONGEST_WAIT = (
+    4096  # samples between two steps: a controller that grows by 1 % a sample needs 1000
+)
 
 
 def sampled_passivity(
@@ -184,14 +188,36 @@ def sampled_wave(
     rate: Fraction,
     frequency: Fraction,
 ) -> SampledWave:
-    """The growing travel at s = rate + j frequency, with the phase that gives out most."""
+    """The growing travel at s = rate + j frequency, with the phase that gives out most.
+
+    Where the controller itself grows faster than that travel: a step, and a second one along the
+    force that it has led to.
+    """
     system = law, damping, sample_time, stiffness
     z = _factor(rate, frequency)
     number = int(min(np.ceil(16 / np.log(abs(z))), _SAMPLES))
-    phases = np.exp(1j * np.linspace(0, np.pi, 181))  # to a degree
-    waves = (phases[:, None] * z ** np.arange(-number, 1)).real
-    best = waves[int(np.argmax(_given_out(waves, *system)))]
+    wave = z ** np.arange(-number, 1)
+    out, best = _largest(wave.real, wave.imag, system)
+    waited = 1
+    while out <= 0 and waited <= _LONGEST_WAIT:
+        waited *= 2
+        steps = np.eye(2, waited, k=0), np.eye(2, waited, k=waited - 2)
+        out, best = _largest(steps[0][0], steps[1][1], system)
     return SampledWave(*system, rate, frequency, best)
+
+
+def _largest(
+    one: np.ndarray, other: np.ndarray, system: tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr]
+) -> tuple[float, np.ndarray]:
+    """Of all mixtures of two travels (n,), the one that gives out most: its energy, J, and travel.
+
+    Energy is quadratic in the travel, so that its largest eigenvector is the best mixture.
+    """
+    out = _given_out(np.array([one, other, one + other]), *system)
+    mixed = (out[2] - out[0] - out[1]) / 2
+    share = np.linalg.eigh(np.array([[out[0], mixed], [mixed, out[1]]]))[1][:, -1]
+    travel = share[0] * one + share[1] * other
+    return float(_given_out(travel, *system)), travel
 
 
 def _factor(rate: Fraction, frequency: Fraction) -> complex:
