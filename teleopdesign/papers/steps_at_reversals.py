@@ -106,7 +106,8 @@ def energy_of_cycle(turning: tuple[float, ...]) -> float:
     how="refuted",
     formula="cycles with a small step back and forth at each reversal give out energy at the "
     "limit of P55 for every "
-    "u_2; with the link stuck f_1 >= f_D (1 - e^(-2 u_2))^2 is enough for any motion",
+    "u_2; with the link stuck f_1 >= f_D (1 - e^(-2 u_2))^2 is enough for every closed path from a "
+    "bristle at rest, and any motion then gives out at most f_D^2 (1 - e^(-2 u_2))^2/(2 sigma_D)",
     printed="not in the papers; an earlier random search (60 sets, up to 10 strokes) found no "
     "motion that gives out energy where P55 holds",
     numbers=stepping_motor,
@@ -155,7 +156,7 @@ def steps_at_reversals() -> Refutation:
                 -decay * (bound - f),
             ),
             Equal(
-                "moving down it grows while abs(f) is within it: periodic motions stay within",
+                "moving down it grows while abs(f) is within it: from f = 0 it stays within",
                 -sp.diff(bound, x) - dahl_rate(f, sp.S(-1), f_D, sigma),
                 decay * (bound + f),
             ),
@@ -177,6 +178,13 @@ def steps_at_reversals() -> Refutation:
                 f_1 - f**2 / f_D,
                 enough + inside / f_D,
                 {enough: f_1 - most**2 / f_D, inside: most**2 - f**2},
+            ),
+            NotNegative(
+                "so any motion from f = 0 gives out at most most^2/(2 sigma_D), a closed one that "
+                "repeats none",
+                most**2 / (2 * sigma) - f**2 / (2 * sigma),
+                inside / (2 * sigma),
+                {inside: most**2 - f**2},
             ),
             assuming=[f_1 - most**2 / f_D, most**2 - f**2],
         ),
