@@ -117,13 +117,19 @@ def claims() -> dict[str, Any]:
         "rod and spring": p.positive_real(0.15 * s + 4 + 300 / s),
         "active": p.positive_real((s**2 - 0.1 * s + 1) / (s + 1) ** 2),
         "teleoperator": p.passive(
-            p.teleoperator(master=0.2 * s + 3, slave=0.3 * s + 4, stiffness=200.0, damping=2.0)
+            p.teleoperator_two_port(
+                master=0.2 * s + 3, slave=0.3 * s + 4, stiffness=200.0, damping=2.0
+            )
         ),
         "absolutely stable": p.absolutely_stable(
-            p.teleoperator(master=0.2 * s + 3, slave=0.3 * s + 4, stiffness=200.0, damping=2.0)
+            p.teleoperator_two_port(
+                master=0.2 * s + 3, slave=0.3 * s + 4, stiffness=200.0, damping=2.0
+            )
         ),
         "late": p.passive(
-            p.teleoperator(master=0.2 * s + 3, slave=0.3 * s + 4, stiffness=200.0, delay=0.05)
+            p.teleoperator_two_port(
+                master=0.2 * s + 3, slave=0.3 * s + 4, stiffness=200.0, delay=0.05
+            )
         ),
         "dahl beside coulomb": p.dahl_compensation(
             coulomb_level=0.5, compensator_level=0.4, compensator_stiffness=1e4

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-from teleopdesign import Experiment, load_experiment
+from teleopdesign import EFFECTS, Experiment, load_experiment
 from teleopdesign.measurement.motion import Motion, motions
 
 Array = NDArray[np.float64]
@@ -86,6 +86,10 @@ TERMS: dict[str, Term] = {
     "stribeck": Term(lambda now, speed: [_falling(now, speed)], _speeds),
     "viscous_asymmetry": Term(lambda now, _: [np.abs(now.velocity)]),
     "quadratic_drag": Term(lambda now, _: [now.velocity * np.abs(now.velocity)]),
+    "shear_thinning": Term(
+        lambda now, n: [np.sign(now.velocity) * np.abs(now.velocity) ** n],
+        lambda _: np.linspace(0.2, 0.8, 4),
+    ),
     "position_dependent_friction": Term(lambda now, p: _wave(now, p, now.sign), _periods),
     "load_dependent_friction": Term(lambda now, _: [now.sign * np.abs(now.command)]),
     "friction_drift": Term(
@@ -94,6 +98,7 @@ TERMS: dict[str, Term] = {
     ),
     "bias": Term(lambda now, _: [np.ones_like(now.position)]),
     "spring": Term(lambda now, _: [now.position]),
+    "gravity": Term(lambda now, _: [np.sin(now.position), np.cos(now.position)]),
     "hardening_spring": Term(lambda now, _: [now.position**3]),
     "cogging": Term(lambda now, p: _wave(now, p, 1.0), _periods),
     "added_inertia": Term(lambda now, _: [now.acceleration]),
@@ -113,7 +118,7 @@ TERMS: dict[str, Term] = {
 ALIKE = {"bias": "coulomb_asymmetry"}
 #: effects with a state of their own: no term of the measured motion is theirs
 WITH_MEMORY = frozenset(
-    {"presliding", "friction_memory", "transmission_compliance", "backlash"}
+    {"presliding", "friction_memory", "transmission_compliance", "backlash", "tip_friction"}
 )  # fmt: skip
 CONTACT = frozenset({"contact_damping", "contact_hardening"})
 
@@ -210,6 +215,7 @@ def _absent(experiment: Experiment, body: str, now: Signals) -> list[str]:
     free = described.inertia is None or not described.inertia.fixed
     skip = set(described.effects) | ({"added_inertia"} if free else set())
     skip |= set() if now.depth.any() else CONTACT
+    skip |= {n for n in TERMS if described.axis in EFFECTS[n].elsewhere}
     if f"{body}.interaction_force" not in experiment.channels:
         # command and inertia would then explain each other and all of the target
         skip.add("actuator_gain")

@@ -99,7 +99,7 @@ def storage_found(
             friction,
             points=points,
             load_coefficient=load_coefficient,
-        ).settled
+        ).is_finite
 
     return largest_level(settles, steps=steps)
 

@@ -27,6 +27,8 @@ The names that a user types:
     responses     derive_transfers, transfer_functions, bode, measured_impedance,
                   simulate_diagram, Simulation, Sampling, sine, to_iosystem
     design        design_compensation, Design, Assumptions
+    studies       study, Study, read_study, measure, MEASURES, latin_hypercube, sobol,
+                  random_samples, sensitivity_samples
     passivity     diagram_claims, positive_real, Claim, Certificate
     errors        TeleopDesignError, ExperimentError, ModelError
 
@@ -56,6 +58,7 @@ The folders, each importing only from those before it:
     unexplained   after it: where a model fails, and what that depends on
     next_experiment  what to measure next, so that rivals are told apart
     design        from a diagnosed model to controllers, predictions and claims
+    studies       a model at every point of named parameters, on one machine or many
     papers        statements of the two papers, each with its proof or check
     plot          draws result objects, computes nothing
     report        the diagnosis as one page that needs nothing else
@@ -85,6 +88,7 @@ if TYPE_CHECKING:
     from . import realise as realise
     from . import report as report
     from . import simulate as simulate
+    from . import studies as studies
     from . import unexplained as unexplained
     from .blocks import Body, Value, hand
     from .check import check_experiment
@@ -115,6 +119,17 @@ if TYPE_CHECKING:
     from .realise.iosystem import to_iosystem
     from .simulate import Sampling, Simulation, sine
     from .simulate import simulate as simulate_diagram
+    from .studies import (
+        MEASURES,
+        Study,
+        latin_hypercube,
+        measure,
+        random_samples,
+        read_study,
+        sensitivity_samples,
+        sobol,
+        study,
+    )
     from .unexplained import describe
 
 __all__ = [
@@ -134,6 +149,7 @@ __all__ = [
     "Experiment",
     "ExperimentError",
     "FitSearch",
+    "MEASURES",
     "Model",
     "ModelError",
     "Parameter",
@@ -142,6 +158,7 @@ __all__ = [
     "Sampling",
     "Simulation",
     "State",
+    "Study",
     "TeleopDesignError",
     "Value",
     "bode",
@@ -159,15 +176,22 @@ __all__ = [
     "from_control",
     "hand",
     "haptic_interface",
+    "latin_hypercube",
     "load_effect",
     "load_experiment",
+    "measure",
     "measured_impedance",
     "positive_real",
     "propose_experiment",
+    "random_samples",
     "rank",
     "read_diagram",
+    "read_study",
+    "sensitivity_samples",
     "simulate_diagram",
     "sine",
+    "sobol",
+    "study",
     "teleoperator",
     "to_iosystem",
     "transfer_functions",
@@ -240,6 +264,17 @@ GROUPS: dict[str, dict[str, str]] = {
         "Design": "design",
         "Assumptions": "design",
     },
+    "studies": {
+        "study": "studies",
+        "Study": "studies",
+        "read_study": "studies",
+        "measure": "studies",
+        "MEASURES": "studies",
+        "latin_hypercube": "studies",
+        "sobol": "studies",
+        "random_samples": "studies",
+        "sensitivity_samples": "studies",
+    },
     "passivity": {
         "diagram_claims": "passivity",
         "positive_real": "passivity",
@@ -272,6 +307,7 @@ _FOLDERS = (
     "realise",
     "report",
     "simulate",
+    "studies",
     "unexplained",
 )
 __version__ = "0.1.0.dev0"

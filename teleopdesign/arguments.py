@@ -21,7 +21,7 @@ from itertools import repeat
 from typing import Any, TypeVar
 
 from .errors import ExperimentError, ModelError
-from .expectations import Check, Refused, check_of, described, number_check, with_article
+from .expectations import Check, WrongValue, check_of, described, number_check, with_article
 
 __all__ = [
     "check_arguments",
@@ -100,9 +100,9 @@ def number(value: Any, where: str) -> float:
 
 
 def instance(value: Any, kind: type[Any], where: str, *, expected: str = "") -> None:
-    """Refuse with ModelError what is not of that class; expected: in words."""
+    """Raise ModelError unless the value is of that class; expected: in words."""
     if not isinstance(value, kind):
-        raise _error("", "", where, Refused("", value, expected or with_article(kind.__name__)))
+        raise _error("", "", where, WrongValue("", value, expected or with_article(kind.__name__)))
 
 
 def matrix_of(value: Any, where: str) -> Any:
@@ -115,16 +115,16 @@ def matrix_of(value: Any, where: str) -> Any:
     except ValueError:  # rows of different lengths
         matrix = np.empty(0, dtype=object)
     if matrix.dtype.kind not in "iuf" or matrix.ndim != 2 or bool(np.any(matrix != matrix)):
-        raise _error("", "", where, Refused("", value, expected))
+        raise _error("", "", where, WrongValue("", value, expected))
     return matrix.astype(float)
 
 
-def _error(module: str, function: str, argument: str, wrong: Refused) -> Exception:
+def _error(module: str, function: str, argument: str, wrong: WrongValue) -> Exception:
     of_experiment = any(module.startswith(f"{__package__}.{f}") for f in _OF_EXPERIMENTS)
     kind = ExperimentError if of_experiment else ModelError
     where = f"{function}: {argument}" if function else argument
     return kind(
-        f"{where}{wrong.place}: found {described(wrong.given)}, expected {wrong.expected}"
+        f"{where}{wrong.place}: found {described(wrong.value)}, expected {wrong.expected}"
         f"{wrong.hint}"
     )
 
@@ -155,12 +155,14 @@ def _for_type_checkers(module: str, name: str) -> Any:
     tree = ast.parse(inspect.getsource(sys.modules[module]))
     for node in (n for block in tree.body if isinstance(block, ast.If) for n in block.body):
         if isinstance(node, ast.ImportFrom):
-            own = next((a.name for a in node.names if (a.asname or a.name) == name), None)
-            if own is not None and node.level:
+            imported = next((a.name for a in node.names if (a.asname or a.name) == name), None)
+            if imported is not None and node.level:
                 package = getattr(sys.modules[module], "__package__", "")
-                return getattr(import_module("." * node.level + (node.module or ""), package), own)
-            if own is not None:
-                return getattr(_Outside(node.module or ""), own)
+                return getattr(
+                    import_module("." * node.level + (node.module or ""), package), imported
+                )
+            if imported is not None:
+                return getattr(_Outside(node.module or ""), imported)
         elif isinstance(node, ast.Import):
             if name in (a.name.partition(".")[0] for a in node.names):
                 return _Outside(name)

@@ -22,6 +22,10 @@ class ModelError(TeleopDesignError):
     """A model, diagram or effect is put together in a way that has no meaning."""
 
 
+class GrowsWithoutBound(ModelError):
+    """Signals of a simulation grow beyond all bounds: the loop is unstable."""
+
+
 def nearest(word: str, known: Iterable[str]) -> str | None:
     """The name in `known` that a person who wrote `word` probably meant; None if none is close."""
     names = list(known)

@@ -14,24 +14,24 @@ _LONGEST = 60  # characters of a value that a message repeats
 
 
 @dataclass(frozen=True)
-class Refused:
+class WrongValue:
     """What is wrong with a value.
 
     place: where within it, such as '["x"]';  expected: in words;  hint: the nearest match
     """
 
     place: str
-    given: Any
+    value: Any
     expected: str
     hint: str = ""
 
 
 #: a value -> what is wrong with it, None if nothing
-Check = Callable[[Any], Refused | None]
+Check = Callable[[Any], WrongValue | None]
 
 
 def described(value: Any) -> str:
-    """What was given, in words: 'the number 0.15', 'the text "C"', 'a Body'."""
+    """A value in words: 'the number 0.15', 'the text "C"', 'a Body'."""
     if value is None or isinstance(value, bool):
         return str(value)
     if isinstance(value, str):
@@ -56,7 +56,7 @@ def with_article(name: str) -> str:
 
 
 def check_of(annotation: Any) -> Check | None:
-    """The check of a resolved annotation; None where anything goes."""
+    """The check of a resolved annotation; None where every value is right."""
     origin, inner = get_origin(annotation), get_args(annotation)
     if annotation is Any or annotation is object or isinstance(annotation, TypeVar | str):
         return None
@@ -83,7 +83,7 @@ def check_of(annotation: Any) -> Check | None:
 
 
 def _plain(expected: str, accepts: Callable[[Any], bool]) -> Check:
-    return lambda value: None if accepts(value) else Refused("", value, expected)
+    return lambda value: None if accepts(value) else WrongValue("", value, expected)
 
 
 def _isnumber_check(value: Any) -> bool:
@@ -99,30 +99,30 @@ def _isnumber_check(value: Any) -> bool:
     return hasattr(value, "__float__") and not hasattr(value, "__len__")
 
 
-def number_check(value: Any) -> Refused | None:
+def number_check(value: Any) -> WrongValue | None:
     """A finite or infinite number; quick for floats, which most are."""
     if type(value) is float and value == value:
         return None
     if not _isnumber_check(value):
-        return Refused("", value, "a number (SI)")
-    return Refused("", value, "a number (SI), not NaN") if math.isnan(float(value)) else None
+        return WrongValue("", value, "a number (SI)")
+    return WrongValue("", value, "a number (SI), not NaN") if math.isnan(float(value)) else None
 
 
-def _whole(value: Any) -> Refused | None:
+def _whole(value: Any) -> WrongValue | None:
     whole = _isnumber_check(value) and hasattr(value, "__index__")
-    return None if whole else Refused("", value, "a whole number")
+    return None if whole else WrongValue("", value, "a whole number")
 
 
-def _truth(value: Any) -> Refused | None:
+def _truth(value: Any) -> WrongValue | None:
     is_truth = isinstance(value, bool) or getattr(getattr(value, "dtype", None), "kind", "") == "b"
-    return None if is_truth else Refused("", value, "True or False")
+    return None if is_truth else WrongValue("", value, "True or False")
 
 
-def _complex(value: Any) -> Refused | None:
+def _complex(value: Any) -> WrongValue | None:
     is_complex = (
         isinstance(value, complex) or getattr(getattr(value, "dtype", None), "kind", "") == "c"
     )
-    return None if is_complex or _isnumber_check(value) else Refused("", value, "a number")
+    return None if is_complex or _isnumber_check(value) else WrongValue("", value, "a number")
 
 
 _SIMPLE: dict[Any, Check] = {
@@ -139,11 +139,11 @@ def _one_of(values: tuple[Any, ...]) -> Check:
     words = [f'"{v}"' if isinstance(v, str) else str(v) for v in values]
     listed = " or ".join(words) if len(words) < 4 else f"one of {', '.join(words)}"
 
-    def check(value: Any) -> Refused | None:
+    def check(value: Any) -> WrongValue | None:
         if any(value is v or (type(value) is type(v) and value == v) for v in values):
             return None
         hint = did_you_mean(value, names) if isinstance(value, str) else ""
-        return Refused("", value, listed, hint)
+        return WrongValue("", value, listed, hint)
 
     return check
 
@@ -154,7 +154,7 @@ def _any_of(parts: tuple[Any, ...]) -> Check | None:
         return None
     whole = [c for c in checks if c is not None]
 
-    def check(value: Any) -> Refused | None:
+    def check(value: Any) -> WrongValue | None:
         wrong = []
         for one in whole:
             refusal = one(value)
@@ -168,7 +168,9 @@ def _any_of(parts: tuple[Any, ...]) -> Check | None:
         words = [w for w in dict.fromkeys(w.expected for w in wrong) if w != "None"]
         hints = [w.hint for w in wrong if w.hint]
         listed = ", ".join(words[:-1])
-        return Refused("", value, f"{listed} or {words[-1]}" if listed else words[-1], *hints[:1])
+        return WrongValue(
+            "", value, f"{listed} or {words[-1]}" if listed else words[-1], *hints[:1]
+        )
 
     return check
 
@@ -176,15 +178,15 @@ def _any_of(parts: tuple[Any, ...]) -> Check | None:
 def _mapping(key: Any, content: Any) -> Check:
     of_key, of_content = check_of(key), check_of(content)
 
-    def check(value: Any) -> Refused | None:
+    def check(value: Any) -> WrongValue | None:
         if not isinstance(value, Mapping):
-            return Refused("", value, 'a mapping, such as {"name": ...}')
+            return WrongValue("", value, 'a mapping, such as {"name": ...}')
         for name, inner in value.items():
             if of_key is not None and (wrong := of_key(name)) is not None:
-                return Refused(": key", wrong.given, wrong.expected, wrong.hint)
+                return WrongValue(": key", wrong.value, wrong.expected, wrong.hint)
             if of_content is not None and (wrong := of_content(inner)) is not None:
                 place = f'["{name}"]{wrong.place}'
-                return Refused(place, wrong.given, wrong.expected, wrong.hint)
+                return WrongValue(place, wrong.value, wrong.expected, wrong.hint)
         return None
 
     return check
@@ -196,14 +198,14 @@ def _several(kind: Any, content: Any) -> Check:
     words = {tuple: "a tuple", list: "a list", frozenset: "a frozenset", set: "a set"}
     expected = words.get(kind, "several, as a tuple or list")
 
-    def check(value: Any) -> Refused | None:
+    def check(value: Any) -> WrongValue | None:
         if isinstance(value, str | bytes) or not _is_container(value, container):
-            return Refused("", value, expected)
+            return WrongValue("", value, expected)
         if of_content is None or not isinstance(value, Collection):
             return None
         for i, inner in enumerate(value):
             if (wrong := of_content(inner)) is not None:
-                return Refused(f"[{i}]{wrong.place}", wrong.given, wrong.expected, wrong.hint)
+                return WrongValue(f"[{i}]{wrong.place}", wrong.value, wrong.expected, wrong.hint)
         return None
 
     return check
@@ -218,12 +220,12 @@ def _is_container(value: Any, kind: Any) -> bool:
 def _fixed(parts: tuple[Any, ...]) -> Check:
     checks = [check_of(part) for part in parts]
 
-    def check(value: Any) -> Refused | None:
+    def check(value: Any) -> WrongValue | None:
         if not isinstance(value, tuple | list) or len(value) != len(parts):
-            return Refused("", value, f"a tuple of {len(parts)}")
+            return WrongValue("", value, f"a tuple of {len(parts)}")
         for i, (one, inner) in enumerate(zip(checks, value, strict=True)):
             if one is not None and (wrong := one(inner)) is not None:
-                return Refused(f"[{i}]{wrong.place}", wrong.given, wrong.expected, wrong.hint)
+                return WrongValue(f"[{i}]{wrong.place}", wrong.value, wrong.expected, wrong.hint)
         return None
 
     return check

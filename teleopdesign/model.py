@@ -78,25 +78,25 @@ class Model:
         finds its own starting values
         raises ModelError: no such effect, place or parameter, or the effect is already there
         """
-        found = (
+        added = (
             find_effect(effect, self.known, "with_effect") if isinstance(effect, str) else effect
         )
-        place = self._place(at, found.role)
-        if (place == CONTACT.name) != (found.role in CONTACT_ROLES):
-            words = "the environment" if found.role in CONTACT_ROLES else "a body"
-            raise ModelError(f'with_effect: "{found.name}" acts at {words}, found at = "{place}"')
-        if self.body(place).has(found.name):
+        place = self._place(at, added.role)
+        if (place == CONTACT.name) != (added.role in CONTACT_ROLES):
+            words = "the environment" if added.role in CONTACT_ROLES else "a body"
+            raise ModelError(f'with_effect: "{added.name}" acts at {words}, found at = "{place}"')
+        if self.body(place).has(added.name):
             raise ModelError(
-                f'with_effect: effect "{found.name}" is there already at {place}: with_values '
+                f'with_effect: effect "{added.name}" is there already at {place}: with_values '
                 "changes its values"
             )
-        return self._with_body(place, self.body(place).with_effect(found, values))
+        return self._with_body(place, self.body(place).with_effect(added, values))
 
     @checked
     def without_effect(self, effect: str, *, at: str | None = None) -> Model:
         """The model without that effect."""
-        found = self.known.get(effect)
-        place = self._place(at, found.role if found else "")
+        removed = self.known.get(effect)
+        place = self._place(at, removed.role if removed else "")
         return self._with_body(place, self.body(place).without_effect(effect))
 
     def with_values(self, values: Mapping[str, float | Value]) -> Model:
@@ -109,9 +109,9 @@ class Model:
         model = self
         for place, body in self.bodies.items():
             located = {self.locate(name): v for name, v in values.items()}
-            own = {name: v for (at, name), v in located.items() if at == place}
-            if own:
-                model = model._with_body(place, body.with_values(own))
+            of_body = {name: v for (at, name), v in located.items() if at == place}
+            if of_body:
+                model = model._with_body(place, body.with_values(of_body))
         return model
 
     @property
@@ -128,10 +128,10 @@ class Model:
 
         Parameters of the environment belong to the body that touches it.
         """
-        place, _, own = name.partition(".")
+        place, _, local_name = name.partition(".")
         if place == CONTACT.name:
-            return self.holder(place), own if "." in own else name
-        return place, own
+            return self.holder(place), local_name if "." in local_name else name
+        return place, local_name
 
     def _refuse_parameter(self, name: object) -> None:
         said = f'"{name}"' if isinstance(name, str) else described(name)
@@ -141,19 +141,19 @@ class Model:
     @checked
     def declared(self, name: str) -> Parameter:
         """Declaration of the parameter of that full name."""
-        place, own = self.locate(name)
-        return self.body(place).parameter(own)
+        place, local_name = self.locate(name)
+        return self.body(place).parameter(local_name)
 
     @checked
     def unit(self, name: str) -> str:
         """Unit of the parameter of that full name."""
-        place, own = self.locate(name)
-        return self.body(place).unit(own)
+        place, local_name = self.locate(name)
+        return self.body(place).unit(local_name)
 
     def from_absence(self, name: str) -> float:
-        """How far the parameter of that full name is from where its effect is absent, or from 0."""
-        place, own = self.locate(name)
-        effect, _, parameter = own.partition(".")
+        """Distance of a parameter from the value at which its effect is absent, or from 0."""
+        place, local_name = self.locate(name)
+        effect, _, parameter = local_name.partition(".")
         value = abs(self.parameters[name].value)
         if not parameter:
             return value
@@ -165,11 +165,13 @@ class Model:
         values: dict[str, float] = {}
         for place, body in self.bodies.items():
             for effect in body.effects:
-                own = {p: body.parameters[f"{effect.name}.{p}"].value for p in effect.parameters}
-                full = {p: f"{effect.name}.{p}" for p in own}
+                numbers = {
+                    p: body.parameters[f"{effect.name}.{p}"].value for p in effect.parameters
+                }
+                full = {p: f"{effect.name}.{p}" for p in numbers}
                 values |= {
                     f"{self._place_of(place, full[p])}{full[p]}": v
-                    for p, v in effect.canonical(own).items()
+                    for p, v in effect.canonical(numbers).items()
                 }
         return self.with_values(values)
 
@@ -199,7 +201,7 @@ class Model:
         return (*self.bodies, CONTACT.name) if touched else tuple(self.bodies)
 
     def holder(self, at: str) -> str:
-        """The body that holds what is at a place: of the environment, the one that touches it."""
+        """The body at a place; for the environment, the body that touches it."""
         if at not in self.places:
             raise ModelError(
                 f'model: no body "{at}", has {", ".join(self.places)}'
@@ -209,9 +211,9 @@ class Model:
             return at
         return next(p for p, b in self.bodies.items() if b.has(CONTACT.name))
 
-    def _place_of(self, holder: str, own: str) -> str:
-        """What stands before a body's parameter in its full name, with its dot."""
-        effect, _, parameter = own.partition(".")
+    def _place_of(self, holder: str, local_name: str) -> str:
+        """Prefix, with its dot, of a body's parameter in its full name."""
+        effect, _, parameter = local_name.partition(".")
         if effect == CONTACT.name:
             return ""
         if parameter and self.bodies[holder].effect(effect).role in CONTACT_ROLES:
@@ -248,7 +250,7 @@ class Model:
 
 
 def _touching(body: Body, description: EnvironmentDescription, known: Mapping[str, Effect]) -> Body:
-    """The body with the environment that it runs into; damping is none unless one is given."""
+    """The body with the environment that it runs into; without a stated damping it has none."""
     if "stiffness" not in description.values:
         raise ExperimentError(f"{description.where}: no stiffness given")
     values = {

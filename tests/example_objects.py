@@ -93,7 +93,7 @@ QUICK: Mapping[str, Callable[[], Any]] = {
     "refuted claim": _refuted,
     "certificate": lambda: td.positive_real(0.15 * sp.Symbol("s") + 4).certificates[0],
     "evidence": lambda: passivity.Evidence(True, "nothing", float("nan")),
-    "two-port": lambda: passivity.teleoperator(master=1, slave=1, stiffness=100.0),
+    "two-port": lambda: passivity.teleoperator_two_port(master=1, slave=1, stiffness=100.0),
     "port energy": lambda: passivity.observe(
         np.linspace(0, 1, 50), np.linspace(0, 1, 50), np.ones(50)
     ),

@@ -1,6 +1,9 @@
 """A model: bodies with effects at places, read from an experiment, changed by making a new one."""
 
+from dataclasses import replace
+
 import pytest
+from effects.along import axis_of
 from measurement.rod_example import write_rod
 
 from teleopdesign import EFFECTS, Effect, ExperimentError, Model, ModelError, Parameter, Value
@@ -54,6 +57,7 @@ def test_a_model_never_changes(model):
 )
 def test_an_effect_added_and_taken_away_leaves_the_model_as_it_was(name, model):
     base = model if not model.body("device").has(name) else model.without_effect(name)
+    base = replace(base, bodies={"device": replace(base.body("device"), axis=axis_of(name))})
     for need in sorted(EFFECTS[name].needs, key=lambda n: len(EFFECTS[n].needs)):
         if not base.body("device").has(need):
             base = base.with_effect(need)

@@ -51,7 +51,8 @@ CONSTRUCTORS = [
     td.Body, td.Value, td.Parameter, td.Effect, td.State, td.Model, td.Diagram, td.Controller,
     td.Sampling, td.Assumptions, td.Certificate, td.diagrams.Moving, td.diagrams.Attached,
     td.diagrams.Linked, td.diagrams.Control, td.diagrams.Junction, td.diagrams.Kinematics,
-    td.diagrams.Arm, td.controllers.Stage, td.controllers.ControlLaw, td.controllers.State,
+    td.diagrams.Arm, td.controllers.Stage, td.controllers.ControlLaw,
+    td.controllers.ControllerState,
     td.blocks.MatrixImpedance, td.simulate.Trajectory, passivity.Strokes, passivity.Dahl,
     passivity.Coulomb, passivity.Spring, passivity.DahlBehindSpring, passivity.Search,
 ]  # fmt: skip

@@ -15,7 +15,7 @@ import sympy as sp
 
 from ..arguments import checked, instance, number
 from ..by_value import ByValue
-from ..effects import SIGNALS, Effect, Parameter, ordered
+from ..effects import EFFECTS, SIGNALS, Effect, Parameter, ordered
 from ..errors import ModelError, did_you_mean, quoted
 from ..frozen import Frozen
 from ..notebook import html_table
@@ -98,8 +98,13 @@ class Body:
             if len(same) > 1:
                 raise ModelError(f"body: two {words}, {' and '.join(same)}: one is possible")
         for effect in self.effects:
-            if missing := effect.needs - set(names):
-                raise ModelError(f'body: "{effect.name}" needs "{min(missing)}" beside it')
+            if missing := self.lacks(effect):
+                raise ModelError(f'body: "{effect.name}" needs "{missing[0]}" beside it')
+            if self.axis in effect.elsewhere:
+                raise ModelError(
+                    f'body: "{effect.name}" holds on no {self.axis} axis: there it is '
+                    f'"{effect.elsewhere[self.axis]}"'
+                )
         expected = [name for name, _ in self.declared()]
         for name in self.parameters:
             if name not in expected:
@@ -121,8 +126,8 @@ class Body:
 
     def declared(self) -> list[tuple[str, Parameter]]:
         """Every parameter of the body by its name in answers, with its declaration."""
-        own = [(f"{e.name}.{n}", p) for e in self.effects for n, p in e.parameters.items()]
-        return [("inertia", INERTIA), *own]
+        of_effects = [(f"{e.name}.{n}", p) for e in self.effects for n, p in e.parameters.items()]
+        return [("inertia", INERTIA), *of_effects]
 
     def parameter(self, name: str) -> Parameter:
         """Declaration of the parameter of that name; ModelError with the nearest one."""
@@ -140,6 +145,17 @@ class Body:
         """Whether the effect of that name is in the body."""
         return any(e.name == effect for e in self.effects)
 
+    def lacks(self, effect: Effect) -> tuple[str, ...]:
+        """Names of what an effect needs beside it and the body has not, sorted.
+
+        Of a role that one effect of a body can have, another one of that role will do.
+        """
+        roles = {e.role for e in self.effects} & set(ONE_ONLY)
+        known = {n: EFFECTS[n].role for n in effect.needs if n in EFFECTS}
+        return tuple(
+            n for n in sorted(effect.needs) if not self.has(n) and known.get(n) not in roles
+        )
+
     @checked
     def effect(self, name: str) -> Effect:
         """The effect of that name; ModelError where the body has none."""
@@ -151,7 +167,7 @@ class Body:
 
     @checked
     def with_effect(self, effect: Effect, values: Mapping[str, float] | None = None) -> Body:
-        """The body with one effect more, at the given values (default: where it is absent).
+        """The body with one more effect, at these values (default: those at which it is absent).
 
         A shape of friction, or a structure, replaces another one that was there.
         raises ModelError: the effect is there already, or has no such parameter
@@ -160,25 +176,26 @@ class Body:
             raise ModelError(
                 f'body: effect "{effect.name}" is there already: with_values changes its values'
             )
-        given = dict(values or {})
-        unknown = set(given) - set(effect.parameters)
+        stated = dict(values or {})
+        unknown = set(stated) - set(effect.parameters)
         if unknown:
             raise ModelError(
                 f'{effect.name}: no parameter "{min(unknown)}"'
                 f"{did_you_mean(min(unknown), effect.parameters)}"
             )
-        start = {n: effect.default(n) for n in effect.parameters} | given
-        kept = self
-        if effect.role in ONE_ONLY:
-            for other in self.effects:
-                if other.role == effect.role:
-                    kept = kept.without_effect(other.name)
+        start = {n: effect.default(n) for n in effect.parameters} | stated
+        gone = tuple(e.name for e in self.effects if e.role in ONE_ONLY and e.role == effect.role)
         added = {
             f"{effect.name}.{n}": Value(v, fixed=effect.parameters[n].search.chosen)
             for n, v in start.items()
         }
         return replace(
-            kept, effects=(*kept.effects, effect), parameters={**kept.parameters, **added}
+            self,
+            effects=(*(e for e in self.effects if e.name not in gone), effect),
+            parameters={
+                **{n: v for n, v in self.parameters.items() if n.partition(".")[0] not in gone},
+                **added,
+            },
         )
 
     @checked
@@ -198,40 +215,48 @@ class Body:
         return replace(self, effects=tuple(effects), parameters=kept)
 
     def with_values(self, values: Mapping[str, float | Value]) -> Body:
-        """The body with other parameter values; `fixed` is kept where a plain number is given."""
+        """The body with other parameter values; a plain number keeps the parameter's `fixed`."""
         instance(values, Mapping, "with_values", expected='such as {"inertia": 0.15}')
         new = {}
-        for name, given in values.items():
+        for name, number_or_value in values.items():
             if name not in self.parameters:
                 raise _no_parameter(name, self.parameters)
-            value = _value(given, name)
+            value = _value(number_or_value, name)
             new[name] = (
-                value if value is given else replace(self.parameters[name], value=value.value)
+                value
+                if value is number_or_value
+                else replace(self.parameters[name], value=value.value)
             )
         return replace(self, parameters={**self.parameters, **new})
 
     def symbols(self) -> dict[str, sp.Symbol]:
         """Parameter name -> sympy symbol of the equation: "coulomb.level" -> coulomb_level."""
-        own = {f"{e.name}.{n}": s for e in self.effects for n, s in e.symbols().items()}
-        return {"inertia": sp.Symbol("inertia", real=True), **own}
+        of_effects = {f"{e.name}.{n}": s for e in self.effects for n, s in e.symbols().items()}
+        return {"inertia": sp.Symbol("inertia", real=True), **of_effects}
 
     def numbers(self) -> dict[sp.Symbol, float]:
         """Parameter symbol -> value, to substitute in the equation."""
         return {s: self.parameters[n].value for n, s in self.symbols().items()}
 
     def level(self) -> sp.Expr:
-        """Friction level: laws added, each times its factors, at the speed that the level follows.
+        """Friction level: the sum of the laws, each times its factors, at the speed it depends on.
 
         A factor scales the levels that it needs ("coulomb"), all of them where it needs none.
         """
         factors = ordered(self.effects, "friction_factor")
         level = sp.S(0)
         for effect in ordered(self.effects, "friction_level"):
-            own = [f.expression() for f in factors if not f.needs or effect.name in f.needs]
-            level += effect.expression() * sp.Mul(*own)
+            of_this_level = [
+                f.expression() for f in factors if not f.needs or effect.name in f.needs
+            ]
+            level += effect.expression() * sp.Mul(*of_this_level)
         for effect in ordered(self.effects, "friction_speed"):
             level = level.subs(SIGNALS["velocity"], effect.expression())
         return level
+
+    def tip_level(self) -> sp.Expr:
+        """Level of the dry friction that holds the tip of a structure."""
+        return sp.Add(*(e.expression() for e in ordered(self.effects, "tip_level")))
 
     def contact(self) -> sp.Expr:
         """Force that a modelled environment takes from the body; 0 where there is none."""
@@ -249,13 +274,13 @@ class Body:
         acting: sp.Expr = SIGNALS["command"]
         stages: list[sp.Symbol] = []
         for effect in self.effects:
-            given = {"level": level} if effect.role == "friction_shape" else {}
+            level_symbol = {"level": level} if effect.role == "friction_shape" else {}
             if effect.role == "actuation":
                 continue
             symbols = effect.state_symbols()
-            rates |= {symbols[n]: r for n, r in effect.rates(given).items()}
+            rates |= {symbols[n]: r for n, r in effect.rates(level_symbol).items()}
             if effect.role == "friction_shape":
-                friction = effect.expression(given)
+                friction = effect.expression(level_symbol)
         for effect in ordered(self.effects, "actuation"):
             symbols = effect.state_symbols()
             rates |= {symbols[n]: r for n, r in effect.rates({"command": acting}).items()}
@@ -312,10 +337,10 @@ class Body:
         return {name: self.parameters[name].value for name, _ in self.declared()}
 
 
-def _value(given: object, name: object) -> Value:
-    if isinstance(given, Value):
-        return given
-    return Value(number(given, f"body: {name}"))
+def _value(number_or_value: object, name: object) -> Value:
+    if isinstance(number_or_value, Value):
+        return number_or_value
+    return Value(number(number_or_value, f"body: {name}"))
 
 
 def _no_parameter(name: object, known: Iterable[str]) -> ModelError:
@@ -332,15 +357,15 @@ def _refuse_axis(axis: object) -> None:
     )
 
 
-def _effects(given: object) -> tuple[Effect, ...]:
-    """A tuple of effects; a list will do, a name will not."""
+def _effects(effects: object) -> tuple[Effect, ...]:
+    """A tuple of effects; a list is taken too, a name is refused."""
     expected = 'a tuple of effects, such as (EFFECTS["coulomb"],)'
-    if not isinstance(given, tuple):
-        instance(given, list, "Body: effects", expected=expected)
-    assert isinstance(given, tuple | list)
-    for i, effect in enumerate(given):
+    if not isinstance(effects, tuple):
+        instance(effects, list, "Body: effects", expected=expected)
+    assert isinstance(effects, tuple | list)
+    for i, effect in enumerate(effects):
         instance(effect, Effect, f"Body: effects[{i}]", expected="an Effect, of EFFECTS or a file")
-    return tuple(given)
+    return tuple(effects)
 
 
 __all__ = ["INERTIA", "Body", "BodyEquation", "Value"]

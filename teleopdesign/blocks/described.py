@@ -48,21 +48,21 @@ def effects_of(
     """The effects of a table, and their parameters by name within the body; see `body_of`."""
     effects: list[Effect] = []
     parameters: dict[str, Value] = {}
-    for name, given in written.items():
+    for name, entries in written.items():
         try:
             effect = find_effect(name, known, where)
         except ModelError as error:
             raise ExperimentError(str(error)) from error
         effects.append(effect)
-        for key in given:
+        for key in entries:
             if key not in effect.parameters:
                 raise ExperimentError(
                     f'{where}.{name}: no parameter "{key}", has {", ".join(effect.parameters)}'
                     f"{did_you_mean(key, effect.parameters)}"
                 )
         for key, parameter in effect.parameters.items():
-            if key in given:
-                parameters[f"{name}.{key}"] = value_of(given[key], parameter, axis)
+            if key in entries:
+                parameters[f"{name}.{key}"] = value_of(entries[key], parameter, axis)
             elif not complete:
                 open_value = Value(effect.default(key), fixed=parameter.search.chosen)
                 parameters[f"{name}.{key}"] = open_value

@@ -60,7 +60,7 @@ def soft_rubber(
     recovery_time: float = 0.1,
     position: float = 0.0,
 ) -> Body:
-    """Spring, damper and a small friction inside the material.
+    """A spring, a damper and a small friction inside the material, in parallel.
 
     stiffness: N/m;  damping: N s/m;  level: of the friction inside, N
     give: depth over which that friction builds up, m;  recovery_time: s

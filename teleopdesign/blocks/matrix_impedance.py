@@ -108,23 +108,23 @@ def matrix_impedance(
 
     raises ModelError: no matrix is given, or sizes differ
     """
-    given = {"mass": mass, "damping": damping, "stiffness": stiffness}
-    for name, matrix in given.items():
+    matrices = {"mass": mass, "damping": damping, "stiffness": stiffness}
+    for name, matrix in matrices.items():
         _refuse_other(matrix, name)
-    sizes = {len(np.atleast_2d(m)) for m in given.values() if np.ndim(m) == 2}
+    sizes = {len(np.atleast_2d(m)) for m in matrices.values() if np.ndim(m) == 2}
     if len(sizes) != 1:
-        found = ", ".join(f"{n} {np.shape(m)}" for n, m in given.items())
-        raise ModelError(f"impedance: expected square matrices of one size, found {found}")
+        shapes = ", ".join(f"{n} {np.shape(m)}" for n, m in matrices.items())
+        raise ModelError(f"impedance: expected square matrices of one size, found {shapes}")
     size = sizes.pop()
-    full = {n: m if np.ndim(m) == 2 else float(m) * np.eye(size) for n, m in given.items()}
+    full = {n: m if np.ndim(m) == 2 else float(m) * np.eye(size) for n, m in matrices.items()}
     return MatrixImpedance(**{n: _rows(np.asarray(m, dtype=float)) for n, m in full.items()})
 
 
 def _refuse_other(matrix: Any, name: str) -> None:
-    """Neither a number nor a matrix of numbers."""
+    """Refuse what is neither a number nor a matrix of numbers."""
     try:
-        found = np.asarray(matrix)
-        right = found.dtype.kind in "iuf" and found.ndim in (0, 2) and bool(np.all(found == found))
+        array = np.asarray(matrix)
+        right = array.dtype.kind in "iuf" and array.ndim in (0, 2) and bool(np.all(array == array))
     except (ValueError, TypeError):  # rows of different lengths
         right = False
     if not right:

@@ -38,7 +38,7 @@ def check_excitation(
     motions = [s.motion for s in prepared.of("fit")]
     every = candidates(base.model)
     judged = candidates(base.model, motions)
-    seen = visibilities(base, prepared, judged, floor.value)
+    visible_effects = visibilities(base, prepared, judged, floor.value)
     findings: list[Finding] = []
     for place in base.model.places:
         body = base.model.holder(place)
@@ -50,7 +50,7 @@ def check_excitation(
             findings.append(describe_motion(body_motions, place, poor, base.model.body(place).axis))
             findings += _own_parameters(base, place)
         never = [c for c in every if c.at == place and c not in judged]
-        mine = [v for v in seen if v.candidate.at == place]
+        mine = [v for v in visible_effects if v.candidate.at == place]
         if mine or never:
             findings.append(_summary(mine, never, poor, base, floor.value, place))
             findings += _look_alikes(mine, place)
@@ -58,7 +58,7 @@ def check_excitation(
 
 
 def _unfolded(prepared: Prepared) -> Prepared:
-    """Without a check record, errors of held-out blocks would be made, which nothing here uses."""
+    """Records with one as check record: errors of held-out blocks are not needed here."""
     if prepared.of("check"):
         return prepared
     again = tuple(replace(s, use="check") for s in prepared.of("fit"))
@@ -66,7 +66,7 @@ def _unfolded(prepared: Prepared) -> Prepared:
 
 
 def _summary(
-    seen: Sequence[Visibility],
+    visible_effects: Sequence[Visibility],
     never: Sequence[Candidate],
     poor: Mapping[str, str],
     base: Fit,
@@ -74,10 +74,10 @@ def _summary(
     place: str,
 ) -> Finding:
     """The one sentence for each kind: shown, shown if large, not shown and why."""
-    shown = sorted((v for v in seen if v.size <= LARGE), key=lambda v: v.size)
-    large = sorted((v for v in seen if LARGE < v.size <= 1.0), key=lambda v: v.size)
-    hidden = [v for v in seen if v.size > 1.0]
-    numbers = {v.candidate.effect.name: v.size for v in seen}
+    shown = sorted((v for v in visible_effects if v.size <= LARGE), key=lambda v: v.size)
+    large = sorted((v for v in visible_effects if LARGE < v.size <= 1.0), key=lambda v: v.size)
+    hidden = [v for v in visible_effects if v.size > 1.0]
+    numbers = {v.candidate.effect.name: v.size for v in visible_effects}
     numbers |= {c.effect.name: math.inf for c in never} | {"noise_floor": floor}
     reasons: dict[str, list[str]] = {}
     for v in hidden:
@@ -111,19 +111,19 @@ def _summary(
 
 
 def _waiting(model: Model, place: str) -> list[str]:
-    """Effects that need another one beside them which the model does not have."""
+    """Effects that need another effect which the model lacks."""
     body = model.body(place)
     return [
-        f"{e.name} ({', '.join(n for n in sorted(e.needs) if not body.has(n))})"
+        f"{e.name} ({', '.join(body.lacks(e))})"
         for e in model.known.values()
         if not body.has(e.name)
         and (place in model.bodies) != (e.role in CONTACT_ROLES)
-        and not all(body.has(n) for n in e.needs)
+        and body.lacks(e)
     ]
 
 
 def _least(v: Visibility, model: Model, share: float | None = None) -> str:
-    """An effect with the least strength that shows, and the force that it then makes."""
+    """An effect in words, with its smallest visible strength and the force at that strength."""
     effect = v.candidate.effect
     name, value = next(iter(v.strength.items()))
     unit = unit_of(effect.parameters[name].quantity, model.body(v.candidate.at).axis)
@@ -135,11 +135,11 @@ def _least(v: Visibility, model: Model, share: float | None = None) -> str:
 
 
 def _reason(v: Visibility, poor: Mapping[str, str], model: Model) -> str:
-    """Why an effect cannot be seen: its numbers, and what it or what hides it does not get."""
+    """Why an effect is invisible: its numbers, and what the motion lacks."""
     signals = list(needed(v.candidate.effect))
     if v.silent:
         why = "it makes no force here"
-    elif v.own < RARE and v.imitated:
+    elif v.unique_share < RARE and v.imitated:
         imitated = [n.partition(".")[2] for n in v.imitated]
         why = "the same as " + " with ".join(imitated)
         body = model.body(v.candidate.at)
@@ -167,9 +167,9 @@ def needed(effect: Effect) -> tuple[str, ...]:
     return tuple(dict.fromkeys([*more, *names]))
 
 
-def _look_alikes(seen: Sequence[Visibility], place: str) -> list[Finding]:
+def _look_alikes(visible_effects: Sequence[Visibility], place: str) -> list[Finding]:
     """Effects whose marks have the same shape: the record would not say which it is."""
-    visible = [v for v in seen if v.size <= 1.0]
+    visible = [v for v in visible_effects if v.size <= 1.0]
     groups: list[set[str]] = []
     for a, b in combinations(visible, 2):
         if abs(float(a.mark @ b.mark)) < ALIKE:

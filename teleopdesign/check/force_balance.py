@@ -26,8 +26,8 @@ from ..model import Model
 from .force_timing import (
     BANDS,
     ON_TIME,
-    Along,
     BalanceFit,
+    BandTransforms,
     along_in,
     fit_balance,
     rows_of,
@@ -47,7 +47,7 @@ class Estimate:
 
     @property
     def sure(self) -> int:
-        """Its sign where it is told from zero by five standard errors, else 0."""
+        """Sign of an estimate that is five standard errors away from zero, else 0."""
         return int(np.sign(self.value)) if abs(self.value) > 5.0 * self.error else 0
 
 
@@ -154,13 +154,13 @@ def _named(fit: BalanceFit, steps: Sequence[Estimate]) -> dict[str, Estimate]:
     return shifts
 
 
-def _blocks(stretches: Sequence[Stretch], parts: Sequence[Along]) -> NDArray[np.intp]:
+def _blocks(stretches: Sequence[Stretch], parts: Sequence[BandTransforms]) -> NDArray[np.intp]:
     is_part = [np.isin(s.keep, p.keep) for s, p in zip(stretches, parts, strict=True)]
     return block_numbers(stretches)[np.concatenate(is_part)]
 
 
 def _power(
-    parts: Sequence[Along], columns: Array, strengths: Mapping[str, Estimate]
+    parts: Sequence[BandTransforms], columns: Array, strengths: Mapping[str, Estimate]
 ) -> dict[str, Estimate]:
     """Mean power (W) that each strength takes out of the motion."""
     velocity = np.concatenate([p.motion.velocity[p.keep] for p in parts])

@@ -34,7 +34,7 @@ ON_TIME: Mapping[str, float] = {"actuator_force": 0.0, "interaction_force": 0.0}
 
 
 @dataclass(frozen=True)
-class Along:
+class BandTransforms:
     """One stretch in one band: transforms of both forces; what the model needs besides, columns.
 
     others: (1 + p, rows), already low-passed;  keep: the rows that count
@@ -46,7 +46,7 @@ class Along:
     others: Array
 
 
-def along_in(body: Body, stretch: Stretch, names: Sequence[str], band: float) -> Along:
+def along_in(body: Body, stretch: Stretch, names: Sequence[str], band: float) -> BandTransforms:
     """One stretch below `band` times the comparison's bandwidth.
 
     names: the strengths that have columns
@@ -64,10 +64,12 @@ def along_in(body: Body, stretch: Stretch, names: Sequence[str], band: float) ->
         "actuator_force": s.transform(acting) * low,
         "interaction_force": s.transform(motion.interaction) * low,
     }
-    return Along(motion, keep, forces, s.multiply(np.vstack([rest[None], columns]), low)[:, keep])
+    return BandTransforms(
+        motion, keep, forces, s.multiply(np.vstack([rest[None], columns]), low)[:, keep]
+    )
 
 
-def rows_of(parts: Sequence[Along], shifts: Mapping[str, float]) -> Array:
+def rows_of(parts: Sequence[BandTransforms], shifts: Mapping[str, float]) -> Array:
     """Acting force, interaction force, their derivatives, the rest and the columns, (5 + p, rows).
 
     shifts: s by which each force is late
@@ -84,7 +86,7 @@ def rows_of(parts: Sequence[Along], shifts: Mapping[str, float]) -> Array:
 
 @dataclass(frozen=True)
 class BalanceFit:
-    """Shifts that have settled, for groups of forces that share one, and the balance there.
+    """Time shifts of groups of forces after iteration, and the force balance at these shifts.
 
     solution: strengths, gain of the other force where there is one, last steps of the shifts
     left: force left unexplained on each row;  jacobian: of it, by the solution
@@ -104,9 +106,12 @@ class BalanceFit:
 
 
 def with_shifts(
-    bands: Mapping[float, list[Along]], forces: Sequence[str], plain: BalanceFit, measured: float
+    bands: Mapping[float, list[BandTransforms]],
+    forces: Sequence[str],
+    plain: BalanceFit,
+    measured: float,
 ) -> BalanceFit:
-    """The balance at the fewest shifts that explain what shifts can; `plain` where none does."""
+    """The balance with the fewest shifts that explain the residual; `plain` where none does."""
     each = [(f,) for f in forces]
     free = _from_starts(bands, forces, each, measured)
     if free.size > REMAINS * plain.size:
@@ -119,7 +124,7 @@ def with_shifts(
 
 
 def _from_starts(
-    bands: Mapping[float, list[Along]],
+    bands: Mapping[float, list[BandTransforms]],
     forces: Sequence[str],
     groups: Sequence[tuple[str, ...]],
     measured: float,
@@ -139,7 +144,7 @@ def _from_starts(
 
 
 def fit_balance(
-    bands: Mapping[float, list[Along]],
+    bands: Mapping[float, list[BandTransforms]],
     forces: Sequence[str],
     groups: Sequence[tuple[str, ...]],
     shifts: Mapping[str, float],

@@ -37,12 +37,12 @@ WEAKEST, STRONGEST, FARTHEST = 1e-6, 1e4, 7.0
 
 @dataclass(frozen=True)
 class Visibility:
-    """What it takes for one effect to be seen.
+    """The smallest visible strength of one effect.
 
     size: force that the effect makes at the least strength that shows, relative to the measured
         force (both rms, low-passed); inf where no strength shows
     strength: parameter -> value (SI) there;  shape: of its other parameters
-    own: part of its mark that the model's own parameters cannot imitate, 0 to 1
+    unique_share: part of its mark that the model's own parameters cannot imitate, 0 to 1
     imitated: the model's parameters that imitate the rest best
     mark: direction of that part, (rows,), length 1;  silent: it makes no force at all
     """
@@ -51,7 +51,7 @@ class Visibility:
     size: float
     strength: dict[str, float]
     shape: dict[str, float]
-    own: float
+    unique_share: float
     imitated: tuple[str, ...]
     mark: Array
     silent: bool
@@ -81,7 +81,7 @@ class _Trial:
     rest: Array
 
     @property
-    def own(self) -> float:
+    def unique_share(self) -> float:
         """Part of the mark that the model's own parameters cannot imitate."""
         return self.part / self.whole if self.whole > 0.0 else 0.0
 
@@ -89,7 +89,7 @@ class _Trial:
 def visibilities(
     base: Fit, prepared: Prepared, candidates: Sequence[Candidate], floor: float
 ) -> list[Visibility]:
-    """What it takes for each candidate to be seen on the fit records.
+    """The smallest visible strength of each candidate on the fit records.
 
     floor: noise floor of these records, a relative force error
     """
@@ -114,18 +114,18 @@ def visibilities(
 def _visibility(candidate: Candidate, scene: _Scene, unit: dict[str, float]) -> Visibility:
     shapes = _shapes(candidate, scene.base.model, unit)
     best, shaped = _best(candidate, shapes, 1.0, scene)
-    if best.own < CRITERIA.own_column:
+    if best.unique_share < CRITERIA.own_column:
         best, shaped = _best(candidate, shapes, STRONG, scene)
-    if best.own >= CRITERIA.own_column:
+    if best.unique_share >= CRITERIA.own_column:
         best = _at_threshold(candidate, best, shaped, scene)
-    shows = best.own >= CRITERIA.own_column and best.part >= scene.threshold
+    shows = best.unique_share >= CRITERIA.own_column and best.part >= scene.threshold
     strength, shape = _values(candidate, best.model)
     return Visibility(
         candidate,
         best.whole if shows else math.inf,
         strength,
         shape,
-        best.own,
+        best.unique_share,
         _imitating(best, scene),
         best.rest / max(float(np.linalg.norm(best.rest)), 1e-300),
         best.whole < 1e-9,
@@ -137,7 +137,7 @@ def _best(
 ) -> tuple[_Trial, Model]:
     """The shape that shows most at equal strength; one that nothing imitates goes first."""
     trials = [(_trial(candidate, m, factor, scene), m) for m in shapes]
-    return max(trials, key=lambda t: (t[0].own >= CRITERIA.own_column, t[0].part))
+    return max(trials, key=lambda t: (t[0].unique_share >= CRITERIA.own_column, t[0].part))
 
 
 def _shapes(candidate: Candidate, model: Model, unit: dict[str, float]) -> list[Model]:
@@ -165,7 +165,7 @@ def _bounded(model: Model, values: dict[str, float]) -> Model:
 
 
 def _trial(candidate: Candidate, shaped: Model, factor: float, scene: _Scene) -> _Trial:
-    """The effect at `factor` times its first strength; where that is absent already, beside it."""
+    """The effect at `factor` times its first strength; next to it where that means absence."""
     effect, place = candidate.effect, candidate.at
     values = {}
     for name, absent in effect.absent.items():
@@ -234,7 +234,7 @@ def _imitating(trial: _Trial, scene: _Scene) -> tuple[str, ...]:
     size[size == 0.0] = 1.0
     if not len(names) or trial.whole == 0.0:
         return ()
-    taken = np.abs(np.linalg.lstsq(columns / size, trial.mark, rcond=1e-9)[0])
-    order = np.argsort(-taken)
+    shares = np.abs(np.linalg.lstsq(columns / size, trial.mark, rcond=1e-9)[0])
+    order = np.argsort(-shares)
     whole = float(np.linalg.norm(trial.mark))
-    return tuple(names[i] for i in order[:2] if taken[i] > whole / 3)
+    return tuple(names[i] for i in order[:2] if shares[i] > whole / 3)

@@ -31,17 +31,17 @@ def _folded(text: str) -> list[str]:
     )
 
 
-def plain(settled: TopicClaim) -> dict[str, Any]:
+def plain(entry: TopicClaim) -> dict[str, Any]:
     """A settled claim as plain data, with its certificates and the motions that refute it."""
-    claim = settled.claim
+    claim = entry.claim
     return {
-        "topic": settled.topic,
+        "topic": entry.topic,
         "statement": claim.statement,
         "status": claim.status,
-        "time": settled.time,
+        "time": entry.time,
         "holds": claim.holds,
         "verdict": str(claim.verdict),
         "certificates": [dict(c.content) for c in claim.certificates],
         "motion": claim.record.as_dict() if claim.status == "refuted" else None,
-        "replayed": None if settled.motion is None else settled.motion.as_dict(),
+        "replayed": None if entry.motion is None else entry.motion.as_dict(),
     }

@@ -1,4 +1,4 @@
-"""The experiment that a command is about, and its diagnosis: made now, or taken up from an answer.
+"""The experiment of a command, and its diagnosis: made now, or read from an answer.
 
 Every command that needs one comes by it here: from the experiment's folder, with `--answer F` from
 what `teleopdesign diagnose --json F` has written of it.
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def add_experiment(parser: argparse.ArgumentParser, *, answer: bool = True) -> None:
-    """The experiment's folder, the user's own effects, and the answer to take up."""
+    """Arguments: the experiment's folder, the user's effects, and an answer to continue from."""
     add_folder(parser)
     if answer:
         add_answer(parser)
@@ -108,7 +108,7 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
 
 
 def _place(model: Model, source: Path, body: str | None) -> str:
-    """The place of the body that is meant; the only one where none is asked for."""
+    """The place of the chosen body; by default the only body."""
     bodies = list(model.bodies)
     if body is None and len(bodies) > 1:
         raise ExperimentError(f"{source}: bodies {', '.join(bodies)}: choose one with --body")

@@ -42,7 +42,7 @@ def settle_diagram(options: argparse.Namespace, computer: Sampling | None) -> in
             "diagram": repr(claims.diagram),
             "ports": [str(port) for port in claims.ports],
             "nonlinear": list(claims.nonlinear),
-            "claims": [plain(s) for s in claims.settled],
+            "claims": [plain(s) for s in claims.claims],
         }
         write_json(options.json, content)
     return 0
@@ -53,4 +53,4 @@ def _text(claims: DiagramClaims) -> str:
     lines.append(f"not linear: {', '.join(claims.nonlinear) or 'nothing'}")
     if claims.diagram.controls:
         lines.append("what is proved holds for controllers in continuous time")
-    return "\n".join([*lines, *claim_lines(claims.settled)])
+    return "\n".join([*lines, *claim_lines(claims.claims)])

@@ -27,7 +27,7 @@ def add_effect_files(parser: argparse.ArgumentParser) -> None:
 
 
 def check_output(path: Path, endings: tuple[str, ...]) -> None:
-    """Say before the work, not after it, that a result could not be written."""
+    """Raise an error before the work, not after it, if a result cannot be written."""
     if not path.name.endswith(endings):
         raise ExperimentError(f"{path}: found {path.suffix!r}, expected {' or '.join(endings)}")
     if not path.parent.is_dir():
@@ -46,6 +46,6 @@ def make_folder(path: Path) -> Path:
 
 
 def say(text: str) -> None:
-    """Progress on one line of the terminal; nothing where nobody watches."""
+    """Show progress on one line of a terminal; print nothing elsewhere."""
     if sys.stderr.isatty():
         print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)

@@ -32,8 +32,8 @@ def run(options: argparse.Namespace) -> int:
     )
     parser = argparse.ArgumentParser()
     diagnose.add(parser)
-    asked = [f"--{name}={path}" for name, path in written.items()]
-    status = diagnose.run(parser.parse_args([str(example("rod")), *asked]))
+    arguments = [f"--{name}={path}" for name, path in written.items()]
+    status = diagnose.run(parser.parse_args([str(example("rod")), *arguments]))
     if status == 0:
         print("\nwritten: " + ", ".join(map(str, written.values())))
     return status

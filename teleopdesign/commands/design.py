@@ -75,8 +75,8 @@ def _assumptions(options: argparse.Namespace) -> Assumptions:
     from ..design import Assumptions
 
     names = {f.name for f in fields(Assumptions)}
-    given = {n: v for n in STATED if (v := getattr(options, n)) is not None and n in names}
-    return Assumptions(**given)
+    stated = {n: v for n in STATED if (v := getattr(options, n)) is not None and n in names}
+    return Assumptions(**stated)
 
 
 def _places(options: argparse.Namespace, experiment: Experiment) -> list[str]:

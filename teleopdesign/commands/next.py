@@ -166,12 +166,12 @@ def _read_limits(texts: Sequence[str], experiment: Experiment) -> dict[str, dict
     return limits
 
 
-def _limits(asked: dict[str, dict[str, float]], experiment: Experiment) -> dict[str, Limits]:
+def _limits(limits: dict[str, dict[str, float]], experiment: Experiment) -> dict[str, Limits]:
     """Body -> the limits that its records have shown, with those asked for in their place."""
     from ..diagnose.prepare import prepare
     from ..next_experiment import shown_limits
 
-    if not asked:
+    if not limits:
         return {}
     shown = shown_limits(prepare(experiment))
-    return {body: shown[body].with_values(**values) for body, values in asked.items()}
+    return {body: shown[body].with_values(**values) for body, values in limits.items()}

@@ -112,9 +112,11 @@ def _sound(options: argparse.Namespace) -> None:
         if not (math.isfinite(value) and value > 0):
             raise ExperimentError(f"--{name}: found {value:g}, expected more than 0")
     if is_diagram(options.source) and (
-        given := [n for n in BESIDE_A_DIAGRAM if _given(options, n)]
+        options_beside := [n for n in BESIDE_A_DIAGRAM if _is_stated(options, n)]
     ):
-        raise ExperimentError(f"--{given[0]}: found beside a diagram, which brings its own blocks")
+        raise ExperimentError(
+            f"--{options_beside[0]}: found beside a diagram, which brings its own blocks"
+        )
     for name in ("dahl", "smoothed_coulomb"):
         values = getattr(options, name)
         if values is not None and not all(math.isfinite(x) and x > 0 for x in values):
@@ -135,7 +137,7 @@ def _sound(options: argparse.Namespace) -> None:
         raise ExperimentError("--wall, --delay, --encoder-step: they need --period")
 
 
-def _given(options: argparse.Namespace, name: str) -> bool:
+def _is_stated(options: argparse.Namespace, name: str) -> bool:
     return getattr(options, name.replace("-", "_")) is not None
 
 
@@ -162,9 +164,9 @@ def _all_claims(
         claims += compensation_claims(device, compensator, computer=computer, rng=rng)
     if options.wall is not None and computer is not None:
         stiffness, damping = options.wall
-        taken = compensator.level if compensator else 0.0
+        cancelled = compensator.level if compensator else 0.0
         claims += wall_claims(
-            device, stiffness=stiffness, damping=damping, computer=computer, cancelled=taken
+            device, stiffness=stiffness, damping=damping, computer=computer, cancelled=cancelled
         )
     return claims
 

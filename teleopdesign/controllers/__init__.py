@@ -20,8 +20,8 @@ from ._controller import (
     ControlLaw,
     Controller,
     ControllerEquation,
+    ControllerState,
     Stage,
-    State,
     parameter_symbol,
 )
 from ._exact import as_written, in_exact_numbers, resolvent
@@ -34,8 +34,8 @@ __all__ = [
     "ControlLaw",
     "Controller",
     "ControllerEquation",
+    "ControllerState",
     "Stage",
-    "State",
     "as_written",
     "controller",
     "from_control",
@@ -50,8 +50,8 @@ __all__ = [
 
 def _laws() -> Mapping[str, ControlLaw]:
     files = sorted(p for p in Path(__file__).parent.glob("*.py") if not p.name.startswith("_"))
-    found = {p.stem: importlib.import_module(f"{__name__}.{p.stem}") for p in files}
-    laws = {n: m.CONTROLLER.named(n, m.__doc__ or "") for n, m in found.items()}
+    modules = {p.stem: importlib.import_module(f"{__name__}.{p.stem}") for p in files}
+    laws = {n: m.CONTROLLER.named(n, m.__doc__ or "") for n, m in modules.items()}
     return Catalogue({n: remember(law, _law, n) for n, law in laws.items()}, "control law")
 
 
@@ -73,7 +73,7 @@ def controller(name: str, values: Mapping[str, float]) -> Controller:
 
 
 def laws_that_declare(ability: Ability) -> tuple[ControlLaw, ...]:
-    """The laws of the catalogue that can do that, in the order of their names."""
+    """The laws of the catalogue that declare this ability, in the order of their names."""
     return tuple(law for law in CONTROLLERS.values() if getattr(law, ability))
 
 

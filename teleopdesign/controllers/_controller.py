@@ -37,13 +37,13 @@ SIGNALS = {
 
 
 def only_sampled(now: Any, p: Any) -> sp.Expr:
-    """The rate of a state that has none: it exists in a computer only."""
+    """Stands for the rate of a state that exists in a computer only."""
     return sp.nan
 
 
 @checked
 @dataclass(frozen=True)
-class State:
+class ControllerState:
     """A hidden state of a control law, whose `now` also carries the states of the law.
 
     rate(now, p): rate of change, or `only_sampled`
@@ -82,7 +82,7 @@ class ControlLaw:
 
     law: Callable[[Any, Any], sp.Expr]
     parameters: Mapping[str, Parameter]
-    states: Mapping[str, State] = field(default_factory=dict)
+    states: Mapping[str, ControllerState] = field(default_factory=dict)
     linear: bool = False
     takes: Literal["", "force"] = ""
     transfer: Callable[[Mapping[str, float], sp.Symbol], sp.Expr] | None = None
@@ -164,7 +164,7 @@ class Stage:
         object.__setattr__(self, "values", Frozen(self.values))
 
     def value_of(self, ability: Ability) -> float | None:
-        """Value (SI) of the parameter that the law declares for it; None where it declares none."""
+        """Value (SI) of the parameter that the law declares for this ability; None without one."""
         parameter = getattr(self.law, ability)
         return float(self.values[parameter]) if parameter else None
 
@@ -273,7 +273,7 @@ class Controller:
     def linear_form(
         self, prefix: str, s: sp.Symbol, speed: sp.Expr, *, held: bool = False
     ) -> sp.Expr | None:
-        """Transfer function at frozen speed; None where a law declares no linear form.
+        """Transfer function at constant speed; None where a law declares no linear form.
 
         held: also of laws in discrete time, as H(e^(s T)) (1 - e^(-s T))/(s T): from the samples to
             the mean of the held output, copies at other multiples of the sampling rate left out
@@ -291,8 +291,8 @@ class Controller:
                 continue
             signals = {**moved, "input": value, "period": sp.S(0)}
             equation = Controller((stage,)).equation(prefix, signals)
-            settled = sp.solve([s * x - r for x, r in equation.rates.items()], *equation.rates)
-            value = equation.output.subs(settled) if equation.rates else equation.output
+            states = sp.solve([s * x - r for x, r in equation.rates.items()], *equation.rates)
+            value = equation.output.subs(states) if equation.rates else equation.output
         return sp.simplify(value / drive)
 
     def __repr__(self) -> str:
@@ -339,11 +339,11 @@ def _by_numbers(stage: Stage, s: sp.Symbol) -> sp.Expr:
 def _placed(
     stage: Stage, prefix: str, signals: Mapping[str, sp.Expr]
 ) -> tuple[SimpleNamespace, SimpleNamespace]:
-    """What the law sees, its states among it, and its parameters, as symbols of that block."""
+    """The signals and states that the law reads, and its parameters, as symbols of that block."""
     law = stage.law
-    own = {s: state_symbol(prefix, stage.name, s) for s in law.states}
+    states = {s: state_symbol(prefix, stage.name, s) for s in law.states}
     values = {n: parameter_symbol(prefix, f"{stage.name}.{n}") for n in law.parameters}
-    return SimpleNamespace(**{**signals, **own}), SimpleNamespace(**values)
+    return SimpleNamespace(**{**signals, **states}), SimpleNamespace(**values)
 
 
 def parameter_symbol(prefix: str, name: str) -> sp.Symbol:

@@ -18,7 +18,7 @@ import sympy as sp
 from ..effects import Parameter
 from ..errors import ModelError
 from ..recipes import remember
-from ._controller import ControlLaw, Stage, State, only_sampled
+from ._controller import ControlLaw, ControllerState, Stage, only_sampled
 from ._exact import as_written, resolvent
 
 Array = np.ndarray
@@ -133,7 +133,7 @@ def _law(name: str, form: Form, n: int, discrete: bool) -> ControlLaw:
     if discrete:
         parameters["period"] = Parameter("time", "of a sample; 0: any")
     states = {
-        f"x_{i}": State(
+        f"x_{i}": ControllerState(
             "dimensionless",
             only_sampled if discrete else change(i),
             change(i) if discrete else None,
@@ -208,8 +208,8 @@ def _state(now: Any, p: Any, i: int) -> sp.Expr:
 def _meaning(entry: str) -> str:
     """ "a_0_1" as "A, row 1, column 2"."""
     matrix, *places = entry.split("_")
-    found = [f"{w} {int(k) + 1}" for w, k in zip(("row", "column"), places, strict=False)]
-    return ", ".join([matrix.upper(), *found])
+    indices = [f"{w} {int(k) + 1}" for w, k in zip(("row", "column"), places, strict=False)]
+    return ", ".join([matrix.upper(), *indices])
 
 
 def _transfer(values: Mapping[str, float], s: sp.Symbol) -> sp.Expr:
@@ -250,11 +250,11 @@ def _held(name: str, values: Mapping[str, float], n: int, period: float) -> Stag
 
 def _same_period(name: str) -> Callable[[Mapping[str, float], float], Stage]:
     def sampled(values: Mapping[str, float], period: float) -> Stage:
-        own = values["period"]
-        if own and abs(own - period) > 1e-9 * period:
+        stated = values["period"]
+        if stated and abs(stated - period) > 1e-9 * period:
             raise ModelError(
-                f"{name}: is sampled every {own * 1e3:g} ms, the computer every {period * 1e3:g} "
-                "ms: give it in continuous time, or sample both alike"
+                f"{name}: is sampled every {stated * 1e3:g} ms, the computer every "
+                f"{period * 1e3:g} ms: give it in continuous time, or sample both alike"
             )
         form: Form = "coefficients" if "denominator_0" in values else "matrices"
         return Stage(_law(name, form, _order(values), True), values)

@@ -10,7 +10,7 @@ of positions.
 from types import SimpleNamespace
 
 from ..effects import EFFECTS, Parameter
-from ._controller import ControlLaw, State
+from ._controller import ControlLaw, ControllerState
 
 _DAHL = EFFECTS["presliding"].without("bristle_damping")
 
@@ -29,7 +29,7 @@ def bristle(now, p):
 
 CONTROLLER = ControlLaw(
     law=law,
-    states={"bristle": State("position", bristle)},
+    states={"bristle": ControllerState("position", bristle)},
     parameters={
         "level": Parameter("force", "F_D: level that is cancelled"),
         "stiffness": _DAHL.parameters["stiffness"],

@@ -11,7 +11,7 @@ continuous time the two are one.
 from types import SimpleNamespace
 
 from . import dahl
-from ._controller import ControlLaw, State
+from ._controller import ControlLaw, ControllerState
 
 
 def step(now, p):
@@ -21,7 +21,7 @@ def step(now, p):
 
 CONTROLLER = ControlLaw(
     law=dahl.law,
-    states={"bristle": State("position", dahl.bristle, step)},
+    states={"bristle": ControllerState("position", dahl.bristle, step)},
     parameters=dahl.CONTROLLER.parameters,
     source="Mahvash, Okamura, ICRA 2006, eq (3)",
 )

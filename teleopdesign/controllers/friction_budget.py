@@ -16,11 +16,11 @@ from sympy import Abs
 
 from ..effects import Parameter
 from . import passivity_controller
-from ._controller import ControlLaw, State
+from ._controller import ControlLaw, ControllerState
 
 
 def _power(force, velocity, p):
-    """What friction takes, less what the force gives, W."""
+    """Power that friction dissipates less power that the force supplies, W."""
     return p.counted_level * Abs(velocity) - force * velocity
 
 
@@ -42,8 +42,8 @@ CONTROLLER = ControlLaw(
     law=law,
     takes="force",
     states={
-        "energy": State("energy", energy, energy_after),
-        "held": State("force", passivity_controller.nothing, law),
+        "energy": ControllerState("energy", energy, energy_after),
+        "held": ControllerState("force", passivity_controller.nothing, law),
     },
     parameters={
         "counted_level": Parameter("force", "F_C: friction that is counted on"),

@@ -4,7 +4,7 @@ output = g (s + z)/(s + p) input,   written  g (input + w),  dw/dt = -p w + (z -
 """
 
 from ..effects import Parameter
-from ._controller import ControlLaw, State
+from ._controller import ControlLaw, ControllerState
 
 
 def law(now, p):
@@ -17,7 +17,7 @@ def memory(now, p):
 
 CONTROLLER = ControlLaw(
     law=law,
-    states={"memory": State("position", memory)},
+    states={"memory": ControllerState("position", memory)},
     linear=True,
     parameters={
         "gain": Parameter("stiffness", "g: stiffness at high frequency"),

@@ -6,7 +6,7 @@ dw/dt = 2 pi f_c (input - w),   output = w
 from sympy import pi
 
 from ..effects import Parameter
-from ._controller import ControlLaw, State
+from ._controller import ControlLaw, ControllerState
 
 
 def law(now, p):
@@ -19,7 +19,7 @@ def output(now, p):
 
 CONTROLLER = ControlLaw(
     law=law,
-    states={"output": State("force", output)},
+    states={"output": ControllerState("force", output)},
     linear=True,
     parameters={"bandwidth": Parameter("frequency", "f_c: -3 dB frequency in Hz")},
     filter_bandwidth="bandwidth",

@@ -12,7 +12,7 @@ stays within F_S; bristle damping adds to it and carries the noise of the differ
 from types import SimpleNamespace
 
 from ..effects import EFFECTS
-from ._controller import ControlLaw, State
+from ._controller import ControlLaw, ControllerState
 
 _LEVELS = EFFECTS["coulomb"], EFFECTS["stribeck"]
 _SHAPE = EFFECTS["presliding"]
@@ -33,7 +33,7 @@ def bristle(now, p):
 
 CONTROLLER = ControlLaw(
     law=law,
-    states={"bristle": State("position", bristle)},
+    states={"bristle": ControllerState("position", bristle)},
     parameters={n: p for e in (*_LEVELS, _SHAPE) for n, p in e.parameters.items()},
     source="Canudas de Wit, Olsson, Astrom, Lischinsky, IEEE TAC 40 (1995) 419",
 )

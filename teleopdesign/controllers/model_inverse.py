@@ -13,7 +13,7 @@ from types import SimpleNamespace
 from sympy import exp, pi
 
 from ..effects import EFFECTS, Parameter
-from ._controller import ControlLaw, State
+from ._controller import ControlLaw, ControllerState
 
 _TERMS = EFFECTS["added_inertia"], EFFECTS["viscous"], EFFECTS["spring"]
 
@@ -27,7 +27,7 @@ def _once(now, p):
 
 
 def _twice_ahead(now, p):
-    """The double pole solved for the input held: exact, as `once` is not held meanwhile."""
+    """Exact solution of the double pole for a held input; `once` changes within the sample."""
     decay = 2 * pi * p.bandwidth * now.period
     left = (now.twice - now.input) + (now.once - now.input) * decay
     return now.input + left * exp(-decay)
@@ -59,8 +59,8 @@ def law(now, p):
 CONTROLLER = ControlLaw(
     law=law,
     states={
-        "once": State("position", _once),
-        "twice": State("position", _velocity, _twice_ahead),
+        "once": ControllerState("position", _once),
+        "twice": ControllerState("position", _velocity, _twice_ahead),
     },
     linear=True,
     parameters={

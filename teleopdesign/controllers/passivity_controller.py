@@ -17,27 +17,27 @@ Hannaford and Ryu do. The device's inertia has to be put in first: what it gives
 from sympy import Max, Min, S, exp
 
 from ..effects import Parameter
-from ._controller import ControlLaw, State
+from ._controller import ControlLaw, ControllerState
 
 _STANDSTILL = 1e-30  # (m/s)^2: alpha stays finite there, and acts on no velocity
 
 
 def _recovered(now, p):
-    """Share of what is lacking that is made up within a sample, per second of it."""
+    """Share of an energy deficit that is recovered within a sample, per second."""
     if now.period == 0:
         return p.recovery_rate
     return (1 - exp(-p.recovery_rate * now.period)) / now.period
 
 
 def damping(now, p, power):
-    """alpha of an energy `now.energy` to which the port adds that power, W."""
+    """Damping alpha for the energy `now.energy`, to which the port adds this power, W."""
     ahead = now.energy + now.period * power
     needed = Max(-ahead, 0) * _recovered(now, p) / Max(now.velocity**2, _STANDSTILL)
     return Min(needed, p.largest_damping)
 
 
 def kept(now, p, power):
-    """Rate of an energy that comes to its budget no faster than a deficit is made up, W."""
+    """Rate of an energy that returns to its budget no faster than a deficit is recovered, W."""
     return Min(power, _recovered(now, p) * (p.budget - now.energy))
 
 
@@ -71,8 +71,8 @@ CONTROLLER = ControlLaw(
     law=law,
     takes="force",
     states={
-        "energy": State("energy", energy, energy_after),
-        "last": State("force", nothing, last),
+        "energy": ControllerState("energy", energy, energy_after),
+        "last": ControllerState("force", nothing, last),
     },
     parameters=PARAMETERS,
     source="Hannaford, Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1 (P52)",

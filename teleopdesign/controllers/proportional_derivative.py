@@ -13,7 +13,7 @@ from sympy import diff, exp
 
 from ..effects import Parameter
 from . import low_pass
-from ._controller import ControlLaw, State
+from ._controller import ControlLaw, ControllerState
 
 
 def filtered(now, p):
@@ -34,7 +34,7 @@ def law(now, p):
 
 CONTROLLER = ControlLaw(
     law=law,
-    states={"filtered": State("position", filtered)},
+    states={"filtered": ControllerState("position", filtered)},
     linear=True,
     parameters={
         "stiffness": Parameter("stiffness", "k: force per input"),

@@ -43,7 +43,7 @@ class Transfer:
         return f"{name_as_latex(self.name)} &= {as_latex(with_gamma(self.expression))}"
 
     def system(self, *, speed: float = 0.0) -> tuple[control.TransferFunction, tuple[str, ...]]:
-        """With values in place, one degree of freedom, and what has no linear form.
+        """Transfer function with values, for one degree of freedom, and names without linear form.
 
         speed: m/s or rad/s, at which smoothed friction and schedules are frozen
         raises ModelError: a block has no values, or a loop no solution at its values
@@ -81,7 +81,7 @@ class Transfers:
         return not any(isinstance(c, AnyBlock) for c in contents)
 
     def text(self) -> str:
-        """One line for each, with what it is."""
+        """One line for each transfer function, with its meaning."""
         lines = [f"{t.text()}    ({t.case.text})" for t in self.transfers.values()]
         if self._uses_gamma():
             lines.append("Gamma = I + H")

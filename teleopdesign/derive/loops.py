@@ -15,16 +15,16 @@ def loop_of(diagram: Diagram, signal: str) -> tuple[str, ...]:
         reached = [signal]
         for at in reached:
             part = makers.get(at)
-            for taken in () if part is None else _taken(part):
-                if taken == signal:
+            for source in () if part is None else _inputs_of(part):
+                if source == signal:
                     return _back(before, at, signal)
-                if taken not in before:
-                    before[taken] = at
-                    reached.append(taken)
+                if source not in before:
+                    before[source] = at
+                    reached.append(source)
     return ()
 
 
-def _taken(part: Part) -> tuple[str, ...]:
+def _inputs_of(part: Part) -> tuple[str, ...]:
     # of a controller the motion only sets where its law is frozen
     return (part.input,) if isinstance(part, Control) else part.inputs
 

@@ -71,7 +71,7 @@ def transfer_functions(diagram: Diagram) -> TransferFunctions:
 
 @dataclass(frozen=True)
 class Case:
-    """What a transfer function is of: from `input` to `output` of a diagram, all else zero.
+    """Input, output and prescribed motions of one transfer function; other inputs are zero.
 
     given: motions that are prescribed, as in `transfer`;  text: for a reader
     """
@@ -116,7 +116,7 @@ _TEXTS = {
 
 
 def return_difference(diagram: Diagram, name: str) -> sp.Expr:
-    """1 - loop gain at the output of controller `name`: what must keep the loop stable."""
+    """Return difference 1 - loop gain at the output of controller `name`."""
     block = diagram.block(name)
     if not isinstance(block, Control):
         raise ModelError(f"{diagram.name}: {name} is no controller, its loop cannot be opened")

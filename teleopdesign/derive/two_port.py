@@ -32,7 +32,7 @@ _TEXTS = {
 
 
 def two_port_cases(diagram: Diagram) -> dict[str, Case]:
-    """Each function of a teleoperator but the transparency error, as what it is of.
+    """Input and output of each function of a teleoperator, without the transparency error.
 
     raises ModelError: the diagram has no master's X_m, F_m or no slave's X_s, F_s
     """

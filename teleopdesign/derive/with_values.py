@@ -25,7 +25,7 @@ def with_values(
     speed: float = 0.0,
     held: bool = False,
 ) -> tuple[sp.Expr, LinearBlocks]:
-    """Transfer function in `realise.lti.S` with numbers, and the linear forms that it rests on.
+    """Transfer function in `realise.lti.S` with numbers, and the linear forms of its blocks.
 
     One degree of freedom. given: motions that are prescribed
     speed: m/s or rad/s, at which smoothed friction and schedules are frozen
@@ -50,9 +50,12 @@ def transfer_function(
     speed: float = 0.0,
     delay_order: int = 4,
 ) -> tuple[control.TransferFunction, tuple[str, ...]]:
-    """The transfer function as a python-control system, and what has no linear form.
+    """The transfer function as a python-control system, and the names without linear form.
 
+    Its input and output are called as the signals are, so that `control.interconnect` joins it.
     Arguments as in `with_values`;  delay_order: of the Pade approximation of dead times
     """
     expression, linear = with_values(diagram, output=output, input=input, given=given, speed=speed)
-    return as_transfer_function(expression, delay_order=delay_order), linear.left_out
+    system = as_transfer_function(expression, delay_order=delay_order)
+    system.update_names(inputs=[input], outputs=[output])
+    return system, linear.left_out

@@ -8,7 +8,7 @@ design(find_missing(experiment))     # C, H, what they do, whether that is passi
 from ..arguments import check_arguments
 from .assumptions import Assumptions
 from .chosen import ProposedController, Reason
-from .force_feedback import Loop
+from .force_feedback import FeedbackLoop
 from .from_answer import DiagnosedModel, diagnosed_model, read_answer
 from .outcome import Design
 from .prediction import CasePrediction, Prediction
@@ -22,7 +22,7 @@ __all__ = [
     "ProposedController",
     "Design",
     "DiagnosedModel",
-    "Loop",
+    "FeedbackLoop",
     "Prediction",
     "Reason",
     "ResidualFriction",

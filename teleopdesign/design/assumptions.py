@@ -13,7 +13,7 @@ from ..errors import ModelError
 @checked
 @dataclass(frozen=True)
 class Assumptions:
-    """Assumptions of a design, SI. None: taken from the record, as `design` says.
+    """Assumptions of a design, SI. None: derived from the record, as `design` says.
 
     load: inertia of what the hand stands for, kg or kg m^2; None: three times the device's
     sample_period: of the controller, s; None: that of the record

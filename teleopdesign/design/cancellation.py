@@ -25,7 +25,7 @@ STIFFNESS_FRACTION = 0.9
 
 
 def acting_gain(body: Body, reach: Reach, *, errors: float) -> float:
-    """Bound of the force that acts per commanded force, within the intervals of its parameters.
+    """Upper bound of acting force per commanded force, over the intervals of the parameters.
 
     raises ModelError: no bound is known of an effect of the actuation
     """
@@ -72,7 +72,7 @@ def dahl_cancellation(
     late: float,
     damping: float,
 ) -> ProposedController | None:
-    """A Dahl cancellation of that level; None where presliding leaves no stiffness to it.
+    """A Dahl cancellation of that level; None where presliding allows no stiffness.
 
     gain: that acts of a command;  late: delay of its force, s;  damping: of small motion, lower end
     """

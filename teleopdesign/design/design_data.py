@@ -10,7 +10,7 @@ from ..plain_data import plain
 from ..quantity import unit_of
 from .chosen import ProposedController
 from .felt_impedance import FeltImpedance
-from .force_feedback import Loop
+from .force_feedback import FeedbackLoop
 
 if TYPE_CHECKING:
     from .outcome import Design  # a design writes itself through this module
@@ -91,7 +91,7 @@ def _chosen(chosen: ProposedController | None) -> dict[str, Any] | None:
     }
 
 
-def _loop(loop: Loop) -> dict[str, Any]:
+def _loop(loop: FeedbackLoop) -> dict[str, Any]:
     return {
         **asdict(loop),
         "crossover": loop.crossover,

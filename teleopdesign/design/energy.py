@@ -58,7 +58,7 @@ def energy_taken(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> 
 def energy_claim(
     diagram: Diagram, motion: StatedMotion, reach: Reach, sampling: Sampling, *, axis: str
 ) -> Claim:
-    """Does the device take energy from the hand, whatever the motion? Evidence from those tried."""
+    """Does the device take energy from the hand along every tried motion? Evidence, not proof."""
     trials = [energy_taken(diagram, m, sampling) for m in motions_around(motion, reach)]
     gives = [t for t in trials if t.energy < 0]
     # where it gives energy out, the slowest such motion says from where on

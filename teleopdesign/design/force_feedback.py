@@ -33,7 +33,7 @@ SCHEDULE_MARGIN = 1.25
 
 
 @dataclass(frozen=True)
-class Loop:
+class FeedbackLoop:
     """The loop of H at rest.
 
     gain: k m_H/(m + m_H);  bandwidth: of the low-pass, Hz;  delay: T_d, s
@@ -85,7 +85,7 @@ def largest_gain(*, share: float, bandwidth: float, delay: float, factor: float)
     from scipy.optimize import brentq
 
     def spare(k: float) -> float:
-        return Loop(k * share, bandwidth, delay).largest_delay - factor * delay
+        return FeedbackLoop(k * share, bandwidth, delay).largest_delay - factor * delay
 
     if spare(MOST_GAIN) >= 0:
         return MOST_GAIN
@@ -101,7 +101,7 @@ def force_feedback(
     load: float,
     delay: float,
     smoothing_velocity: float,
-) -> tuple[ProposedController, Loop]:
+) -> tuple[ProposedController, FeedbackLoop]:
     """H for that body and load, and its loop at rest.
 
     load: m_H;  delay: T_d, s;  smoothing_velocity: a of the cancellation beside it, 0: none
@@ -112,7 +112,7 @@ def force_feedback(
     free = largest_gain(share=share, bandwidth=bandwidth, delay=delay, factor=factor)
     held = largest_gain(share=1.0, bandwidth=bandwidth, delay=delay, factor=HELD_FACTOR)
     gain = rounded_down(min(free, held), digits=2)
-    loop = Loop(gain * share, bandwidth, delay)
+    loop = FeedbackLoop(gain * share, bandwidth, delay)
     least = smoothing_velocity * gain / (1 + gain)
     scheduling = rounded_up(max(SCHEDULE_MARGIN * least, reach.rms_speed), digits=2)
     law = scheduled_force_feedback(gain=gain, scheduling_velocity=scheduling, bandwidth=bandwidth)

@@ -74,7 +74,7 @@ def _linear(diagram: Diagram, motion: StatedMotion) -> Diagram:
 
 
 def without_friction(body: Body, *, damping: float = 0.0, stiffness: float = 0.0) -> Body:
-    """The body without friction, with a damper (N s/m) and a spring (N/m) more, none below 0."""
+    """The body without friction, with an added damper (N s/m) and spring (N/m), at least 0."""
     for effect in [e for e in reversed(body.effects) if e.role in FRICTION]:
         body = body.without_effect(effect.name)
     for name, parameter, more in (

@@ -22,7 +22,7 @@ from .assumptions import Assumptions
 from .chosen import ProposedController
 from .design_data import design_data
 from .felt_impedance import FeltImpedance
-from .force_feedback import Loop
+from .force_feedback import FeedbackLoop
 from .prediction import Prediction
 from .residual_friction import ResidualFriction
 from .sampling import sampling_of
@@ -56,7 +56,7 @@ class Design(ByValue):
     other: ProposedController | None
     other_left: float
     force_feedback: ProposedController
-    loop: Loop
+    loop: FeedbackLoop
     prediction: Prediction
     impedance: FeltImpedance
     residual: ResidualFriction
@@ -65,7 +65,7 @@ class Design(ByValue):
     notes: tuple[str, ...]
 
     @property
-    def held(self) -> Loop:
+    def held(self) -> FeedbackLoop:
         """The loop of H at rest where the device is held rigidly: a load without limit."""
         gain = self.force_feedback.controller.names()["velocity_schedule.gain"]
         return replace(self.loop, gain=gain)

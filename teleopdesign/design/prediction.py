@@ -124,7 +124,7 @@ def _all_simulated(
 
 
 def _simulable(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> tuple[Diagram, str]:
-    """The diagram as far as it has a simulated form, and the structure that was taken rigid."""
+    """The diagram without structures that cannot be simulated, and their names."""
     (body,) = (b.body for b in hybrid.bodies if b.name == "Z_M")
     assert isinstance(body, Body)
     structure = next((e.name for e in body.effects if e.role == "structure"), "")

@@ -19,7 +19,7 @@ from .cancellation import acting_gain, cancelled_level, dahl_cancellation, smoot
 from .chosen import ProposedController
 from .energy import energy_claim
 from .felt_impedance import felt_impedance
-from .force_feedback import Loop, force_feedback, identified_delay, whole_inertia
+from .force_feedback import FeedbackLoop, force_feedback, identified_delay, whole_inertia
 from .from_answer import DiagnosedModel, diagnosed_model
 from .linear import transparency
 from .notes import notes_on
@@ -44,11 +44,11 @@ FILTER, FILTER_SHARE = 50.0, 0.1
 
 @dataclass(frozen=True)
 class Trial:
-    """One choice of C with the H that goes with it, and what both do."""
+    """One choice of C with its H, and the predicted force error of both."""
 
     cancellation: ProposedController | None
     force_feedback: ProposedController
-    loop: Loop
+    loop: FeedbackLoop
     diagram: Diagram
     prediction: Prediction
 
@@ -77,18 +77,18 @@ def design(
     at = _place(diagnosis.model, place)
     reach = reach_of(diagnosis.experiment, at)
     body = free_space(diagnosis.model.body(at))
-    given = complete_assumptions(assumptions or Assumptions(), body, reach)
-    motion = stated_motion(reach, given, body.axis)
-    friction = friction_interval(body, reach, errors=given.errors)
-    options: list[ProposedController | None] = [*cancellations(body, friction, reach, given)]
-    trials = [_trial(body, one, motion, reach, given) for one in options or [None]]
+    settings = complete_assumptions(assumptions or Assumptions(), body, reach)
+    motion = stated_motion(reach, settings, body.axis)
+    friction = friction_interval(body, reach, errors=settings.errors)
+    options: list[ProposedController | None] = [*cancellations(body, friction, reach, settings)]
+    trials = [_trial(body, one, motion, reach, settings) for one in options or [None]]
     best = min(trials, key=lambda t: t.left)
     others = [t for t in trials if t is not best]
     proposal = Design(
         experiment=diagnosis.experiment.title or diagnosis.experiment.folder.name,
         place=at,
         body=body,
-        assumptions=given,
+        assumptions=settings,
         reach=reach,
         friction=friction,
         cancellation=best.cancellation,
@@ -97,7 +97,7 @@ def design(
         force_feedback=best.force_feedback,
         loop=best.loop,
         prediction=best.prediction,
-        impedance=felt_impedance(best.prediction.hybrid, motion, sampling_of(given, reach)),
+        impedance=felt_impedance(best.prediction.hybrid, motion, sampling_of(settings, reach)),
         residual=residual_friction(
             body,
             cancellation=best.cancellation.controller if best.cancellation else None,
@@ -105,50 +105,52 @@ def design(
             speeds=reach.peak_speed * SHARES,
             position=motion.centre,
         ),
-        transparency=transparency(_with_load(best, body, given), motion),
-        claims=_claims(best, body, friction, reach, given),
+        transparency=transparency(_with_load(best, body, settings), motion),
+        claims=_claims(best, body, friction, reach, settings),
         notes=(),
     )
     return replace(proposal, notes=notes_on(proposal, diagnosis))
 
 
-def complete_assumptions(given: Assumptions, body: Body, reach: Reach) -> Assumptions:
-    """The assumptions with those that are not stated taken from record and body."""
-    period = given.sample_period or reach.sample_period
+def complete_assumptions(assumptions: Assumptions, body: Body, reach: Reach) -> Assumptions:
+    """The assumptions; missing ones are derived from record and body."""
+    period = assumptions.sample_period or reach.sample_period
     mass = whole_inertia(body)
-    delay = period if given.delay is None else given.delay
-    filtered = given.velocity_bandwidth or min(FILTER, FILTER_SHARE / period)
-    load = given.load or float(f"{LOAD * mass:.2g}")
-    return replace(given, sample_period=period, delay=delay, velocity_bandwidth=filtered, load=load)
+    delay = period if assumptions.delay is None else assumptions.delay
+    filtered = assumptions.velocity_bandwidth or min(FILTER, FILTER_SHARE / period)
+    load = assumptions.load or float(f"{LOAD * mass:.2g}")
+    return replace(
+        assumptions, sample_period=period, delay=delay, velocity_bandwidth=filtered, load=load
+    )
 
 
 def cancellations(
-    body: Body, friction: FrictionInterval | None, reach: Reach, given: Assumptions
+    body: Body, friction: FrictionInterval | None, reach: Reach, assumptions: Assumptions
 ) -> list[ProposedController]:
-    """The laws of C that are sure to be passive; none where no level is sure."""
+    """The laws of C that are passive within all intervals; none without a guaranteed level."""
     if friction is None:
         return []
-    gain = acting_gain(body, reach, errors=given.errors)
-    level = cancelled_level(friction, body, reach, gain, given)
+    gain = acting_gain(body, reach, errors=assumptions.errors)
+    level = cancelled_level(friction, body, reach, gain, assumptions)
     if level is None:
         return []
-    damping = small_motion_damping(body, errors=given.errors)
-    late = _late(body, given)
+    damping = small_motion_damping(body, errors=assumptions.errors)
+    late = _late(body, assumptions)
     dahl = dahl_cancellation(
-        level, friction, reach, gain, given, axis=body.axis, late=late, damping=damping
+        level, friction, reach, gain, assumptions, axis=body.axis, late=late, damping=damping
     )
     laws = [] if dahl is None else [dahl]
     if friction.presliding is not None:
         # in small motion a smoothed cancellation is a negative damper that a bristle cannot stop
         return laws
-    assert given.sample_period is not None and given.velocity_bandwidth is not None
+    assert assumptions.sample_period is not None and assumptions.velocity_bandwidth is not None
     smoothed = smoothed_cancellation(
         level,
         reach,
-        given,
+        assumptions,
         axis=body.axis,
-        period=given.sample_period,
-        filter_bandwidth=given.velocity_bandwidth,
+        period=assumptions.sample_period,
+        filter_bandwidth=assumptions.velocity_bandwidth,
     )
     return [*laws, smoothed]
 
@@ -158,17 +160,21 @@ def _trial(
     option: ProposedController | None,
     motion: StatedMotion,
     reach: Reach,
-    given: Assumptions,
+    assumptions: Assumptions,
 ) -> Trial:
-    assert given.load is not None and given.sample_period is not None and given.delay is not None
+    assert (
+        assumptions.load is not None
+        and assumptions.sample_period is not None
+        and assumptions.delay is not None
+    )
     names = option.controller.names() if option else {}
     h, loop = force_feedback(
         body,
         reach,
-        given,
-        load=given.load,
+        assumptions,
+        load=assumptions.load,
         # the command is held for a sample, and so is the error that the low-pass takes in
-        delay=_late(body, given) + given.sample_period,
+        delay=_late(body, assumptions) + assumptions.sample_period,
         smoothing_velocity=names.get("smoothed_coulomb.smoothing_velocity", 0.0),
     )
     diagram = haptic_interface(
@@ -176,20 +182,20 @@ def _trial(
         cancellation=option.controller if option else None,
         force_feedback=h.controller,
     )
-    sampling = sampling_of(given, reach)
+    sampling = sampling_of(assumptions, reach)
     return Trial(option, h, loop, diagram, predict(diagram, motion, sampling))
 
 
-def _late(body: Body, given: Assumptions) -> float:
+def _late(body: Body, assumptions: Assumptions) -> float:
     """Computing delay and what the identified actuation adds, s."""
-    assert given.delay is not None
-    return given.delay + identified_delay(body)
+    assert assumptions.delay is not None
+    return assumptions.delay + identified_delay(body)
 
 
-def _with_load(best: Trial, body: Body, given: Assumptions) -> Diagram:
+def _with_load(best: Trial, body: Body, assumptions: Assumptions) -> Diagram:
     """The diagram with the load in the place of the hand."""
-    assert given.load is not None
-    inertia = replace(body.parameters["inertia"], value=given.load)
+    assert assumptions.load is not None
+    inertia = replace(body.parameters["inertia"], value=assumptions.load)
     return haptic_interface(
         body,
         hand=Body(body.axis, {"inertia": inertia}),
@@ -199,20 +205,24 @@ def _with_load(best: Trial, body: Body, given: Assumptions) -> Diagram:
 
 
 def _claims(
-    best: Trial, body: Body, friction: FrictionInterval | None, reach: Reach, given: Assumptions
+    best: Trial,
+    body: Body,
+    friction: FrictionInterval | None,
+    reach: Reach,
+    assumptions: Assumptions,
 ) -> Mapping[str, tuple[Claim, ...]]:
     """Claims by case."""
     by_case: dict[str, list[Claim]] = {case: [] for case in four_cases(best.diagram)}
     if best.cancellation is not None and friction is not None:
-        gain = acting_gain(body, reach, errors=given.errors)
+        gain = acting_gain(body, reach, errors=assumptions.errors)
         by_case["MBC"] = cancellation_claims(
             body,
             best.cancellation,
             friction,
             reach,
             gain=gain,
-            late=_late(body, given),
-            errors=given.errors,
+            late=_late(body, assumptions),
+            errors=assumptions.errors,
         )
         compliant = compliant_claim(body, best.cancellation, friction, gain=gain)
         by_case["MBC"] += [compliant] if compliant else []
@@ -223,7 +233,7 @@ def _claims(
                 diagram,
                 best.prediction.motion,
                 reach,
-                sampling_of(given, reach),
+                sampling_of(assumptions, reach),
                 axis=body.axis,
             )
         )

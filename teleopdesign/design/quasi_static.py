@@ -18,6 +18,7 @@ from ..diagrams import Diagram
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..realise.simulated import without_absent
+from ..realise.tips import of_a_body
 from .stated_motion import StatedMotion
 
 #: what needs states that slow motion does not have: taken away, or at their settled value
@@ -25,8 +26,14 @@ _ROLES = ("friction_shape", "friction_speed", "structure", "actuation", "contact
 
 
 def slow_body(body: Body) -> Body:
-    """The body in slow motion: without presliding, memory, compliance, actuation and contact."""
+    """The body in slow motion: without presliding, memory, compliance, actuation and contact.
+
+    A tip then goes along with the body, and so does its friction.
+    """
     body = without_absent(body)
+    for effect in [e for e in body.effects if e.role == "tip_level"]:
+        values = {n: body.parameters[f"{effect.name}.{n}"].value for n in effect.parameters}
+        body = body.without_effect(effect.name).with_effect(of_a_body(effect), values)
     for effect in [e for e in body.effects if e.role in _ROLES]:
         if body.has(effect.name):
             body = body.without_effect(effect.name)
@@ -87,7 +94,7 @@ def quasi_static_error(diagram: Diagram, motion: StatedMotion, *, rows: int = 20
 
 
 def left_over(diagram: Diagram, force: Array, velocity: Array) -> Array:
-    """Of a force against the motion, what C and H leave to the hand in slow motion, (n,)."""
+    """The part, (n,), of a resisting force that C and H leave to the hand in slow motion."""
     gain = np.zeros_like(force)
     for block in diagram.controls:
         assert isinstance(block.controller, Controller)

@@ -13,7 +13,7 @@ from ..realise.reach import Reach
 
 
 def reach_of(experiment: Experiment, place: str) -> Reach:
-    """What the records of an experiment reached at one body.
+    """The recorded range of one body: travel, speed, command, sensors and sampling.
 
     raises ExperimentError: the body does not move in them
     """

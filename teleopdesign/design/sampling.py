@@ -7,12 +7,16 @@ from ..simulate import Sampling
 from .assumptions import Assumptions
 
 
-def sampling_of(given: Assumptions, reach: Reach) -> Sampling:
+def sampling_of(assumptions: Assumptions, reach: Reach) -> Sampling:
     """The sampling that assumptions state, with the encoder of the record.
 
-    given: settled: period, delay and velocity filter are numbers
+    assumptions: complete: period, delay and velocity filter are numbers
     """
-    period, delay, filtered = given.sample_period, given.delay, given.velocity_bandwidth
+    period, delay, filtered = (
+        assumptions.sample_period,
+        assumptions.delay,
+        assumptions.velocity_bandwidth,
+    )
     assert period is not None and delay is not None and filtered is not None
     return Sampling(
         period=period,

@@ -55,7 +55,7 @@ class StatedMotion:
 
 
 def stated_motion(reach: Reach, assumptions: Assumptions, axis: str) -> StatedMotion:
-    """The motion asked for, or one of a quarter of the travel at the recorded rms speed.
+    """The stated motion; by default a quarter of the travel at the recorded rms speed.
 
     raises ModelError: it leaves the recorded travel or speed
     """

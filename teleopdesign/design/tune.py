@@ -53,7 +53,7 @@ class TunedControllers(ByValue):
 
 
 def tune(design: Design, *, simulations: int = 60) -> TunedControllers:
-    """Search from the numbers that a design proposes, which keep every condition.
+    """Search for a smaller force error from the numbers of a design; every condition still holds.
 
     simulations: most that are run
     raises ModelError: what was proposed cannot be simulated

@@ -44,8 +44,11 @@ def compliant_claim(
     law = chosen.controller.stages[0].law
     if tip <= 0 or motor <= 0 or not law.bristle_stiffness:
         return None
-    own = chosen.controller.names()
-    level, stiffness = own[f"{law.name}.{law.bound}"], own[f"{law.name}.{law.bristle_stiffness}"]
+    numbers = chosen.controller.names()
+    level, stiffness = (
+        numbers[f"{law.name}.{law.bound}"],
+        numbers[f"{law.name}.{law.bristle_stiffness}"],
+    )
     return any_environment(
         motor_level=_decimal(rounded_down(friction.lowest.low, digits=4)),
         link_level=0,
@@ -91,12 +94,12 @@ def _friction_claims(
     errors: float,
 ) -> list[Claim]:
     """Claims on friction and its cancellation alone."""
-    law, own = chosen.controller.stages[0].law, chosen.controller.names()
-    level = rounded_up(own[f"{law.name}.{law.bound}"] * gain, digits=6)
+    law, numbers = chosen.controller.stages[0].law, chosen.controller.names()
+    level = rounded_up(numbers[f"{law.name}.{law.bound}"] * gain, digits=6)
     least = rounded_down(friction.lowest.low, digits=4)
     if not law.bristle_stiffness or friction.presliding is None:
         return [bounded_compensation(coulomb_level=_decimal(least), bound=_decimal(level))]
-    stiffness = rounded_up(own[f"{law.name}.{law.bristle_stiffness}"] * gain, digits=6)
+    stiffness = rounded_up(numbers[f"{law.name}.{law.bristle_stiffness}"] * gain, digits=6)
     presliding = _decimal(rounded_down(friction.presliding.low, digits=4))
     most = _decimal(rounded_up(friction.highest.high, digits=4))
     pair = dahl_compensation(

@@ -19,7 +19,7 @@ from .answers.bodies import model_data
 from .answers.fingerprint import experiment_data
 from .diagnosis import Diagnosis
 from .fit import Fit
-from .ladder_text import own_rows
+from .ladder_text import offset_rows
 from .one_moment import Moment
 from .open_questions import open_questions
 from .probability import CandidateEvidence, evidence_of
@@ -38,19 +38,19 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
                 "added": None if r.added is None else _place(r.added.key),
                 "fit_error": r.fit.fit_error,
                 "check_error": r.fit.check_error,
-                "check_error_at_command": plain(r.fit.seen.error),
-                "blind": r.fit.seen.blind,
+                "check_error_at_command": plain(r.fit.at_command.error),
+                "blind": r.fit.at_command.blind,
             }
             for r in diagnosis.rungs
         ],
-        "blind": diagnosis.after.seen.blind,
+        "blind": diagnosis.after.at_command.blind,
         "noise_floor": diagnosis.floor.value,
         "noise_floor_source": diagnosis.floor.source,
         "check": "records" if checked else "blocks of fit",
         "bandwidth": {"value": diagnosis.prepared.bandwidth, "unit": "Hz"},
         "candidates": _candidates(diagnosis),
         "indistinguishable": [[_place(c.key) for c in g] for g in diagnosis.groups],
-        "own": own_rows(diagnosis),
+        "own": offset_rows(diagnosis),
         "model_parameters": _parameters(diagnosis.after, _added(diagnosis)),
         "left_over_noise_floors": plain(diagnosis.left),
         "one_moment": _moment(diagnosis.moment),
@@ -67,7 +67,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
 
 
 def _open(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """What the records leave open: an accepted effect, and others with the models they were in."""
+    """The open questions: an accepted effect, and its rivals with their models."""
     return [
         {
             "added": None if question.added is None else _place(question.added.key),
@@ -80,7 +80,7 @@ def _open(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 
 def _moment(moment: Moment | None) -> dict[str, Any] | None:
-    """The moment that holds all that is left above noise."""
+    """The moment that holds all residual above noise."""
     if moment is None:
         return None
     return {
@@ -109,17 +109,17 @@ def _parameter(model: Model, name: str) -> dict[str, Any]:
     }
 
 
-def _parameters(found: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
+def _parameters(fit: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
     skip = set(without)
     return {
-        n: _parameter(found.model, n)
-        for n in found.model.parameters
+        n: _parameter(fit.model, n)
+        for n in fit.model.parameters
         if n.rpartition(".")[0] not in skip
     }
 
 
 def _candidates(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """Every effect tried, most probable first: on the step that accepted it, or its best one."""
+    """Every candidate, most probable first: at the step that accepted it, or at its best step."""
     best: dict[tuple[str, str], CandidateEvidence] = {}
     for one in evidence_of(diagnosis):
         before = best.setdefault(one.ranked.candidate.key, one)
@@ -130,7 +130,7 @@ def _candidates(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 
 def _evidence(one: CandidateEvidence) -> dict[str, Any]:
-    """What the probability of a candidate rests on, a row a step that took it seriously."""
+    """Evidence behind the probability of a candidate, one row for each step that considered it."""
     return _place(one.ranked.candidate.key) | {
         "accepted": one.accepted,
         "as_good": one.as_good,
@@ -141,20 +141,20 @@ def _evidence(one: CandidateEvidence) -> dict[str, Any]:
 
 
 def _row(diagnosis: Diagnosis, one: CandidateEvidence) -> dict[str, Any]:
-    candidate, found = one.ranked.candidate, one.ranked.fit
+    candidate, fit = one.ranked.candidate, one.ranked.fit
     effect, at = candidate.key
     if one.accepted:  # fitted again with what was exchanged or left out since: as in the ladder
-        found = next(r.fit for r in diagnosis.rungs if r.added == candidate)
-    model = found.model
+        fit = next(r.fit for r in diagnosis.rungs if r.added == candidate)
+    model = fit.model
     if one.accepted and diagnosis.model.body(at).has(effect):
         model = diagnosis.model  # all parameters are re-estimated with each effect that follows
     return {
         "effect": effect,
         "at": at,
         "probability": one.probability(),
-        "check_error": found.check_error,
-        "check_error_at_command": plain(found.seen.error),
-        "blind": found.seen.blind,
+        "check_error": fit.check_error,
+        "check_error_at_command": plain(fit.at_command.error),
+        "blind": fit.at_command.blind,
         "refused": REFUSALS.get(one.ranked.refused),
         "parameters": {
             n: _parameter(model, f"{at}.{effect}.{n}") for n in candidate.effect.parameters
@@ -219,7 +219,7 @@ def _predicted(diagnosis: Diagnosis, file: str) -> list[np.ndarray]:
             motion = stretch.motion
             if motion.body != body:
                 continue
-            for own, out in zip(along, (before, after), strict=True):
-                out[motion.rows] = residual_along(*own[i]).residual.value
+            for arguments, out in zip(along, (before, after), strict=True):
+                out[motion.rows] = residual_along(*arguments[i]).residual.value
         columns += [measured, measured - before, measured - after, before, after]
     return columns

@@ -8,12 +8,12 @@ from ..measurement.experiment import Experiment
 
 
 def default_bandwidth(experiment: Experiment) -> float:
-    """Bandwidth (Hz) where none is given: as far as the position still tells an acceleration.
+    """Default bandwidth (Hz): the highest frequency at which positions still show acceleration.
 
     The highest frequency below a tenth of the sample rate at which the acceleration's spectrum
     stands 10 dB above what white reading noise would leave there.
     """
-    found = []
+    limits = []
     for record in experiment.records:
         rate = 1.0 / record.sample_time
         for body in experiment.bodies:
@@ -26,6 +26,6 @@ def default_bandwidth(experiment: Experiment) -> float:
             )
             frequency = np.fft.rfftfreq(n, record.sample_time)
             noise = np.median(density[frequency > 0.3 * rate])
-            told = frequency[(density > 10 * noise) & (frequency <= 0.1 * rate)]
-            found.append(told.max() if told.size else 0.02 * rate)
-    return float(max(min(found), 1.0))
+            above_noise = frequency[(density > 10 * noise) & (frequency <= 0.1 * rate)]
+            limits.append(above_noise.max() if above_noise.size else 0.02 * rate)
+    return float(max(min(limits), 1.0))

@@ -40,26 +40,26 @@ def candidates(model: Model, motions: Sequence[Motion] = ()) -> tuple[Candidate,
     motions: those that decide; where a body only ever goes on, place and time are one, and no
     effect of the place can be told from a drift: it is no candidate there
     """
-    found = []
+    possible = []
     for place in model.places:
         body = model.body(place)
-        taken = {e.role for e in body.effects} & set(ONE_ONLY)
+        roles = {e.role for e in body.effects} & set(ONE_ONLY)
         for effect in model.known.values():
             if (place in model.bodies) == (effect.role in CONTACT_ROLES):
                 continue
-            if body.has(effect.name) or effect.role in taken:
+            if body.has(effect.name) or effect.role in roles or body.axis in effect.elsewhere:
                 continue
             if effect.expression().has(SIGNALS["position"]) and not _comes_back(place, motions):
                 continue
-            if all(body.has(need) for need in effect.needs):
-                found.append(Candidate(effect, place))
-    return tuple(found)
+            if not body.lacks(effect):
+                possible.append(Candidate(effect, place))
+    return tuple(possible)
 
 
 def _comes_back(place: str, motions: Sequence[Motion]) -> bool:
-    own = [m.position for m in motions if m.body == place]
-    return not own or any(
-        float(np.sum(np.abs(np.diff(x)))) > COMES_BACK * float(np.ptp(x)) for x in own
+    positions = [m.position for m in motions if m.body == place]
+    return not positions or any(
+        float(np.sum(np.abs(np.diff(x)))) > COMES_BACK * float(np.ptp(x)) for x in positions
     )
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Comparison(ByValue):
-    """A model held against an experiment, as it stands.
+    """A model compared with an experiment, without estimation.
 
     fit_error, check_error: relative force errors (NaN where there is no such record)
     data: per sample of every record and body (dimension "sample"): record, body, segment, time,
@@ -67,7 +67,7 @@ class Comparison(ByValue):
 
 
 def compare(model: Model, experiment: Experiment, *, seed: int = 0) -> Comparison:
-    """Hold the model, as it stands, against every record of the experiment.
+    """Compare the model with every record of the experiment, without estimation.
 
     seed: of the draws for the noise floor
     raises ExperimentError: the experiment lacks what the comparison needs

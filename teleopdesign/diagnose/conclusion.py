@@ -45,7 +45,7 @@ def conclude(search: LadderSearch, state: LadderState) -> Diagnosis:
 
 
 def _with_reading_error(search: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
-    """The rungs with what readings do taken off the last fit, unless it then leaves more."""
+    """The rungs with the reading error removed from the last fit, unless its error grows."""
     search.progress("reading the model's own motion")
     last = corrected(search, state.fit, state.floor)
     rungs = (*state.rungs[:-1], replace(state.rungs[-1], fit=last))
@@ -53,11 +53,16 @@ def _with_reading_error(search: LadderSearch, state: LadderState) -> tuple[Rung,
 
 
 def _on_all(fit: Fit, whole: Prepared) -> Fit:
-    """A fit that was made on windows, with the errors that it has on the whole records."""
+    """A fit made on windows, with its errors on the whole records."""
     fit_error = force_error(fit.model, whole.of("fit"))
     check = whole.of("check")
     if not check:
         return replace(fit, fit_error=fit_error)
-    error, seen = force_error(fit.model, check), at_command(fit.model, check)
-    there = replace(fit.seen, error=seen.error, blind=seen.blind, weak=seen.weak)
-    return replace(fit, fit_error=fit_error, check_error=error, seen=there)
+    error, command_error = force_error(fit.model, check), at_command(fit.model, check)
+    on_whole = replace(
+        fit.at_command,
+        error=command_error.error,
+        blind=command_error.blind,
+        weak=command_error.weak,
+    )
+    return replace(fit, fit_error=fit_error, check_error=error, at_command=on_whole)

@@ -19,7 +19,7 @@ def corrected_fit(search: LadderSearch) -> Fit:
 
 
 def corrected(search: LadderSearch, fit: Fit, floor: NoiseFloor) -> Fit:
-    """A fit with the reading error taken off where it leaves only noise, and in its errors else."""
+    """A fit without its reading error if it leaves only noise; else with wider standard errors."""
     return with_reading_error(
         fit,
         search.prepared,

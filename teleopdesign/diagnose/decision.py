@@ -15,7 +15,14 @@ import numpy as np
 
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
-from .evidence import chance, check_score, check_squares, seen_gain, seen_score, whole_score
+from .evidence import (
+    chance,
+    check_score,
+    check_squares,
+    gain_at_command,
+    score_at_command,
+    whole_score,
+)
 from .fit import Fit
 from .noise_floor import NoiseFloor
 from .one_moment import Moment, worst_moment
@@ -39,7 +46,7 @@ class Floors:
 
 
 def bounded_by_what_is_left(drawn: NoiseFloor, here: Fit, ranking: Ranking) -> NoiseFloor:
-    """The floor, no higher than what the model leaves, or any candidate that can be told.
+    """The noise floor, at most the error of the model or of any identifiable candidate.
 
     Without what is missing a parameter may be led where sensor noise would ask for any force: what
     the records themselves leave shows that it does not.
@@ -51,7 +58,7 @@ def bounded_by_what_is_left(drawn: NoiseFloor, here: Fit, ranking: Ranking) -> N
 def allowed_floor(
     bounded: NoiseFloor, first: NoiseFloor, stated: Fit, *, criteria: Criteria = CRITERIA
 ) -> NoiseFloor:
-    """A floor, held at what the first, bounded floor and the user's model (fitted) allow.
+    """A noise floor, limited by the first floor or by the error of the user's fitted model.
 
     An effect that makes sensors count for much more would hide what it leaves in their noise.
     """
@@ -60,41 +67,47 @@ def allowed_floor(
 
 
 def is_noise(check_error: float, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
-    """Whether so large an error on the check records counts as noise."""
+    """Whether an error of this size on the check records counts as noise."""
     return check_error <= criteria.adequate * floor.value
 
 
-def is_a_tone(found: Fit, tone: Tone, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
+def is_a_tone(fit: Fit, tone: Tone, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
     """Whether a plain tone explains all but noise."""
-    squares = check_squares(found)
-    left = found.check_error * float(np.sqrt(tone.squares / squares)) if squares > 0.0 else 0.0
+    squares = check_squares(fit)
+    left = fit.check_error * float(np.sqrt(tone.squares / squares)) if squares > 0.0 else 0.0
     return is_noise(left, floor, criteria=criteria)
 
 
-def is_adequate(found: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
-    """Whether what a model leaves on the check records counts as noise, seen at the command too.
+def is_adequate(fit: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
+    """Whether the error on the check records counts as noise, as a force and at the command.
 
     A model that is blind in much of the motion says too little to be adequate.
     """
-    seen = found.seen
-    at_command = seen.error <= criteria.adequate * floor.seen and seen.blind <= criteria.blind
-    return is_noise(found.check_error, floor, criteria=criteria) and at_command
+    command_error = fit.at_command
+    at_command = (
+        command_error.error <= criteria.adequate * floor.value_at_command
+        and command_error.blind <= criteria.blind
+    )
+    return is_noise(fit.check_error, floor, criteria=criteria) and at_command
 
 
-def floors_left(found: Fit, floor: NoiseFloor) -> float:
-    """Error that a model leaves on the check records, in noise floors, seen at the command too."""
-    if not (floor.value and math.isfinite(found.seen.error)):
+def floors_left(fit: Fit, floor: NoiseFloor) -> float:
+    """Check error in noise floors: of the force or at the command, the larger."""
+    if not (floor.value and math.isfinite(fit.at_command.error)):
         return float("inf")
-    return max(found.check_error / floor.value, found.seen.error / floor.seen)
+    return max(fit.check_error / floor.value, fit.at_command.error / floor.value_at_command)
 
 
 def explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
-    """Part of the squares above the noise floor that the effects between the two explain.
+    """Share of the squares above the noise floor that the effects added between two fits explain.
 
     Of the force or seen at the command, the smaller part.
     """
     of_force = _taken_away(before.check_error, after.check_error, floor.value)
-    return min(of_force, _taken_away(before.seen.error, after.seen.error, floor.seen))
+    return min(
+        of_force,
+        _taken_away(before.at_command.error, after.at_command.error, floor.value_at_command),
+    )
 
 
 def _taken_away(before: float, after: float, floor: float) -> float:
@@ -102,17 +115,17 @@ def _taken_away(before: float, after: float, floor: float) -> float:
 
 
 def refusal(base: Fit, other: Fit, *, criteria: Criteria = CRITERIA) -> str:
-    """Why what was added to `base` does not count (a key of `REFUSALS`); "" where nothing bars it.
+    """Why an addition to `base` does not count (a key of `REFUSALS`); "" where it may count.
 
     What makes the recorded force unpredictable has not explained it.
     """
-    already = base.seen.blind if base.seen.blind > criteria.blind else 0.0
-    if other.seen.blind - already > criteria.blind:
+    already = base.at_command.blind if base.at_command.blind > criteria.blind else 0.0
+    if other.at_command.blind - already > criteria.blind:
         return "blind"
-    if other.seen.weak and not base.seen.weak:
+    if other.at_command.weak and not base.at_command.weak:
         return "weak"
     less = check_squares(other) < (1.0 - criteria.relevant) * check_squares(base)
-    return "hides" if less and not seen_gain(base, other) > criteria.relevant else ""
+    return "hides" if less and not gain_at_command(base, other) > criteria.relevant else ""
 
 
 def is_better(base: Fit, other: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
@@ -125,7 +138,7 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor, *, criteria: Criteria = 
     of_force = (before - check_squares(other)) / before
 
     def is_enough(gain: float, score: float) -> bool:
-        """Whether so large a part of the squares, gained with this score, is more than chance."""
+        """Whether a gain of this share of the squares, at this score, is more than chance."""
         return (
             (score > criteria.sure or _makes_adequate(base, other, floor, criteria))
             and gain > criteria.relevant
@@ -137,7 +150,7 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor, *, criteria: Criteria = 
         not refusal(base, other, criteria=criteria)
         and other.check_error < base.check_error
         and is_enough(of_force, check_score(base, other))
-        and is_enough(seen_gain(base, other), seen_score(base, other))
+        and is_enough(gain_at_command(base, other), score_at_command(base, other))
     )
 
 
@@ -150,40 +163,40 @@ def _makes_adequate(base: Fit, other: Fit, floor: NoiseFloor, criteria: Criteria
 def is_supported(
     base: Fit, ranked: Ranked, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
 ) -> bool:
-    """Whether a candidate can be told, lowers the check error enough, and leaves the rest in place.
+    """Whether a candidate is identifiable, lowers the check error enough, and displaces no effect.
 
     One that drives a parameter of the model to its bound takes the place of an effect that is
     there: it describes the records, but is no missing physics beside the model's own. One that
     needs a parameter of its own at its bound is itself another effect, unless it leaves noise only.
     """
     driven = set(ranked.fit.at_bound) - set(base.at_bound)
-    own = [n for n in driven if n not in base.model.parameters]
+    new = [n for n in driven if n not in base.model.parameters]
     return (
         ranked.is_identifiable
         and not displaced(base, ranked.fit)
         and (
-            all(ranked.fit.model.declared(n).optional for n in own)
+            all(ranked.fit.model.declared(n).optional for n in new)
             or _makes_adequate(base, ranked.fit, floor, criteria)
         )
         and is_better(base, ranked.fit, floor, criteria=criteria)
     )
 
 
-def displaced(base: Fit, found: Fit) -> list[str]:
-    """Parameters driven to a bound whose effect the records tell from its absence in the base."""
-    driven = set(found.at_bound) - set(base.at_bound)
+def displaced(base: Fit, fit: Fit) -> list[str]:
+    """Parameters driven to a bound although the base shows their effect clearly."""
+    driven = set(fit.at_bound) - set(base.at_bound)
     return sorted(n for n in driven if n in base.model.parameters and _is_there(base, n))
 
 
 def _is_there(base: Fit, name: str) -> bool:
-    """Whether the records tell the effect that a parameter belongs to from its absence."""
+    """Whether the records show that the effect of a parameter is present."""
     effect = name.rpartition(".")[0]
     values = {n: v for n, v in base.model.parameters.items() if n.rpartition(".")[0] == effect}
     return all(v.fixed or not v.stderr >= base.model.from_absence(n) for n, v in values.items())
 
 
 def worth_pursuing(base: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> float:
-    """Part of the base's squares from which a gain by a first step is worth following up.
+    """Share of the base's squares that a first step must gain for the search to go on.
 
     The floor is never above what a candidate leaves. So beside a base that leaves little more than
     its floor, only what takes away of_floor / (1 + of_floor) of the squares can be better: a first
@@ -195,18 +208,18 @@ def worth_pursuing(base: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERI
 
 
 def rank_key(ranked: Ranked) -> tuple[bool, float]:
-    """By this a ranking is in order: what counts first, then by squares on the check records."""
+    """Sort key of a ranking: candidates that count first, then by squares on the check records."""
     return not ranked.counts, check_squares(ranked.fit)
 
 
 def alike(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> list[Ranked]:
-    """Those of the supported candidates, in order, that explain the records as well as the best."""
+    """The supported candidates, in order, that explain the records as well as the best one."""
     best = supported[:1]
     return [r for r in supported if r is best[0] or _equal(r, best[0], criteria)]
 
 
 def _equal(one: Ranked, best: Ranked, criteria: Criteria) -> bool:
-    """Whether the records do not tell a candidate from the best one."""
+    """Whether the records cannot distinguish a candidate from the best one."""
     near = abs(one.fit.check_error - best.fit.check_error) < criteria.near * best.fit.check_error
     return near and whole_score(one.fit, best.fit) < criteria.close
 
@@ -224,7 +237,7 @@ def alternatives_of(
     *,
     criteria: Criteria = CRITERIA,
 ) -> tuple[Candidate, ...]:
-    """Candidates that the records do not tell from this one.
+    """Candidates that the records cannot distinguish from this one.
 
     One that needs more parameters to do as well explains nothing that the simpler does not.
     """
@@ -243,12 +256,12 @@ def simplicity(ranked: Ranked) -> tuple[int, int]:
 
 
 def moment_above_noise(
-    found: Fit, prepared: Prepared, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
+    fit: Fit, prepared: Prepared, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
 ) -> Moment | None:
     """The one moment that holds all that a model leaves above noise; None where none does."""
-    if is_adequate(found, floor, criteria=criteria):
+    if is_adequate(fit, floor, criteria=criteria):
         return None
-    moment = worst_moment(found, prepared, floor)
+    moment = worst_moment(fit, prepared, floor)
     return moment if moment is not None and moment.without <= criteria.adequate else None
 
 

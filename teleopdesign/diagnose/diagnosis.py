@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class OpenQuestion(ByValue):
-    """An accepted effect and what may stand in its place as well; None: nothing was accepted.
+    """An accepted effect (None: none was accepted) and the rivals that could replace it.
 
     others: each with the fit that it was compared by
     """
@@ -81,7 +81,7 @@ class Diagnosis(ByValue):
 
     @property
     def unlikely(self) -> bool:
-        """Whether it is undecided only since no effect that explains most is probable enough."""
+        """Whether the verdict is undecided only because no effect is probable enough."""
         decided = verdict(self.rungs, self.floor, self.moment) == "effects_missing"
         return self.verdict == "undecided" and decided
 
@@ -94,12 +94,12 @@ class Diagnosis(ByValue):
 
     @property
     def more_is_missing(self) -> bool:
-        """Whether more than noise is left."""
+        """Whether the final model leaves more than noise."""
         return not is_adequate(self.after, self.floor) and self.moment is None
 
     @property
     def left(self) -> float:
-        """Error that is left, in noise floors: of the force or seen at the command, the larger."""
+        """Final error in noise floors: of the force or at the command, the larger."""
         return floors_left(self.after, self.floor)
 
     def plot(self) -> Figure:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Effort:
-    """Relative change of squares and parameters at which a fit ends, and evaluations at most."""
+    """When a fit ends: relative change of squares and parameters, and most evaluations."""
 
     tolerance: float
     evaluations: int

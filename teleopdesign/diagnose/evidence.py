@@ -38,41 +38,41 @@ def chance(score: float) -> float:
     return float(ndtr(-score))
 
 
-def check_squares(found: Fit) -> float:
+def check_squares(fit: Fit) -> float:
     """Sum of squares on the check records, relative to the force that acts by the model."""
-    return float(found.check_residual @ found.check_residual)
+    return float(fit.check_residual @ fit.check_residual)
 
 
 def check_score(before: Fit, after: Fit) -> float:
-    """How surely `after` has the smaller error on the check records."""
+    """Score by which `after` has the smaller force error on the check records."""
     return gain_score(before.check_residual, after.check_residual, after.check_blocks)
 
 
-def seen_score(before: Fit, after: Fit) -> float:
-    """How surely `after` has the smaller error on the check records, seen at the command.
+def score_at_command(before: Fit, after: Fit) -> float:
+    """Score by which `after` has the smaller error at the command, on the check records.
 
     On the rows that both can tell: what a model is blind to speaks for neither.
     """
-    rows = before.seen.sighted & after.seen.sighted
+    rows = before.at_command.sighted & after.at_command.sighted
     return gain_score(
-        before.seen.residual[rows], after.seen.residual[rows], after.check_blocks[rows]
+        before.at_command.residual[rows], after.at_command.residual[rows], after.check_blocks[rows]
     )
 
 
-def seen_gain(before: Fit, after: Fit) -> float:
-    """Part of the squares seen at the command that `after` takes away, on rows that both tell.
+def gain_at_command(before: Fit, after: Fit) -> float:
+    """Share of the squares at the command that `after` removes, on rows sighted in both fits.
 
     No more than the error itself says of each model on its own rows: to be blind to where most is
     left is no gain.
     """
-    rows = before.seen.sighted & after.seen.sighted
-    whole, left = (float(np.sum(f.seen.residual[rows] ** 2)) for f in (before, after))
-    own = 1.0 - (after.seen.error / before.seen.error) ** 2
-    return min(own, 1.0 - left / whole) if whole > 0.0 else 0.0
+    rows = before.at_command.sighted & after.at_command.sighted
+    whole, left = (float(np.sum(f.at_command.residual[rows] ** 2)) for f in (before, after))
+    on_own_rows = 1.0 - (after.at_command.error / before.at_command.error) ** 2
+    return min(on_own_rows, 1.0 - left / whole) if whole > 0.0 else 0.0
 
 
 def whole_score(before: Fit, after: Fit) -> float:
-    """How surely `after` has the smaller error on all records together."""
+    """Score by which `after` has the smaller force error on all records together."""
     shift = int(after.fit_blocks.max()) + 1
     return gain_score(
         np.concatenate([before.fit_residual, before.check_residual]),

@@ -44,18 +44,18 @@ def _windows(record: Record, part: float) -> tuple[slice, ...]:
     n-th is taken.
     """
     size = max(64, round(WINDOW / record.sample_time))
-    found, owed = [], 0.0
+    windows, owed = [], 0.0
     for segment in record.segments:
         length = segment.stop - segment.start
         owed += part * length / size
         count = round(owed)
         if count * size >= length:
-            found.append(segment)
+            windows.append(segment)
             owed -= length / size
         elif count:
             places = np.linspace(0.0, 1.0, count) if count > 1 else np.array([0.5])
             starts = [segment.start + int((length - size) * p) for p in places]
-            found += [slice(a, a + size) for a in starts]
+            windows += [slice(a, a + size) for a in starts]
             owed -= count
     longest = max(record.segments, key=lambda s: s.stop - s.start)
-    return tuple(found) or (slice(longest.start, min(longest.start + size, longest.stop)),)
+    return tuple(windows) or (slice(longest.start, min(longest.start + size, longest.stop)),)

@@ -28,17 +28,18 @@ class Exchange:
     """One effect for another.
 
     dropped: the one that gives way;  without: the fit that both are compared on
-    taken: the one in its place, with the model fitted with it;  ranking: all that were tried there
+    replacement: the one in its place, with the model fitted with it
+    ranking: all candidates for that place
     """
 
     dropped: Candidate
     without: Fit
-    taken: Ranked
+    replacement: Ranked
     ranking: Ranking
 
 
 def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """The ladder with one effect exchanged for a better, less what that makes superfluous."""
+    """The ladder after the best exchange, without effects that it makes superfluous; None: none."""
     criteria, prepared, floor = search.criteria, search.prepared, state.floor
     if state.exchanges >= search.plan.exchanges or is_adequate(state.fit, floor, criteria=criteria):
         return None
@@ -52,11 +53,11 @@ def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
     best = best_exchange(search, state.fit, rivals, floor, step=state.step)
     if best is None:
         return None
-    taken, without = best.taken, best.without
-    alternatives = alternatives_of(taken, best.ranking, without, floor, criteria=criteria)
-    rung = Rung(taken.candidate, taken.fit, best.ranking, alternatives)
+    replacement, without = best.replacement, best.without
+    alternatives = alternatives_of(replacement, best.ranking, without, floor, criteria=criteria)
+    rung = Rung(replacement.candidate, replacement.fit, best.ranking, alternatives)
     kept = [r for r in state.rungs if r.added is not best.dropped]
-    order = falling(refitted([*kept, rung], taken.fit, prepared), prepared)
+    order = falling(refitted([*kept, rung], replacement.fit, prepared), prepared)
     if order is None:
         return None
     moved = replace(state.with_rungs(order), exchanges=state.exchanges + 1)
@@ -70,7 +71,7 @@ def rivals_of(
     *,
     criteria: Criteria = CRITERIA,
 ) -> list[Candidate]:
-    """What the records supported in a ranking besides the one that was added, and is not there."""
+    """Supported candidates of a ranking besides the accepted one, if the final model lacks them."""
     keys = {c.key for c in there}
     supported = [
         r.candidate
@@ -88,7 +89,7 @@ def best_exchange(
     *,
     step: int = 1,
 ) -> Exchange | None:
-    """The exchange that lowers the error on the check records most; None where none does clearly.
+    """The exchange with the smallest check error; None where none lowers it clearly.
 
     present: the fit with all that was accepted
     rivals: accepted effect -> what may take its place;  step: number of the rung that is sought
@@ -108,6 +109,6 @@ def best_exchange(
             and is_better(present, r.fit, floor, criteria=criteria)
         ]
         if better:
-            taken = min(better, key=lambda r: check_squares(r.fit))
-            exchanges.append(Exchange(dropped, without, taken, ranking))
-    return min(exchanges, key=lambda e: check_squares(e.taken.fit), default=None)
+            replacement = min(better, key=lambda r: check_squares(r.fit))
+            exchanges.append(Exchange(dropped, without, replacement, ranking))
+    return min(exchanges, key=lambda e: check_squares(e.replacement.fit), default=None)

@@ -25,8 +25,8 @@ BLOCK = 0.25
 
 
 @dataclass(frozen=True, eq=False)
-class Seen(ByValue):
-    """What a model leaves on the check records, seen at the command.
+class CommandError(ByValue):
+    """Residual of a model on the check records, as an error at the command.
 
     residual: of `Fit.check_residual`'s rows;  sighted: those of them that are not blind
     error, blind, weak: as `AtCommand` has them
@@ -46,7 +46,7 @@ class Fit(ByValue):
     fit_error, check_error: relative force errors; NaN where there is no such record
     fit_residual, check_residual: low-passed residuals on the rows that count, weighted, relative to
         the force that acts by the model (`relative_residuals`): what models are compared by
-    seen: what is left on the check records as an error of the recorded forces (`at_command`): an
+    at_command: what is left on the check records as an error of the recorded forces: an
         effect must lower it too
     fit_blocks, check_blocks: number of the block of each of these rows
     jacobian: (rows, p) of fit_residual by `free`, in units of `scale`
@@ -60,7 +60,7 @@ class Fit(ByValue):
     at_bound: tuple[str, ...]
     fit_residual: Array
     check_residual: Array
-    seen: Seen
+    at_command: CommandError
     fit_blocks: NDArray[np.intp]
     check_blocks: NDArray[np.intp]
     jacobian: Array
@@ -73,9 +73,9 @@ class Fit(ByValue):
         )
 
 
-def fit_squares(found: Fit) -> float:
+def fit_squares(fit: Fit) -> float:
     """Sum of squares on the fit records, relative to the force that acts by the model."""
-    return float(found.fit_residual @ found.fit_residual)
+    return float(fit.fit_residual @ fit.fit_residual)
 
 
 def free_parameters(model: Model) -> tuple[str, ...]:
@@ -87,9 +87,9 @@ def block_numbers(stretches: Sequence[Stretch]) -> NDArray[np.intp]:
     """Number of the block (a quarter of a second of one stretch) of each row."""
     parts, first = [], 0
     for s in stretches:
-        own = ((s.motion.time[s.keep] - s.motion.time[s.keep[0]]) / BLOCK).astype(int)
-        parts.append(own + first)
-        first += int(own[-1]) + 1
+        numbers = ((s.motion.time[s.keep] - s.motion.time[s.keep[0]]) / BLOCK).astype(int)
+        parts.append(numbers + first)
+        first += int(numbers[-1]) + 1
     return np.concatenate(parts) if parts else np.zeros(0, dtype=int)
 
 
@@ -138,9 +138,9 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine)
     if check:
         parts = [v for v, _ in relative_residuals(fitted, check)]
         check_error = force_error(fitted, check)
-        seen = seen_on(fitted, check)
+        command_error = command_error_of(fitted, check)
     else:
-        check, parts, check_error, seen = _held_out(fitted, free, prepared)
+        check, parts, check_error, command_error = _held_out(fitted, free, prepared)
     return Fit(
         model=fitted,
         free=free,
@@ -149,7 +149,7 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine)
         at_bound=tuple(n for n, b in zip(free, solution.at_bound, strict=True) if b),
         fit_residual=solution.residual,
         check_residual=weighted(check, parts),
-        seen=seen,
+        at_command=command_error,
         fit_blocks=blocks,
         check_blocks=block_numbers(check),
         jacobian=solution.jacobian,
@@ -157,42 +157,42 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine)
     )
 
 
-def seen_on(model: Model, stretches: Sequence[Stretch]) -> Seen:
-    """What the model leaves on these stretches, seen at the command."""
-    found = at_command(model, stretches)
-    return _in_one(stretches, found)
+def command_error_of(model: Model, stretches: Sequence[Stretch]) -> CommandError:
+    """Residual of the model on these stretches, as an error at the command."""
+    error = at_command(model, stretches)
+    return _in_one(stretches, error)
 
 
-def _in_one(stretches: Sequence[Stretch], found: AtCommand) -> Seen:
-    sighted = np.concatenate(found.sighted) if found.sighted else np.zeros(0, dtype=bool)
-    residual = weighted(stretches, found.residual)
-    return Seen(residual, sighted, found.error, found.blind, found.weak)
+def _in_one(stretches: Sequence[Stretch], error: AtCommand) -> CommandError:
+    sighted = np.concatenate(error.sighted) if error.sighted else np.zeros(0, dtype=bool)
+    residual = weighted(stretches, error.residual)
+    return CommandError(residual, sighted, error.error, error.blind, error.weak)
 
 
 def _held_out(
     fitted: Model, free: tuple[str, ...], prepared: Prepared
-) -> tuple[tuple[Stretch, ...], list[Array], float, Seen]:
-    """Residuals of blocks of the fit records, each from a fit that has not seen it; the errors."""
+) -> tuple[tuple[Stretch, ...], list[Array], float, CommandError]:
+    """Residuals and errors of blocks of the fit records, each from a fit without that block."""
     held: list[Stretch] = []
     parts: list[Array] = []
-    seen: list[AtCommand] = []
+    command_errors: list[AtCommand] = []
     squares = at_commands = 0.0
     for known, unseen in folds(prepared.of("fit")):
         solution = solve(fitted, free, prepared, known, EFFORTS.held_out)
         model = fitted.with_values(dict(zip(free, solution.values, strict=True)))
         held += unseen
         parts += [v for v, _ in relative_residuals(model, unseen)]
-        seen.append(at_command(model, unseen))
+        command_errors.append(at_command(model, unseen))
         measured = sum(s.measured for s in unseen)
         squares += force_error(model, unseen) ** 2 * measured
-        at_commands += seen[-1].error ** 2 * measured
+        at_commands += command_errors[-1].error ** 2 * measured
     whole = sum(s.measured for s in held)
     together = AtCommand(
-        tuple(r for one in seen for r in one.residual),
-        tuple(t for one in seen for t in one.sighted),
+        tuple(r for one in command_errors for r in one.residual),
+        tuple(t for one in command_errors for t in one.sighted),
         float(np.sqrt(at_commands / whole)),
-        float(np.mean([one.blind for one in seen])),
-        any(one.weak for one in seen),
+        float(np.mean([one.blind for one in command_errors])),
+        any(one.weak for one in command_errors),
     )
     return tuple(held), parts, float(np.sqrt(squares / whole)), _in_one(held, together)
 
@@ -204,7 +204,7 @@ def solve(
     stretches: Sequence[Stretch],
     effort: Effort,
 ) -> Solution:
-    """Bounded least squares on the relative_residuals residuals of these stretches."""
+    """Bounded least squares on the relative residuals of these stretches."""
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     declared = [model.declared(n) for n in free]
     scale = np.array([unit[d.scale] for d in declared])
@@ -253,8 +253,8 @@ def over_decades(model: Model, name: str) -> bool:
     A strength that may vanish is searched on a linear one, so that it can reach zero.
     """
     declared = model.declared(name)
-    place, own = model.locate(name)
-    effect, _, parameter = own.partition(".")
+    place, local_name = model.locate(name)
+    effect, _, parameter = local_name.partition(".")
     if not parameter or declared.lower < 0 or np.isfinite(declared.upper):
         return False
     return model.body(place).effect(effect).absent.get(parameter) != 0.0
@@ -270,14 +270,14 @@ def standard_errors(jacobian: Array, residual: Array, blocks: NDArray[np.intp]) 
     if p == 0:
         return np.zeros(0)
     norm = np.linalg.norm(jacobian, axis=0)
-    told = norm > 0
-    scaled = jacobian[:, told] / norm[told]
+    sensitive = norm > 0
+    scaled = jacobian[:, sensitive] / norm[sensitive]
     bread = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12, hermitian=True)
-    scores = np.zeros((int(blocks.max()) + 1, int(told.sum())))
+    scores = np.zeros((int(blocks.max()) + 1, int(sensitive.sum())))
     np.add.at(scores, blocks, scaled * residual[:, None])
     count = len(scores)
     meat = scores.T @ scores * count / max(count - p, 1)
     variance = np.diag(bread @ meat @ bread)
     errors = np.full(p, np.nan)
-    errors[told] = np.sqrt(np.maximum(variance, 0.0)) / norm[told]
+    errors[sensitive] = np.sqrt(np.maximum(variance, 0.0)) / norm[sensitive]
     return errors

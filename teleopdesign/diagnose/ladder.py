@@ -22,7 +22,7 @@ def find_missing(
     progress: Callable[[str], None] | None = None,
     seed: int = 0,
 ) -> Diagnosis:
-    """Hold a model against an experiment and add the effects that its check records support.
+    """Compare a model with an experiment and add the effects that its check records support.
 
     model: default: the one that the experiment describes
     Of more than `SearchPlan.long` samples, effects are sought and parameters estimated on

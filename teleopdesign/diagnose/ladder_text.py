@@ -14,19 +14,19 @@ if TYPE_CHECKING:
     from .diagnosis import Diagnosis
 
 
-def own_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """What records have of their own by the model that the diagnosis ends with."""
+def offset_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """Offsets of single records by the final model of the diagnosis."""
     stretches, rows = diagnosis.prepared.stretches, []
-    for group, own in offset_groups(diagnosis.model, stretches):
+    for group, offsets in offset_groups(diagnosis.model, stretches):
         motion = stretches[group[0]].motion
         units = {
-            "position_zero": unit_of("position", own.body.axis),
-            "bias": unit_of("force", own.body.axis),
+            "position_zero": unit_of("position", offsets.body.axis),
+            "bias": unit_of("force", offsets.body.axis),
             "friction_level": "of the model's",
         }
         rows += [
             {"record": motion.file, "at": motion.body, "of": n, "value": v, "unit": units[n]}
-            for n, v in own.values.items()
+            for n, v in offsets.values.items()
         ]
     return rows
 
@@ -41,27 +41,29 @@ def _number(value: float, error: float, unit: str) -> str:
 DIFFERENT = 0.02
 
 
-def seen_text(found: Fit) -> str | None:
-    """The error seen at the command and the blind share, where they say more than the error."""
-    seen = found.seen
-    alike = abs(seen.error - found.check_error) <= DIFFERENT * found.check_error
-    if alike and seen.blind == 0.0:
+def command_error_text(fit: Fit) -> str | None:
+    """The error at the command and the blind share, if they differ from the check error."""
+    command_error = fit.at_command
+    alike = abs(command_error.error - fit.check_error) <= DIFFERENT * fit.check_error
+    if alike and command_error.blind == 0.0:
         return None
-    blind = f", blind in {100 * seen.blind:.2g} % of the motion" if seen.blind else ""
-    return f"check error seen at the command: {_percent(seen.error)}{blind}"
+    blind = (
+        f", blind in {100 * command_error.blind:.2g} % of the motion" if command_error.blind else ""
+    )
+    return f"check error seen at the command: {_percent(command_error.error)}{blind}"
 
 
 def _percent(error: float) -> str:
-    """An error in percent; that of a model that is blind everywhere is not told."""
+    """An error in percent; unknown for a model that is blind everywhere."""
     return f"{100 * error:.2f} %" if math.isfinite(error) else "not told"
 
 
 def refused_lines(diagnosis: Diagnosis) -> list[str]:
-    """What left less force than the model that the ladder ends with, and why it does not count."""
+    """Candidates with a smaller force error than the final model, and why they do not count."""
     after = diagnosis.after
     return [
         f"refused: {r.candidate} ({_percent(r.fit.check_error)}; seen at the command "
-        f"{_percent(r.fit.seen.error)}): {REFUSALS[r.refused]}"
+        f"{_percent(r.fit.at_command.error)}): {REFUSALS[r.refused]}"
         for r in diagnosis.last.ranked
         if r.refused and r.fit.check_error < after.check_error
     ]
@@ -85,14 +87,14 @@ def ladder_text(diagnosis: Diagnosis) -> str:
             lines.append(
                 f"      {p} = {_number(value.value, value.stderr, model.unit(full))}{bound}"
             )
-        if (seen := seen_text(rung.fit)) is not None:
-            lines.append(f"      {seen}")
+        if (text := command_error_text(rung.fit)) is not None:
+            lines.append(f"      {text}")
         if rung.alternatives:
             others = ", ".join(map(str, rung.alternatives))
             lines.append(f"      no different on these records: {others}")
     lines += [
         f"own of {o['record']}: {o['of'].replace('_', ' ')} {o['value']:.4g} {o['unit']}"
-        for o in own_rows(diagnosis)
+        for o in offset_rows(diagnosis)
     ]
     lines.append(
         f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"

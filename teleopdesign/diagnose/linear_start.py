@@ -29,7 +29,7 @@ AT_ONCE = 48
 
 @dataclass(frozen=True)
 class LinearStart:
-    """Where the new effect has its best strength, and the squares that one step leaves.
+    """A start with the best strength of the new effect, and the squares left after one step.
 
     form: the model with the effect's other parameters;  best: strength, and phase, by full name
     """
@@ -47,7 +47,7 @@ class LinearStart:
 def linear_starts(
     models: list[Model], effect: Effect, at: str, prepared: Prepared, base: Fit
 ) -> list[LinearStart]:
-    """Each model with the strength (and phase) that leaves least, to first order; best first.
+    """Each model with its best strength (and phase) to first order; smallest error first.
 
     models: the same model with the effect's other parameters at different values
     base: the fit without the effect; its parameters take part in the step
@@ -65,17 +65,17 @@ def linear_starts(
     absent = models[0].with_values(
         {f"{at}.{effect.name}.{effect.strength}": 0.0, **dict(base.model.parameters)}
     )
-    own, _ = np.linalg.qr(base.jacobian / _size(base.jacobian))
-    left = base.fit_residual - own @ (own.T @ base.fit_residual)
-    found = []
+    basis, _ = np.linalg.qr(base.jacobian / _size(base.jacobian))
+    left = base.fit_residual - basis @ (basis.T @ base.fit_residual)
+    starts = []
     edges = list(range(0, len(probes), AT_ONCE)) + [len(probes)]
     for first, last in pairwise(edges):
         columns = _columns(absent, probes[first:last], prepared)
-        columns -= own @ (own.T @ columns)
+        columns -= basis @ (basis.T @ columns)
         for i in range(0, last - first, len(phases)):
             start = models[(first + i) // len(phases)]
-            found.append(_start(start, effect, at, left, columns[:, i : i + len(phases)]))
-    return sorted(found, key=lambda s: s.promised)
+            starts.append(_start(start, effect, at, left, columns[:, i : i + len(phases)]))
+    return sorted(starts, key=lambda s: s.promised)
 
 
 def _others(

@@ -13,7 +13,7 @@ from .rungs import estimate_without, falling, refitted
 
 
 def add(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """The simplest effect that explains the records as well as the best that they support."""
+    """Add the simplest effect that explains the records as well as the best supported one."""
     if not state.supported:
         return None
     criteria = search.criteria
@@ -25,7 +25,7 @@ def add(search: LadderSearch, state: LadderState) -> LadderState | None:
 
 
 def remove(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """Without an effect that those added later have made superfluous; the rest fitted again."""
+    """Remove an effect that later effects made superfluous, and fit the others again."""
     last = state.fit
     for rung in state.rungs[1:-1]:
         assert rung.added is not None

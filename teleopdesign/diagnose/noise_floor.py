@@ -44,13 +44,13 @@ class NoiseFloor(ByValue):
     at_command: float = 1.0
 
     @property
-    def seen(self) -> float:
+    def value_at_command(self) -> float:
         """The floor of the error seen at the command."""
         return self.value * self.at_command
 
     @property
     def counted(self) -> float:
-        """Part of what the drawn readings left that counts."""
+        """Share of the drawn floor that counts as noise."""
         return self.value / self.drawn if self.drawn else 1.0
 
     def at_most(self, value: float) -> NoiseFloor:
@@ -68,16 +68,16 @@ def noise_floor(
     channels = prepared.experiment.channels
     stated = all(channels[f"{s.motion.body}.position"].resolution is not None for s in stretches)
     errors, before = [], residuals(model, stretches)
-    seen, seen_before = [], at_command(model, stretches).residual
+    command_errors, command_before = [], at_command(model, stretches).residual
     for _ in range(DRAWS):
         drawn = [_drawn(s, prepared, generator) for s in stretches]
         pairs = zip(residuals(model, drawn), before, strict=True)
         errors.append(error_of(drawn, [r - r0 for (r, _), (r0, _) in pairs]))
-        again = zip(at_command(model, drawn).residual, seen_before, strict=True)
-        seen.append(error_of(drawn, [r - r0 for r, r0 in again]))
+        again = zip(at_command(model, drawn).residual, command_before, strict=True)
+        command_errors.append(error_of(drawn, [r - r0 for r, r0 in again]))
     source = "stated resolution and noise" if stated else "step and noise seen in the readings"
     left = float(np.sqrt(np.mean(np.square(errors))))
-    back = float(np.sqrt(np.mean(np.square(seen)))) / left if left else 1.0
+    back = float(np.sqrt(np.mean(np.square(command_errors)))) / left if left else 1.0
     # a law that weakens what it passes makes more of sensor noise, one that amplifies it less; what
     # counts as noise is never less than what sensors leave of the force
     return NoiseFloor(left, source, drawn=left, at_command=max(back, 1.0))

@@ -36,13 +36,13 @@ class Moment:
         return f"{self.body} in {self.file}, {self.begin:.2f} to {self.end:.2f} s"
 
 
-def worst_moment(found: Fit, prepared: Prepared, floor: NoiseFloor) -> Moment | None:
-    """The two blocks in a row that leave most; None of fewer than `MOMENTS`, or without check."""
+def worst_moment(fit: Fit, prepared: Prepared, floor: NoiseFloor) -> Moment | None:
+    """The two consecutive blocks with the largest residual; None: fewer than `MOMENTS` blocks."""
     stretches = prepared.of("check")
     if not stretches or not floor.value:
         return None
     numbers = block_numbers(stretches)
-    squares = np.bincount(numbers, found.seen.residual**2)
+    squares = np.bincount(numbers, fit.at_command.residual**2)
     rows = np.bincount(numbers)
     lengths = [len(s.keep) for s in stretches]
     whose = np.repeat(np.arange(len(stretches)), lengths)
@@ -55,7 +55,7 @@ def worst_moment(found: Fit, prepared: Prepared, floor: NoiseFloor) -> Moment | 
     worst = int(np.argmax(pairs))
     rest = 1.0 - pairs[worst] / squares.sum()
     others = 1.0 - (rows[worst] + rows[worst + 1]) / rows.sum()
-    without = found.seen.error / floor.seen * float(np.sqrt(rest / others))
+    without = fit.at_command.error / floor.value_at_command * float(np.sqrt(rest / others))
     stretch = stretches[of_block[worst]]
     inside = (numbers == worst) | (numbers == worst + 1)
     motion = stretch.motion

@@ -16,12 +16,12 @@ def open_questions(diagnosis: Diagnosis) -> tuple[OpenQuestion, ...]:
     """
     if diagnosis.open is not None:
         return diagnosis.open
-    found = [_of_rung(diagnosis, rung) for rung in diagnosis.rungs if rung.added is not None]
+    questions = [_of_rung(diagnosis, rung) for rung in diagnosis.rungs if rung.added is not None]
     if diagnosis.verdict == "undecided":
-        told = [r for r in diagnosis.last.ranked if r.counts and r.score > 0.0]
-        others = tuple((r.candidate, r.fit) for r in told[: PLAN.rivals - 1])
-        found.append(OpenQuestion(None, others))
-    return tuple(q for q in found if q.others)
+        supported = [r for r in diagnosis.last.ranked if r.counts and r.score > 0.0]
+        others = tuple((r.candidate, r.fit) for r in supported[: PLAN.rivals - 1])
+        questions.append(OpenQuestion(None, others))
+    return tuple(q for q in questions if q.others)
 
 
 def _of_rung(diagnosis: Diagnosis, rung: Rung) -> OpenQuestion:

@@ -30,13 +30,13 @@ from .search_plan import PLAN
 
 
 def acts_by_the_clock(effect: Effect) -> bool:
-    """Whether an effect depends on time itself, so that a tone may be what it says there is."""
+    """Whether an effect depends on time itself, so that it may describe an outside tone."""
     return bool(effect.expression().has(SIGNALS["time"]))
 
 
 @dataclass(frozen=True)
 class Tone:
-    """What the best tone on one of the bodies leaves of the check records' residuals.
+    """Residuals of the check records after the best tone on one of the bodies.
 
     residual: as `Fit.check_residual`; None: there is none that the motion does not hold itself
     """
@@ -48,31 +48,31 @@ class Tone:
         """Check squares (as `check_squares`); inf: there is none."""
         return float("inf") if self.residual is None else float(self.residual @ self.residual)
 
-    def is_beaten_by(self, found: Fit) -> bool:
+    def is_beaten_by(self, fit: Fit) -> bool:
         """Whether a fit leaves less by more than chance."""
         if self.residual is None:
             return True
-        return gain_score(self.residual, found.check_residual, found.check_blocks) > CRITERIA.close
+        return gain_score(self.residual, fit.check_residual, fit.check_blocks) > CRITERIA.close
 
 
-def best_tone(found: Fit, prepared: Prepared) -> Tone:
-    """The tone that leaves least of what a model does.
+def best_tone(fitted: Fit, prepared: Prepared) -> Tone:
+    """The tone that removes most of the residual of a model.
 
     Its frequency is found on the fit records; amplitude and phase are those of each check stretch.
     """
     fit, check = prepared.of("fit"), prepared.of("check")
     if not check:
         return Tone()
-    before = _parts(found.fit_residual, fit)
-    after = _parts(found.check_residual, check)
-    whole = check_squares(found)
+    before = _parts(fitted.fit_residual, fit)
+    after = _parts(fitted.check_residual, check)
+    whole = check_squares(fitted)
     least = Tone()
     for body in {s.motion.body for s in fit}:
-        own = [(s, r) for s, r in zip(fit, before, strict=True) if s.motion.body == body]
-        there = [(s, r) for s, r in zip(check, after, strict=True) if s.motion.body == body]
-        frequency = _frequency(own)
+        fit_parts = [(s, r) for s, r in zip(fit, before, strict=True) if s.motion.body == body]
+        check_parts = [(s, r) for s, r in zip(check, after, strict=True) if s.motion.body == body]
+        frequency = _frequency(fit_parts)
         if frequency > 0 and all(
-            _share(s, frequency) < CRITERIA.tone_in_motion for s, _ in own + there
+            _share(s, frequency) < CRITERIA.tone_in_motion for s, _ in fit_parts + check_parts
         ):
             left = [
                 _without(s, r, frequency) if s.motion.body == body else r
@@ -80,20 +80,20 @@ def best_tone(found: Fit, prepared: Prepared) -> Tone:
             ]
             tones = [least, Tone(np.concatenate(left))]
             if tones[-1].squares < (1 - CRITERIA.tone_heard) * whole:
-                tones.append(Tone(_beside_a_force(found, prepared, body, frequency)))
+                tones.append(Tone(_beside_a_force(fitted, prepared, body, frequency)))
             least = min(tones, key=lambda tone: tone.squares)
     return least
 
 
-def _beside_a_force(found: Fit, prepared: Prepared, body: str, frequency: float) -> Array:
+def _beside_a_force(fit: Fit, prepared: Prepared, body: str, frequency: float) -> Array:
     """Check residual of the model, estimated again, where a tone acts on the body as a force."""
     stretches = prepared.stretches
     for _ in range(PLAN.tone_estimates):
         stretches = tuple(
-            _driven(found.model, s, frequency) if s.motion.body == body else s for s in stretches
+            _driven(fit.model, s, frequency) if s.motion.body == body else s for s in stretches
         )
-        found = estimate(found.model, replace(prepared, stretches=stretches))
-    return found.check_residual
+        fit = estimate(fit.model, replace(prepared, stretches=stretches))
+    return fit.check_residual
 
 
 def _driven(model: Model, stretch: Stretch, frequency: float) -> Stretch:
@@ -140,16 +140,16 @@ def _frequency(parts: Sequence[tuple[Stretch, Array]]) -> float:
         power += np.abs(fft.rfft(line, length)) ** 2
     thinned = min(float(np.median(np.diff(s.keep))) for s, _ in parts)
     power[(grid < 2 / (rows * interval)) | (grid > 0.5 / (thinned * interval))] = 0.0
-    step, found = float(grid[1]), float(grid[int(np.argmax(power))])
+    step, peak = float(grid[1]), float(grid[int(np.argmax(power))])
 
     def lost(frequency: float) -> float:
-        return -sum(_taken(s, r, frequency) for s, r in parts)
+        return -sum(_tone_squares(s, r, frequency) for s, r in parts)
 
-    bounds = (found - step, found + step)
+    bounds = (peak - step, peak + step)
     return float(minimize_scalar(lost, bounds=bounds, method="bounded").x)
 
 
-def _taken(stretch: Stretch, residual: Array, frequency: float) -> float:
+def _tone_squares(stretch: Stretch, residual: Array, frequency: float) -> float:
     """Squares that a tone of any amplitude and phase takes from one residual."""
     left = _without(stretch, residual, frequency)
     return float(residual @ residual - left @ left)

@@ -18,7 +18,7 @@ from .rungs import estimate_without, falling
 
 
 def add_pair(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """Two effects that are supported together on the user's model though neither is alone.
+    """Add two effects that the records support only together.
 
     Beside effects that are accepted already a pair costs more time than it is worth.
     """
@@ -29,7 +29,7 @@ def add_pair(search: LadderSearch, state: LadderState) -> LadderState | None:
 
 
 def replace_by_pair(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """Two effects that leave only noise, once, in place of rungs that leave more.
+    """Replace the rungs, once, by two effects that leave only noise.
 
     Where two are missing, a third can explain more than either does alone, and stand in their way.
     They are sought among those that explained something of their own.
@@ -52,7 +52,7 @@ def _best_pair(
     ranking: Ranking,
     among: Collection[Candidate] | None = None,
 ) -> tuple[Rung, ...] | None:
-    """The two rungs on the user's model that leave least; None where no pair is supported.
+    """The best pair of rungs on the user's model; None where no pair is supported.
 
     The best few of the ranking beside the user's model are added on trial, and everything (or those
     in `among`) is ranked anew beside each; a pair counts where it explains most of what is missing

@@ -30,7 +30,7 @@ class Stretch(ByValue):
     keep: the rows that count, thinned to what the low-pass leaves
     weight: rows that each of them stands for
     measured: sum of squares of the low-passed measured force over the rows that count
-    own: what the record has of its own, to be found on it
+    offset_names: in which the record may differ from the others
     """
 
     motion: Motion
@@ -38,12 +38,12 @@ class Stretch(ByValue):
     keep: NDArray[np.intp]
     weight: float
     measured: float
-    own: frozenset[str] = frozenset()
+    offset_names: frozenset[str] = frozenset()
 
     @property
-    def own_zero(self) -> bool:
-        """Whether its position cannot be compared with that of other records."""
-        return "position_zero" in self.own
+    def has_zero_offset(self) -> bool:
+        """Whether the encoder's zero of this record differs from that of other records."""
+        return "position_zero" in self.offset_names
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,37 +77,39 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
         for body in experiment.bodies:
             channel = experiment.channels[f"{body}.position"]
             for motion in motions(record, body, bandwidth=chosen, resolution=channel.resolution):
-                stretches.append(stretch_of(motion, record.use, chosen, record.own))
+                stretches.append(stretch_of(motion, record.use, chosen, record.offset_names))
     if not any(s.use == "fit" for s in stretches):
         raise ExperimentError(f"{experiment.folder.name}: fit records: no stretch of 0.6 s or more")
     return Prepared(experiment, chosen, tuple(stretches))
 
 
-def stretch_of(motion: Motion, use: str, bandwidth: float, own: frozenset[str]) -> Stretch:
+def stretch_of(motion: Motion, use: str, bandwidth: float, offset_names: frozenset[str]) -> Stretch:
     """A motion with the rows of it that count at this bandwidth (Hz).
 
-    own: what its record has of its own
+    offset_names: in which its record may differ from the others
     """
     n, rate = len(motion.time), 1.0 / motion.sample_time
     trim = min(int(TRIM * rate), n // 3)
     stride = max(1, int(rate / (OVERSAMPLING * bandwidth)))
     keep = np.arange(trim, n - trim, stride)
-    return Stretch(motion, use, keep, float(stride), _squares(motion, keep, float(stride)), own)
+    return Stretch(
+        motion, use, keep, float(stride), _squares(motion, keep, float(stride)), offset_names
+    )
 
 
 def folds(
     stretches: Sequence[Stretch],
 ) -> list[tuple[tuple[Stretch, ...], tuple[Stretch, ...]]]:
     """The stretches with `FOLDS` blocks of each held out in turn: (seen, held out)."""
-    found = []
+    pairs = []
     for i in range(FOLDS):
-        seen, unseen = [], []
+        kept, held_out = [], []
         for s in stretches:
             part = np.arange(len(s.keep)) * FOLDS // len(s.keep) == i
-            seen.append(_cut(s, s.keep[~part]))
-            unseen.append(_cut(s, s.keep[part]))
-        found.append((tuple(seen), tuple(unseen)))
-    return found
+            kept.append(_cut(s, s.keep[~part]))
+            held_out.append(_cut(s, s.keep[part]))
+        pairs.append((tuple(kept), tuple(held_out)))
+    return pairs
 
 
 def _cut(stretch: Stretch, keep: NDArray[np.intp]) -> Stretch:

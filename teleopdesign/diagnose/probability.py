@@ -56,12 +56,12 @@ def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
         (r, r.ranking) for r in diagnosis.rungs if r.ranking is not None
     ]
     steps.append((None, diagnosis.last))
-    found = []
+    evidence = []
     for rung, ranking in steps:
         share = shares(ranking, rung)
         for ranked in ranking.ranked:
             key = ranked.candidate.key
-            found.append(
+            evidence.append(
                 CandidateEvidence(
                     ranked=ranked,
                     accepted=rung is not None and rung.added is not None and rung.added.key == key,
@@ -71,18 +71,18 @@ def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
                     left=diagnosis.left,
                 )
             )
-    return found
+    return evidence
 
 
 def probable(diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA) -> tuple[Candidate, ...]:
     """The accepted effects that are at least as likely as not, in the order added."""
-    found = {
+    probabilities = {
         one.ranked.candidate.key: one.probability(criteria=criteria)
         for one in evidence_of(diagnosis)
         if one.accepted
     }
     added = [r.added for r in diagnosis.rungs if r.added is not None]
-    return tuple(c for c in added if found[c.key] >= criteria.named)
+    return tuple(c for c in added if probabilities[c.key] >= criteria.named)
 
 
 def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:

@@ -28,37 +28,38 @@ def _is_part_of(small: Candidate, large: Candidate) -> bool:
 
 
 def _from_kin(
-    tried: tuple[Candidate, Fit], all_tried: Collection[tuple[Candidate, Fit]], prepared: Prepared
+    attempt: tuple[Candidate, Fit], attempts: Collection[tuple[Candidate, Fit]], prepared: Prepared
 ) -> tuple[Candidate, Fit]:
-    """Started anew where an effect that it is a part of has come to lie lower.
+    """The fit, started again from a larger effect that contains this one and has a smaller error.
 
     The larger one may find a way round: a gap that closes leads to the compliance behind it.
     """
-    candidate, rough = tried
-    kin = [(c, f) for c, f in all_tried if _is_part_of(candidate, c)]
-    larger, found = min(kin, key=lambda cf: fit_squares(cf[1]), default=tried)
-    if fit_squares(found) >= fit_squares(rough):
-        return tried
+    candidate, rough = attempt
+    kin = [(c, f) for c, f in attempts if _is_part_of(candidate, c)]
+    larger, kin_fit = min(kin, key=lambda cf: fit_squares(cf[1]), default=attempt)
+    if fit_squares(kin_fit) >= fit_squares(rough):
+        return attempt
     (there, other) = (f"{c.at}.{c.effect.name}." for c in (candidate, larger))
     values = {
-        n: found.model.parameters[n.replace(there, other, 1)].value for n in rough.model.parameters
+        n: kin_fit.model.parameters[n.replace(there, other, 1)].value
+        for n in rough.model.parameters
     }
     again = estimate(rough.model.with_values(values), prepared, effort=EFFORTS.rough)
     return candidate, min((rough, again), key=fit_squares)
 
 
 def _refined(
-    tried: tuple[Candidate, Fit],
+    attempt: tuple[Candidate, Fit],
     leading: float,
     worthless: float,
     prepared: Prepared,
     stated: Model | None,
 ) -> tuple[Candidate, Fit]:
-    """Fitted finely, where it leaves no more than `leading` and less than `worthless` squares."""
-    candidate, rough = tried
+    """A fine fit, for a candidate with at most `leading` and less than `worthless` squares."""
+    candidate, rough = attempt
     present = (candidate.effect.name, candidate.at) not in rough.model.absent
     if not present or fit_squares(rough) > leading:
-        return tried
+        return attempt
     if stated is not None:
         model = at_stated(rough.model, stated)
         # an effect stated without values was led astray by what is missing: it starts anew as well
@@ -95,7 +96,7 @@ def rank_candidates(
     """
     worth = criteria.worth if worth is None else worth
 
-    def tried(candidate: Candidate) -> tuple[Candidate, Fit]:
+    def fit_candidate(candidate: Candidate) -> tuple[Candidate, Fit]:
         if progress is not None:
             progress(str(candidate))
         added = base.model.with_effect(candidate.effect, at=candidate.at)
@@ -106,7 +107,7 @@ def rank_candidates(
         wanted = {c.key for c in among}
         possible = tuple(c for c in possible if c.key in wanted)
     # those with hidden states take longest: begun last, they would be waited for
-    fits = in_threads(tried, sorted(possible, key=lambda c: not c.effect.states))
+    fits = in_threads(fit_candidate, sorted(possible, key=lambda c: not c.effect.states))
     fits.sort(key=lambda cf: possible.index(cf[0]))
     fits = in_threads(lambda cf: _from_kin(cf, fits, prepared), fits)
     # one that does not count is no measure of what others must reach
@@ -117,20 +118,20 @@ def rank_candidates(
     worthless = (1.0 - worth) * fit_squares(base)
     fits = in_threads(lambda cf: _refined(cf, leading, worthless, prepared, stated), fits)
     ordered = sorted((ranked(base, c, f, criteria=criteria) for c, f in fits), key=rank_key)
-    found = [
+    entries = [
         replace(r, behind=whole_score(r.fit, ordered[0].fit) if i else 0.0)
         for i, r in enumerate(ordered)
     ]
-    return Ranking(base, tuple(found))
+    return Ranking(base, tuple(entries))
 
 
-def ranked(base: Fit, candidate: Candidate, found: Fit, *, criteria: Criteria = CRITERIA) -> Ranked:
+def ranked(base: Fit, candidate: Candidate, fit: Fit, *, criteria: Criteria = CRITERIA) -> Ranked:
     """A candidate that was fitted on top of a base, as the first of a ranking."""
     return Ranked(
         candidate=candidate,
-        fit=found,
-        score=check_score(base, found),
+        fit=fit,
+        score=check_score(base, fit),
         behind=0.0,
-        is_identifiable=is_identifiable(found, base, criteria=criteria),
-        refused=refusal(base, found, criteria=criteria),
+        is_identifiable=is_identifiable(fit, base, criteria=criteria),
+        refused=refusal(base, fit, criteria=criteria),
     )

@@ -36,12 +36,12 @@ class Ranked(ByValue):
 
     @property
     def counts(self) -> bool:
-        """Whether the records can speak for it: told, and not refused."""
+        """Whether the candidate is identifiable and not refused."""
         return self.is_identifiable and not self.refused
 
     @property
     def note(self) -> str:
-        """What is to be said beside the numbers; "" where nothing is."""
+        """A remark beside the numbers; "" for none."""
         if self.candidate.key in self.fit.model.absent:
             return "gains nothing"
         return REFUSALS.get(self.refused, "" if self.is_identifiable else "not determined")

@@ -65,26 +65,26 @@ def coordinates(model: Model, names: tuple[str, ...]) -> Array:
 
 
 def reading_error(
-    found: Fit, prepared: Prepared, generator: np.random.Generator
+    fit: Fit, prepared: Prepared, generator: np.random.Generator
 ) -> ReadingError | None:
-    """By how much estimates from simulated readings miss what was simulated.
+    """Error of estimates from simulated readings, whose true values are known.
 
     None: the model's motion cannot be simulated
     """
-    truth = _with_whole_dead_times(found.model, prepared)
-    true = coordinates(truth, found.free)
+    truth = _with_whole_dead_times(fit.model, prepared)
+    true = coordinates(truth, fit.free)
     made = [_simulated(truth, prepared, g, d) for g, d in product(GIVES, DAMPED)]
     exact = [stretches for stretches in made if stretches is not None]
     if len(exact) < len(made):
         return None
 
-    def missed(stretches: list[Stretch], own: np.random.Generator) -> Array:
-        drawn = [as_read(s, prepared, own) for s in stretches]
+    def missed(stretches: list[Stretch], noise: np.random.Generator) -> Array:
+        drawn = [as_read(s, prepared, noise) for s in stretches]
         again = replace(prepared, stretches=tuple(drawn))
-        solution = solve(truth, found.free, again, drawn, EFFORTS.again)
-        there = truth.with_values(dict(zip(found.free, solution.values, strict=True)))
-        by = coordinates(there, found.free) - true
-        for i, name in enumerate(found.free):
+        solution = solve(truth, fit.free, again, drawn, EFFORTS.again)
+        there = truth.with_values(dict(zip(fit.free, solution.values, strict=True)))
+        by = coordinates(there, fit.free) - true
+        for i, name in enumerate(fit.free):
             if truth.declared(name).quantity == "angle":
                 by[i] = (by[i] + np.pi) % (2.0 * np.pi) - np.pi
         return by
@@ -106,7 +106,7 @@ def _with_whole_dead_times(model: Model, prepared: Prepared) -> Model:
 
 
 def _simulated(
-    model: Model, prepared: Prepared, give: float, damping_ratio: float
+    model: Model, prepared: Prepared, deflection: float, damping_ratio: float
 ) -> list[Stretch] | None:
     """The fit records with the model's exact courses in place of theirs; None if it has none."""
     stretches = list(prepared.of("fit"))
@@ -115,7 +115,9 @@ def _simulated(
         stretches, along_with_offsets(model, stretches), strict=True
     ):
         try:
-            course = simulated_course(body, motion, give=give, damping_ratio=damping_ratio)
+            course = simulated_course(
+                body, motion, deflection=deflection, damping_ratio=damping_ratio
+            )
         except ModelError:
             return None
         if not np.isfinite(course.position).all():
@@ -127,86 +129,88 @@ def _simulated(
 def as_read(stretch: Stretch, prepared: Prepared, generator: np.random.Generator) -> Stretch:
     """A stretch of exact signals as the sensors read it."""
     motion = read_again(stretch, prepared, generator)
-    return stretch_of(motion, stretch.use, prepared.bandwidth, stretch.own)
+    return stretch_of(motion, stretch.use, prepared.bandwidth, stretch.offset_names)
 
 
-def _taken_off(found: Fit, shift: Array) -> tuple[Model, Array]:
+def _taken_off(fit: Fit, shift: Array) -> tuple[Model, Array]:
     """The model of a fit with the shift taken off its estimates, and which of them moved.
 
     What is at a bound stays there, and what the shift would lead to another magnitude.
     """
-    model, moved = found.model, np.zeros(len(found.free), dtype=bool)
-    there = coordinates(model, found.free) - shift
-    decades = _decades(model, found.free)
+    model, moved = fit.model, np.zeros(len(fit.free), dtype=bool)
+    there = coordinates(model, fit.free) - shift
+    decades = _decades(model, fit.free)
     there[decades] = np.exp(np.minimum(there[decades], 700.0))
-    for i, name in enumerate(found.free):
+    for i, name in enumerate(fit.free):
         declared = model.declared(name)
         small = abs(shift[i]) < (LARGEST if decades[i] else LARGEST * model.from_absence(name))
         if declared.quantity == "angle":
             small = abs(shift[i]) < LARGEST
         inside = declared.lower <= there[i] <= declared.upper
-        moved[i] = small and inside and name not in found.at_bound
+        moved[i] = small and inside and name not in fit.at_bound
         if not moved[i]:
             there[i] = model.parameters[name].value
-    return model.with_values(dict(zip(found.free, there, strict=True))), moved
+    return model.with_values(dict(zip(fit.free, there, strict=True))), moved
 
 
-def _settled(
-    found: Fit, error: ReadingError, prepared: Prepared, generator: np.random.Generator
+def _converge(
+    fit: Fit, error: ReadingError, prepared: Prepared, generator: np.random.Generator
 ) -> tuple[ReadingError, Model, Array]:
-    """The error at the values that it leads to, with the model there and which of them moved.
+    """The error at the corrected values, the model there, and which values moved.
 
     generator: each simulation draws the same from it, so that values alone make the difference
     """
-    values = np.array([found.model.parameters[n].value for n in found.free])
-    errors = np.array([found.model.parameters[n].stderr for n in found.free])
-    own = np.nan_to_num(
-        errors / np.where(_decades(found.model, found.free), values, 1.0), nan=np.inf
+    values = np.array([fit.model.parameters[n].value for n in fit.free])
+    errors = np.array([fit.model.parameters[n].stderr for n in fit.free])
+    relative_errors = np.nan_to_num(
+        errors / np.where(_decades(fit.model, fit.free), values, 1.0), nan=np.inf
     )
     before = np.zeros(len(values))
-    model, moved = _taken_off(found, error.shift)
+    model, moved = _taken_off(fit, error.shift)
     for _ in range(ROUNDS - 1):
-        if np.all(np.abs(error.shift - before)[moved] <= np.hypot(own, error.spread)[moved]):
+        if np.all(
+            np.abs(error.shift - before)[moved] <= np.hypot(relative_errors, error.spread)[moved]
+        ):
             break
-        there = replace(found, model=model)
+        there = replace(fit, model=model)
         again = reading_error(there, prepared, deepcopy(generator))
         if again is None:
             break
         before, error = error.shift, again
-        model, moved = _taken_off(found, error.shift)
+        model, moved = _taken_off(fit, error.shift)
     return error, model, moved
 
 
 def with_reading_error(
-    found: Fit,
+    fit: Fit,
     prepared: Prepared,
     generator: np.random.Generator,
     *,
     adequate: Callable[[Fit], bool],
 ) -> Fit:
-    """The fit with standard errors that hold what its readings do, and the shift taken off it.
+    """The fit with the shift by its readings removed and standard errors that include their spread.
 
     adequate: whether a fit leaves only noise. One that leaves more is not the model whose readings
         would be simulated: there, as where a corrected fit would leave more, and for estimates that
         would move to another magnitude, the shift widens the errors instead
     """
-    if not found.free:
-        return found
-    error = reading_error(found, prepared, deepcopy(generator))
+    if not fit.free:
+        return fit
+    error = reading_error(fit, prepared, deepcopy(generator))
     if error is None:
-        return found
-    better, moved = found, np.zeros(len(found.free), dtype=bool)
-    if adequate(found):
-        error, model, taken = _settled(found, error, prepared, generator)
-        tried = estimate(model, prepared, effort=EFFORTS.stay)
-        if adequate(tried):
-            better, moved = tried, taken
+        return fit
+    better, moved = fit, np.zeros(len(fit.free), dtype=bool)
+    if adequate(fit):
+        error, model, shifted = _converge(fit, error, prepared, generator)
+        again = estimate(model, prepared, effort=EFFORTS.stay)
+        if adequate(again):
+            better, moved = again, shifted
     more = np.hypot(error.spread, np.where(moved, 0.0, error.shift))
-    values = np.array([found.model.parameters[n].value for n in found.free])
-    more = more * np.where(_decades(found.model, found.free), values, 1.0)
-    own, errors = better.model.parameters, found.model.parameters
+    values = np.array([fit.model.parameters[n].value for n in fit.free])
+    more = more * np.where(_decades(fit.model, fit.free), values, 1.0)
+    parameters, errors = better.model.parameters, fit.model.parameters
     wide = {
-        n: replace(own[n], stderr=float(np.hypot(errors[n].stderr, e)))
-        for n, e in zip(found.free, more, strict=True)
+        n: replace(parameters[n], stderr=float(np.hypot(errors[n].stderr, e)))
+        for n, e in zip(fit.free, more, strict=True)
     }
     return replace(better, model=better.model.with_values(wide))

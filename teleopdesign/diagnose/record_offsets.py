@@ -36,7 +36,7 @@ Residual = Callable[[Body, Motion, int], Array]
 
 @dataclass(frozen=True)
 class RecordOffsets:
-    """A body along the motions of one record, with what it has there of its own.
+    """A body along the motions of one record, with the offsets of that record.
 
     values: "position_zero" (shift of the position, m or rad), "bias" (force that acts, N or N m),
         "friction_level" (over the model's)
@@ -66,7 +66,7 @@ class RecordOffsets:
 def find_offsets(
     body: Body, motions: Sequence[Motion], names: Collection[str], residual: Residual
 ) -> RecordOffsets:
-    """Find what a record has of its own.
+    """Find the offsets of one record.
 
     motions: the body's, all of one record;  names: of "position_zero", "bias", "friction_level"
     """
@@ -93,17 +93,17 @@ def find_offsets(
 
 
 def _steps(body: Body, motions: Sequence[Motion], names: Collection[str]) -> dict[str, float]:
-    """What can be found, and the step of each over which its slope is taken."""
-    found = {}
+    """Offsets that the record determines -> step over which the slope is taken."""
+    steps = {}
     if "position_zero" in names and any(
         e.expression().has(SIGNALS["position"]) for e in body.effects
     ):
-        found["position_zero"] = SLOPE * max(float(np.std(m.position)) for m in motions)
+        steps["position_zero"] = SLOPE * max(float(np.std(m.position)) for m in motions)
     if "bias" in names:
-        found["bias"] = SLOPE * max(float(np.std(m.command + m.interaction)) for m in motions)
+        steps["bias"] = SLOPE * max(float(np.std(m.command + m.interaction)) for m in motions)
     if "friction_level" in names and _LEVEL in body.parameters:
-        found["friction_level"] = SLOPE
-    return {name: step for name, step in found.items() if step > 0}
+        steps["friction_level"] = SLOPE
+    return {name: step for name, step in steps.items() if step > 0}
 
 
 def _with(
@@ -122,12 +122,12 @@ def _with(
 def offset_groups(
     model: Model, stretches: Sequence[Stretch]
 ) -> list[tuple[list[int], RecordOffsets]]:
-    """(places of the stretches, what they have of their own) for each record that has any."""
+    """(places of the stretches, their offsets) for each record with offsets."""
     groups: dict[tuple[str, str], list[int]] = {}
     for i, stretch in enumerate(stretches):
-        if stretch.own:
+        if stretch.offset_names:
             groups.setdefault((stretch.motion.file, stretch.motion.body), []).append(i)
-    found = []
+    offsets = []
     for (_, place), group in groups.items():
         rows = [stretches[i].keep for i in group]
 
@@ -136,13 +136,13 @@ def offset_groups(
             return np.asarray(left[rows[k]])
 
         motions = [stretches[i].motion for i in group]
-        names = stretches[group[0]].own
-        found.append((group, find_offsets(model.body(place), motions, names, residual)))
-    return found
+        names = stretches[group[0]].offset_names
+        offsets.append((group, find_offsets(model.body(place), motions, names, residual)))
+    return offsets
 
 
 def along_with_offsets(model: Model, stretches: Sequence[Stretch]) -> list[tuple[Body, Motion]]:
-    """Body and motion of each stretch, with what its record has of its own."""
+    """Body and motion of each stretch, with the offsets of its record."""
     return along_offsets(model, stretches, offset_groups(model, stretches))
 
 
@@ -150,8 +150,8 @@ def along_offsets(
     model: Model, stretches: Sequence[Stretch], groups: Sequence[tuple[list[int], RecordOffsets]]
 ) -> list[tuple[Body, Motion]]:
     """Body and motion of each stretch, with the offsets of these groups (`offset_groups`)."""
-    found = [(model.body(s.motion.body), s.motion) for s in stretches]
+    located = [(model.body(s.motion.body), s.motion) for s in stretches]
     for group, offsets in groups:
         for i, motion in zip(group, offsets.motions, strict=True):
-            found[i] = (offsets.body, motion)
-    return found
+            located[i] = (offsets.body, motion)
+    return located

@@ -40,7 +40,7 @@ def relative_residuals(
     gained. Equal to `residuals` where nothing stands between command and force.
     """
     parts = _with_acting(model, stretches, wrt)
-    found = [(r, d) for r, d, _, _ in parts]
+    scaled = [(r, d) for r, d, _, _ in parts]
     for place, body in model.bodies.items():
         mine = [i for i, s in enumerate(stretches) if s.motion.body == place]
         if not mine or not _takes_from_what_acts(body):
@@ -53,9 +53,9 @@ def relative_residuals(
         )
         factor = float(np.sqrt(whole / acting))
         for i in mine:
-            r, d = found[i]
-            found[i] = factor * r, factor * (d - np.outer(slope / acting, r))
-    return found
+            r, d = scaled[i]
+            scaled[i] = factor * r, factor * (d - np.outer(slope / acting, r))
+    return scaled
 
 
 def _takes_from_what_acts(body: Body) -> bool:
@@ -68,7 +68,7 @@ def _with_acting(
     model: Model, stretches: Sequence[Stretch], wrt: Sequence[str | Probe]
 ) -> list[tuple[Array, Array, Array, Array]]:
     """Residual and acting plus interaction force, low-passed, on the rows that count; tangents."""
-    found = []
+    signals_of_stretches = []
     groups = offset_groups(model, stretches)
     for stretch, (body, there) in zip(
         stretches, along_offsets(model, stretches, groups), strict=True
@@ -76,8 +76,8 @@ def _with_acting(
         motion, rows = stretch.motion, stretch.keep
         located = [_located(model, name) for name in wrt]
         mine = [i for i, (place, _) in enumerate(located) if place == motion.body]
-        own = [located[i][1] for i in mine]
-        along = residual_along(body, there, own)
+        parameters = [located[i][1] for i in mine]
+        along = residual_along(body, there, parameters)
         signals = []
         for traced, offset in ((along.residual, 0.0), (along.moving, motion.interaction)):
             value = motion.lowpassed(traced.value + offset)[rows]
@@ -86,12 +86,12 @@ def _with_acting(
             if moving.any():
                 tangent[np.array(mine)[moving]] = motion.lowpassed(traced.tangent[moving])[:, rows]
             signals += [value, tangent]
-        found.append((signals[0], signals[1], signals[2], signals[3]))
+        signals_of_stretches.append((signals[0], signals[1], signals[2], signals[3]))
     for group, offsets in groups:
-        cleared = offsets.cleared([found[i][:2] for i in group])
+        cleared = offsets.cleared([signals_of_stretches[i][:2] for i in group])
         for i, (residual, tangent) in zip(group, cleared, strict=True):
-            found[i] = (residual, tangent, *found[i][2:])
-    return found
+            signals_of_stretches[i] = (residual, tangent, *signals_of_stretches[i][2:])
+    return signals_of_stretches
 
 
 def _located(model: Model, name: str | Probe) -> tuple[str, str | Probe]:

@@ -75,7 +75,7 @@ def at_stated(model: Model, stated: Model) -> Model:
 
 
 def unchanged(model: Model, base: Fit) -> Fit:
-    """The fit of a model whose new effects stay absent: what the base leaves, all of it."""
+    """The fit of a model whose new effects stay absent: the residual of the base."""
     return replace(base, model=model.with_values(dict(base.model.parameters)))
 
 
@@ -103,7 +103,7 @@ def _promising(
 
 
 def _varied(model: Model, ordered: list[Model]) -> list[Model]:
-    """The starts with the first at each value of what the new effects cannot do without in front.
+    """The starts; first those at each value of parameters that the new effects need.
 
     A search that begins at a gap too narrow closes it, and never opens it again.
     """
@@ -133,19 +133,19 @@ def _with_strength(model: Model, base: Fit) -> tuple[Effect, str] | None:
 
 
 def _moved(base: Fit, stated: Model) -> bool:
-    """Whether a parameter of the base lies further from its user's value than users are wrong."""
+    """Whether the base moved a parameter further from the user's value than users usually err."""
     pairs = [
         (base.model.parameters[n].value, stated.parameters[n].value)
         for n in base.free
         if n in stated.parameters
     ]
-    return any(abs(found - given) > PLAN.moved * abs(given) for found, given in pairs)
+    return any(abs(fitted - value) > PLAN.moved * abs(value) for fitted, value in pairs)
 
 
 def _by_strength(
     models: list[Model], effect: Effect, at: str, prepared: Prepared, base: Fit, worth: float
 ) -> list[Model]:
-    """The best starts of an effect that is linear in its strength; none where none is worth it."""
+    """The best starts of an effect that is linear in its strength; none if no gain is expected."""
     strength = f"{at}.{effect.name}.{effect.strength}"
     distinct: dict[tuple[float, ...], Model] = {}
     for model in models:
@@ -183,30 +183,30 @@ def _left(columns: Array, residual: Array) -> float:
 def _best_stepped(
     models: list[Model], prepared: Prepared, kept: int, *, promised: bool
 ) -> list[Model]:
-    """The starts that lie lowest after a few real steps, where these steps have led them.
+    """The best starts after a few steps of the fit, at the values that these steps reached.
 
     promised: whether the first is the one that promised most: it is kept too, for steps that begin
         far from an optimum may lie above those that never leave the base
     """
-    stretches, found = prepared.of("fit"), []
+    stretches, solutions = prepared.of("fit"), []
     for i, model in enumerate(models):
         free = free_parameters(model)
         solution = solve(model, free, prepared, stretches, EFFORTS.first_steps)
         squares = float(solution.residual @ solution.residual)
-        found.append((squares, i, dict(zip(free, solution.values.tolist(), strict=True))))
-    found.sort(key=lambda f: f[:2])
-    best = found[:kept] + [f for f in found[kept:] if promised and f[1] == 0]
+        solutions.append((squares, i, dict(zip(free, solution.values.tolist(), strict=True))))
+    solutions.sort(key=lambda f: f[:2])
+    best = solutions[:kept] + [f for f in solutions[kept:] if promised and f[1] == 0]
     return [models[i].with_values(values) for _, i, values in best]
 
 
-def _jolted(found: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> Fit:
-    """The fit at the best place near by: squares that are rugged have many shallow ones.
+def _jolted(fit: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> Fit:
+    """The best fit near by: a rugged sum of squares has many shallow minima.
 
     new: (effect, place) whose parameters are jolted, one at a time
     """
-    stretches, free = prepared.of("fit"), free_parameters(found.model)
+    stretches, free = prepared.of("fit"), free_parameters(fit.model)
     names = [n for effect, at in new for n in free if n.startswith(f"{at}.{effect}.")]
-    model, least = found.model, fit_squares(found)
+    model, least = fit.model, fit_squares(fit)
     for _ in range(PLAN.sweeps):
         before = least
         for name, factor in product(names, PLAN.jolts):
@@ -219,4 +219,4 @@ def _jolted(found: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> F
                 model = model.with_values(values)
         if least > (1.0 - PLAN.onward) * before:
             break
-    return found if model is found.model else estimate(model, prepared, effort=EFFORTS.rough)
+    return fit if model is fit.model else estimate(model, prepared, effort=EFFORTS.rough)

@@ -29,7 +29,7 @@ STEPS, MOST_STEPS = 20, 400
 
 @dataclass(frozen=True)
 class Course:
-    """Position and command (n,) of a body as they truly were."""
+    """True position and command (n,) of a simulated body."""
 
     position: Array
     command: Array
@@ -41,16 +41,16 @@ def grid(motion: Motion) -> float:
 
 
 def simulated_course(
-    body: Body, motion: Motion, *, give: float, damping_ratio: float = 0.0
+    body: Body, motion: Motion, *, deflection: float, damping_ratio: float = 0.0
 ) -> Course:
     """The course that this body takes under a record's forces, led along its motion.
 
-    give: of an ideal friction, in steps of the position's reading
+    deflection: of an ideal friction, in steps of the position's reading
     damping_ratio: of the inertia on what gives
     raises ModelError: the body cannot be simulated, a dead time is no multiple of `grid`
     """
     step = grid(motion)
-    body = with_give(without_absent(body), give * motion.step, damping_ratio=damping_ratio)
+    body = with_give(without_absent(body), deflection * motion.step, damping_ratio=damping_ratio)
     frequency = 2.0 * np.pi * LEADS * motion.bandwidth
     inertia = body.parameters["inertia"].value
     stiffness, damping = inertia * frequency**2, 2.0 * inertia * frequency
@@ -96,13 +96,13 @@ def _wired(body: Body, stiffness: float, damping: float) -> Diagram:
 
 def dead_times(body: Body) -> tuple[str, ...]:
     """Names of the body's parameters that are dead times, such as "actuation_delay.delay"."""
-    symbols, found = body.symbols(), []
+    symbols, names = body.symbols(), []
     for effect in body.effects:
         late = {call.args[1] for call in effect.expression().atoms(delayed)}
-        found += [
+        names += [
             n for n in (f"{effect.name}.{p}" for p in effect.parameters) if symbols[n] in late
         ]
-    return tuple(found)
+    return tuple(names)
 
 
 def as_led(motion: Motion, course: Course) -> Motion:

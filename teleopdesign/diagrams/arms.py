@@ -64,9 +64,9 @@ class Arm:
                     f"{', '.join(sorted(map(str, known)))}"
                 )
         for name in ("cancellations", "pose"):
-            given = getattr(self, name)
-            if given and len(given) != len(self.joints):
-                raise ModelError(f"arm: {len(given)} {name} for {len(self.joints)} joints")
+            entries = getattr(self, name)
+            if entries and len(entries) != len(self.joints):
+                raise ModelError(f"arm: {len(entries)} {name} for {len(self.joints)} joints")
 
 
 def by_jacobian(jacobian: Any) -> tuple[sp.Expr, ...]:
@@ -98,9 +98,9 @@ def teleoperator_of_arms(
     """
     size = len(master.coordinates)
     none = np.zeros((size, size))
-    given = {"stiffness": stiffness, "damping": none if damping is None else damping}
-    given = {n: matrix_of(m, f"teleoperator_of_arms: {n}") for n, m in given.items()}
-    gains = {name: np.asarray(g, dtype=float) for name, g in given.items()}
+    matrices = {"stiffness": stiffness, "damping": none if damping is None else damping}
+    matrices = {n: matrix_of(m, f"teleoperator_of_arms: {n}") for n, m in matrices.items()}
+    gains = {name: np.asarray(g, dtype=float) for name, g in matrices.items()}
     if len(slave.coordinates) != size or any(g.shape != (size, size) for g in gains.values()):
         sizes = ", ".join(f"{name} {g.shape}" for name, g in gains.items())
         raise ModelError(
@@ -119,18 +119,18 @@ def teleoperator_of_arms(
                 blocks.append(Control(f"P{k + 1}_{j + 1}", law, error, force, error))
                 terms[force] = 1
         junctions.append(Junction(f"F_P{k + 1}", terms))
-    found = [
+    arm_sides = [
         _side("m", master, "F_u", -1, hand, "H"),
         _side("s", slave, "F_d", 1, environment, "E"),
     ]
     return Diagram(
         "teleoperator of arms",
-        (*blocks, *(b for side in found for b in side.blocks)),
-        (*junctions, *(j for side in found for j in side.junctions)),
-        {f"{own}{k}": "force" for own in ("F_u", "F_d") for k in range(1, size + 1)},
-        measured=tuple(m for side in found for m in side.motions),
-        kinematics=tuple(k for side in found for k in side.kinematics),
-        pose={n: x for side in found for n, x in side.pose.items()},
+        (*blocks, *(b for side in arm_sides for b in side.blocks)),
+        (*junctions, *(j for side in arm_sides for j in side.junctions)),
+        {f"{outside}{k}": "force" for outside in ("F_u", "F_d") for k in range(1, size + 1)},
+        measured=tuple(m for side in arm_sides for m in side.motions),
+        kinematics=tuple(k for side in arm_sides for k in side.kinematics),
+        pose={n: x for side in arm_sides for n, x in side.pose.items()},
     )
 
 
@@ -144,9 +144,9 @@ class _Side:
 
 
 def _side(
-    side: str, arm: Arm, own: str, sign: int, held: MatrixImpedance | None, name: str
+    side: str, arm: Arm, outside: str, sign: int, held: MatrixImpedance | None, name: str
 ) -> _Side:
-    """Everything of one side; own: forces from outside at its tip;  held: what the tip touches."""
+    """Everything of one side; outside: forces at its tip;  held: what the tip touches."""
     numbers = range(1, len(arm.joints) + 1)
     places = range(1, len(arm.coordinates) + 1)
     motions = tuple(f"q_{side}{n}" for n in numbers)
@@ -154,7 +154,7 @@ def _side(
     named = {joint(n): position_symbol(q) for n, q in zip(numbers, motions, strict=True)}
     where = [sp.sympify(x, strict=True).xreplace(named) for x in arm.coordinates]
     blocks: list[Block] = []
-    at_tip: dict[int, dict[str, Weight]] = {k: {f"{own}{k}": 1} for k in places}
+    at_tip: dict[int, dict[str, Weight]] = {k: {f"{outside}{k}": 1} for k in places}
     for block, z, force in (
         (f"Z_{name}", held, f"F_{name}"),
         (f"Z_L{side}", arm.load, f"F_L{side}"),
@@ -169,7 +169,7 @@ def _side(
         arms = {k: sp.diff(x, position_symbol(q)) for k, x in zip(places, where, strict=True)}
         arms = {k: w for k, w in arms.items() if w != 0}
         torque, command = f"T_{side}{n}", f"U_{side}{n}"
-        blocks.append(Moving(f"Z_{side}{n}", body, q, command, {torque: 1}, f"{own}{n}"))
+        blocks.append(Moving(f"Z_{side}{n}", body, q, command, {torque: 1}, f"{outside}{n}"))
         commanded: dict[str, Weight] = {f"F_P{k}": sign * w for k, w in arms.items()}
         law = arm.cancellations[n - 1] if arm.cancellations else None
         if law is not None:

@@ -108,12 +108,12 @@ def read_expression(text: str, *, where: str) -> sp.Expr:
 
 
 class _Endless(BaseException):
-    """Out of work; no `Exception`, so that nothing on the way takes it for one of its own."""
+    """The limit of work is reached; not an `Exception`, so that no library catches it."""
 
 
 @contextmanager
 def _bounded_work() -> Iterator[None]:
-    """Ends what takes more than `_MOST_CALLS` calls of Python; the same on every machine."""
+    """Stop a computation after `_MOST_CALLS` calls of Python; the same on every machine."""
     left, before = _MOST_CALLS, sys.getprofile()
 
     def count(frame: FrameType, event: str, argument: object) -> None:
@@ -178,10 +178,10 @@ class _Reader:
         number: sp.Expr = whole.identity
         rest = []
         for operation, part in _links(node):
-            found = self._built(part, depth + 1)
-            one = _OPERATORS[operation](whole.identity, found)
-            if found.is_Number:
-                number = self._checked(_OPERATORS[operation](number, found))
+            term = self._built(part, depth + 1)
+            one = _OPERATORS[operation](whole.identity, term)
+            if term.is_Number:
+                number = self._checked(_OPERATORS[operation](number, term))
             else:
                 rest.append(self._checked(one))
         return self._checked(whole(number, *rest))
@@ -287,13 +287,13 @@ class _Reader:
 def _links(node: ast.BinOp) -> Iterator[tuple[type, ast.expr]]:
     """The parts of a chain of one kind of operator, from left to right, each with its own."""
     pair = (ast.Add, ast.Sub) if isinstance(node.op, ast.Add | ast.Sub) else (ast.Mult, ast.Div)
-    found: list[tuple[type, ast.expr]] = []
+    links: list[tuple[type, ast.expr]] = []
     left: ast.expr = node
     while isinstance(left, ast.BinOp) and isinstance(left.op, pair):
-        found.append((type(left.op), left.right))
+        links.append((type(left.op), left.right))
         left = left.left
     yield pair[0], left
-    yield from reversed(found)
+    yield from reversed(links)
 
 
 def _number(value: object) -> sp.Expr:
@@ -311,12 +311,12 @@ def _finite(call: Callable[..., float], *values: object) -> float | None:
     if any(v is None for v in values):
         return None
     try:
-        found = call(*values)
+        result = call(*values)
     except (ArithmeticError, ValueError, TypeError):
         raise ModelError(_NO_VALUE) from None
-    if isinstance(found, complex) or not math.isfinite(found):
+    if isinstance(result, complex) or not math.isfinite(result):
         raise ModelError(_NO_VALUE)
-    return found
+    return result
 
 
 def _raised(base: float, exponent: float) -> float:

@@ -47,12 +47,7 @@ def parallel_rods(
     raises ModelError: G is no regular n x n matrix, or another block has another size
     """
     size = len(rods)
-    g = matrix_of(geometry, "parallel_rods: geometry")
-    if g.shape != (size, size):
-        raise ModelError(f"parallel rods: geometry is {g.shape}, expected ({size}, {size})")
-    if np.linalg.matrix_rank(g) < size:
-        raise ModelError("parallel rods: the geometry is singular: some motion of the hand is free")
-    inverse = np.linalg.inv(g)
+    inverse = _inverse(geometry, size)
     numbers = range(1, size + 1)
     blocks: list[Block] = []
     junctions: list[Junction] = []
@@ -67,8 +62,8 @@ def parallel_rods(
         blocks.append(Moving(f"Z_M{n}", rod, f"L{n}", f"R_A{n}", loads, f"F_V{n}"))
         junctions.append(Junction(f"E{n}", {f"R_D{n}": 1, f"R_M{n}": -1}))
     laws = (("C", cancellation, "L", "R_MBC"), ("H", force_feedback, "E", "R_FF"))
-    for name, given, read, made in laws:
-        for (i, j), law in _by_rods(name, given, size).items():
+    for name, controllers, read, made in laws:
+        for (i, j), law in _by_rods(name, controllers, size).items():
             force = f"{made}{i}" if i == j else f"{made}{i}_{j}"
             of = f"{name}{i}" if i == j else f"{name}{i}_{j}"
             blocks.append(Control(of, law, f"{read}{j}", force, f"L{j}", name in analog))
@@ -91,6 +86,16 @@ def parallel_rods(
     )
 
 
+def _inverse(geometry: Any, size: int) -> np.ndarray:
+    """The inverse of G; ModelError where G is no regular matrix of that size."""
+    g = matrix_of(geometry, "parallel_rods: geometry")
+    if g.shape != (size, size):
+        raise ModelError(f"parallel rods: geometry is {g.shape}, expected ({size}, {size})")
+    if np.linalg.matrix_rank(g) < size:
+        raise ModelError("parallel rods: the geometry is singular: some motion of the hand is free")
+    return np.asarray(np.linalg.inv(g))
+
+
 def _named(signal: str, numbers: range) -> tuple[str, ...]:
     return tuple(f"{signal}{n}" for n in numbers)
 
@@ -100,14 +105,16 @@ def _row(weights: np.ndarray, signal: str) -> dict[str, float]:
     return {f"{signal}{k + 1}": float(w) for k, w in enumerate(weights) if abs(w) > 1e-15}
 
 
-def _by_rods(name: str, given: Controllers, size: int) -> dict[tuple[int, int], Controller]:
-    if isinstance(given, Mapping):
-        found = dict(given)
+def _by_rods(name: str, controllers: Controllers, size: int) -> dict[tuple[int, int], Controller]:
+    if isinstance(controllers, Mapping):
+        by_pair = dict(controllers)
     else:
-        if given and len(given) != size:
-            raise ModelError(f"parallel rods: {name}: {len(given)} controllers for {size} rods")
-        found = {(n + 1, n + 1): law for n, law in enumerate(given) if law is not None}
-    for pair in found:
+        if controllers and len(controllers) != size:
+            raise ModelError(
+                f"parallel rods: {name}: {len(controllers)} controllers for {size} rods"
+            )
+        by_pair = {(n + 1, n + 1): law for n, law in enumerate(controllers) if law is not None}
+    for pair in by_pair:
         if not all(1 <= n <= size for n in pair):
             raise ModelError(f"parallel rods: {name}: no rods {pair}, numbers are 1 to {size}")
-    return found
+    return by_pair

@@ -40,13 +40,13 @@ def as_expression(weight: Weight, *, where: str) -> sp.Expr:
     raises ModelError: neither a number nor an expression
     """
     try:
-        found = sp.sympify(weight, strict=True)
+        expression = sp.sympify(weight, strict=True)
     except sp.SympifyError:
-        found = None
-    if not isinstance(found, sp.Expr):
+        expression = None
+    if not isinstance(expression, sp.Expr):
         shown = quoted(weight) if isinstance(weight, str) else type(weight).__name__
         raise ModelError(f"{where}: found {shown}, expected a number or a sympy expression")
-    return found
+    return expression
 
 
 def _check_names(where: str, *names: str) -> None:
@@ -136,8 +136,8 @@ class Linked:
     @property
     def entries(self) -> tuple[tuple[int, int], ...]:
         """Rows and columns, from 0, of what is not zero."""
-        found = {tuple(name.split("_")[1:]) for name in self.body.parameters}
-        return tuple(sorted((int(i) - 1, int(j) - 1) for i, j in found))
+        indices = {tuple(name.split("_")[1:]) for name in self.body.parameters}
+        return tuple(sorted((int(i) - 1, int(j) - 1) for i, j in indices))
 
     def entry_name(self, row: int, column: int) -> str:
         """Name of an entry as a block of its own, such as "Z_H_1_2"; row and column from 0."""

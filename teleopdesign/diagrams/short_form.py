@@ -32,8 +32,8 @@ class ShortForm:
     def wired(self, blocks: Mapping[str, Content], analog: tuple[str, ...]) -> Diagram:
         """The diagram with these blocks; analog: controllers that no computer samples."""
         arguments = {**self.bodies, **self.controls}
-        given: dict[str, Any] = {arguments[name]: block for name, block in blocks.items()}
-        return self.make(**given, **({"analog": analog} if self.has_analog else {}))
+        by_argument: dict[str, Any] = {arguments[name]: block for name, block in blocks.items()}
+        return self.make(**by_argument, **({"analog": analog} if self.has_analog else {}))
 
 
 KINDS: Mapping[str, ShortForm] = MappingProxyType(

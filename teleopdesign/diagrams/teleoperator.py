@@ -64,9 +64,9 @@ def teleoperator(
         ("m", "F_u", -1, ("Z_H", hand, "F_H"), master_cancellation),
         ("s", "F_d", 1, ("Z_E", environment, "F_E"), slave_cancellation),
     )
-    for side, own, sign, (name, held, passive), cancellation in sides:
+    for side, outside_force, sign, (name, held, passive), cancellation in sides:
         motion, force = f"X_{side}", f"F_C{side}"
-        on_body, command = {own: 1}, {"F_P": sign}
+        on_body, command = {outside_force: 1}, {"F_P": sign}
         if held is not None:
             blocks.append(Attached(name, held, motion, passive))
             on_body[passive] = 1

@@ -19,23 +19,23 @@ def read_matrices(table: Table, size: int) -> MatrixImpedance:
     """
     if not size:
         raise ExperimentError(f"{table.where('motions')}: found none, expected one or more")
-    given = {key: _matrix(table, key, size) for key in MATRICES if key in table.content}
-    return matrix_impedance(**{"mass": [[0.0] * size] * size, **given})
+    matrices = {key: _matrix(table, key, size) for key in MATRICES if key in table.content}
+    return matrix_impedance(**{"mass": [[0.0] * size] * size, **matrices})
 
 
 def _matrix(table: Table, key: str, size: int) -> list[list[float]]:
     rows = table.content[key]
     if isinstance(rows, list) and all(isinstance(row, list) for row in rows):
         if any(len(line) != size for line in (rows, *rows)):
-            found = f"{len(rows)} rows of {' and '.join(sorted({str(len(r)) for r in rows}))}"
+            wrong = f"{len(rows)} rows of {' and '.join(sorted({str(len(r)) for r in rows}))}"
         elif all(_is_finite(x) for row in rows for x in row):
             return [[float(x) for x in row] for row in rows]
         else:
-            found = next(described(x) for row in rows for x in row if not _is_finite(x))
+            wrong = next(described(x) for row in rows for x in row if not _is_finite(x))
     else:
-        found = described(rows)
+        wrong = described(rows)
     raise ExperimentError(
-        f"{table.where(key)}: found {found}, expected {size} rows of {size} finite numbers, one "
+        f"{table.where(key)}: found {wrong}, expected {size} rows of {size} finite numbers, one "
         "for each motion"
     )
 

@@ -111,8 +111,8 @@ def _block(name: str, table: Table, effects: Mapping[str, Effect]) -> Block:
     content = {"control": LAW, "linked": MATRICES}.get(kind, BODY)
     table.allow(("kind", *WIRING[kind], *content))
     if kind == "control":
-        taken, made, along = (_string(table, key) for key in ("input", "output", "motion"))
-        return Control(name, _controller(table), taken, made, along, table.flag("analog", False))
+        source, made, along = (_string(table, key) for key in ("input", "output", "motion"))
+        return Control(name, _controller(table), source, made, along, table.flag("analog", False))
     if kind == "linked":
         motions, forces = (tuple(_strings(table, key)) for key in ("motions", "forces"))
         return Linked(name, read_matrices(table, len(motions)), motions, forces, _sign(table))
@@ -209,14 +209,14 @@ def _one_of(table: Table, key: str, known: Any) -> str:
 
 def _string(table: Table, key: str) -> str:
     """As `Table.text`, but it may be blank."""
-    found = table.content.get(key)
-    return found if isinstance(found, str) else table.text(key)
+    text = table.content.get(key)
+    return text if isinstance(text, str) else table.text(key)
 
 
 def _strings(table: Table, key: str) -> list[str]:
-    found = table.content.get(key, [])
-    if not isinstance(found, list) or not all(isinstance(s, str) for s in found):
+    signals = table.content.get(key, [])
+    if not isinstance(signals, list) or not all(isinstance(s, str) for s in signals):
         raise ExperimentError(
-            f"{table.where(key)}: found {described(found)}, expected a list of signals in quotes"
+            f"{table.where(key)}: found {described(signals)}, expected a list of signals in quotes"
         )
-    return found
+    return signals

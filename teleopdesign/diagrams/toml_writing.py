@@ -118,8 +118,8 @@ def body_lines(table: str, body: Body) -> list[str]:
     lines = [f"axis = {_text(body.axis)}", f"inertia = {_value(body.parameters['inertia'])}"]
     for effect in body.effects:
         lines += [f"[{table}.effects.{_key(effect.name)}]"]
-        own = ((p, body.parameters[f"{effect.name}.{p}"]) for p in effect.parameters)
-        lines += [f"{p} = {_value(value)}" for p, value in own]
+        values = ((p, body.parameters[f"{effect.name}.{p}"]) for p in effect.parameters)
+        lines += [f"{p} = {_value(value)}" for p, value in values]
     return lines
 
 

@@ -99,25 +99,25 @@ class Diagram:
 
         raises ModelError: the signal is no position that bodies determine
         """
-        found = self._position(name)
-        if found is None:
+        expression = self._position(name)
+        if expression is None:
             raise ModelError(
                 f'{self.name}: "{name}" is no motion: expected that of a body or a sum of such'
             )
-        return found
+        return expression
 
     def is_position(self, name: str) -> bool:
         """Whether bodies determine the signal: a motion, or a junction or kinematics of motions."""
         return self._position(name) is not None
 
-    def _position(self, name: str, seen: tuple[str, ...] = ()) -> sp.Expr | None:
+    def _position(self, name: str, visited: tuple[str, ...] = ()) -> sp.Expr | None:
         if any(isinstance(b, Moving) and b.motion == name for b in self.blocks):
             return position_symbol(name)
         makers: tuple[Junction | Kinematics, ...] = (*self.kinematics, *self.junctions)
         maker = next((p for p in makers if p.output == name), None)
-        if maker is None or name in seen:
+        if maker is None or name in visited:
             return None
-        parts = {s: self._position(s, (*seen, name)) for s in maker.inputs}
+        parts = {s: self._position(s, (*visited, name)) for s in maker.inputs}
         if any(p is None for p in parts.values()):
             return None
         if isinstance(maker, Kinematics):
@@ -177,7 +177,7 @@ class Diagram:
         return name
 
     def without(self, *names: str) -> Diagram:
-        """The diagram without these blocks: what they gave is zero. Absent ones are no matter."""
+        """The diagram without these blocks: their outputs are zero. Unknown names are ignored."""
         gone = {s for n in names if self.has(n) for s in self.block(n).outputs}
         junctions = tuple(
             replace(j, terms={s: g for s, g in j.terms.items() if s not in gone})
@@ -198,7 +198,7 @@ class Diagram:
         )
 
     def opened(self, *names: str) -> Diagram:
-        """The diagram with the outputs of these controllers from outside instead. Absent: as is."""
+        """The diagram with these controllers' outputs from outside; unknown names are ignored."""
         free = {s: "force" for n in names if self.has(n) for s in self.block(n).outputs}
         kept = tuple(b for b in self.blocks if b.name not in names)
         return _pruned(replace(self, blocks=kept, outside={**self.outside, **free}))
@@ -224,16 +224,16 @@ class Diagram:
     @property
     def values(self) -> dict[str, float]:
         """Every parameter as "block.law.parameter", such as "Z_M.coulomb.level" -> value (SI)."""
-        found: dict[str, float] = {}
+        values: dict[str, float] = {}
         for block in self.blocks:
             if isinstance(block, Control):
                 if isinstance(block.controller, Controller):
-                    found |= {f"{block.name}.{n}": v for n, v in block.controller.names().items()}
+                    values |= {f"{block.name}.{n}": v for n, v in block.controller.names().items()}
             elif isinstance(block.body, Body):
-                found |= {f"{block.name}.{n}": v.value for n, v in block.body.parameters.items()}
+                values |= {f"{block.name}.{n}": v.value for n, v in block.body.parameters.items()}
             elif isinstance(block.body, MatrixImpedance):
-                found |= {f"{block.name}.{n}": v for n, v in block.body.parameters.items()}
-        return found
+                values |= {f"{block.name}.{n}": v for n, v in block.body.parameters.items()}
+        return values
 
     @checked
     def with_values(self, values: Mapping[str, float]) -> Diagram:
@@ -244,10 +244,10 @@ class Diagram:
                 raise ModelError(f'{self.name}: no parameter "{name}"{did_you_mean(name, known)}')
         for block in self.blocks:
             start = f"{block.name}."
-            own = {n.removeprefix(start): v for n, v in values.items() if n.startswith(start)}
+            of_block = {n.removeprefix(start): v for n, v in values.items() if n.startswith(start)}
             part = block.controller if isinstance(block, Control) else block.body
-            if own and not isinstance(part, AnyBlock):
-                diagram = diagram.with_block(block.name, part.with_values(own))
+            if of_block and not isinstance(part, AnyBlock):
+                diagram = diagram.with_block(block.name, part.with_values(of_block))
         return diagram
 
     def _repr_html_(self) -> str:

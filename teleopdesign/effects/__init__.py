@@ -38,7 +38,7 @@ from ._effect import (
     ordered,
     parameter_symbol,
 )
-from ._structure import make_structure, touching
+from ._structure import make_structure, rubbing, touching
 
 __all__ = [
     "BLOCK_EFFECTS",
@@ -59,6 +59,7 @@ __all__ = [
     "make_structure",
     "ordered",
     "parameter_symbol",
+    "rubbing",
     "touching",
     "with_block_effects",
 ]
@@ -89,10 +90,10 @@ def _of_file(path: Path, said: Path, expected: str = "") -> Effect:
         raise ModelError(f"{said}: cannot be read: {problem.strerror or problem}") from None
     if expected and digest != expected:
         raise ModelError(f"{said}: the effect file has changed since it was used")
-    found = _LOADED.get((path, digest))
-    if found is None:
-        found = _LOADED[path, digest] = remember(_read(said), _of_file, path, said, digest)
-    return found
+    effect = _LOADED.get((path, digest))
+    if effect is None:
+        effect = _LOADED[path, digest] = remember(_read(said), _of_file, path, said, digest)
+    return effect
 
 
 def _read(path: Path) -> Effect:
@@ -179,14 +180,14 @@ BLOCK_EFFECTS: Mapping[str, Effect] = Catalogue(
 
 
 def with_block_effects(effects: Mapping[str, Effect] = EFFECTS) -> Mapping[str, Effect]:
-    """Those effects and the ones of blocks, by name; one given wins."""
+    """These effects and those that belong to blocks, by name; of one name, these win."""
     return Catalogue({**BLOCK_EFFECTS, **effects}, "effect")
 
 
 def catalogue(extra: Iterable[str | Path | Effect] = ()) -> Mapping[str, Effect]:
-    """The package's effects and the given files' (or effects), by name; a user's name wins."""
-    own = (e if isinstance(e, Effect) else load_effect(e) for e in extra)
-    return Catalogue({**EFFECTS, **{e.name: e for e in own}}, "effect")
+    """Effects by name: the package's, and the user's files or effects; a user's name wins."""
+    users = (e if isinstance(e, Effect) else load_effect(e) for e in extra)
+    return Catalogue({**EFFECTS, **{e.name: e for e in users}}, "effect")
 
 
 def find_effect(name: str, known: Mapping[str, Effect] = EFFECTS, where: str = "effect") -> Effect:

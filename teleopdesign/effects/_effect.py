@@ -8,6 +8,7 @@ A body is a chain of roles:
     level       = sum of the friction_level laws, each times the friction_factor laws that need
                   it (a factor that needs no effect scales all); where a friction_speed law is
                   there, at that speed instead of the body's own
+    tip         = of a structure: held by dry friction of the sum of the tip_level laws
     contact     = sum of the contact laws where the environment is touched, and no pull: among the
                   forces; a contact_shape law takes the place of the penetration in them
 
@@ -41,6 +42,7 @@ Role = Literal[
     "friction_factor",
     "friction_speed",
     "friction_shape",
+    "tip_level",
     "contact",
     "contact_shape",
 ]
@@ -137,7 +139,7 @@ class Parameter:
 
     @property
     def scale(self) -> str:
-        """What a search counts this in: a scale of the record, by default its quantity's."""
+        """Unit of the search: a scale of the record, by default the scale of the quantity."""
         return self.search.scale or self.quantity
 
 
@@ -162,12 +164,15 @@ class State:
     start: the signal that it equals when a record starts; "": it starts settled, or at rest
     correction: correction(now, p), the rate by which the force that is left unexplained, also in
         `now`, leads the state back along a measured motion; None: it runs free
+    dry: dry(now, p), the largest rate by which dry friction slows the state down; at zero it holds
+        it where no more is needed. None: no such friction
     """
 
     quantity: str
     rate: Callable[[Any, Any], sp.Expr]
     start: str = ""
     correction: Callable[[Any, Any], sp.Expr] | None = None
+    dry: Callable[[Any, Any], sp.Expr] | None = None
 
 
 @checked
@@ -177,7 +182,8 @@ class Effect:
 
     law(now, p) returns the force it adds (role force; role structure: the same, the interaction
     force with it, for that acts on a tip of its own), its share of the friction level
-    (friction_level), a factor of the levels it needs (friction_factor), the speed that the level
+    (friction_level; tip_level: of the tip of a structure), a factor of the levels it needs
+    (friction_factor), the speed that the level
     follows (friction_speed), the friction force (friction_shape), the stage's output (actuation), a
     share of the force that a modelled environment takes (contact), or the penetration that its
     spring feels (contact_shape).
@@ -192,7 +198,10 @@ class Effect:
     effect out, and says so. It is never found by differentiating sgn.
     absent: parameter values at which the effect is not there at all.
     canonical: of parameter values that mean the same, those to report.
-    needs: effects that the model must have for this one to mean anything.
+    needs: effects that the model must have for this one to mean anything; where a body has one of a
+        role at most, another of that role will do.
+    elsewhere: an axis that the law does not hold on ("prismatic" or "revolute") -> the effect that
+        says the same there
     coupling: of a structure, coupling(now, p), which its law and states are made from
         (`make_structure`)
     led: inertia(p) of a body among the hidden states whose position is corrected: the force that it
@@ -208,6 +217,7 @@ class Effect:
     states: Mapping[str, State] = field(default_factory=dict)
     linear: bool = False
     needs: frozenset[str] = frozenset()
+    elsewhere: Mapping[str, str] = field(default_factory=dict)
     always: frozenset[str] = frozenset()
     canonical: Callable[[Mapping[str, float]], dict[str, float]] = dict
     led: Callable[[Any], sp.Expr] | None = None
@@ -245,7 +255,7 @@ class Effect:
 
     @property
     def strength(self) -> str | None:
-        """The parameter that is zero where the effect is absent and that its law is linear in.
+        """The parameter in which the law is linear and that is zero where the effect is absent.
 
         None where there is no such parameter, or where hidden states depend on it.
         """
@@ -253,7 +263,7 @@ class Effect:
 
     @property
     def phase(self) -> str | None:
-        """The angle phi of a law that is strength times sin(... + phi); None where none is."""
+        """Name of the angle phi in a law strength * sin(... + phi); None for other laws."""
         return _phase(self)
 
     @property
@@ -262,12 +272,12 @@ class Effect:
         return self.text.strip().split("\n")[0]
 
     def default(self, parameter: str) -> float:
-        """Value of a parameter that none is given for: where the effect is absent, if that says."""
+        """Value of a parameter that the user leaves out: where the effect is absent, if known."""
         plain = 0.0 if self.parameters[parameter].optional else 1.0
         return self.absent.get(parameter, plain)
 
     def without(self, parameter: str) -> Effect:
-        """The effect with an optional parameter left out: zero, for good."""
+        """The effect without an optional parameter, which is zero everywhere in the law."""
         return _without(self, parameter)
 
     def symbols(self) -> dict[str, sp.Symbol]:
@@ -280,8 +290,8 @@ class Effect:
 
     def _now(self, signals: Mapping[str, Any] | None) -> SimpleNamespace:
         more = {"inertia": INERTIA, "unexplained": UNEXPLAINED}
-        own = {**SIGNALS, **more, **self.state_symbols()}
-        return SimpleNamespace(**{**own, **(signals or {})})
+        symbols = {**SIGNALS, **more, **self.state_symbols()}
+        return SimpleNamespace(**{**symbols, **(signals or {})})
 
     def _parameters(self, values: Mapping[str, Any] | None) -> SimpleNamespace:
         return SimpleNamespace(**{**self.symbols(), **(values or {})})
@@ -289,7 +299,7 @@ class Effect:
     def expression(
         self, signals: Mapping[str, Any] | None = None, values: Mapping[str, Any] | None = None
     ) -> sp.Expr:
-        """The law on symbols, or on whatever is given in their place."""
+        """The law on symbols, or on the signals and values in their place."""
         if signals is None and values is None:
             return _expression(self)
         return sp.sympify(self.law(self._now(signals), self._parameters(values)), strict=True)
@@ -297,7 +307,7 @@ class Effect:
     def rates(
         self, signals: Mapping[str, Any] | None = None, values: Mapping[str, Any] | None = None
     ) -> dict[str, sp.Expr]:
-        """Hidden state -> its rate of change, on symbols or on what is given."""
+        """Hidden state -> its rate of change, on symbols or on the signals in their place."""
         if signals is None and values is None:
             return dict(_rates(self))
         now, p = self._now(signals), self._parameters(values)
@@ -305,11 +315,15 @@ class Effect:
         return {name: sp.sympify(rate, strict=True) for name, rate in rates.items()}
 
     def corrections(self) -> dict[str, sp.Expr]:
-        """Hidden state -> rate by which it is corrected, on symbols; {} where all run free."""
+        """Hidden state -> rate of its correction, on symbols; {} where no state is corrected."""
         return dict(_corrections(self))
 
+    def dry_bounds(self) -> dict[str, sp.Expr]:
+        """Hidden state -> largest rate by which dry friction slows it, on symbols; {}: none."""
+        return dict(_dry_bounds(self))
+
     def led_momentum(self) -> sp.Expr:
-        """Momentum that corrections stand for, on symbols; 0 where there are none."""
+        """Momentum of the body that corrections lead, on symbols; 0 without corrections."""
         if self.led is None:
             return sp.S(0)
         return self.led(self._parameters(None)) * sum(self.corrections().values(), sp.S(0))
@@ -332,8 +346,10 @@ class Effect:
         signals |= dict(interaction_force=sp.S(0))
         states = self.state_symbols()
         law, rates = self.expression(signals, values), self.rates(signals, values)
-        settled = sp.solve([s * states[n] - rate for n, rate in rates.items()], *states.values())
-        law = law.subs(settled) if rates else law
+        states_in_s = sp.solve(
+            [s * states[n] - rate for n, rate in rates.items()], *states.values()
+        )
+        law = law.subs(states_in_s) if rates else law
         law = law.replace(delayed, lambda signal, delay: signal * sp.exp(-s * delay))
         return sp.simplify(law / drive)
 
@@ -362,6 +378,16 @@ def _corrections(effect: Effect) -> dict[str, sp.Expr]:
 
 
 @lru_cache(maxsize=256)
+def _dry_bounds(effect: Effect) -> dict[str, sp.Expr]:
+    now, p = effect._now(None), effect._parameters(None)
+    return {
+        name: sp.sympify(state.dry(now, p), strict=True)
+        for name, state in effect.states.items()
+        if state.dry is not None
+    }
+
+
+@lru_cache(maxsize=256)
 def _strength(effect: Effect) -> str | None:
     if len(effect.absent) != 1 or effect.states:
         return None
@@ -382,18 +408,18 @@ def _phase(effect: Effect) -> str | None:
 
 @lru_cache(maxsize=64)
 def _without(effect: Effect, parameter: str) -> Effect:
-    def given(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
+    def at_zero(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
         return lambda now, p: law(now, SimpleNamespace(**{**vars(p), parameter: sp.S(0)}))
 
-    def corrected(state: State) -> Callable[[Any, Any], sp.Expr] | None:
-        return None if state.correction is None else given(state.correction)
+    def if_any(law: Callable[[Any, Any], sp.Expr] | None) -> Callable[[Any, Any], sp.Expr] | None:
+        return None if law is None else at_zero(law)
 
     less = replace(
         effect,
-        law=given(effect.law),
-        coupling=None if effect.coupling is None else given(effect.coupling),
+        law=at_zero(effect.law),
+        coupling=if_any(effect.coupling),
         states={
-            n: replace(s, rate=given(s.rate), correction=corrected(s))
+            n: replace(s, rate=at_zero(s.rate), correction=if_any(s.correction), dry=if_any(s.dry))
             for n, s in effect.states.items()
         },
         parameters={n: p for n, p in effect.parameters.items() if n != parameter},

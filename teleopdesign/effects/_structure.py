@@ -1,6 +1,6 @@
 """Structures: two sides of one body, joined by a coupling, of which a hand leads the tip.
 
-    m_t dv_t/dt = coupling + interaction force - contact
+    m_t dv_t/dt = coupling + interaction force - contact - dry friction of the tip
     (m - m_t) a = acting force - coupling - ...
 
 An effect states coupling(now, p), the force between the sides, once: on `now.stretch`, position
@@ -79,7 +79,7 @@ def make_structure(
 
 @lru_cache(maxsize=64)  # laws compare by identity: one structure, one kernel
 def touching(structure: Effect, contact: sp.Expr) -> Effect:
-    """A structure whose tip, not its body, is what the contact force is taken from.
+    """A structure whose tip, and not the actuator's side, touches the environment.
 
     contact: force that an environment takes, on the body's motion in `SIGNALS`
     """
@@ -87,6 +87,17 @@ def touching(structure: Effect, contact: sp.Expr) -> Effect:
     tip = replace(structure.states["tip_velocity"], rate=_accelerate(structure.coupling, contact))
     states = {**structure.states, "tip_velocity": tip}
     return remember(replace(structure, states=states), touching, structure, contact)
+
+
+@lru_cache(maxsize=64)
+def rubbing(structure: Effect, level: sp.Expr) -> Effect:
+    """A structure whose tip dry friction of that level holds.
+
+    level: on parameters of the body's effects
+    """
+    tip = replace(structure.states["tip_velocity"], dry=lambda now, p: level / p.tip_inertia)
+    states = {**structure.states, "tip_velocity": tip}
+    return remember(replace(structure, states=states), rubbing, structure, level)
 
 
 def _join(coupling: Coupling, now: Any, p: Any) -> sp.Expr:
@@ -115,7 +126,7 @@ def _accelerate(coupling: Coupling, contact: sp.Expr = sp.S.Zero) -> Coupling:
 
 
 def _lead_back(following: float) -> Coupling:
-    """Velocity of a tip towards where the unexplained force says that it is."""
+    """Velocity that corrects a tip's position by the force that the model leaves unexplained."""
 
     def towards(now: Any, p: Any) -> sp.Expr:
         rate = following * sp.sqrt(p.stiffness / p.tip_inertia) * p.tip_inertia / now.inertia

@@ -17,7 +17,7 @@ from ..controllers import Controller, parameter_symbol
 from ..effects import SIGNALS
 from ..errors import ModelError
 from ..realise.simulated import without_absent
-from .one_cycle import Law, first_harmonic, middles
+from .one_cycle import LawExpressions, first_harmonic, middles
 
 #: points of a grid taken together, where no hidden state asks for one after the other
 _AT_ONCE = 100
@@ -109,19 +109,19 @@ def controller_signals(motion: Mapping[sp.Symbol, np.ndarray]) -> dict[sp.Symbol
     }
 
 
-def body_law(body: Body) -> Law:
+def body_law(body: Body) -> LawExpressions:
     """Force that opposes the motion of a body, its values in place."""
     body = without_absent(body)
     equation, numbers = body.equation(), body.numbers()
     total = equation.inertia * SIGNALS["acceleration"] + equation.force + equation.friction
     rates = {s: r.subs(numbers) for s, r in equation.rates.items() if s not in equation.stages}
-    return Law(total.subs(numbers), rates, "body")
+    return LawExpressions(total.subs(numbers), rates, "body")
 
 
-def controller_law(of: Controller) -> Law:
+def controller_law(of: Controller) -> LawExpressions:
     """Output of a controller, its values in place."""
     equation = of.equation("controller", {**CONTROL_SIGNALS, "period": sp.S(0)})
     numbers = {parameter_symbol("controller", n): v for n, v in of.names().items()}
     rates = {s: r.subs(numbers) for s, r in equation.rates.items()}
     names = ", ".join(stage.law.name for stage in of.stages)
-    return Law(equation.output.subs(numbers), rates, f"controller {names}")
+    return LawExpressions(equation.output.subs(numbers), rates, f"controller {names}")

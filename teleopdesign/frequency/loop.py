@@ -135,8 +135,8 @@ def _crossings(loop: LoopGain) -> tuple[np.ndarray, np.ndarray]:
             f"delay margin: the loop's gain is still {size[-1]:.3g} at half the sampling rate"
         )
     turns = np.flatnonzero((size[:-1] > 1) != (size[1:] > 1))
-    found = np.array([brentq(above, grid[k], grid[k + 1], rtol=1e-12) for k in turns])
-    return np.degrees(np.angle(call(1j * found))) + 180, found
+    crossings = np.array([brentq(above, grid[k], grid[k + 1], rtol=1e-12) for k in turns])
+    return np.degrees(np.angle(call(1j * crossings))) + 180, crossings
 
 
 def _stages(part: Control) -> tuple[Any, ...]:

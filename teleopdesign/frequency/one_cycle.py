@@ -26,7 +26,7 @@ _Call = Callable[..., list[float]]
 
 
 @dataclass(frozen=True)
-class Law:
+class LawExpressions:
     """An output and its hidden states, as expressions of signals.
 
     rates: state -> its rate;  where: what it is, in messages
@@ -44,7 +44,7 @@ class Law:
 
 
 def first_harmonic(
-    law: Law, signals: Mapping[sp.Symbol, np.ndarray], *, frequency: float | np.ndarray
+    law: LawExpressions, signals: Mapping[sp.Symbol, np.ndarray], *, frequency: float | np.ndarray
 ) -> np.ndarray:
     """First harmonic of the law's output over a cycle that closes, (...); sin is 1, cos is j.
 
@@ -58,10 +58,10 @@ def first_harmonic(
             f"{law.where}: no describing function, for it depends on {', '.join(strangers)}"
         )
     states = _closed(law, signals, 1 / (float(frequency) * STEPS)) if law.rates else {}
-    given = {**signals, **states}
+    along = {**signals, **states}
     used, call = law.force
     with np.errstate(all="ignore"):  # a piecewise law is computed also where it does not hold
-        force = np.asarray(call(*(given[s] for s in used)), dtype=float)
+        force = np.asarray(call(*(along[s] for s in used)), dtype=float)
     if not np.isfinite(force).all():
         raise ModelError(f"{law.where}: the force is not finite along this motion")
     force = np.broadcast_to(force, np.broadcast_shapes(force.shape, (STEPS,)))
@@ -75,7 +75,7 @@ def middles() -> np.ndarray:
 
 
 def _closed(
-    law: Law, signals: Mapping[sp.Symbol, np.ndarray], step: float
+    law: LawExpressions, signals: Mapping[sp.Symbol, np.ndarray], step: float
 ) -> dict[sp.Symbol, np.ndarray]:
     """Hidden states in the middle of each step of a cycle that ends where it began."""
     states = [*law.rates]
@@ -93,7 +93,7 @@ def _closed(
     raise ModelError(f"{law.where}: hidden states do not repeat from cycle to cycle")
 
 
-def _slopes_and_rest(law: Law, signals: list[sp.Symbol]) -> _Call:
+def _slopes_and_rest(law: LawExpressions, signals: list[sp.Symbol]) -> _Call:
     slopes = []
     for state, rate in law.rates.items():
         slope = sp.diff(rate, state)

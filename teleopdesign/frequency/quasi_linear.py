@@ -87,7 +87,7 @@ class _Form:
             if part.motion == self.motion:
                 z = describing_function(part.body, amplitude=amplitude, frequency=frequency)
                 values[block_symbol(part.name)] = complex(z)
-        asked = []
+        gains = []
         for name, (law, drive) in self.controls.items():
             values[block_symbol(name)] = 0j
             if drive is None:
@@ -95,10 +95,10 @@ class _Form:
                 values[block_symbol(name)] = complex(n)
             else:
                 gain = driven_gain(law, amplitude=amplitude, frequency=frequency)
-                asked.append((block_symbol(name), gain, drive))
+                gains.append((block_symbol(name), gain, drive))
         for _ in range(_MOST):
             before = dict(values)
-            for symbol, gain, drive in asked:
+            for symbol, gain, drive in gains:
                 size = _number(drive, values) * amplitude
                 values[symbol] = gain(size) if size else 0j  # nothing drives it: it gives nothing
             if all(cmath.isclose(values[k], before[k], rel_tol=_FOUND) for k in values):

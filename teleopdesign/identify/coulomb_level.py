@@ -66,7 +66,7 @@ class Line(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class CoulombLevel(ByValue):
-    """What constant-speed runs say of friction.
+    """Friction over speed, from runs at constant speed.
 
     runs: all that were found;  speeds: friction at each speed that was run both ways
     line: friction over speed: its level is the Coulomb level; None where not two speeds were run

@@ -27,14 +27,15 @@ class LargestStiffness(ByValue):
     """The largest stiffness without oscillation, N/m.
 
     stiffness: inf where the largest one tried does not oscillate, 0 where the smallest does
-    oscillates: the smallest that was seen to oscillate, inf where none was;  tried: simulations
+    oscillates: the smallest that was seen to oscillate, inf where none was;
+    simulations: their number
     kick: initial speed, m/s;  decay: of the criterion
     axis: of the device; on a revolute one N m/rad and rad/s
     """
 
     stiffness: float
     oscillates: float
-    tried: int
+    simulations: int
     kick: float
     decay: float
     axis: str = "prismatic"
@@ -43,7 +44,7 @@ class LargestStiffness(ByValue):
         unit, speed = unit_of("stiffness", self.axis), unit_of("velocity", self.axis)
         return (
             f"Largest stiffness without oscillation: {self.stiffness:.4g} {unit}, "
-            f"{self.oscillates:.4g} {unit} oscillates ({self.tried} simulations of a kick of "
+            f"{self.oscillates:.4g} {unit} oscillates ({self.simulations} simulations of a kick of "
             f"{self.kick:g} {speed}; it oscillates where more than {self.decay:g} of the rms "
             "speed is left)"
         )

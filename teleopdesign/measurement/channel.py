@@ -80,21 +80,21 @@ def sample_rate_from(experiment: Table, channels: Table) -> float | None:
 
     Exactly one of it and the channel `time` must be there.
     """
-    given = [table for table in (channels, experiment) if "sample_rate" in table.content]
-    if "time" in channels.content and given:
+    tables = [table for table in (channels, experiment) if "sample_rate" in table.content]
+    if "time" in channels.content and tables:
         raise ExperimentError(
-            f"{given[0].where('sample_rate')}: found beside channels.time, expected one of the two"
+            f"{tables[0].where('sample_rate')}: found beside channels.time, expected one of the two"
         )
-    if len(given) == 2:
+    if len(tables) == 2:
         raise ExperimentError(f"{experiment.where('sample_rate')}: is given twice")
-    if not given:
+    if not tables:
         if "time" not in channels.content:
             raise ExperimentError(
                 f'{channels.where()}: no "time", expected {{ column = ..., unit = "s" }} '
                 'or sample_rate = { value = 1000, unit = "Hz" }'
             )
         return None
-    return frequency_from(given[0], "sample_rate")
+    return frequency_from(tables[0], "sample_rate")
 
 
 def frequency_from(table: Table, key: str) -> float:

@@ -103,12 +103,12 @@ def load_experiment(folder: str | Path) -> Experiment:
             folder,
             file,
             use=use,
-            own=own,
+            offset_names=offset_names,
             channels=channels,
             bodies=bodies,
             sample_rate=sample_rate,
         )
-        for file, use, own in _record_entries(experiment, folder)
+        for file, use, offset_names in _record_entries(experiment, folder)
     )
     _check_bandwidth(bandwidth, records, comparison)
     return Experiment(folder, title, bodies, environment, channels, bandwidth, records)

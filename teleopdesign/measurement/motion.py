@@ -97,12 +97,12 @@ def reading_step(position: Array) -> float:
     rounding = float(np.sqrt(12.0)) * reading_noise(position)
     moving = float(np.mean(np.diff(position) != 0)) > 0.5
     # readings that are all alike in their fourth difference show no noise at all
-    seen = rounding > 1e-9 * float(np.ptp(position))
-    return min(step, rounding) if seen and moving and step > 3.0 * rounding else step
+    is_noisy = rounding > 1e-9 * float(np.ptp(position))
+    return min(step, rounding) if is_noisy and moving and step > 3.0 * rounding else step
 
 
-def told_direction(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:
-    """+1 or -1 where consecutive readings tell a motion that way, 0 where they cannot.
+def direction_of(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:
+    """+1 or -1 where consecutive readings show a direction of motion, else 0.
 
     A motion is told by changes of the reading that go the same way, no more than `patience` samples
     apart, over at least `TRAVEL` steps; a shorter one may be the give of a contact that holds.
@@ -135,7 +135,7 @@ def beside(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def play(position: Array, width: float) -> Array:
-    """Position behind a play of total `width`: it follows only what exceeds it (hysteresis)."""
+    """Position behind a play (hysteresis) of total `width`, which follows only larger motions."""
     half = 0.5 * width
     out = np.empty_like(position)
     here = position[0]
@@ -177,7 +177,7 @@ def motion_of(
     differentiated = smoothing * s.derivative(1)
     velocity = s.back(transformed * s.derivative(1))
     noise_left = step / np.sqrt(12.0) * float(np.sqrt(np.mean(np.abs(differentiated) ** 2)))
-    direction = told_direction(reading, change, step, patience)
+    direction = direction_of(reading, change, step, patience)
     direction[beside(np.abs(velocity) < SLOW * noise_left)] = 0
     return Motion(
         body=body,

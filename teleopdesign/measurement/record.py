@@ -24,8 +24,8 @@ OWN = ("position_zero", "bias", "friction_level")
 class Record(ByValue):
     """n samples; "fit": parameters are estimated on them, "check": never fitted.
 
-    own: of "position_zero", "bias" and "friction_level", those in which this record may differ from
-        the others
+    offset_names: of "position_zero", "bias" and "friction_level", those in which this record may
+        differ from the others
     time: s, shape (n,), uniform within each segment with step `sample_time` (s)
     segments: stretches without interruption; hidden states start anew at each
     signals: "device.position", "master.actuator_force" ... -> shape (n,), SI, signs of the format
@@ -33,7 +33,7 @@ class Record(ByValue):
 
     file: str
     use: str
-    own: frozenset[str]
+    offset_names: frozenset[str]
     time: NDArray[np.float64]
     sample_time: float
     segments: tuple[slice, ...]
@@ -57,7 +57,7 @@ def read_record(
     file: str,
     *,
     use: str,
-    own: frozenset[str],
+    offset_names: frozenset[str],
     channels: Mapping[str, Channel],
     bodies: Mapping[str, BodyDescription],
     sample_rate: float | None,
@@ -89,7 +89,7 @@ def read_record(
         time, sample_time = uniform_time(
             stamps, segments, f"{name}: channels.time", labelled="segment" in channels
         )
-    return Record(file, use, own, time, sample_time, segments, signals)
+    return Record(file, use, offset_names, time, sample_time, segments, signals)
 
 
 def _short(key: str) -> str:

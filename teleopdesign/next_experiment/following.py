@@ -73,15 +73,15 @@ def follow_path(path: Array, servo: Servo, *, sample_time: float) -> FollowedPat
         return FollowedPath(path, ())
     behind = play(path, servo.play)
     stuck = _sticking_rows(path, behind)
-    taken = behind.copy()
+    followed = behind.copy()
     ends = [first for first, _ in stuck[1:]] + [len(path)]
     for (_, last), end in zip(stuck, ends, strict=True):
         # from rest at once to the reference's speed is more than a servo can: it catches up
         rows = slice(last, min(last + length, end))
         s = np.linspace(0.0, 1.0, rows.stop - rows.start)
         share = s**3 * (10 - 15 * s + 6 * s**2)
-        taken[rows] = behind[last] + (behind[rows] - behind[last]) * share
-    return FollowedPath(taken, stuck)
+        followed[rows] = behind[last] + (behind[rows] - behind[last]) * share
+    return FollowedPath(followed, stuck)
 
 
 def _sticking_rows(path: Array, behind: Array) -> tuple[tuple[int, int], ...]:

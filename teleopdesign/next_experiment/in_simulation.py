@@ -36,7 +36,7 @@ def show_in_simulation(
     progress: Callable[[str], None] | None = None,
     seed: int = 100,
 ) -> tuple[SimulatedDiagnosis, ...]:
-    """Diagnose the present records and those that each rival would give along the motion.
+    """Diagnose the present records with the records that each rival would make along the motion.
 
     seconds: no further rival is begun after this time;  seed: of the new records' sensor errors
     """
@@ -55,7 +55,7 @@ def show_in_simulation(
 
 
 def names_alone(diagnosis: Diagnosis, rival: Rival) -> bool:
-    """Whether a diagnosis names the rival's effect, with none that does as well."""
+    """Whether a diagnosis names the rival's effect, and no other explains the records as well."""
     key = rival.candidate.key
     return diagnosis.verdict == "effects_missing" and any(
         r.added is not None and r.added.key == key and not r.alternatives for r in diagnosis.rungs

@@ -42,7 +42,7 @@ class Limits:
                 raise ModelError(f"limits: {name} is {getattr(self, name):g}, expected more than 0")
 
     def with_values(self, **values: float) -> Limits:
-        """Other values by name; ModelError with the nearest name where there is none such."""
+        """The limits with other values by name; ModelError names the nearest for an unknown one."""
         known = [f.name for f in fields(self)]
         for name in values:
             if name not in known:
@@ -75,7 +75,7 @@ def shown_limits(prepared: Prepared) -> dict[str, Limits]:
 
 
 def _shown(stretches: Sequence[Stretch]) -> Limits:
-    common = [s for s in stretches if not s.own_zero] or [stretches[0]]
+    common = [s for s in stretches if not s.has_zero_offset] or [stretches[0]]
     accelerations = [s.motion.lowpassed(s.motion.acceleration)[_inside(s)] for s in stretches]
     jerks = [
         np.diff(a) / s.motion.sample_time for a, s in zip(accelerations, stretches, strict=True)
@@ -91,7 +91,7 @@ def _shown(stretches: Sequence[Stretch]) -> Limits:
 
 
 def _inside(stretch: Stretch) -> slice:
-    """The rows between those that count: derivatives at a record's ends are not known."""
+    """The rows with known derivatives: the ends of each record are left out."""
     return slice(int(stretch.keep[0]), int(stretch.keep[-1]) + 1)
 
 
@@ -100,7 +100,7 @@ def _largest(parts: Sequence[np.ndarray]) -> float:
 
 
 @dataclass(frozen=True)
-class Course:
+class BodyPaths:
     """How one path moves every body: position = middle + gain times the path (SI of the first).
 
     limits: those of the path itself: the stroke is low = -high, the rest the tightest of all bodies
@@ -111,8 +111,8 @@ class Course:
     limits: Limits
 
 
-def course_of(limits: Mapping[str, Limits], prepared: Prepared) -> Course:
-    """One path for all bodies: a coupled pair keeps its ratio, others go by their strokes."""
+def course_of(limits: Mapping[str, Limits], prepared: Prepared) -> BodyPaths:
+    """One path for all bodies: coupled bodies keep their ratio, others fill their strokes."""
     first = next(iter(limits))
     gain = {b: _ratio(first, b, limits, prepared) for b in limits}
     middle = {b: 0.5 * (limit.low + limit.high) for b, limit in limits.items()}
@@ -123,7 +123,7 @@ def course_of(limits: Mapping[str, Limits], prepared: Prepared) -> Course:
     half = min(0.5 * (limit.high - limit.low) / abs(gain[b]) for b, limit in limits.items())
     bounds = {name: tightest(name) for name in ("speed", "acceleration", "jerk")}
     # each body is held to its own force when the force is known
-    return Course(middle, gain, Limits(-half, half, **bounds, force=limits[first].force))
+    return BodyPaths(middle, gain, Limits(-half, half, **bounds, force=limits[first].force))
 
 
 #: correlation of two bodies' positions from which they count as coupled

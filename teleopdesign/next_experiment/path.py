@@ -97,7 +97,7 @@ def sines(
 
 
 def with_window(y: Array, *, ramp: float, sample_time: float) -> Array:
-    """The signal faded in and out (s), with a rest before and after."""
+    """The signal with a smooth start and end of that length (s), and a rest before and after."""
     t = np.arange(len(y)) * sample_time
     rise = np.clip(np.minimum(t, t[-1] - t) / ramp, 0.0, 1.0)
     rest = np.zeros(round(REST / sample_time))
@@ -108,7 +108,7 @@ def with_window(y: Array, *, ramp: float, sample_time: float) -> Array:
 
 
 def largest_factor(y: Array, limits: Limits, *, sample_time: float) -> float:
-    """The factor that takes a path to the nearest of its limits (stroke, speed and so on)."""
+    """The largest factor by which a path stays within its limits (stroke, speed and so on)."""
     peaks = [y]
     for _ in range(3):
         peaks.append(np.gradient(peaks[-1], sample_time))

@@ -36,7 +36,7 @@ SAME = 0.05
 
 @dataclass(frozen=True)
 class Separation:
-    """What one rival leaves along the proposed motion where another is the truth.
+    """Error of one rival along the proposed motion if another is the truth.
 
     present: error that the present records show beyond the truth's own, in noise floors
     predicted: the same of the new check record, after all is fitted anew on all fit records
@@ -79,7 +79,7 @@ class Curves:
 
 
 @dataclass(frozen=True)
-class Prediction:
+class RivalPrediction:
     """Everything that follows if one rival is the truth."""
 
     truth: int
@@ -100,13 +100,13 @@ def run_twice(
 
 
 def with_records(experiment: Experiment, records: Sequence[Record]) -> Experiment:
-    """The experiment with records more."""
+    """The experiment with additional records."""
     return replace(experiment, records=(*experiment.records, *records))
 
 
 @dataclass(frozen=True)
 class Refit:
-    """Rivals fitted to all fit records together, and what they leave along the new check record.
+    """Rivals fitted to all fit records together, with their residuals on the new check record.
 
     errors: one for each rival, in noise floors: those of the new record or of the present ones,
         whichever is larger
@@ -158,7 +158,7 @@ def predict(
     present: Mapping[tuple[int, int], float],
     *,
     seed: int,
-) -> Prediction:
+) -> RivalPrediction:
     """Fit every rival to the present and the new records that rival `number` would give.
 
     present: (truth, other) -> separation on the present records
@@ -178,7 +178,9 @@ def predict(
         for k, i in enumerate(against, start=1)
     )
     curves = tuple(_curves(truth, fitted, k) for k in range(1, len(fitted.fits)))
-    return Prediction(number, separations, _determined_parameters(truth, fitted.fits[0]), curves)
+    return RivalPrediction(
+        number, separations, _determined_parameters(truth, fitted.fits[0]), curves
+    )
 
 
 def _score(other: Fit, truth: Fit) -> float:
@@ -198,7 +200,7 @@ def _curves(truth: Rival, fitted: Refit, other: int) -> Curves:
 
 
 def least_determined(determined: Sequence[DeterminedParameter]) -> tuple[DeterminedParameter, ...]:
-    """Each parameter once, as the truth that settles it least leaves it."""
+    """Each parameter once, with its largest standard error over all truths."""
     least: dict[str, DeterminedParameter] = {}
     for d in determined:
         if d.name not in least or d.after > least[d.name].after:

@@ -42,7 +42,7 @@ class Reference(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class Proposal(ByValue):
-    """What to measure next, so that rivals can be told apart.
+    """The motion to measure next, which separates the rivals.
 
     rivals: models that the present records leave open; empty where these decide
     reference: the motion; None where there is nothing to tell apart or nothing could be proposed
@@ -73,7 +73,7 @@ class Proposal(ByValue):
 
     @property
     def is_useful(self) -> bool:
-        """Whether the motion tells any two rivals better than the present records do."""
+        """Whether the motion separates any two rivals better than the present records do."""
         return any(s.predicted > max(s.present, SAME) for s in self.separations)
 
     def __repr__(self) -> str:

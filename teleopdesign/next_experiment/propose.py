@@ -98,14 +98,14 @@ def _finished(
     return sentence_of(Proposal(diagnosis, rivals, None, "", (), (), (), {}, limits, bench))
 
 
-def _kept(diagnosis: Diagnosis, given: Mapping[str, Limits]) -> dict[str, Limits]:
+def _kept(diagnosis: Diagnosis, stated: Mapping[str, Limits]) -> dict[str, Limits]:
     shown = shown_limits(diagnosis.prepared)
-    for body in given:
+    for body in stated:
         if body not in shown:
             raise ModelError(
                 f'limits: no body "{body}", has {", ".join(shown)}{did_you_mean(body, shown)}'
             )
-    return {**shown, **given}
+    return {**shown, **stated}
 
 
 def _bench(diagnosis: Diagnosis, limits: Mapping[str, Limits]) -> Bench:

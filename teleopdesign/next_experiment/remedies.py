@@ -38,7 +38,7 @@ EVERY = 3
 
 @dataclass(frozen=True)
 class Remedy:
-    """A change of the set-up and the separation (noise floors) of a pair that it was found to give.
+    """A change of the set-up, and the separation of a pair with this change (noise floors).
 
     change: in words that end "... if";  separation: along the best part, in the worse order
     """

@@ -82,7 +82,7 @@ def _instead(diagnosis: Diagnosis, added: Candidate, other: Candidate, fit: Fit)
 
 
 def depends_on_time(rivals: Sequence[Rival]) -> bool:
-    """Whether the law of what is in question depends on time itself, as a warm-up does."""
+    """Whether the law of a questioned effect depends on time itself, as a warm-up does."""
     return any(r.candidate.effect.expression().has(SIGNALS["time"]) for r in rivals)
 
 

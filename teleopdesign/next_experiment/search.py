@@ -22,7 +22,7 @@ DILUTES = 0.02
 
 @dataclass(frozen=True)
 class SafeParts:
-    """The parts that keep within the limits, and how each pair of rivals fares along them.
+    """The parts within the limits, and the separation of each pair of rivals along them.
 
     sums: (truth, other) -> sums over the parts
     """
@@ -58,7 +58,7 @@ def try_parts(
     floor: float,
     seed: int,
 ) -> SafeParts:
-    """Let each rival be the truth along each part, and see what the others leave.
+    """Separations along each part, with each rival in turn as the truth.
 
     floor: force (rms) that sensors leave on the present records;  seed: of the sensors' errors
     """
@@ -111,7 +111,7 @@ def _is_safe(simulated: Prepared, part: int, limits: Mapping[str, Limits]) -> bo
 
 
 def compose(candidates: SafeParts, duration: float, sample_time: float) -> tuple[int, ...]:
-    """Parts chosen one at a time, each the one that gains most, until the time (s) is used up."""
+    """Choose parts one at a time, by the largest gain, until the time (s) is used up."""
     chosen: list[int] = []
     reached = 0.0
     while True:

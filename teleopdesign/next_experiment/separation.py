@@ -111,9 +111,9 @@ def present_separation(truth: Rival, other: Rival, prepared: Prepared, floor: fl
     """
     fit, check = prepared.of("fit"), prepared.of("check") or prepared.of("fit")
     present = normal_matrix(other, prepared)
-    seen = _against(truth, other, fit, present)
-    step = -solve_normal(present, seen.gradient.sum(0))
-    shown = seen if check is fit else _against(truth, other, check, present)
+    on_fit = _against(truth, other, fit, present)
+    step = -solve_normal(present, on_fit.gradient.sum(0))
+    shown = on_fit if check is fit else _against(truth, other, check, present)
     left = float(
         shown.squares.sum() + 2 * shown.gradient.sum(0) @ step + step @ shown.normal.sum(0) @ step
     )

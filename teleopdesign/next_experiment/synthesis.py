@@ -23,7 +23,7 @@ from ..model import Model
 from ..realise.along_motion import residual_along
 from ..realise.simulated import with_give, without_absent
 from .following import Servo, follow_path, with_ramps
-from .limits import Course
+from .limits import BodyPaths
 
 #: give of an ideal friction, in encoder steps: too small to be read
 GIVE = 0.3
@@ -66,13 +66,13 @@ def exact_motion(
 
 
 def command_along(
-    body: Body, motion: Motion, *, give: float, stuck: Sequence[tuple[int, int]] = ()
+    body: Body, motion: Motion, *, deflection: float, stuck: Sequence[tuple[int, int]] = ()
 ) -> Array:
-    """The command (n,) with which the body of this model moves so, below the motion's smoothing.
+    """The command (n,) that makes the model move along this motion, within its bandwidth.
 
-    give: of an ideal friction (SI);  stuck: rows in which the servo's force turns round
+    deflection: of an ideal friction (SI);  stuck: rows in which the servo's force turns round
     """
-    body = with_give(without_absent(body), give)
+    body = with_give(without_absent(body), deflection)
     command = np.zeros(len(motion.time))
     inverse: NDArray[np.complex128] | None = None
     for _ in range(CORRECTIONS):
@@ -95,10 +95,10 @@ def _inverse(body: Body, motion: Motion, force: float) -> NDArray[np.complex128]
     pulse[n // 2] = 1e-3 * force or 1.0
     rest = residual_along(body, motion).acting.value
     answer = residual_along(body, replace(motion, command=pulse)).acting.value - rest
-    asked = motion.spectrum.transform(pulse)
+    commanded = motion.spectrum.transform(pulse)
     # a short record is continued with the pulse itself, which can cancel it at a frequency
-    power = np.maximum(np.abs(asked) ** 2, 1e-6 * float(np.max(np.abs(asked) ** 2)))
-    gain = motion.spectrum.transform(answer) * np.conj(asked) / power
+    power = np.maximum(np.abs(commanded) ** 2, 1e-6 * float(np.max(np.abs(commanded) ** 2)))
+    gain = motion.spectrum.transform(answer) * np.conj(commanded) / power
     return np.asarray(motion.smoothing * np.conj(gain) / (np.abs(gain) ** 2 + PASSES**2))
 
 
@@ -116,7 +116,7 @@ class Bench:
     bandwidth: float
     sample_time: float
     sensors: Mapping[str, Sensor]
-    course: Course
+    course: BodyPaths
     floor: float = 0.0
     servos: Mapping[str, Servo] = field(default_factory=dict)
     attached: Mapping[str, float] = field(default_factory=dict)
@@ -181,7 +181,7 @@ def record_under(
         true = {
             "position": exact.position,
             "actuator_force": command_along(
-                model.body(body), exact, give=GIVE * step, stuck=plan.stuck[body]
+                model.body(body), exact, deflection=GIVE * step, stuck=plan.stuck[body]
             ),
         }
         if f"{body}.interaction_force" in bench.sensors:

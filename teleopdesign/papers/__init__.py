@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from ..errors import ModelError, did_you_mean
-from ._proof import NotProved, Proof, Refutation
+from ._proof import Correction, NotProved, ProofSteps
 from ._statement import HOW, Figure, Numbers, Paper, Result, Statement, check
 
 __all__ = [
@@ -21,8 +21,8 @@ __all__ = [
     "NotProved",
     "Numbers",
     "Paper",
-    "Proof",
-    "Refutation",
+    "ProofSteps",
+    "Correction",
     "Result",
     "Statement",
     "check",

@@ -53,7 +53,7 @@ def _shown(sign: str, expression: sp.Expr) -> str:
 
 
 @dataclass(frozen=True)
-class Step:
+class ProofStep:
     """One exact fact; words: what it says in the chain of the proof."""
 
     words: str
@@ -62,13 +62,13 @@ class Step:
         """Expressions shown not to be negative, given those in `known`; raises NotProved."""
         raise NotImplementedError
 
-    def told(self) -> str:
+    def as_text(self) -> str:
         """The words, and what is short enough to print of the expressions."""
         return self.words
 
 
 @dataclass(frozen=True)
-class Equal(Step):
+class Equal(ProofStep):
     """left = right for all values of the symbols (commuting)."""
 
     left: sp.Expr
@@ -81,42 +81,42 @@ class Equal(Step):
             raise NotProved(f"{self.words}: no proof that {self.left} = {self.right}")
         return []
 
-    def told(self) -> str:
+    def as_text(self) -> str:
         """With the right side."""
         return self.words + _shown("=", self.right)
 
 
 @dataclass(frozen=True)
-class NotNegative(Step):
+class NotNegative(ProofStep):
     """expression >= 0: it equals `form`, whose sign shows by itself.
 
-    form: built from symbols whose sign sympy knows, and from the symbols of `given`
-    given: symbol >= 0 -> expression that the proof assumes, or showed before, not to be negative
+    form: built from symbols whose sign sympy knows, and from the symbols of `signs`
+    signs: symbol >= 0 -> expression that the proof assumes, or showed before, not to be negative
     """
 
     expression: sp.Expr
     form: sp.Expr
-    given: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    signs: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     strictly: bool = False
 
     def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
         """Sign from sympy's assumptions, equality exactly."""
         form = sp.sympify(self.form)
-        _without_floats(self.expression, form, *self.given.values())
-        for symbol, used in self.given.items():
+        _without_floats(self.expression, form, *self.signs.values())
+        for symbol, used in self.signs.items():
             if not symbol.is_nonnegative:
                 raise NotProved(f"{self.words}: {symbol} is not declared >= 0")
             if not any(vanishes(used - k) for k in known):
                 raise NotProved(f"{self.words}: {used} >= 0 is neither assumed nor shown")
         if not (form.is_positive if self.strictly else form.is_nonnegative):
             raise NotProved(f"{self.words}: the sign of {form} does not show")
-        if not vanishes(self.expression - form.subs(dict(self.given))):
+        if not vanishes(self.expression - form.subs(dict(self.signs))):
             raise NotProved(f"{self.words}: no proof that {self.expression} = {form}")
         return [sp.sympify(self.expression)]
 
 
 @dataclass(frozen=True)
-class Grows(Step):
+class Grows(ProofStep):
     """expression >= 0 for variable > 0: it starts at a value >= 0 and its derivative is `slope`.
 
     slope: form of the derivative whose sign shows by itself, as in NotNegative
@@ -125,7 +125,7 @@ class Grows(Step):
     expression: sp.Expr
     variable: sp.Symbol
     slope: sp.Expr
-    given: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    signs: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
     def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
         """Start by an exact limit from the right, derivative as in NotNegative."""
@@ -133,12 +133,12 @@ class Grows(Step):
         if not start.is_nonnegative:
             raise NotProved(f"{self.words}: starts at {start}")
         derivative = sp.diff(self.expression, self.variable)
-        NotNegative(self.words, derivative, self.slope, self.given).check(known)
+        NotNegative(self.words, derivative, self.slope, self.signs).check(known)
         return [sp.sympify(self.expression)]
 
 
 @dataclass(frozen=True)
-class Limit(Step):
+class Limit(ProofStep):
     """expression -> value as variable -> at (from the right where at is finite)."""
 
     expression: sp.Expr
@@ -154,13 +154,13 @@ class Limit(Step):
             raise NotProved(f"{self.words}: the limit is {limit}, not {self.value}")
         return []
 
-    def told(self) -> str:
+    def as_text(self) -> str:
         """With the value."""
         return self.words + _shown("->", self.value)
 
 
 @dataclass(frozen=True)
-class Holds(Step):
+class Holds(ProofStep):
     """A relation between exact numbers is true: a witness, an example that something can happen.
 
     relation: "==", "!=", "<", "<=", ">" or ">="
@@ -183,7 +183,7 @@ class Holds(Step):
 
 
 @dataclass(frozen=True)
-class BlocksEqual(Step):
+class BlocksEqual(ProofStep):
     """left = right for blocks that need not commute."""
 
     left: sp.Expr
@@ -198,7 +198,7 @@ class BlocksEqual(Step):
 
 
 @dataclass(frozen=True)
-class BlocksDiffer(Step):
+class BlocksDiffer(ProofStep):
     """left != right for some blocks: rational matrices on which they differ exactly."""
 
     left: sp.Expr
@@ -213,13 +213,13 @@ class BlocksDiffer(Step):
 
 
 @dataclass(frozen=True)
-class Proof:
+class ProofSteps:
     """Steps in order.
 
     assuming: expressions that the statement supposes not to be negative, beyond what symbols assume
     """
 
-    steps: tuple[Step, ...]
+    steps: tuple[ProofStep, ...]
     assuming: tuple[sp.Expr, ...] = ()
 
     def verify(self) -> tuple[str, ...]:
@@ -230,26 +230,26 @@ class Proof:
         _without_floats(*known)
         for step in self.steps:
             known += step.check(known)
-        return tuple(step.told() for step in self.steps)
+        return tuple(step.as_text() for step in self.steps)
 
 
-def proof(*steps: Step | Iterable[Step], assuming: Iterable[sp.Expr] = ()) -> Proof:
+def proof(*steps: ProofStep | Iterable[ProofStep], assuming: Iterable[sp.Expr] = ()) -> ProofSteps:
     """A proof of these steps; several may be given as one iterable."""
-    flat: list[Step] = []
+    flat: list[ProofStep] = []
     for step in steps:
-        flat += [step] if isinstance(step, Step) else list(step)
-    return Proof(tuple(flat), tuple(assuming))
+        flat += [step] if isinstance(step, ProofStep) else list(step)
+    return ProofSteps(tuple(flat), tuple(assuming))
 
 
 @dataclass(frozen=True)
-class Refutation:
+class Correction:
     """What is printed fails, exactly, and the corrected form is proved.
 
     printed: steps that show the failure;  corrected: proof of what holds instead
     """
 
-    printed: Proof
-    corrected: Proof
+    printed: ProofSteps
+    corrected: ProofSteps
 
     def verify(self) -> tuple[str, ...]:
         """The words of all steps; raises NotProved."""

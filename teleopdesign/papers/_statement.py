@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from ._proof import NotProved, Proof, Refutation
+from ._proof import Correction, NotProved, ProofSteps
 
 How = Literal["proved", "checked numerically", "refuted", "claim of the paper"]
 HOW: tuple[How, ...] = ("proved", "checked numerically", "refuted", "claim of the paper")
@@ -77,7 +77,7 @@ class Numbers:
         return min(self.figures, key=lambda f: f.margin)
 
 
-Evidence = Proof | Refutation | Numbers
+Evidence = ProofSteps | Correction | Numbers
 
 
 @dataclass(frozen=True)
@@ -175,9 +175,9 @@ def check(statement: Statement) -> Result:
         evidence = None if statement.shown_by is None else statement.shown_by()
         if isinstance(evidence, Numbers):
             outcome, figures = "checked numerically", evidence.figures
-        elif isinstance(evidence, Refutation):
+        elif isinstance(evidence, Correction):
             outcome, details = "refuted", evidence.verify()
-        elif isinstance(evidence, Proof):
+        elif isinstance(evidence, ProofSteps):
             outcome, details = "proved", evidence.verify()
         if statement.numbers is not None:
             figures += statement.numbers().figures

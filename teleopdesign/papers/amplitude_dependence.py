@@ -13,7 +13,7 @@ from ..diagrams import Diagram, four_cases, reading, world_haptics_2005
 from ..effects import EFFECTS
 from ..frequency import describing_function, measured_impedance
 from ._laws import coulomb
-from ._proof import Equal, Holds, Limit, NotNegative, Proof, Refutation, proof
+from ._proof import Correction, Equal, Holds, Limit, NotNegative, ProofSteps, proof
 from ._statement import BERNSTEIN, DERIVED, Figure, Numbers, near, shows
 from .describing_functions import first_harmonic
 
@@ -36,7 +36,7 @@ def corner_at_20_hz() -> Numbers:
     "at f^1.2 = F_C/(pi^3 m a_0)",
     numbers=corner_at_20_hz,
 )
-def corner() -> Proof:
+def corner() -> ProofSteps:
     """Mass with Coulomb friction: corner amplitude, and corner frequency on a falling profile."""
     corner_amplitude = 4 * F_C / (sp.pi * m * w**2)
     friction, mass = COULOMB / A, m * w**2
@@ -74,7 +74,7 @@ def degrees_lost() -> Numbers:
     how="refuted",
     numbers=degrees_lost,
 )
-def phase_per_decade() -> Refutation:
+def phase_per_decade() -> Correction:
     """Mass with Coulomb friction loses at most 54.9 deg of phase per decade of amplitude, so the
     90 deg that were seen need something else, a wider range, or loose words.
     """
@@ -83,7 +83,7 @@ def phase_per_decade() -> Refutation:
     best = 2 * sp.atan(q) - sp.pi / 2
     at_maximum = LOSS.subs(r, q**2).subs(y, 1 / q)
     h = sp.Symbol("h", nonnegative=True)
-    return Refutation(
+    return Correction(
         proof(
             Limit("the bound reaches 90 deg only for r -> infinity", best, q, sp.oo, sp.pi / 2),
             NotNegative(

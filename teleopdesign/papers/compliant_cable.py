@@ -12,7 +12,7 @@ import sympy as sp
 
 from ..effects import EFFECTS
 from ._laws import coulomb
-from ._proof import Equal, Grows, Limit, NotNegative, Proof, Step, proof
+from ._proof import Equal, Grows, Limit, NotNegative, ProofStep, ProofSteps, proof
 from ._statement import DERIVED, MAHVASH, claim, shows
 from .dahl_loop import ENERGY
 from .dahl_loop import A as LOOP_AMPLITUDE
@@ -41,14 +41,14 @@ def coupling(x: tuple[sp.Expr, sp.Expr], v: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
     place="extension announced in Mahvash 2006",
     formula="f_D <= f_1 is enough, whatever k, f_2, masses and environment",
 )
-def motor_side() -> Proof:
+def motor_side() -> ProofSteps:
     """Compensation within the friction of the measured contact keeps the two-body joint passive
     for any environment.
     """
     x1, x2, force = sp.symbols("x_1 x_2 f_dahl", real=True)
     push, env, w1, w2 = sp.symbols("u f_env w_1 w_2", positive=True)
     size, spare, inside = sp.symbols("size spare inside", nonnegative=True)
-    steps: list[Step] = []
+    steps: list[ProofStep] = []
     for one in (1, -1):
         for two in (1, -1):
             v = (one * w1, two * w2)
@@ -76,7 +76,7 @@ def motor_side() -> Proof:
     return proof(steps, assuming=[f_1 - f_D, f_D - size])
 
 
-def rising_gain() -> list[Step]:
+def rising_gain() -> list[ProofStep]:
     """The compensator's energy per travel, f_D (1 - tanh(u)/u), rises with u, to f_D."""
     rest = sp.Symbol("rest", nonnegative=True)
     bend = sp.tanh(u) - u / sp.cosh(u) ** 2
@@ -97,7 +97,7 @@ def rising_gain() -> list[Step]:
     formula="clamped link: unlimited stroke needs f_D <= f_1; a stroke between -A and A at least "
     "f_D (1 - tanh(u)/u) <= f_1, u = sigma_D A/f_D",
 )
-def clamped_link() -> Proof:
+def clamped_link() -> ProofSteps:
     """What is necessary where the environment may clamp the link; for a limited stroke, of plain
     cycles: see P56.
     """
@@ -120,7 +120,7 @@ def clamped_link() -> Proof:
     "f_2 and f_D (1 - tanh(u_2)/u_2) <= f_1, u_2 = sigma_D f_2/(k f_D); for these enough: "
     "sigma_D <= k sqrt(3 f_1 f_D)/f_2",
 )
-def free_link() -> Proof:
+def free_link() -> ProofSteps:
     """Free link held by its own friction only, plain quasi-static cycles of the motor of any
     amplitude: the cable's stiffness limits the compensator's. Other motions: see P56.
     """
@@ -175,7 +175,7 @@ def free_link() -> Proof:
     formula="f_1 < f_D <= f_1 + f_2: P55 holds with sigma_D = k sqrt(3 f_1 f_D)/f_2 and fails for "
     "sigma_D large enough; a clamped link breaks it at any sigma_D",
 )
-def relieving_the_far_contact() -> Proof:
+def relieving_the_far_contact() -> ProofSteps:
     """Over-compensating the motor's contact to relieve the far one leaves plain slow cycles without
     gain only with a soft compensator, and only against environments that do not clamp the link.
     Other motions may give out all the same, see P56.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from ._laws import dahl_rate
-from ._proof import Equal, Holds, NotNegative, Proof, Refutation, proof
+from ._proof import Correction, Equal, Holds, NotNegative, ProofSteps, proof
 from ._statement import MAHVASH, shows
 
 f, v, new = sp.symbols("f v f_next", real=True)
@@ -28,7 +28,7 @@ def upwards(step: sp.Expr) -> sp.Expr:
     formula="df/dx = sigma abs(1 - (f/f_c) sgn v)^alpha sgn(1 - (f/f_c) sgn v)",
     printed="sigma (1 - (f/f_c) sgn v)^alpha, right only for abs(f) <= f_c or odd alpha",
 )
-def general_exponent() -> Proof:
+def general_exponent() -> ProofSteps:
     """The Dahl model with any exponent, also outside of its level."""
     base = sp.Symbol("base", positive=True)  # 1 - (f/f_c) sgn v, positive inside
     alpha = sp.Symbol("alpha", positive=True)
@@ -53,7 +53,7 @@ def general_exponent() -> Proof:
     printed='eq (3) is called "backward Euler"',
     how="refuted",
 )
-def called_backward_euler() -> Refutation:
+def called_backward_euler() -> Correction:
     """The printed step is forward Euler; true backward Euler is stable and keeps its level."""
     printed = f + T * sigma * v * (1 - f / f_c * sp.sign(v))
     implicit = sp.Eq(new, f + T * dahl_rate(new, v, f_c, sigma))
@@ -61,7 +61,7 @@ def called_backward_euler() -> Refutation:
     shown = (f + T * sigma * v) / (1 + T * sigma * sp.Abs(v) / f_c)
     point = {f: 0, v: 1, T: 1, sigma: 1, f_c: 1}
     step = upwards(shown)
-    return Refutation(
+    return Correction(
         proof(
             Equal("the printed step takes the rate at the old force", printed, FORWARD),
             Holds("the backward step is another", printed.subs(point), "!=", backward.subs(point)),
@@ -85,12 +85,12 @@ def called_backward_euler() -> Refutation:
     printed="1 - sigma abs(v)/f_c: T is missing; the unit circle is abs(z) = 1",
     how="refuted",
 )
-def pole_of_forward_euler() -> Refutation:
+def pole_of_forward_euler() -> Correction:
     """Pole of the printed step, and the speed from which it is unstable."""
     step = upwards(FORWARD)
     slope = sp.diff(FORWARD.subs(v, d), f)
     point = {sigma: 1, d: 1, f_c: 1, T: 2}
-    return Refutation(
+    return Correction(
         proof(
             Holds(
                 "without T the pole is another",
@@ -121,15 +121,15 @@ def pole_of_forward_euler() -> Refutation:
     "step reaches (2 q - 1) f_c",
     printed='"unstable at high velocity": stability ends at q = 2, the bound already at q = 1',
 )
-def bound_of_forward_euler() -> Proof:
+def bound_of_forward_euler() -> ProofSteps:
     """The bound that passivity rests on fails at half the speed at which the step diverges."""
     step = upwards(FORWARD)
     slow = sp.Symbol("slow", nonnegative=True)  # 1 - q
-    given = {**LEVELS, slow: 1 - q}
+    signs = {**LEVELS, slow: 1 - q}
     lowest = step.subs(f, -f_c)
     return proof(
-        NotNegative("q <= 1: stays below f_c", f_c - step, slow * ABOVE, given),
-        NotNegative("and above -f_c", f_c + step, BELOW + q * ABOVE, given),
+        NotNegative("q <= 1: stays below f_c", f_c - step, slow * ABOVE, signs),
+        NotNegative("and above -f_c", f_c + step, BELOW + q * ABOVE, signs),
         Equal("from -f_c", lowest, (2 * q - 1) * f_c),
         NotNegative(
             "q = 1 + e: beyond f_c", (lowest - f_c).subs(q, 1 + e), 2 * e * f_c, strictly=True

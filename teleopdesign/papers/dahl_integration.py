@@ -10,14 +10,14 @@ from ..controllers import controller
 from ..diagrams import haptic_interface
 from ..simulate import Trajectory, simulate
 from ._laws import dahl_rate, dahl_step
-from ._proof import Equal, Grows, NotNegative, Proof, Refutation, Step, proof
+from ._proof import Correction, Equal, Grows, NotNegative, ProofStep, ProofSteps, proof
 from ._statement import MAHVASH, Numbers, near, shows
 from .dahl_euler import ABOVE, BELOW, INSIDE, LEVELS, T, d, e, f, f_c, sigma
 
 SHARE = sp.exp(-sigma * d / f_c)  # of the distance to the level that is left after the travel d
 
 
-def in_parts(direction: int) -> Step:
+def in_parts(direction: int) -> ProofStep:
     """Travel in two parts is travel at once."""
     once = dahl_step(f, d + e, direction, f_c, sigma)
     twice = dahl_step(dahl_step(f, d, direction, f_c, sigma), e, direction, f_c, sigma)
@@ -56,11 +56,11 @@ def sampled_compensator() -> Numbers:
     formula="f_next = f_c s + (f - f_c s) exp(-(sigma/f_c) abs(dx)),  s = sgn(dx)",
     numbers=sampled_compensator,
 )
-def exact_step() -> Proof:
+def exact_step() -> ProofSteps:
     """The exact step: for any speed profile that does not turn within the sample; it keeps abs(f)
     <= f_c for every sequence of positions and never diverges.
     """
-    steps: list[Step] = []
+    steps: list[ProofStep] = []
     for s in (1, -1):
         step = dahl_step(f, d, s, f_c, sigma)
         steps += [
@@ -103,7 +103,7 @@ def exact_step() -> Proof:
     printed="sgn(v_i), the velocity at the old sample",
     how="refuted",
 )
-def sign_of_the_travel() -> Refutation:
+def sign_of_the_travel() -> Correction:
     """Forward by d1, then back by more within one sample: with the old velocity's sign the force
     moves the wrong way; with the sign of the travel the error is bounded.
     """
@@ -114,26 +114,18 @@ def sign_of_the_travel() -> Refutation:
 
     true = step(step(f, small * d, 1), small * (d + back), -1)
     wrong, right = step(f, small * back, 1), step(f, small * back, -1)
-
-    def first_order(error: sp.Expr) -> sp.Expr:
-        return sp.diff(error, small).subs(small, 0)
-
     error = (right - true).subs(small, 1)
     way = sp.exp(-sigma * back / f_c)
     rest, over, one = sp.symbols("rest over one", nonnegative=True)
-    given = {**LEVELS, rest: 1 - SHARE, one: 1 - way, over: SHARE - 1 + sigma * d / f_c}
-    return Refutation(
+    signs = {**LEVELS, rest: 1 - SHARE, one: 1 - way, over: SHARE - 1 + sigma * d / f_c}
+    return Correction(
+        _sign_of_the_old_velocity(true, wrong, back, small),
         proof(
             Equal(
-                "printed less true, to first order: 2 sigma abs(dx) too much",
-                first_order(wrong - true),
-                2 * sigma * back + 2 * sigma * d * f / f_c,
+                "corrected, to first order",
+                _first_order(right - true, small),
+                2 * sigma * d * f / f_c,
             ),
-            Equal("at f = 0 the true force falls", first_order(true).subs(f, 0), -sigma * back),
-            Equal("the printed one rises", first_order(wrong).subs(f, 0), sigma * back),
-        ),
-        proof(
-            Equal("corrected, to first order", first_order(right - true), 2 * sigma * d * f / f_c),
             Grows("1 - exp(-sigma d1/f_c) >= 0", 1 - SHARE, d, sigma / f_c * SHARE),
             Grows("likewise for the travel", 1 - way, back, sigma / f_c * way),
             Grows(
@@ -147,13 +139,13 @@ def sign_of_the_travel() -> Refutation:
                 "error <= 2 sigma d1",
                 2 * sigma * d - error,
                 2 * f_c * over + rest * (BELOW * one + ABOVE * (1 + way * SHARE)),
-                given,
+                signs,
             ),
             NotNegative(
                 "error >= -2 sigma d1",
                 2 * sigma * d + error,
                 2 * f_c * over + rest * (BELOW * (1 + way) + ABOVE * (one + way * rest)),
-                given,
+                signs,
             ),
             NotNegative(
                 "the turn comes in the first half of the sample: d1 = a t_1^2/2 <= a T^2/8",
@@ -164,3 +156,23 @@ def sign_of_the_travel() -> Refutation:
             assuming=INSIDE,
         ),
     )
+
+
+def _sign_of_the_old_velocity(
+    true: sp.Expr, wrong: sp.Expr, back: sp.Symbol, small: sp.Symbol
+) -> ProofSteps:
+    """With the old velocity's sign the force moves the wrong way, to first order in `small`."""
+    falls, rises = _first_order(true, small), _first_order(wrong, small)
+    return proof(
+        Equal(
+            "printed less true, to first order: 2 sigma abs(dx) too much",
+            _first_order(wrong - true, small),
+            2 * sigma * back + 2 * sigma * d * f / f_c,
+        ),
+        Equal("at f = 0 the true force falls", falls.subs(f, 0), -sigma * back),
+        Equal("the printed one rises", rises.subs(f, 0), sigma * back),
+    )
+
+
+def _first_order(error: sp.Expr, small: sp.Symbol) -> sp.Expr:
+    return sp.diff(error, small).subs(small, 0)

@@ -12,7 +12,7 @@ from ._laws import (
     dahl_step,
     stribeck_level,
 )
-from ._proof import Equal, Grows, Limit, NotNegative, Proof, proof
+from ._proof import Equal, Grows, Limit, NotNegative, ProofSteps, proof
 from ._statement import DERIVED, MAHVASH, shows
 
 f, x, z = sp.symbols("f x z", real=True)
@@ -29,7 +29,7 @@ ENERGY = 2 * sp.integrate(RISING, (x, -A, A))  # the falling half is the point m
     place="from eq (9) of Mahvash 2006",
     formula="rising: f_c (1 - exp(-x/lambda)/cosh u), falling: its point mirror; peak f_c tanh u",
 )
-def steady_loop() -> Proof:
+def steady_loop() -> ProofSteps:
     """Steady loop of amplitude A; any start converges to it, wherever its centre, so Dahl friction
     forgets offsets and drifts under small biased oscillation.
     """
@@ -58,7 +58,7 @@ def steady_loop() -> Proof:
     place="from eq (9) of Mahvash 2006",
     formula="W(A) = 4 f_c A (1 - tanh(u)/u)",
 )
-def energy_per_cycle() -> Proof:
+def energy_per_cycle() -> ProofSteps:
     """Energy that a steady cycle dissipates: as the cube of the amplitude when small, 4 f_c (A -
     lambda) when large.
     """
@@ -78,7 +78,7 @@ def energy_per_cycle() -> Proof:
     place="from eq (2) of Mahvash 2006",
     formula="f v = d/dt (f^2/(2 sigma)) + (abs(v)/f_c) f^2",
 )
-def power() -> Proof:
+def power() -> ProofSteps:
     """Dahl friction is passive: storage f^2/(2 sigma), dissipation abs(v) f^2/f_c."""
     velocity = sp.Symbol("v", real=True)
     stored = sp.diff(f**2 / (2 * sigma), f) * dahl_rate(f, velocity, f_c, sigma)
@@ -98,7 +98,7 @@ def power() -> Proof:
     "constant level, "
     "sigma_1 = sigma_2 = 0 too",
 )
-def relatives() -> Proof:
+def relatives() -> ProofSteps:
     """Hayward-Armstrong friction with constant alpha, and LuGre with constant level and no
     damping, are Dahl; alpha = 0 near rest removes the drift.
     """

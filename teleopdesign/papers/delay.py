@@ -7,7 +7,7 @@ import sympy as sp
 from scipy.optimize import brentq
 
 from ._laws import dahl_rate
-from ._proof import Equal, Grows, Holds, Limit, NotNegative, Proof, proof
+from ._proof import Equal, Grows, Holds, Limit, NotNegative, ProofSteps, proof
 from ._statement import BERNSTEIN, DERIVED, Numbers, near, shows
 from .describing_functions import DAHL_FRICTION, DAHL_SPRING, u
 from .describing_functions import f as DAHL_LEVEL
@@ -34,7 +34,7 @@ LATE_FRICTION = given_out(a1 * sp.sin(angle - late) + b1 * sp.cos(angle - late))
     "b_1 = (4 f_D/pi)(1 - tanh(u)/u); Coulomb: 4 f_D A cos(omega tau)",
     assumes="pi I_1(u) = integral of e^(u cos t) cos t over 0..pi (DLMF 10.32.3)",
 )
-def late_friction() -> Proof:
+def late_friction() -> ProofSteps:
     """A late friction compensator gives out less: it under-compensates and pushes against the
     motion after a reversal, which is felt, but dissipates.
     """
@@ -98,7 +98,7 @@ def late_friction() -> Proof:
     formula="cancelled inertia gives out pi mhat A^2 omega^2 sin(omega tau) > 0 for omega tau < pi",
     printed="motion-based cancellation suffers from delay, seen as limit cycles at reversal",
 )
-def late_inertia() -> Proof:
+def late_inertia() -> ProofSteps:
     """Cancelling inertia with any delay gives out energy; a late friction compensator within the
     level of ideal Coulomb friction does not: limit cycles have another source.
     """
@@ -133,7 +133,7 @@ def least_damping() -> Numbers:
     "sigma_D <= sigma_p",
     numbers=least_damping,
 )
-def late_stiffness() -> Proof:
+def late_stiffness() -> ProofSteps:
     """Damping that a late Dahl compensator needs in small motion, where it is a negative spring."""
     s = sp.Symbol("s")
     sigma_p, sigma_D, B, x, v = sp.symbols("sigma_p sigma_D B x v", positive=True)

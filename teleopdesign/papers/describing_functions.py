@@ -11,7 +11,7 @@ import sympy as sp
 from ..effects import EFFECTS
 from ..frequency import closed_forms
 from ._laws import coulomb, dahl_loop, smoothed_coulomb
-from ._proof import Equal, Holds, Limit, NotNegative, Proof, Refutation, proof
+from ._proof import Correction, Equal, Holds, Limit, NotNegative, ProofSteps, proof
 from ._statement import BERNSTEIN, DERIVED, shows
 
 phi, theta = sp.symbols("phi theta", real=True)
@@ -35,11 +35,11 @@ def first_harmonic(force: sp.Expr) -> sp.Expr:
     printed="4 j F_C/A: pi is missing",
     how="refuted",
 )
-def coulomb_friction() -> Refutation:
+def coulomb_friction() -> Correction:
     """Coulomb friction acts on a sinusoid as j 4 F_C/(pi A), at any frequency."""
     force = coulomb(v, F_C)
     spring = sp.integrate(force * sp.sin(phi), (phi, -QUARTER, QUARTER))
-    return Refutation(
+    return Correction(
         proof(Holds("the first harmonic of sgn is 4/pi, not 4", first_harmonic(1), "!=", 4)),
         proof(
             Equal(
@@ -60,7 +60,7 @@ def coulomb_friction() -> Refutation:
     "arcosh(1/r)/sqrt(1 - r^2) "
     "for r < 1, 1 for r = 1, arccos(1/r)/sqrt(r^2 - 1) for r > 1",
 )
-def smoothed_friction() -> Proof:
+def smoothed_friction() -> ProofSteps:
     """Describing function of smoothed Coulomb friction."""
     c, t = sp.symbols("c t", positive=True)
     force = smoothed_coulomb(v, F_C, a).subs({v: V * sp.cos(phi), a: r * V})
@@ -118,7 +118,7 @@ def smoothed_friction() -> Proof:
     formula="N = [2 f I_1(u)/cosh u + j (4 f/pi)(1 - tanh(u)/u)]/A,  u = sigma A/f",
     assumes="pi I_1(u) = integral of e^(u cos t) cos t over 0..pi (DLMF 10.32.3)",
 )
-def dahl_friction() -> Proof:
+def dahl_friction() -> ProofSteps:
     """Describing function of Dahl friction: a spring in small motion, Coulomb friction in large
     motion, with a spring part that decays only as 1/sqrt(u).
     """
@@ -162,7 +162,7 @@ def dahl_friction() -> Proof:
     "= 4 F_C/(pi V)",
     printed="16 dB/decade and f^-0.8, with digits lost",
 )
-def slope_over_frequency() -> Proof:
+def slope_over_frequency() -> ProofSteps:
     """Coulomb friction on a sweep of falling amplitude; at constant velocity amplitude it cannot
     be told from a damper.
     """

@@ -6,7 +6,7 @@ import sympy as sp
 
 from ..controllers import CONTROLLERS, SIGNALS, controller, scheduled_force_feedback
 from ._laws import coulomb, schedule, smoothed_coulomb
-from ._proof import Equal, Holds, Limit, NotNegative, Proof, proof
+from ._proof import Equal, Holds, Limit, NotNegative, ProofSteps, proof
 from ._statement import BERNSTEIN, shows
 
 v, a, b, k, F_C = sp.symbols("v a b k F_C", positive=True)
@@ -21,7 +21,7 @@ SLOPE = sp.diff(UP, v)
     formula="F_S = F_C v/(a + abs(v));  F_C sgn(v) - F_S = F_C sgn(v) a/(a + abs(v))",
     printed="digits of a are lost: 5, 15, 50 or 150 mm/s; no result here depends on it",
 )
-def smoothed_friction() -> Proof:
+def smoothed_friction() -> ProofSteps:
     """Smoothed Coulomb friction is odd, increasing, below F_C and steepest at 0 with slope F_C/a;
     what it leaves of Coulomb friction has the shape of the schedule of H.
     """
@@ -47,7 +47,7 @@ def smoothed_friction() -> Proof:
     "falls with abs(v) throughout iff b (1 + k) >= a k",
     printed="digits of k and b are lost (5, 15, 50; 8, 80, 18, 180, 800 mm/s)",
 )
-def residual_friction_of_the_hybrid() -> Proof:
+def residual_friction_of_the_hybrid() -> ProofSteps:
     """Friction that the hybrid leaves in quasi-static motion, and when slow motion feels more of
     it.
     """
@@ -86,7 +86,7 @@ def residual_friction_of_the_hybrid() -> Proof:
     formula="before: tau w' = g(v) e - w, output w;  after: tau w' = e - w, output g(v) w",
     printed="does not say whether the schedule acts before the low-pass or after it",
 )
-def place_of_the_schedule() -> Proof:
+def place_of_the_schedule() -> ProofSteps:
     """Schedule before or after the filter: the same at constant speed, not when speed changes."""
     orders = [
         scheduled_force_feedback(gain=1, scheduling_velocity=1, bandwidth=1, schedule=order)
@@ -124,7 +124,7 @@ def place_of_the_schedule() -> Proof:
     "z/p",
     printed="digits of g, z and p are lost; K is not recovered",
 )
-def position_loop_against_friction() -> Proof:
+def position_loop_against_friction() -> ProofSteps:
     """A position loop that is too soft at zero frequency leaves the rod stuck under a slow
     reference; for a lead the condition at zero frequency is the strictest.
     """

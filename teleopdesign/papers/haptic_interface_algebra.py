@@ -19,7 +19,7 @@ from ._proof import (
     Holds,
     Limit,
     NotNegative,
-    Proof,
+    ProofSteps,
     proof,
 )
 from ._statement import BERNSTEIN, shows
@@ -41,7 +41,7 @@ T = transfer_functions(ALL)
     formula="R_H = -Z_H L",
     printed="a sign is missing: R_H = Z_H L",
 )
-def sign_of_the_passive_hand() -> Proof:
+def sign_of_the_passive_hand() -> ProofSteps:
     """Only a hand that resists, R_H = -Z_H L, fits both R_M = -(R_H + R_V) and eq (2)."""
     base = haptic_interface(device=ANY, hand=ANY)
     turned = tuple(replace(b, sign=1) if isinstance(b, Attached) else b for b in base.blocks)
@@ -60,7 +60,7 @@ def sign_of_the_passive_hand() -> Proof:
     formula="T_o = Z_H (Z_H + Z_M)^-1",
     printed="the inverse is missing in the available text",
 )
-def uncompensated() -> Proof:
+def uncompensated() -> ProofSteps:
     """Desired force to force on the hand, without compensation."""
     right = Z_H * (Z_H + Z_M) ** -1
     return proof(
@@ -76,7 +76,7 @@ def uncompensated() -> Proof:
     formula="T_MBC = Z_H (Z_H + Z_M - C)^-1",
     printed="the inverse and the minus sign are missing in the available text",
 )
-def motion_based_cancellation() -> Proof:
+def motion_based_cancellation() -> ProofSteps:
     """Desired force to force on the hand, with motion-based cancellation C alone."""
     return proof(BlocksEqual("the wiring without H", T["T_MBC"], Z_H * (Z_H + Z_M - C) ** -1))
 
@@ -88,7 +88,7 @@ def motion_based_cancellation() -> Proof:
     formula="T_FF = (Z_M Z_H^-1 + Gamma)^-1 Gamma,  Gamma = I + H",
     printed="the inverses are missing in the available text; Gamma (...)^-1 is wrong for matrices",
 )
-def force_feedback() -> Proof:
+def force_feedback() -> ProofSteps:
     """Desired force to force on the hand, with force feedback H alone."""
     denominator = Z_M * Z_H**-1 + GAMMA
     return proof(
@@ -104,7 +104,7 @@ def force_feedback() -> Proof:
     formula="T_H = ((Z_M - C) Z_H^-1 + Gamma)^-1 Gamma = Z_H (Zhat_M + Z_H)^-1",
     printed="inverses and minus sign are missing in the available text",
 )
-def hybrid() -> Proof:
+def hybrid() -> ProofSteps:
     """Desired force to force on the hand, with both: as if the mechanism were Zhat_M."""
     form = ((Z_M - C) * Z_H**-1 + GAMMA) ** -1 * GAMMA
     return proof(
@@ -120,7 +120,7 @@ def hybrid() -> Proof:
     formula="Zhat_M = Gamma^-1 (Z_M - C)",
     printed="the order of factors cannot be read; (Z_M - C) Gamma^-1 needs commuting blocks",
 )
-def apparent_impedance() -> Proof:
+def apparent_impedance() -> ProofSteps:
     """Apparent impedance of the mechanism after compensation."""
     other = (Z_M - C) * GAMMA**-1
     scalars = {s: sp.Symbol(f"scalar_{s}") for s in (Z_M, C, H)}
@@ -138,7 +138,7 @@ def apparent_impedance() -> Proof:
     place="figure 4",
     formula="L = (Zhat_M + Z_H + K)^-1 (K L_D + R_V);  Zhat_M = (R_D - R_M)/L",
 )
-def position_loop() -> Proof:
+def position_loop() -> ProofSteps:
     """In the position loop a load enters the loop, but not the impedance that is measured in it."""
     closed = (ZHAT_M + Z_H + K) ** -1
     return proof(
@@ -155,7 +155,7 @@ def position_loop() -> Proof:
     place="figure 3",
     formula="R_D = 0: R_M = -Zhat_M L,  L = (Zhat_M + Z_H)^-1 R_V",
 )
-def free_space() -> Proof:
+def free_space() -> ProofSteps:
     """What a hand feels in free space is the apparent impedance: it is the transparency error."""
     felt = transfer(FORCE, "R_M", ("L",), given="L")["L"]
     moved = transfer(FORCE, "L", ("R_V",))["R_V"]
@@ -172,13 +172,13 @@ def free_space() -> Proof:
     formula="C = Z_M: T_MBC = I;  I - T_FF = (Z_M Z_H^-1 + Gamma)^-1 Z_M Z_H^-1 -> 0 for large "
     "Gamma",
 )
-def limits() -> Proof:
+def limits() -> ProofSteps:
     """Perfect cancellation and infinite force feedback each give the desired force exactly."""
     x = Z_M * Z_H**-1
     q = sp.Symbol("q", positive=True)
 
-    def at(name: str, given: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
-        return sp.sympify(T[name]).subs(given)
+    def at(name: str, values: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
+        return sp.sympify(T[name]).subs(values)
 
     return proof(
         BlocksEqual("C = Z_M: T_MBC = I", at("T_MBC", {C: Z_M}), sp.S(1)),
@@ -207,7 +207,7 @@ def limits() -> Proof:
     "= X/Gamma",
     printed="less than unity if Gamma has the sign of X: the case of real values",
 )
-def size_of_force_feedback() -> Proof:
+def size_of_force_feedback() -> ProofSteps:
     """One degree of freedom: when the force on the hand is no larger than the desired one."""
     re, im = sp.symbols("re im", real=True)
     gamma, ratio = sp.symbols("gamma ratio")
@@ -237,7 +237,7 @@ def size_of_force_feedback() -> Proof:
     place="figure 3",
     formula="FF: 1 + H (I + Z_M Z_H^-1)^-1;  MBC: 1 - C (Z_H + Z_M)^-1",
 )
-def loops() -> Proof:
+def loops() -> ProofSteps:
     """Loops that must stay stable: force feedback, and motion-based cancellation, positive
     feedback.
     """

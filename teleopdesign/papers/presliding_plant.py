@@ -9,7 +9,7 @@ from __future__ import annotations
 import sympy as sp
 
 from ._laws import bristle_force, bristle_rate, dahl_rate, stribeck_level, viscous
-from ._proof import Equal, Grows, Limit, NotNegative, Proof, Step, proof
+from ._proof import Equal, Grows, Limit, NotNegative, ProofStep, ProofSteps, proof
 from ._statement import DERIVED, shows
 from .dahl_loop import ENERGY, A, f_c
 from .dahl_loop import sigma as STIFFNESS
@@ -40,12 +40,12 @@ def dissipation(level: sp.Expr) -> sp.Matrix:
     return sp.Matrix([[ALPHA * m, side], [side, BETA * n]])
 
 
-def stored_and_lost(level: sp.Expr) -> list[Step]:
+def stored_and_lost(level: sp.Expr) -> list[ProofStep]:
     """V balances the supply with Q, V > 0, and det Q is the product of two factors."""
     q = dissipation(level)
     form = (sp.Matrix([[p, d]]) * q * sp.Matrix([p, d]))[0]
     factors = (level - fD) * (sP**2 / level - sD**2 / fD)
-    steps: list[Step] = [
+    steps: list[ProofStep] = [
         Equal(
             f"supply less dV/dt is w (p d) Q (p d)^T at v = {way:+d} w",
             (p - d) * way * w - rate(STORED, way).subs(fC, level),
@@ -84,21 +84,21 @@ def small_cycles(level: sp.Expr, stiffness: sp.Expr) -> sp.Expr:
     formula="passive iff f_D <= f_C and sigma_D^2/f_D <= sigma_p^2/f_C (then sigma_D <= sigma_p)",
     printed="the proof of the paper supposes ideal Coulomb friction at the measured coordinate",
 )
-def matched_bristles() -> Proof:
+def matched_bristles() -> ProofSteps:
     """Dahl friction compensated by a Dahl compensator on the same position: exactly when the pair
     is passive.
     """
-    given = {LOWER: LEVELS, SOFTER: RATIOS}
+    signs = {LOWER: LEVELS, SOFTER: RATIOS}
     size = sp.Symbol("size", nonnegative=True)  # abs(p - d)
     shrink = dahl_rate(p, w, fC, sP) - dahl_rate(d, w, fC, sP)
     return proof(
         stored_and_lost(fC),
-        NotNegative("which is not negative", LEVELS * RATIOS, LOWER * SOFTER, given),
+        NotNegative("which is not negative", LEVELS * RATIOS, LOWER * SOFTER, signs),
         NotNegative(
             "both conditions together: sigma_p^2 >= sigma_D^2",
             sP**2 - sD**2,
             fC * SOFTER + sD**2 * LOWER / fD,
-            given,
+            signs,
         ),
         Equal(
             "sigma_p = sigma_D leaves f_D = f_C: p - d shrinks at the rate abs(v)/lambda, so "
@@ -136,22 +136,22 @@ def matched_bristles() -> Proof:
     place="extends P43",
     formula="sufficient: f_D <= F_min and sigma_D^2/f_D <= sigma_p^2/F_max",
 )
-def varying_level() -> Proof:
+def varying_level() -> ProofSteps:
     """The plant's level may vary in any way between F_min and F_max (speed, position, load,
     drift): compensate the lowest level that can occur.
     """
     level, least, most = sp.symbols("F F_min F_max", positive=True)
     up, under = sp.symbols("up under", nonnegative=True)
     low, soft = least - fD, sP**2 / most - sD**2 / fD
-    given = {LOWER: low, SOFTER: soft, up: level - least, under: most - level}
+    signs = {LOWER: low, SOFTER: soft, up: level - least, under: most - level}
     return proof(
         stored_and_lost(level),  # g does not depend on the level: one V for all levels
-        NotNegative("first factor at any level", level - fD, up + LOWER, given),
+        NotNegative("first factor at any level", level - fD, up + LOWER, signs),
         NotNegative(
             "second factor at any level",
             sP**2 / level - sD**2 / fD,
             SOFTER + sP**2 * under / (level * most),
-            given,
+            signs,
         ),
         assuming=[low, soft, level - least, most - level],
     )
@@ -165,7 +165,7 @@ def varying_level() -> Proof:
     "sigma_1 (F_S/F_C - 1)",
     assumes="that the condition is also necessary is theirs and is not shown here",
 )
-def bristle_damping() -> Proof:
+def bristle_damping() -> ProofSteps:
     """LuGre friction: what bristle damping adds, and when it is passive by itself with the energy
     of its bristle stored.
     """
@@ -178,7 +178,7 @@ def bristle_damping() -> Proof:
     lost = friction * w - force * rate_
     inside, above, enough, one = sp.symbols("inside above enough one", nonnegative=True)
     margin = s2 - s1 * (FS / fC - 1)
-    given = {inside: FS - force, above: level - fC, enough: margin}
+    signs = {inside: FS - force, above: level - fC, enough: margin}
     bell = sp.exp(-((w / scale) ** 2))
     steepest = stribeck_level(w, fC, extra, scale)
     below = {inside: fC - force}
@@ -201,7 +201,7 @@ def bristle_damping() -> Proof:
             "supply less the rate of sigma_0 z^2/2",
             lost,
             w * force**2 / level + w**2 * (enough + s1 * (FS * above + fC * inside) / (fC * level)),
-            given,
+            signs,
         ),
         assuming=[FS - force, level - fC, margin, fC - force],
     )
@@ -213,7 +213,7 @@ def bristle_damping() -> Proof:
     place="consequence of P43",
     formula="small cycles give out (4/3) A^3 (sigma_D^2/f_D - sigma_p^2/f_C)",
 )
-def stiff_compensator() -> Proof:
+def stiff_compensator() -> ProofSteps:
     """A compensator stiffer than the plant gives out energy in small motion even far below its
     level; a lower sigma_D cures it, a lower f_D makes it worse.
     """

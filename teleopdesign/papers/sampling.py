@@ -11,7 +11,7 @@ import sympy as sp
 
 from ..passivity import passivity_controlled
 from ._laws import dahl_rate
-from ._proof import Equal, Limit, NotNegative, Proof, Step, proof
+from ._proof import Equal, Limit, NotNegative, ProofStep, ProofSteps, proof
 from ._statement import DERIVED, Figure, Numbers, Paper, near, shows
 
 COLGATE = Paper(
@@ -39,7 +39,7 @@ UNIT = c + sp.I * sp.sin(theta)  # e^(j theta), theta = omega T
 BACK = c - sp.I * sp.sin(theta)
 
 
-def damper_takes_most() -> list[Step]:
+def damper_takes_most() -> list[ProofStep]:
     """b times the integral of v^2 over a sample is at least b D^2/T."""
     squares = sp.Symbol("squares", positive=True)  # integral of v^2
     return [
@@ -66,7 +66,7 @@ def needed(block: sp.Expr) -> sp.Expr:
     assumes="that steady oscillations are the worst motions (the theorem of Colgate and Schenkel), "
     "for blocks whose pole at z = 1, if any, a spring of the body covers",
 )
-def held_blocks() -> Proof:
+def held_blocks() -> ProofSteps:
     """Damping with which no steady oscillation at any frequency takes energy out of a sampled
     block with zero-order hold: a Dahl compensator near rest, a negative spring beside a stiffer
     one, needs none, but delay of its computer does.
@@ -131,7 +131,7 @@ def held_blocks() -> Proof:
     formula="passive iff K <= min(2 b/T, 2 f_c/Delta); with friction compensation K <= 2 (f_C - "
     "f_D)/Delta",
 )
-def encoder_steps() -> Proof:
+def encoder_steps() -> ProofSteps:
     """A sampled spring on an encoder of step Delta, with Coulomb friction and damping: full
     friction compensation leaves no margin for quantisation.
     """
@@ -139,8 +139,8 @@ def encoder_steps() -> Proof:
     q = sp.Symbol("q", real=True)
     off = sp.Symbol("off", nonnegative=True)
     slow, dry, inside = sp.symbols("slow dry inside", nonnegative=True)
-    given = {slow: b / T - K / 2, dry: f_c - K * step / 2, inside: step / 2 - off}
-    steps: list[Step] = []
+    signs = {slow: b / T - K / 2, dry: f_c - K * step / 2, inside: step / 2 - off}
+    steps: list[ProofStep] = []
     for way in (1, -1):
         for side in (1, -1):
             travel, error = way * r, side * off
@@ -153,7 +153,7 @@ def encoder_steps() -> Proof:
                     f"losses cover work and storage: travel {way:+d}, reading error {side:+d}",
                     left,
                     slow * r**2 + r * (dry + K * spare),
-                    given,
+                    signs,
                 )
             )
     # to and fro over an edge between the readings q and q + Delta, two samples
@@ -171,7 +171,7 @@ def encoder_steps() -> Proof:
             K * step - 2 * f_c,
         ),
         Limit("necessary: wide swings give out", wide / a**2, a, sp.oo, 4 * K - 8 * b / T),
-        assuming=list(given.values()),
+        assuming=list(signs.values()),
     )
 
 
@@ -186,7 +186,7 @@ def controlled_port() -> Numbers:
     port = passivity_controlled(speed, (friction - helps) * way, period=period)
     turned = period * float(np.abs(speed).sum()) * (helps - friction)
     bounded = passivity_controlled(speed, (friction - helps) * way, period=period, largest=0.5)
-    taken = friction * np.abs(speed)
+    friction_power = friction * np.abs(speed)
     figures = [
         Figure("least energy over that turned over", port.energy.min() / turned, low=-1e-12),
         near("and in the end, the deficit is made up", port.energy[-1] / turned, 0.0, 1e-12),
@@ -198,7 +198,7 @@ def controlled_port() -> Numbers:
         held = passivity_controlled(speed, budget, period=period)
         # what the device really takes, and the force that is left of the help
         help_left = counted * way - held.force
-        true = period * float((taken - help_left * speed).sum()) / turned
+        true = period * float((friction_power - help_left * speed).sum()) / turned
         what = f"energy that {counted:g} N counted leaves in the port, true friction 1 N"
         figures.append(
             Figure(what, true, low=0) if counted < friction else Figure(what, true, high=0)
@@ -213,7 +213,7 @@ def controlled_port() -> Numbers:
     formula="E[n] = E[n-1] + T sum f_i v_i; where E < 0 add a damper alpha = -E/(T v^2)",
     numbers=controlled_port,
 )
-def observer() -> Proof:
+def observer() -> ProofSteps:
     """At a sample with v != 0 a damper makes up a deficit of the sampled energy exactly; friction
     counted below its level leaves the budget on the safe side, counted above it does not.
     """
@@ -248,7 +248,7 @@ def observer() -> Proof:
     place="sampled coupling of Mahvash 2006, eq (10)",
     formula="passive iff b_m b_s/(b_m + b_s) >= P T/2",
 )
-def sampled_coupling() -> Proof:
+def sampled_coupling() -> ProofSteps:
     """Position-position coupling with forces held over a sample: the damping of both sides counts
     as in parallel.
     """

@@ -16,7 +16,7 @@ from ..diagrams import haptic_interface
 from ..effects import EFFECTS
 from ..simulate import simulate
 from ._laws import coulomb, dahl_rate, dahl_step, smoothed_coulomb, viscous
-from ._proof import Equal, Grows, Holds, Limit, NotNegative, Proof, Step, proof
+from ._proof import Equal, Grows, Holds, Limit, NotNegative, ProofStep, ProofSteps, proof
 from ._statement import DERIVED, MAHVASH, Figure, Numbers, claim, near, shows
 from .dahl_loop import ENERGY
 from .dahl_loop import A as AMPLITUDE
@@ -43,12 +43,12 @@ def pair_power(force: sp.Expr, velocity: sp.Expr) -> sp.Expr:
     printed="f_c, f_C and f_D are mixed in (15), (16); the sign in (11) is that of the "
     "resisting force",
 )
-def saturated_compensator() -> Proof:
+def saturated_compensator() -> ProofSteps:
     """Ideal Coulomb friction with any compensator that stays within its level is passive at every
     instant, with no stored energy; added to a passive teleoperator, joint by joint, it keeps it
     passive.
     """
-    steps: list[Step] = []
+    steps: list[ProofStep] = []
     for way in (1, -1):
         for side in (1, -1):
             here = f"v {'>' if way > 0 else '<'} 0, f_dahl {'>' if side > 0 else '<'} 0"
@@ -80,7 +80,7 @@ def saturated_compensator() -> Proof:
     printed="proved for the Dahl compensator; its forward Euler step leaves the level, here at "
     "q = 3/2",
 )
-def only_saturation_counts() -> Proof:
+def only_saturation_counts() -> ProofSteps:
     """From a force within its level, eq (9) stays within it whatever positions come next: late,
     held, rounded or noisy ones. So do smoothed Coulomb friction and a force of the wrong sign, and
     P37 covers them all. A step of forward Euler with q = 3/2 leaves the level, and gives out.
@@ -132,21 +132,21 @@ def only_saturation_counts() -> Proof:
     "for all "
     "motions iff f_D <= f_C",
 )
-def unlimited_motion() -> Proof:
+def unlimited_motion() -> ProofSteps:
     """The bound is tight where motion is unlimited."""
     s = sp.Symbol("s", positive=True)
-    given = sp.integrate(dahl_step(sp.S(0), s, 1, f_D, sigma) - coulomb(w, f_C), (s, 0, X))
+    energy = sp.integrate(dahl_step(sp.S(0), s, 1, f_D, sigma) - coulomb(w, f_C), (s, 0, X))
     scale = f_D / sigma
     over = sp.Symbol("over", positive=True)
     return proof(
         Equal(
             "energy given out, from f = 0",
-            given,
+            energy,
             (f_D - f_C) * X - f_D * scale * (1 - sp.exp(-X / scale)),
         ),
         Limit(
             "f_D = f_C + over: without bound",
-            given.subs(f_C, f_D - over).subs({f_D: 1, sigma: 1}) / X,
+            energy.subs(f_C, f_D - over).subs({f_D: 1, sigma: 1}) / X,
             X,
             sp.oo,
             over,
@@ -203,7 +203,7 @@ def swing(ratio: float, bristle: float) -> float:
     "sigma_D A/f_D",
     numbers=needed_amplitude,
 )
-def limited_motion() -> Proof:
+def limited_motion() -> ProofSteps:
     """For plain cycles of limited amplitude the bound is not tight: a soft compensator hides
     over-compensation until the motion is large. Steps at the reversals find it earlier, see P56.
     """
@@ -247,7 +247,7 @@ onset = claim(
     place="with a damper",
     formula="f_D > f_C: speed tends to v* = (f_D - f_C)/B",
 )
-def damped_excess() -> Proof:
+def damped_excess() -> ProofSteps:
     """Viscous damping bounds what over-compensation can do: not passive, but self-motion stops
     growing at v*.
     """

@@ -18,7 +18,7 @@ from ..diagrams import haptic_interface
 from ..effects import EFFECTS
 from ..simulate import Trajectory, simulate
 from ._laws import dahl_rate, dahl_step
-from ._proof import Equal, Grows, Holds, NotNegative, Refutation, proof
+from ._proof import Correction, Equal, Grows, Holds, NotNegative, ProofSteps, proof
 from ._statement import DERIVED, Figure, Numbers, shows
 
 f_D, sigma, f_1, f_2, k, u = sp.symbols("f_D sigma_D f_1 f_2 k u", positive=True)
@@ -42,8 +42,8 @@ def dithered_cycle() -> sp.Expr:
     again, second = stroke(back, SMALL, 1)
     peak, third = stroke(-again, 2 * u, 1)  # the mirrored stroke that follows
     (steady,) = sp.solve(sp.expand(peak - h), h)
-    given = first + second + third - f_1 * (2 * u + 2 * SMALL)
-    return given.subs(h, steady)
+    energy = first + second + third - f_1 * (2 * u + 2 * SMALL)
+    return energy.subs(h, steady)
 
 
 def stepping_motor() -> Numbers:
@@ -112,7 +112,7 @@ def energy_of_cycle(turning: tuple[float, ...]) -> float:
     "motion that gives out energy where P55 holds",
     numbers=stepping_motor,
 )
-def steps_at_reversals() -> Refutation:
+def steps_at_reversals() -> Correction:
     """The conditions of P55 are exact for plain cycles only: a step back and forth at the
     reversals lets the bristle forget the last stroke, at the cost of little friction.
     """
@@ -123,13 +123,7 @@ def steps_at_reversals() -> Refutation:
     rest = sp.Symbol("rest", nonnegative=True)
     # f_D = sigma_D = f_2 = 1, k = 2, f_1 = 1/12: u_2 = 1/2, sigma_D = k sqrt(3 f_1 f_D)/f_2
     case = {u: sp.Rational(1, 2), f_1: sp.Rational(1, 12), SMALL: sp.Rational(1, 10)}
-    f, edge = sp.Symbol("f", real=True), sp.Symbol("edge", positive=True)
-    x = sp.Symbol("x", positive=True)  # above the lower end of the range of the motion
-    most = sp.Symbol("most", positive=True)  # the bound at the upper end
-    bound = f_D * (1 - sp.exp(-sigma * x / f_D))
-    decay = sigma / f_D
-    enough, inside = sp.symbols("enough inside", nonnegative=True)
-    return Refutation(
+    return Correction(
         proof(
             Equal("without steps: the plain cycle", net.subs(SMALL, 0), 2 * u * (limit - f_1)),
             Equal("each step adds at first", slope, 2 * (sp.tanh(u) ** 2 - f_1)),
@@ -149,43 +143,52 @@ def steps_at_reversals() -> Refutation:
             ),
             Holds("gives out energy with one step of 0.1 at each reversal", net.subs(case), ">", 0),
         ),
-        proof(
-            Equal(
-                "moving up, the distance from the bound shrinks",
-                sp.diff(bound, x) - dahl_rate(f, sp.S(1), f_D, sigma),
-                -decay * (bound - f),
-            ),
-            Equal(
-                "moving down it grows while abs(f) is within it: from f = 0 it stays within",
-                -sp.diff(bound, x) - dahl_rate(f, sp.S(-1), f_D, sigma),
-                decay * (bound + f),
-            ),
-            NotNegative(
-                "the bound rises along the range, 2 f_2/k wide",
-                sp.diff(bound, x),
-                sigma * sp.exp(-decay * x),
-            ),
-            Equal(
-                "to", bound.subs(x, 2 * f_2 / k), f_D * (1 - sp.exp(-2 * sigma * f_2 / (k * f_D)))
-            ),
-            Equal(
-                "power of the compensator: rate of f^2/(2 sigma_D), and abs(v) f^2/f_D",
-                f * edge - f / sigma * dahl_rate(f, edge, f_D, sigma),
-                edge * f**2 / f_D,
-            ),
-            NotNegative(
-                "which the motor's friction covers",
-                f_1 - f**2 / f_D,
-                enough + inside / f_D,
-                {enough: f_1 - most**2 / f_D, inside: most**2 - f**2},
-            ),
-            NotNegative(
-                "so any motion from f = 0 gives out at most most^2/(2 sigma_D), a closed one that "
-                "repeats none",
-                most**2 / (2 * sigma) - f**2 / (2 * sigma),
-                inside / (2 * sigma),
-                {inside: most**2 - f**2},
-            ),
-            assuming=[f_1 - most**2 / f_D, most**2 - f**2],
+        _force_within_a_bound(),
+    )
+
+
+def _force_within_a_bound() -> ProofSteps:
+    """With the link stuck f_1 >= f_D (1 - e^(-2 u_2))^2 is enough for every closed path."""
+    f, edge = sp.Symbol("f", real=True), sp.Symbol("edge", positive=True)
+    x = sp.Symbol("x", positive=True)  # above the lower end of the range of the motion
+    most = sp.Symbol("most", positive=True)  # the bound at the upper end
+    bound = f_D * (1 - sp.exp(-sigma * x / f_D))
+    decay = sigma / f_D
+    enough, inside = sp.symbols("enough inside", nonnegative=True)
+    return proof(
+        Equal(
+            "moving up, the distance from the bound shrinks",
+            sp.diff(bound, x) - dahl_rate(f, sp.S(1), f_D, sigma),
+            -decay * (bound - f),
         ),
+        Equal(
+            "moving down it grows while abs(f) is within it: from f = 0 it stays within",
+            -sp.diff(bound, x) - dahl_rate(f, sp.S(-1), f_D, sigma),
+            decay * (bound + f),
+        ),
+        NotNegative(
+            "the bound rises along the range, 2 f_2/k wide",
+            sp.diff(bound, x),
+            sigma * sp.exp(-decay * x),
+        ),
+        Equal("to", bound.subs(x, 2 * f_2 / k), f_D * (1 - sp.exp(-2 * sigma * f_2 / (k * f_D)))),
+        Equal(
+            "power of the compensator: rate of f^2/(2 sigma_D), and abs(v) f^2/f_D",
+            f * edge - f / sigma * dahl_rate(f, edge, f_D, sigma),
+            edge * f**2 / f_D,
+        ),
+        NotNegative(
+            "which the motor's friction covers",
+            f_1 - f**2 / f_D,
+            enough + inside / f_D,
+            {enough: f_1 - most**2 / f_D, inside: most**2 - f**2},
+        ),
+        NotNegative(
+            "so any motion from f = 0 gives out at most most^2/(2 sigma_D), a closed path that "
+            "repeats none",
+            most**2 / (2 * sigma) - f**2 / (2 * sigma),
+            inside / (2 * sigma),
+            {inside: most**2 - f**2},
+        ),
+        assuming=[f_1 - most**2 / f_D, most**2 - f**2],
     )

@@ -8,7 +8,7 @@ import sympy as sp
 from ..simulate import Loop, Simulation, loop_of
 from ._closed_paths import closed_paths
 from ._laws import coulomb
-from ._proof import Equal, Grows, Limit, NotNegative, Proof, Step, proof
+from ._proof import Equal, Grows, Limit, NotNegative, ProofStep, ProofSteps, proof
 from ._statement import MAHVASH, Numbers, Paper, claim, near, shows
 from ._two_sides import AMPLITUDE, FREQUENCY, FRICTION, SLAVE_DAMPING, STIFFNESS, slow_cycle
 
@@ -35,7 +35,7 @@ crossed = sp.Symbol("k_12_k_21", nonnegative=True)
     "X_s)",
     numbers=closed_paths,
 )
-def coupling_stiffness() -> Proof:
+def coupling_stiffness() -> ProofSteps:
     """When a multi-axis coupling is an ideal spring, and which coordinates of orientation may be
     used.
     """
@@ -78,7 +78,7 @@ def coupling_stiffness() -> Proof:
     )
 
 
-def why_the_criterion_suffices() -> tuple[Step, ...]:
+def why_the_criterion_suffices() -> tuple[ProofStep, ...]:
     """z_in = z_11 - L/n, L = z_12 z_21, n = z_22 + Z_2: its real part and its residues.
 
     L = size e^(2 j half), n = rho (1 + j tau) on the axis, rho >= Re z_22 > 0
@@ -86,13 +86,13 @@ def why_the_criterion_suffices() -> tuple[Step, ...]:
     size, more, enough = sp.symbols("size more enough", nonnegative=True)
     half, tau = sp.symbols("half tau", real=True)
     rho, x = sp.symbols("rho x", positive=True)
-    seen = size * (sp.cos(2 * half) + tau * sp.sin(2 * half)) / (rho * (1 + tau**2))
+    real_part = size * (sp.cos(2 * half) + tau * sp.sin(2 * half)) / (rho * (1 + tau**2))
     largest = size * (1 + sp.cos(2 * half)) / (2 * rho)
     form = size * (tau * sp.cos(half) - sp.sin(half)) ** 2 / (rho * (1 + tau**2))
     grown = sp.Matrix([[1, 1 / x], [1 / x, 1]]).det()
     return (
         NotNegative(
-            "Re(L/n) <= (abs L + Re L)/(2 rho), whatever holds port 2", largest - seen, form
+            "Re(L/n) <= (abs L + Re L)/(2 rho), whatever holds port 2", largest - real_part, form
         ),
         NotNegative(
             "at a pole where n has the residue k_22 + more, z_in has one >= 0",
@@ -104,7 +104,7 @@ def why_the_criterion_suffices() -> tuple[Step, ...]:
     )
 
 
-def residues_of_the_coupling(z_11: sp.Expr, z_12: sp.Expr) -> tuple[Step, ...]:
+def residues_of_the_coupling(z_11: sp.Expr, z_12: sp.Expr) -> tuple[ProofStep, ...]:
     """At s = 0 those of a spring, equality; at infinity the masses, and nothing between the ports.
 
     z_11, z_12: on the axis, s = j omega;  z_22 is z_11 with the slave's mass and damping
@@ -131,7 +131,7 @@ def residues_of_the_coupling(z_11: sp.Expr, z_12: sp.Expr) -> tuple[Step, ...]:
     "minimum principle for positive-real functions is quoted. The axis alone, as Llewellyn's "
     "criterion is often cited, does not do: z_11 = z_22 = 1, z_12 = z_21 = 1/s",
 )
-def delayed_coupling() -> Proof:
+def delayed_coupling() -> ProofSteps:
     """Absolute stability of the linear two-port of masses, dampers and a coupling spring; not a
     statement about friction.
     """
@@ -193,11 +193,11 @@ def free_space_force() -> Numbers:
     formula="user force (f_Cm + f_Cs - f_Dm - f_Ds) sgn v; position error (f_Cs - f_Ds)/P",
     numbers=free_space_force,
 )
-def free_space() -> Proof:
+def free_space() -> ProofSteps:
     """What the user feels in slow free motion, both sides sliding, and how far the slave lags."""
     f_Cm, f_Cs, f_Dm, f_Ds = sp.symbols("f_Cm f_Cs f_Dm f_Ds", positive=True)
     user = sp.Symbol("F_u", real=True)
-    steps: list[Step] = []
+    steps: list[ProofStep] = []
     for way in (1, -1):
         slave = P * (x_m - x_s) + way * f_Ds - coulomb(way * w, f_Cs)
         (lag,) = sp.solve(slave, x_m)
@@ -242,7 +242,7 @@ def contact_force() -> Numbers:
     formula="P k_e/(P + k_e), hysteresis width 2 (f_Cs - f_Ds)/(1 + k_e/P)",
     numbers=contact_force,
 )
-def soft_contact() -> Proof:
+def soft_contact() -> ProofSteps:
     """What the user feels of a contact of stiffness k_e: the coupling spring in series is itself a
     transparency error.
     """

@@ -65,7 +65,13 @@ from .theorems.sampled_compensation import Trembling, sampled_compensation
 from .theorems.sampled_data import required_damping, sampled_coupling, sampled_passivity
 from .theorems.velocity_compensation import SteadyStrokes, velocity_compensation
 from .two_port.claims import absolutely_stable, passive
-from .two_port.two_port import FrequencyMargins, TwoPort, over_frequency, teleoperator, two_port
+from .two_port.two_port import (
+    FrequencyMargins,
+    TwoPort,
+    over_frequency,
+    teleoperator_two_port,
+    two_port,
+)
 from .z_width import WALL_DAMPING, WALL_STIFFNESS, ZWidth, z_width
 
 __all__ = [
@@ -150,7 +156,7 @@ __all__ = [
     "stiffest_spring",
     "storage_function",
     "symmetric_cycle",
-    "teleoperator",
+    "teleoperator_two_port",
     "two_port",
     "velocity_compensation",
     "write_record",

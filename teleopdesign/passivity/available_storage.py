@@ -32,7 +32,7 @@ _BLUR = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class AvailableStorage(ByValue):
-    """What the iteration came to.
+    """The result of the iteration: available storage on a grid of forces.
 
     storage: J, an axis for each force with a state, compensator first, from -level to level
     gain: energy given out per travel once everything has settled, N; 0 where it is finite
@@ -46,7 +46,7 @@ class AvailableStorage(ByValue):
     tolerance: float
 
     @property
-    def settled(self) -> bool:
+    def is_finite(self) -> bool:
         """Whether the storage is finite, within the tolerance of the grid."""
         return self.gain <= self.tolerance
 
@@ -54,7 +54,7 @@ class AvailableStorage(ByValue):
         """As the verdict of a claim."""
         axes = " x ".join(map(str, self.storage.shape))
         searched = f"available storage iterated over {self.moves} moves on a grid of {axes} forces"
-        return Evidence(self.settled, searched, self.tolerance - self.gain, "N")
+        return Evidence(self.is_finite, searched, self.tolerance - self.gain, "N")
 
 
 def available_storage(
@@ -105,7 +105,7 @@ def _compliance(element: Element) -> float:
 
 
 def _held(stateful: Sequence[Element], points: int) -> Array:
-    """What the springs of friction hold at each node, less that of the compensator, J."""
+    """Energy in the springs of friction at each node, less that of the compensator's, J."""
     total: Array = np.zeros((1,) * len(stateful))
     for axis, element in enumerate(stateful):
         forces = np.linspace(-element.level, element.level, points)
@@ -124,27 +124,27 @@ def _move(
     load: float,
 ) -> Callable[[Array], Array]:
     """One travel as a map from storage after it to storage before it."""
-    given: Array = np.zeros((1,) * len(stateful))
+    gain: Array = np.zeros((1,) * len(stateful))
     cells = []
     for axis, element in enumerate(stateful):
         forces = np.linspace(-element.level, element.level, points)
         legs = np.array([element.leg(float(f), travel) for f in forces])
         shape = [points if k == axis else 1 for k in range(len(stateful))]
         lost = legs[:, 1] - (legs[:, 0] ** 2 - forces**2) * _compliance(element) / 2
-        given = given + (lost if axis == 0 else -lost).reshape(shape)
+        gain = gain + (lost if axis == 0 else -lost).reshape(shape)
         left, right_share = _cells(forces, legs[:, 0])
         cells.append((left, right_share.reshape(shape)))
         if load and axis == len(stateful) - 1:
             pressed = load * np.abs(forces + legs[:, 0]) / 2 * abs(travel)
-            given = given - pressed.reshape(shape)
-    given = given - sum(e.leg(0.0, travel)[1] for e in friction if isinstance(e, Coulomb))
+            gain = gain - pressed.reshape(shape)
+    gain = gain - sum(e.leg(0.0, travel)[1] for e in friction if isinstance(e, Coulomb))
 
     def before(after: Array) -> Array:
         moved = after
         for axis, (left, right_share) in enumerate(cells):
             low, high = np.take(moved, left, axis), np.take(moved, left + 1, axis)
             moved = low + right_share * (high - low)
-        return np.asarray(given + moved)
+        return np.asarray(gain + moved)
 
     return before
 

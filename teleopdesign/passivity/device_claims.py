@@ -47,7 +47,7 @@ class Compensator:
 
 @dataclass(frozen=True)
 class Margin:
-    """A number that a designer asks for, and what it is; value: SI, in `unit`."""
+    """A margin for the designer, with its meaning in words; value: SI, in `unit`."""
 
     text: str
     value: float
@@ -76,7 +76,7 @@ def compensation_claims(
 def friction_claims(
     device: IdentifiedDevice, compensator: Compensator, *, computer: Sampling | None = None
 ) -> list[TopicClaim]:
-    """What theorems say of a device's friction with a compensator; nothing is simulated.
+    """Claims by theorems about a device's friction with a compensator; without simulation.
 
     computer: as in `compensation_claims`
     """
@@ -91,7 +91,7 @@ def _searched(
     rng: np.random.Generator,
     tries: int,
 ) -> TopicClaim:
-    """The whole device with its compensator, as simulated."""
+    """The claim about the whole device with its compensator by a search in simulation."""
     topic, lengths = "search by simulation", [device.lowest.estimate / _RIGID]
     if device.presliding is not None:
         lengths = [device.lowest.estimate / device.presliding.estimate]
@@ -117,7 +117,7 @@ def _searched(
 
 
 def device_claims(device: IdentifiedDevice) -> list[TopicClaim]:
-    """Claims about the device itself: LuGre friction, where all of its parts were identified."""
+    """Claims about the device alone, if all parts of LuGre friction are identified."""
     return settle(Question(device))
 
 
@@ -129,7 +129,7 @@ def wall_claims(
     computer: Sampling,
     cancelled: float = 0.0,
 ) -> list[TopicClaim]:
-    """Claims about a virtual wall: the sampled law, and its encoder steps beside friction.
+    """Claims about a virtual wall: its sampled law, and its encoder steps with friction.
 
     stiffness, damping: K, N/m, and B, N s/m;  cancelled: friction that a compensator takes, N
     """
@@ -138,7 +138,7 @@ def wall_claims(
 
 
 def margins(device: IdentifiedDevice, compensator: Compensator | None = None) -> Sequence[Margin]:
-    """What may be chosen so that it is passive for every value within the 95 % intervals."""
+    """Largest and smallest design values that are passive for all values in the 95 % intervals."""
     force, stiff = device.force_unit, device.stiffness_unit
     alone = f", for friction without {', '.join(device.set_aside)}" if device.set_aside else ""
     limits = [
@@ -148,8 +148,8 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
             ("largest f_D that is passive for every level in the interval", device.lowest.low),
         )
     ]
-    own = device.presliding
-    if own is None:
+    presliding = device.presliding
+    if presliding is None:
         text = "largest f_D that drives no motion, viscous damping counted"
         return [*limits, Margin(text + alone, device.least_resistance.low, force)]
     recoil = device.bristle_damping.high * (device.highest.high - device.lowest.low)
@@ -158,10 +158,10 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
     if compensator is not None and compensator.stage.value_of("bristle_stiffness") is None:
         return []  # no limit is known for such a law on a contact that gives
     level = min(compensator.level if compensator else math.inf, device.lowest.low)
-    softest = own.low * math.sqrt(level / device.highest.high)
+    softest = presliding.low * math.sqrt(level / device.highest.high)
     limits.append(Margin(f"largest sigma_D at f_D = {level:.4g} {force}{alone}", softest, stiff))
     if compensator is not None:
-        least = device.highest.high * (compensator.second / own.low) ** 2
+        least = device.highest.high * (compensator.second / presliding.low) ** 2
         limits.append(
             Margin(f"least f_D at sigma_D = {compensator.second:.4g} {stiff}{alone}", least, force)
         )

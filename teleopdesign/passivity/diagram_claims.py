@@ -57,19 +57,19 @@ class Search:
 
 @dataclass(frozen=True)
 class DiagramClaims:
-    """Ports of a diagram, what in it is not linear, and the claims as they are settled."""
+    """Ports of a diagram, its nonlinear parts, and the claims with their verdicts."""
 
     diagram: Diagram
     ports: tuple[Port, ...]
     nonlinear: tuple[str, ...]
-    settled: tuple[TopicClaim, ...]
+    claims: tuple[TopicClaim, ...]
 
     def __repr__(self) -> str:
-        lines = [f"{s.heading:<9} {s.topic}: {s.claim.statement}" for s in self.settled]
+        lines = [f"{s.heading:<9} {s.topic}: {s.claim.statement}" for s in self.claims]
         return "\n".join([f"Claims on the {self.diagram.name}", *lines])
 
     def _repr_html_(self) -> str:
-        rows = [(s.heading, s.topic, s.claim.statement, s.claim.verdict) for s in self.settled]
+        rows = [(s.heading, s.topic, s.claim.statement, s.claim.verdict) for s in self.claims]
         head = ("status", "on", "statement", "by")
         return html_table(f"Claims on the {self.diagram.name}", head, rows)
 
@@ -77,7 +77,7 @@ class DiagramClaims:
 def diagram_claims(
     diagram: Diagram, *, rng: np.random.Generator, search: Search | None = None
 ) -> DiagramClaims:
-    """Settle what can be said about the ports of a diagram, all other outside signals zero.
+    """Claims about the ports of a diagram, with all other outside signals zero.
 
     Hand and environment (`Z_H`, `Z_E`) hold a port and are no part of what is judged; in the
     search, which is made where nothing settles all ports, those at other ports stay.
@@ -87,23 +87,23 @@ def diagram_claims(
     whole = judged(diagram)
     alone = without_holding(whole)
     all_ports, bent = ports(alone), nonlinear_parts(alone)
-    settled: list[TopicClaim] = []
+    claims: list[TopicClaim] = []
     sampled = search.computer != "continuous" and any(not c.analog for c in alone.controls)
     if not bent:
-        settled += linear_claims(alone, all_ports)
+        claims += linear_claims(alone, all_ports)
     else:
         pairs = friction_pairs(alone)
         for pair in pairs:
-            own = f"friction of {pair.body.name}"
-            settled += [replace(s, topic=own) for s in device_claims(pair.device)]
-            settled += pair_claims(pair)
+            topic = f"friction of {pair.body.name}"
+            claims += [replace(s, topic=topic) for s in device_claims(pair.device)]
+            claims += pair_claims(pair)
         if (composed := _composed(alone, all_ports, pairs)) is not None:
-            settled.append(composed)
+            claims.append(composed)
     if not any(not c.analog for c in alone.controls):  # nothing that a computer could sample
-        settled = [replace(one, time="any") for one in settled]
-    if sampled or not any(s.topic in WHOLE and s.claim.status != "unknown" for s in settled):
-        settled += [_searched(whole, port, rng, search) for port in all_ports]
-    return DiagramClaims(diagram, all_ports, bent, tuple(settled))
+        claims = [replace(one, time="any") for one in claims]
+    if sampled or not any(s.topic in WHOLE and s.claim.status != "unknown" for s in claims):
+        claims += [_searched(whole, port, rng, search) for port in all_ports]
+    return DiagramClaims(diagram, all_ports, bent, tuple(claims))
 
 
 def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
@@ -111,13 +111,13 @@ def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClai
 
     What is refuted is so for all values nearby, too: none rests on the rounding of a number.
     """
-    settled = _linear_claims(diagram, all_ports)
-    if not any(one.claim.status == "refuted" for one in settled):
-        return settled
+    claims = _linear_claims(diagram, all_ports)
+    if not any(one.claim.status == "refuted" for one in claims):
+        return claims
     nearby = [_linear_claims(other, all_ports) for other in _nearby(diagram)]
     return [
         one if all(other[k].claim.status == "refuted" for other in nearby) else _on_rounding(one)
-        for k, one in enumerate(settled)
+        for k, one in enumerate(claims)
     ]
 
 

@@ -94,7 +94,7 @@ def _exact(body: Body) -> Body:
 
 
 def pair_claims(pair: FrictionPair, *, simulated: bool = True) -> list[TopicClaim]:
-    """Claims about friction with its cancellation, the same as for a diagnosed device.
+    """Claims about friction with its cancellation, by the theorems for a diagnosed device.
 
     simulated: whether the motions of refutations are replayed in simulation
     """

@@ -1,4 +1,4 @@
-"""What passivity needs of an identified device: levels, stiffness and damping, as bounds."""
+"""Bounds of an identified device for passivity: friction levels, stiffness and damping."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _LEVEL = ("friction_level", "friction_factor", "friction_speed")
 
 @dataclass(frozen=True)
 class IdentifiedDevice:
-    """Friction of a device as far as passivity asks for it.
+    """Friction of a device, as bounds for claims of passivity.
 
     reach: of the motions that claims are about; None: every motion
     friction: levels and presliding stiffness, bounds over its reach and the 95 % intervals

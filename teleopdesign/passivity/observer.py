@@ -88,10 +88,10 @@ class PortEnergy(ByValue):
     def __repr__(self) -> str:
         final = float(self.data["energy"][-1])
         error = float(self.data["stderr"][-1])
-        told = "gave out energy" if self.certain else "gave out no energy beyond doubt"
+        verdict = "gave out energy" if self.certain else "gave out no energy beyond doubt"
         return (
             f"Energy into the port: {final:.4g} +- {error:.2g} J in the end, "
-            f"least {self.lowest:.4g} J at {self.when:.4g} s: {told}"
+            f"least {self.lowest:.4g} J at {self.when:.4g} s: {verdict}"
         )
 
 

@@ -75,44 +75,44 @@ def ports(diagram: Diagram) -> tuple[Port, ...]:
     """
     diagram = with_tips(diagram)
     moving = [b for b in diagram.blocks if isinstance(b, Moving)]
-    found = []
+    at_forces = []
     for force in dict.fromkeys(b.driver for b in moving if b.driver in diagram.outside):
         loads = {b.motion: _weight(diagram, force, b.loads) for b in moving}
         if weights := {m: w for m, w in loads.items() if w}:
-            found.append(Port(force, weights))
-    if not found:
+            at_forces.append(Port(force, weights))
+    if not at_forces:
         raise ModelError(f"{diagram.name}: no force from outside drives a body: it has no port")
-    return tuple(found)
+    return tuple(at_forces)
 
 
 def _weight(diagram: Diagram, force: str, terms: Mapping[str, object]) -> float | sp.Expr:
     """How much of an outside force is in a sum, through junctions alone."""
     made = {j.output: j.terms for j in diagram.junctions}
 
-    def share(terms: Mapping[str, object], seen: tuple[str, ...]) -> sp.Expr:
+    def share(terms: Mapping[str, object], visited: tuple[str, ...]) -> sp.Expr:
         total = sp.S(0)
         for signal, weight in terms.items():
             if signal == force:
                 total += sp.sympify(weight)
-            elif signal in made and signal not in seen:
-                total += sp.sympify(weight) * share(made[signal], (*seen, signal))
+            elif signal in made and signal not in visited:
+                total += sp.sympify(weight) * share(made[signal], (*visited, signal))
         return sp.sympify(total)
 
-    found = share(terms, ())
-    return found if found.free_symbols else float(found)
+    weight_of_force = share(terms, ())
+    return weight_of_force if weight_of_force.free_symbols else float(weight_of_force)
 
 
 def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
     """Names of what keeps the diagram from being linear."""
     diagram, speed = with_tips(diagram), sp.Symbol("speed", positive=True)
-    found = list(linear_blocks(diagram).left_out)
+    names = list(linear_blocks(diagram).left_out)
     for part in diagram.controls:
         assert isinstance(part.controller, Controller)
         form = part.controller.linear_form(part.name, S, speed)
         if form is not None and form.has(speed):
-            found.append(part.name)
-    found += [k.name for k in diagram.kinematics]
-    return (*found, *(j.name for j in diagram.junctions if j.arms))
+            names.append(part.name)
+    names += [k.name for k in diagram.kinematics]
+    return (*names, *(j.name for j in diagram.junctions if j.arms))
 
 
 def impedance_matrix(diagram: Diagram, at: Sequence[Port]) -> sp.Matrix:
@@ -155,15 +155,15 @@ def without_holding(diagram: Diagram, motion: str = "") -> Diagram:
     return diagram.without(*names)
 
 
-def spanned(motion: str, found: Sequence[Port]) -> bool:
+def spanned(motion: str, standing: Sequence[Port]) -> bool:
     """Whether ports that stand still hold that motion of a body too, at fixed lever arms."""
-    if not all(port.is_fixed for port in found):
+    if not all(port.is_fixed for port in standing):
         return False
-    known = sorted({motion, *(m for port in found for m in port.weights)})
-    weights = np.array([[port.weights.get(m, 0.0) for m in known] for port in found])
-    own = np.array([float(m == motion) for m in known])
+    known = sorted({motion, *(m for port in standing for m in port.weights)})
+    weights = np.array([[port.weights.get(m, 0.0) for m in known] for port in standing])
+    row = np.array([float(m == motion) for m in known])
     rank = np.linalg.matrix_rank
-    return bool(rank(np.vstack([weights, own])) == rank(weights))
+    return bool(rank(np.vstack([weights, row])) == rank(weights))
 
 
 def without_friction(diagram: Diagram, motion: str, *controllers: str) -> Diagram:

@@ -71,9 +71,9 @@ class Spring:
         if not travel:
             return force, 0.0
         s = math.copysign(1.0, travel)
-        give = min(abs(travel), (self.level - s * force) / self.stiffness)
-        end = force + s * self.stiffness * give
-        return end, s * (force + end) / 2 * give + self.level * (abs(travel) - give)
+        stretch = min(abs(travel), (self.level - s * force) / self.stiffness)
+        end = force + s * self.stiffness * stretch
+        return end, s * (force + end) / 2 * stretch + self.level * (abs(travel) - stretch)
 
 
 @checked

@@ -35,9 +35,9 @@ def region(claim: Callable[[float, float], Claim], x: np.ndarray, y: np.ndarray)
 
     Between the points nothing is said.
     """
-    found = [[claim(float(a), float(b)) for a in x] for b in y]
-    status = np.array([[c.status for c in row] for row in found])
+    claims = [[claim(float(a), float(b)) for a in x] for b in y]
+    status = np.array([[c.status for c in row] for row in claims])
     holds = np.array(
-        [[np.nan if c.holds is None else float(c.holds) for c in row] for row in found]
+        [[np.nan if c.holds is None else float(c.holds) for c in row] for row in claims]
     )
     return Region(np.asarray(x, dtype=float), np.asarray(y, dtype=float), status, holds)

@@ -91,13 +91,13 @@ def z_width(
     law = sp.sympify(law) * Z**-delay
     grid = np.linspace(0, float(b), 21) if wall_damping is None else np.asarray(wall_damping, float)
     per_stiffness, per_damping = _shares(law, late)
-    found = np.array([_largest(per_stiffness, per_damping * x, float(b)) for x in grid])
+    largest = np.array([_largest(per_stiffness, per_damping * x, float(b)) for x in grid])
     verified = all(
         _agrees(law, b, late, exact(float(x)), float(k))
-        for x, k in zip(grid, found, strict=True)
+        for x, k in zip(grid, largest, strict=True)
         if np.isfinite(k)
     )
-    return ZWidth(grid, found, float(b), inertia, float(late), verified)
+    return ZWidth(grid, largest, float(b), inertia, float(late), verified)
 
 
 def _shares(law: sp.Expr, late: sp.Expr) -> tuple[np.ndarray, np.ndarray]:

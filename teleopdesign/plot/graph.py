@@ -45,11 +45,11 @@ def draw_graph(
     totals: Counter[str] = Counter(s.kind for s in graph.series)
     if graph.logarithmic:
         _logarithmic(graph, axes)
-    seen: Counter[str] = Counter()
+    drawn: Counter[str] = Counter()
     for series in graph.series:
-        default = _colour(series.kind, seen[series.kind], totals)
+        default = _colour(series.kind, drawn[series.kind], totals)
         _draw(thin_series(series, most), axes, (colours or {}).get(series.name, default))
-        seen[series.kind] += 1
+        drawn[series.kind] += 1
     axes.set_xlabel(graph.x_label, parse_math=False)
     axes.set_ylabel(graph.y_label, parse_math=False)
     if len(graph.series) > 1:

@@ -1,17 +1,13 @@
-"""Source of the simulation loop, generated from the equations of a diagram.
+"""Source of the laws of a diagram: its equations as functions on rows of numbers.
 
-Inner steps: exponential Runge-Kutta of order four (Cox, Matthews, J. Comput. Phys. 176 (2002) 430,
-eqs (26) to (29)), with the rate of a hidden state split as A z + B, A frozen at the start of the
-step; A = 0 for the motion, for which it is the classical Runge-Kutta method. At every sample the
-computer reads its sensors and steps its states as they say, or exactly for inputs held over the
-sample.
+The loop around them is written by hand (`integrator.py`); a generated module is these functions,
+the constants that say which row of the loop's memory holds what, and that loop.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from types import MappingProxyType
+from dataclasses import dataclass, field
 
 import sympy as sp
 
@@ -26,22 +22,20 @@ from .equations import (
     travel_rate,
     velocity,
 )
-from .exponentials import PHI, WEIGHTS, head
 from .laws import Names, assignments, indented
 
-#: arguments of the generated `run`; arrays: inputs (n, 2 N + 1) on half steps, sampled (n, samples
-#: + 1), held (samples + 1, commands), history (N + 1, late), out (rows, columns)
-ARGUMENTS = (
-    "samples inner h period lag late_steps encoder_step smoothing parameters inputs sampled start "
-    "computer_start every_step held history out"
-).split()
+#: arguments of laws in continuous time: where what they take begins in the memory of the loop
+ANALOG = "time states bristles inputs column late parameters memory".split()
+#: arguments of the computer's laws
+DIGITAL = "n period sampled parameters memory".split()
 
 
 @dataclass(frozen=True)
 class Layout:
-    """Order of everything that the generated function takes and gives, as names.
+    """Order of everything that the loop takes and gives, as names.
 
-    columns: of a row of the result;  exponential: states stepped exactly in their affine part
+    columns: of a row of the result;  exponential: states stepped exactly in their affine part, the
+    last ones among the states
     """
 
     states: tuple[str, ...]
@@ -58,13 +52,13 @@ class Layout:
 def slopes(equations: Equations) -> dict[sp.Symbol, sp.Expr]:
     """Hidden state -> A, where its rate is A z + B with A free of the state."""
     moving = {f(m) for m in equations.motions for f in (signal, velocity)}
-    found = {}
+    by_state = {}
     for state, rate in equations.rates.items():
         # as it stands: simplified, exp(-u) may come out as 1/exp(u), which overflows
         slope = sp.diff(rate, state) if state not in moving else sp.S(0)
         if slope != 0 and not slope.has(state):
-            found[state] = slope
-    return found
+            by_state[state] = slope
+    return by_state
 
 
 def needed_steps(
@@ -72,30 +66,61 @@ def needed_steps(
 ) -> dict[sp.Symbol, sp.Expr]:
     """Those of the named steps that the results are written in, in their order."""
     wanted = set().union(*(sp.sympify(r, strict=True).free_symbols for r in results))
-    found = {}
+    needed = {}
     for symbol, expression in reversed(list(joined.items())):
         if symbol in wanted:
-            found[symbol] = expression
+            needed[symbol] = expression
             wanted |= expression.free_symbols
-    return dict(reversed(list(found.items())))
+    return dict(reversed(list(needed.items())))
 
 
-def _function(
-    name: str,
-    arguments: Iterable[sp.Symbol],
-    results: list[sp.Expr],
-    names: Names,
-    joined: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
-) -> str:
-    """Source of a function that returns the results, common parts computed once."""
-    if not results:
-        return ""
-    needed = {names[s]: e for s, e in needed_steps(results, joined).items()}
-    out = {f"out{i}": sp.sympify(r, strict=True) for i, r in enumerate(results)}
-    lines = [*assignments(needed, names), *assignments(out, names, shared="k")]
-    given = ", ".join(names[a] for a in arguments)
-    body = indented([*lines, f"return ({', '.join(out)},)"], 4)
-    return f"@jitted\ndef {name}({given}):\n{body}\n\n\n"
+#: symbol -> the text that reads it
+_Places = Mapping[sp.Symbol, str]
+
+
+def _entry(first: str, i: int) -> str:
+    """Entry of a lane in the row i of a group."""
+    return f"memory[{first} + {f'{i} * LANES + ' if i else ''}lane]"
+
+
+def _places(rows: Mapping[str, Iterable[sp.Symbol]]) -> dict[sp.Symbol, str]:
+    """Where each symbol is read, by the beginning of its group in the memory."""
+    return {x: _entry(row, i) for row, symbols in rows.items() for i, x in enumerate(symbols)}
+
+
+def _function(name: str, arguments: Iterable[str], lines: Iterable[str]) -> str:
+    body = indented(list(lines) or ["pass"], 4)
+    return f"@jitted\ndef {name}({', '.join([*arguments, 'lane'])}):\n{body}\n\n\n"
+
+
+@dataclass(frozen=True)
+class _Writer:
+    """What the source of some laws is written with: arguments, and names of what they hold."""
+
+    arguments: tuple[str, ...]
+    places: _Places
+    names: Names
+    joined: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+
+    def lines(self, results: Mapping[str, sp.Expr]) -> list[str]:
+        """Lines that compute the results under their private names, common parts once."""
+        needed = needed_steps(results.values(), self.joined)
+        expressions = (*results.values(), *needed.values())
+        used = set().union(*(x.free_symbols for x in expressions))
+        return [
+            *(f"{self.names[x]} = {place}" for x, place in self.places.items() if x in used),
+            *assignments({self.names[s]: e for s, e in needed.items()}, self.names),
+            *assignments(results, self.names, shared="k"),
+        ]
+
+    def function(self, name: str, **rows: Iterable[sp.Expr]) -> str:
+        """Source of a function that puts these into the memory, each group from a row on."""
+        places = {
+            _entry(to, i): sp.sympify(x, strict=True) for to in rows for i, x in enumerate(rows[to])
+        }
+        results = {f"out{i}": x for i, x in enumerate(places.values())}
+        lines = [*self.lines(results), *map(" = ".join, zip(places, results, strict=True))]
+        return _function(name, (*self.arguments, *rows), lines)
 
 
 class Generator:
@@ -108,7 +133,9 @@ class Generator:
         e = self.equations = equations
         self.observer = observer
         self.slopes = slopes(e)
-        self.states = sorted(e.rates, key=str)
+        self.bristles = sorted(self.slopes, key=str)
+        self.moving = sorted((x for x in e.rates if x not in self.slopes), key=str)
+        self.states = [*self.moving, *self.bristles]
         self.computer_states = sorted((*e.computer.rates, *e.computer.steps), key=str)
         self.motions = [*e.motions, *e.prescribed]
         self.commands = list(e.commands)
@@ -116,27 +143,11 @@ class Generator:
         self.sampled_inputs = [signal(s) for s in e.sampled_inputs] if e.commands else []
         used = set().union(*(x.free_symbols for x in self._expressions()))
         self.parameters = sorted(used & set(e.parameters), key=str)
-        self.analog = [
-            TIME,
-            *self.states,
-            *e.inputs,
-            *(e.commands[c] for c in self.commands),
-            *self.late,
-            *self.parameters,
-        ]
         self.sensors = sorted(
             {s for x in self._computer_expressions() for s in x.free_symbols}
             & {measured(s) for s in (*e.signals, *self.motions)},
             key=str,
         )
-        self.reads = [
-            *self.sensors,
-            *(f(m) for m in self.motions for f in (travel_rate, estimate)),
-            *self.sampled_inputs,
-            *self.computer_states,
-            *self.parameters,
-            *({PERIOD} & used),
-        ]
         self.motion_signals = [f(m) for m in self.motions for f in (signal, velocity, acceleration)]
         self.variables = self._variables()
         self.names = self._names()
@@ -153,15 +164,13 @@ class Generator:
     def _names(self) -> dict[sp.Symbol, str]:
         """Private name of every symbol that the equations hold."""
         e = self.equations
-        own = {p: f"p{i}" for i, p in enumerate(self.parameters)}
-        own |= {s: f"j{i}_" for i, s in enumerate(e.joined)} | {TIME: "time", PERIOD: "period"}
+        names = {p: f"p{i}" for i, p in enumerate(self.parameters)}
+        names |= {s: f"j{i}_" for i, s in enumerate(e.joined)} | {TIME: "time", PERIOD: "period"}
         used = set().union(*(x.free_symbols for x in self._expressions()))
-        used |= {*self.analog, *self.reads}
-        return own | {s: self.variables[s.name] for s in used if s not in own}
-
-    def variable(self, quantity: sp.Symbol | str) -> str:
-        """The variable of the source that holds a quantity."""
-        return self.variables[str(quantity)]
+        used |= {*self.states, *self.computer_states, *e.inputs, *e.commands.values(), *self.late}
+        used |= {*self.sensors, *self.sampled_inputs, *self.motion_signals}
+        used |= {f(m) for m in self.motions for f in (travel_rate, estimate)}
+        return names | {s: self.variables[s.name] for s in used if s not in names}
 
     def _computer_expressions(self) -> list[sp.Expr]:
         computer = self.equations.computer
@@ -189,41 +198,156 @@ class Generator:
             late=tuple(s.name for s in self.late),
             parameters=tuple(e.parameters[p] for p in self.parameters),
             columns=tuple(names),
-            exponential=tuple(s.name for s in self.slopes),
+            exponential=tuple(s.name for s in self.bristles),
         )
 
-    def source(self, *, jit: bool) -> str:
-        """The module's functions of the equations; the loop over them is `loop_source`."""
+    def source(self) -> str:
+        """The functions of the equations, and the constants of the loop over them."""
+        return f"{self._constants()}\n\n{self._analog()}{self._signals()}{self._computer()}"
+
+    def _constants(self) -> str:
+        """First row of the loop's memory for each group of quantities, and their numbers."""
+        motions = len(self.motions) if self.commands else 0
+        states, bristles, late = len(self.moving), len(self.bristles), len(self.late)
+        commands = len(self.commands)
+        rows = {
+            "STATES": states,
+            "BRISTLES": bristles,
+            "COMPUTER_STATES": len(self.computer_states),
+            "COMMANDS": commands,
+            "NEW_COMMANDS": commands,
+            "LATE": late,
+            "LATE_MIDDLE": late,
+            "LATE_END": late,
+            "LATE_VALUES": late,
+            "STAGE_STATES": states,
+            "STAGE_BRISTLES": bristles,
+            "FIRST_BRISTLES": bristles,
+            **{f"RATES_{stage}": states for stage in range(4)},
+            **{f"RESTS_{stage}": bristles for stage in range(4)},
+            **dict.fromkeys(("SLOPES", "LAST_SLOPES", "WORST"), bristles),
+            **dict.fromkeys(("E_HALF", "G_HALF", "E_STEP"), bristles),
+            **dict.fromkeys(("WEIGHT_0", "WEIGHT_1", "WEIGHT_3"), bristles),
+            **dict.fromkeys(("POSITIONS", "VELOCITIES", "SEEN", "TRAVEL"), motions),
+            **dict.fromkeys(("KNOWN", "OBSERVED", "BEND"), motions),
+            "NOW": len(self._now()),
+            "MADE": len(self._made()),
+            "COLUMNS": len(self.layout().columns),
+            "SPOILED": 1,
+        }
+        lines, first = [], 0
+        for name, count in rows.items():
+            lines.append(f"{name} = {first} * LANES")
+            first += count
+        counted = {"MOTIONS": motions} | {
+            name: rows[name] for name in ("STATES", "BRISTLES", "COMMANDS", "LATE", "COLUMNS")
+        }
+        lines += [f"MANY_{name} = {count}" for name, count in counted.items()]
+        lines.append(f"ROWS = {first}")
+        lines.append(f"SMOOTH = ({''.join(f'{x}, ' for x in [*self._smooth(), True])})")
+        lines.append(f"COMPUTER = {bool(self.commands)}")
+        lines.append(f"OBSERVER = {self.observer}")
+        return "\n".join(lines)
+
+    def _smooth(self) -> list[bool]:
+        """Whether a late signal changes within a step, in place of being held over it."""
         e = self.equations
-        rates = [e.rates[s] for s in self.states]
-        accelerations = [e.rates[velocity(m)] for m in e.motions]
+        moving = {*e.rates, *e.joined}
+        late = (expression for expression, _ in e.late.values())
+        return [bool(x.free_symbols & moving) or not self.commands for x in late]
 
-        def analog(name: str, results: list[sp.Expr]) -> str:
-            return _function(name, self.analog, results, self.names, e.joined)
+    def _now(self) -> dict[sp.Symbol, sp.Expr]:
+        """Accelerations and signals of continuous time, by their symbols."""
+        e = self.equations
+        found = {acceleration(m): e.rates[velocity(m)] for m in e.motions}
+        return found | {signal(name): x for name, x in e.signals.items()}
 
+    def _made(self) -> dict[str, sp.Expr]:
+        """Signals of the computer."""
+        return dict(self.equations.computer.signals) if self.commands else {}
+
+    def _analog_places(self) -> dict[sp.Symbol, str]:
+        e = self.equations
+        rows = {"states": self.moving, "bristles": self.bristles, "late": self.late}
+        places = _places({**rows, "COMMANDS": [e.commands[c] for c in self.commands]})
+        places |= {x: f"inputs[{i}, column]" for i, x in enumerate(e.inputs)}
+        return places | self._parameter_places()
+
+    def _parameter_places(self) -> dict[sp.Symbol, str]:
+        return {p: f"parameters[{i} * LANES + lane]" for i, p in enumerate(self.parameters)}
+
+    def _analog(self) -> str:
+        e = self.equations
+        write = _Writer(tuple(ANALOG), self._analog_places(), self.names, e.joined).function
+        moving, bristles = ([e.rates[s] for s in g] for g in (self.moving, self.bristles))
         parts = [
-            head("Generated from the laws of the blocks of a diagram; do not edit.", jit=jit),
-            PHI,
-            WEIGHTS,
-            "\n\n",
-            analog("rates", rates),
-            analog("slopes", list(self.slopes.values())),
-            analog("signals", [*accelerations, *e.signals.values()]),
-            analog("late_values", [x for x, _ in e.late.values()]),
-            self._computer_functions(),
+            write("rates", to_states=moving, to_bristles=bristles),
+            write("slopes", to=[self.slopes[s] for s in self.bristles]),
+            write("signals", to=self._now().values()),
+            write("late_values", to=[x for x, _ in e.late.values()]),
         ]
         return "".join(parts)
 
-    def _computer_functions(self) -> str:
+    def _signals(self) -> str:
+        """Which quantities are the motions that a computer reads, and the columns of a row."""
+        places = {x.name: place for x, place in self._analog_places().items()}
+        read = self.motions if self.commands else []
+        lines = [
+            f"{_entry(to, i)} = {places[of(m).name]}"
+            for to, of in (("to_positions", signal), ("to_velocities", velocity))
+            for i, m in enumerate(read)
+        ]
+        arguments = ["states", "inputs", "column", "memory", "to_positions", "to_velocities"]
+        motions = _function("motions", arguments, lines)
+        places = {
+            name: text.replace("[states", "[STATES").replace("[bristles", "[BRISTLES")
+            for name, text in places.items()
+        }
+        places |= {x.name: _entry("NOW", i) for i, x in enumerate(self._now())}
+        places |= {name: _entry("MADE", i) for i, name in enumerate(self._made())}
+        columns = enumerate(self.layout().columns)
+        lines = [f"{_entry('to', i)} = {places[name]}" for i, name in columns]
+        return motions + _function("record", ["inputs", "column", "memory", "to"], lines)
+
+    def _computer(self) -> str:
+        """Signals of the computer, and its states stepped before and after they are taken."""
+        motions, made = self.motions, self._made()
+        rows = {
+            "NOW": [measured(x.name) for x in self._now()],
+            "SEEN": [measured(m) for m in motions],
+            "TRAVEL": [travel_rate(m) for m in motions],
+            "KNOWN": [estimate(m) for m in motions],
+            "COMPUTER_STATES": self.computer_states,
+        }
+        read = {x: f"sampled[{i}, n]" for i, x in enumerate(self.sampled_inputs)}
+        places = _places(rows) | read | self._parameter_places()
+        writer = _Writer(tuple(DIGITAL), places, self.names)
+        own = {x.name: text for x, text in read.items()}
+        own |= {name: _entry("MADE", i) for i, name in enumerate(made)}
+        commands = [f"{_entry('to', i)} = {own[c]}" for i, c in enumerate(self.commands)]
+        parts = [
+            self._stepped(writer, "computer_before", True),
+            writer.function("computer_signals", to=made.values()),
+            self._stepped(writer, "computer_after", False),
+            _function("held_commands", ["n", "sampled", "memory", "to"], commands),
+        ]
+        return "".join(parts)
+
+    def _stepped(self, writer: _Writer, name: str, before: bool) -> str:
+        """Source of a function that carries states over a sample: exactly, or as they say."""
         computer = self.equations.computer
-        out = []
-        for name, wanted in (("before", True), ("after", False)):
-            here = [s for s in self.computer_states if (s in computer.before) is wanted]
-            chosen = [s for s in here if s in computer.rates]
-            a = [sp.diff(computer.rates[s], s) for s in chosen]
-            b = [computer.rates[s].xreplace({s: sp.S(0)}) for s in chosen]
-            out.append(_function(f"{name}_rates", self.reads, [*a, *b], self.names))
-            steps = [computer.steps[s] for s in here if s in computer.steps]
-            out.append(_function(f"{name}_steps", self.reads, steps, self.names))
-        out.append(_function("computer", self.reads, list(computer.signals.values()), self.names))
-        return "".join(out)
+        results: dict[str, sp.Expr] = {}
+        ends: list[str] = []
+        for i, s in enumerate(self.computer_states):
+            if (s in computer.before) is not before or not self.commands:
+                continue
+            state = _entry("COMPUTER_STATES", i)
+            if s in computer.steps:
+                results[f"out{i}"] = computer.steps[s]
+                ends.append(f"{state} = out{i}")
+                continue
+            results[f"a{i}"] = sp.diff(computer.rates[s], s)
+            results[f"b{i}"] = computer.rates[s].xreplace({s: sp.S(0)})
+            ends.append(f"e, f, _, _ = phi(period * a{i})")
+            ends.append(f"{state} = e * {state} + period * f * b{i}")
+        return _function(name, writer.arguments, [*writer.lines(results), *ends])

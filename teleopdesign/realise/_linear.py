@@ -25,7 +25,7 @@ def solve_linear(
     raises ModelError: an unknown is not determined, or enters other than linearly
     """
     rows, left = list(rows), set(unknown)
-    found: dict[sp.Symbol, sp.Expr] = {}
+    solution: dict[sp.Symbol, sp.Expr] = {}
     while left:
         choice = None
         for i, row in enumerate(rows):
@@ -39,15 +39,15 @@ def solve_linear(
         (no_number, others, _), i, x, factor = choice
         if no_number and others > 1:
             values, steps = _joined(rows, left, name)
-            return {s: e.xreplace(values) for s, e in found.items()} | values, steps
+            return {s: e.xreplace(values) for s, e in solution.items()} | values, steps
         row = rows.pop(i)
         value = -row.xreplace({x: sp.S(0)}) / factor
         rows = [r.xreplace({x: value}) if r.has(x) else r for r in rows]
         # like terms must meet, or a pivot that is zero would not be seen
         rows = [_gathered(r, left - {x}) for r in rows]
-        found = {s: e.xreplace({x: value}) for s, e in found.items()} | {x: value}
+        solution = {s: e.xreplace({x: value}) for s, e in solution.items()} | {x: value}
         left.remove(x)
-    return found, {}
+    return solution, {}
 
 
 def _factor(row: sp.Expr, x: sp.Symbol, unknown: set[sp.Symbol], name: str) -> sp.Expr:
@@ -93,10 +93,10 @@ def _joined(
     todo = sorted(left, key=str)
     while todo:
         group = _group(rows, todo[0], left)
-        own = [r for r in rows if r.free_symbols & group]
-        if len(own) < len(group):
+        of_group = [r for r in rows if r.free_symbols & group]
+        if len(of_group) < len(group):
             raise _undetermined(group, name)
-        values |= _eliminated(own, sorted(group, key=str), named, name)
+        values |= _eliminated(of_group, sorted(group, key=str), named, name)
         todo = [x for x in todo if x not in group]
     return values, named.steps
 
@@ -131,8 +131,8 @@ def _eliminated(
                 factor = a[r][i]
                 a[r] = [named(x - factor * a[i][j]) if j > i else x for j, x in enumerate(a[r])]
                 b[r] = named(b[r] - factor * b[i])
-    found: dict[sp.Symbol, sp.Expr] = {}
+    solution: dict[sp.Symbol, sp.Expr] = {}
     for i in reversed(range(n)):
-        rest = sp.Add(*(a[i][j] * found[unknown[j]] for j in range(i + 1, n)))
-        found[unknown[i]] = named(b[i] - rest)
-    return found
+        rest = sp.Add(*(a[i][j] * solution[unknown[j]] for j in range(i + 1, n)))
+        solution[unknown[i]] = named(b[i] - rest)
+    return solution

@@ -15,12 +15,12 @@ from .simulated import without_absent
 def largest_acting_force(
     body: Body, command: float, reach: Reach | None = None, *, errors: float
 ) -> float:
-    """Bound of abs(acting force), N, under any command of at most that size (N), late ones too.
+    """Upper bound of abs(acting force), N, under any command of at most this size (N), also late.
 
     errors: standard errors of the parameters to either side;  inf: where no bound is known
     """
     body = without_absent(body, surely=True)
-    given = signal_ranges(reach) | parameter_box(body, errors=errors)
+    box = signal_ranges(reach) | parameter_box(body, errors=errors)
     largest = command
     for effect in ordered(body.effects, "actuation"):
         # what acted a while ago lay in the same range; a state of the stage may be held in it
@@ -28,7 +28,7 @@ def largest_acting_force(
         states = effect.state_symbols().values()
         within = dict.fromkeys((SIGNALS["command"], *states), (-largest, largest))
         try:
-            if not all(stays_within(effect, s, given | within) for s in states):
+            if not all(stays_within(effect, s, box | within) for s in states):
                 return math.inf
             ends = [
                 lowest_of(body, way * law, reach, errors=errors, ranges=within)[0].low

@@ -19,9 +19,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..blocks import Body
-from ..effects import SIGNALS, UNEXPLAINED, Effect, touching
+from ..effects import SIGNALS, UNEXPLAINED, Effect, rubbing, touching
 from ..measurement.motion import Motion
-from .friction_along import balance_friction, bound_friction, level_along, own_friction
+from .friction_along import balance_friction, bound_friction, friction_of_acting_force, level_along
 from .ode_scan import ode_scan
 from .stages_along import acting_along
 from .traced import Along, Probe, Traced, through
@@ -40,7 +40,7 @@ _MEASURED = {
 
 @dataclass(frozen=True)
 class Residual:
-    """What the model leaves along one motion (n samples), SI, tangents (p, n).
+    """Residual of the model along one motion (n samples), SI, with tangents (p, n).
 
     residual: force that acts beyond what the model needs;  friction: the model's friction force
     acting: acting force at the rows;  moving: less the friction that it makes itself
@@ -73,6 +73,8 @@ def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
         structures = [touching(effect, contact) for effect in structures]
     elif contact != 0:
         needed = needed - along.evaluate(contact)
+    if (held := body.tip_level()) != 0:
+        structures = [rubbing(effect, held) for effect in structures]
     level, along = level_along(body, along)
     low, high = bound_friction(body, level, motion, along)
     for effect in structures:
@@ -81,7 +83,7 @@ def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
     residual = needed - friction
     for effect in structures:
         residual = residual - _led(effect, motion, along, residual)
-    moving = acting - own_friction(level, friction, along)
+    moving = acting - friction_of_acting_force(level, friction, along)
     return Residual(motion, residual, friction, acting, moving)
 
 
@@ -93,7 +95,9 @@ def measured_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
     symbols = body.symbols()
     columns = tuple(name if isinstance(name, Probe) else symbols[name] for name in wrt)
     along = Along({}, body.numbers(), columns, motion.sample_time)
-    readings = {SIGNALS[n]: np.asarray(getattr(motion, own), float) for n, own in _MEASURED.items()}
+    readings = {
+        SIGNALS[n]: np.asarray(getattr(motion, column), float) for n, column in _MEASURED.items()
+    }
     return along.with_signals({s: along.constant(reading) for s, reading in readings.items()})
 
 

@@ -34,9 +34,7 @@ def _clip(f: Array, low: Array, high: Array) -> None:
 
 
 @njit(cache=True, nogil=True)  # type: ignore[untyped-decorator,unused-ignore]
-def _balance(
-    needed: Array, low: Array, high: Array, sos: Array, settled: Array, m: int, steps: int
-) -> Array:
+def _balance(needed: Array, low: Array, high: Array, sos: Array, steady: Array, m: int) -> Array:
     n, r = needed.shape
     friction = needed.copy()
     _clip(friction, low, high)
@@ -44,11 +42,11 @@ def _balance(
     left = np.empty((n, r))
     extended = np.empty((n + 2 * m, r))
     momentum = 1.0
-    for _ in range(steps):
+    for _ in range(STEPS):
         for k in range(n):
             for j in range(r):
                 left[k, j] = needed[k, j] - ahead[k, j]
-        both_ways(left, extended, sos, settled)
+        both_ways(left, extended, sos, steady)
         for k in range(n):
             for j in range(r):
                 before[k, j] = friction[k, j]
@@ -70,8 +68,8 @@ def balanced(
 
     needed, low, high: likewise, (1 + p, n);  bandwidth: Hz;  sample_time: s
     """
-    sos, settled = sections(bandwidth, sample_time)
+    sos, steady = sections(bandwidth, sample_time)
     m = margin(needed.shape[1], sample_time)
     columns = [np.ascontiguousarray(a.T) for a in (needed, low, high)]
-    friction = _balance(columns[0], columns[1], columns[2], sos, settled, m, STEPS)
+    friction = _balance(columns[0], columns[1], columns[2], sos, steady, m)
     return np.ascontiguousarray(friction.T)

@@ -10,7 +10,7 @@ import importlib
 import os
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from threading import Lock
@@ -19,8 +19,8 @@ from typing import Any
 
 def cache_folder() -> Path:
     """Where generated kernels are kept: TELEOPDESIGN_CACHE, or the platform's cache folder."""
-    if given := os.environ.get("TELEOPDESIGN_CACHE"):
-        folder = Path(given)
+    if path := os.environ.get("TELEOPDESIGN_CACHE"):
+        folder = Path(path)
     else:
         import pooch
 
@@ -37,9 +37,15 @@ def cache_folder() -> Path:
 _IMPORTING = Lock()
 
 
-@lru_cache(maxsize=256)
 def compiled(source: str, function: str) -> Callable[..., Any]:
     """The function of that name in the source (a module that uses numba), from the cache folder."""
+    kernel: Callable[..., Any] = compiled_module(source, function)[function]
+    return kernel
+
+
+@lru_cache(maxsize=256)
+def compiled_module(source: str, function: str) -> Mapping[str, Any]:
+    """Names of that source, a module that uses numba;  function: main one, in the file's name."""
     digest = hashlib.sha256(source.encode()).hexdigest()[:20]
     folder = cache_folder()
     path = folder / f"teleopdesign_{function}_{digest}.py"
@@ -55,5 +61,4 @@ def compiled(source: str, function: str) -> Callable[..., Any]:
             sys.path.append(str(folder))  # numba's cache finds the module again by its name
         importlib.invalidate_caches()
         module = importlib.import_module(path.stem)
-    kernel: Callable[..., Any] = getattr(module, function)
-    return kernel
+    return vars(module)

@@ -71,7 +71,7 @@ def _bound(
         force = sum((e.expression() for e in effects), sp.S(0))
         against = DIRECTION * force.subs(SIGNALS["velocity"], DIRECTION * SPEED)
         law = sp.expand(against / SPEED)
-        found, _ = lowest_of(body, law, reach, errors=errors)
+        lowest, _ = lowest_of(body, law, reach, errors=errors)
     except ModelError:
         return None
-    return found if math.isfinite(found.low) else None
+    return lowest if math.isfinite(lowest.low) else None

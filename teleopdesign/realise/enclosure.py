@@ -72,8 +72,8 @@ def enclosure_of(
 
     last = place(sp.sympify(law))
 
-    def evaluate(given: Sequence[Enclosure]) -> Enclosure:
-        values = list(given)
+    def evaluate(enclosures: Sequence[Enclosure]) -> Enclosure:
+        values = list(enclosures)
         for operation, arguments in steps:
             values.append(operation(*(values[i] for i in arguments)))
         return values[last]
@@ -160,8 +160,8 @@ def _power(node: sp.Pow, smooth: bool) -> Callable[..., Enclosure]:
 def _rooted(x: Enclosure, root: int) -> Enclosure:
     """The root of an interval that is not negative."""
     zero = x.a == 0
-    found = _exponential(_logarithm(x, False) / root)
-    return _hull(_ZERO, found) if zero else found
+    power = _exponential(_logarithm(x, False) / root)
+    return _hull(_ZERO, power) if zero else power
 
 
 def _logarithm(x: Enclosure, smooth: bool) -> Enclosure:
@@ -175,10 +175,10 @@ def _exponential(x: Enclosure) -> Enclosure:
     high = x.b if x.b < _LARGEST_EXPONENT else iv.mpf("inf")
     below = iv.exp(low if x.a < _LARGEST_EXPONENT else iv.mpf(_LARGEST_EXPONENT))
     above = iv.exp(high if x.b > -_LARGEST_EXPONENT else iv.mpf(-_LARGEST_EXPONENT))
-    found = _hull(below, above) * _GUARD
+    hull = _hull(below, above) * _GUARD
     if x.b <= 0:
-        return iv.mpf([found.a, min(found.b, _ONE)])
-    return iv.mpf([max(found.a, _ONE), found.b]) if x.a >= 0 else found
+        return iv.mpf([hull.a, min(hull.b, _ONE)])
+    return iv.mpf([max(hull.a, _ONE), hull.b]) if x.a >= 0 else hull
 
 
 def _within_one(x: Enclosure) -> Enclosure:
@@ -196,8 +196,8 @@ def _rising(function: Callable[..., Any]) -> Callable[[Enclosure], Enclosure]:
 
     def enclose(x: Enclosure) -> Enclosure:
         low, high = x._mpi_
-        found = (function(low, 53, libmp.round_floor), function(high, 53, libmp.round_ceiling))
-        return iv.make_mpf(found) * _GUARD
+        ends = (function(low, 53, libmp.round_floor), function(high, 53, libmp.round_ceiling))
+        return iv.make_mpf(ends) * _GUARD
 
     return enclose
 

@@ -150,26 +150,26 @@ class _Builder:
     def _electronic(self) -> set[str]:
         """Outputs of analog controllers and of the junctions before and behind them."""
         made = {j.output: j for j in self.diagram.junctions}
-        found = {c.output for c in self.diagram.controls if c.analog}
-        found |= {c.input for c in self.diagram.controls if c.analog and c.input in made}
+        electronic = {c.output for c in self.diagram.controls if c.analog}
+        electronic |= {c.input for c in self.diagram.controls if c.analog and c.input in made}
         grown = True
         while grown:
-            behind = {j.output for j in made.values() if found & set(j.terms)}
-            grown, found = not behind <= found, found | behind
-        return found
+            behind = {j.output for j in made.values() if electronic & set(j.terms)}
+            grown, electronic = not behind <= electronic, electronic | behind
+        return electronic
 
     def _computers_signals(self) -> tuple[set[str], tuple[str, ...]]:
         """Signals between sensors and commands, and the outside signals among them."""
         made = {s: p for p in self.diagram.parts for s in p.outputs}
         sensors, electronic = self._sensors(), self._electronic()
         todo = [b.command for b in self.moving]
-        found: set[str] = set()
-        seen: set[str] = set()
+        computed: set[str] = set()
+        visited: set[str] = set()
         while todo:
             name = todo.pop()
-            if name in seen or name in sensors:
+            if name in visited or name in sensors:
                 continue
-            seen.add(name)
+            visited.add(name)
             part = made.get(name)
             if isinstance(part, Moving | Attached | Linked):
                 raise ModelError(
@@ -180,10 +180,10 @@ class _Builder:
             if name in electronic:
                 inputs = tuple(s for s in inputs if s not in self.diagram.outside)
             else:
-                found.add(name)
+                computed.add(name)
             todo += inputs
-        inputs = tuple(s for s in self.outside if s in found)
-        return found - set(self.diagram.outside), inputs
+        inputs = tuple(s for s in self.outside if s in computed)
+        return computed - set(self.diagram.outside), inputs
 
     def _held(self) -> list[str]:
         """The computer's signals that something analog takes: these are held."""
@@ -199,7 +199,7 @@ class _Builder:
         rows, unknown = self._analog_rows()
         computer = Computer({}, {}, frozenset(), {})
         commands: dict[str, sp.Symbol] = {}
-        inputs = [s for s in self.outside if s not in self.sampled_inputs or self._taken(s)]
+        inputs = [s for s in self.outside if s not in self.sampled_inputs or self._feeds_analog(s)]
         if self.sampled:
             commands = {s: signal(s) for s in self._held()}
             computer = self._computer()
@@ -217,11 +217,11 @@ class _Builder:
         late = {s: (e.xreplace(solved), d) for s, (e, d) in self.late.items()}
         signals = {s.name: e for s, e in solved.items() if s.name in self.diagram.signals}
         signals |= {n: e.xreplace(solved) for n, e in self.friction.items()}
-        given = [f(m) for m in self.prescribed for f in (signal, velocity, acceleration)]
+        prescribed = [f(m) for m in self.prescribed for f in (signal, velocity, acceleration)]
         return Equations(
             rates=rates,
             signals=signals,
-            inputs=(*(signal(s) for s in inputs), *given),
+            inputs=(*(signal(s) for s in inputs), *prescribed),
             commands=commands,
             late=late,
             computer=computer,
@@ -245,7 +245,7 @@ class _Builder:
         known = {s: e.xreplace(forces) for s, e in solved.items()} | forces
         return known, {s: e.xreplace(forces) for s, e in joined.items()}
 
-    def _taken(self, name: str) -> bool:
+    def _feeds_analog(self, name: str) -> bool:
         """Whether something analog takes this outside signal as it is."""
         parts = [p for p in self.diagram.parts if isinstance(p, Junction)]
         return any(name in p.terms and p.output not in self.digital for p in parts)
@@ -267,8 +267,8 @@ class _Builder:
             elif isinstance(part, Control) and part.analog:
                 _, v, _ = motion_of(self.diagram, part.motion)
                 known = self.diagram.is_position(part.input)
-                given = self.diagram.position(part.input) if known else signal(part.input)
-                equation = _placed(part, given, v, v)
+                source = self.diagram.position(part.input) if known else signal(part.input)
+                equation = _placed(part, source, v, v)
                 rows.append(signal(part.output) - equation.output)
                 unknown.append(signal(part.output))
                 self.rates |= equation.rates
@@ -342,8 +342,8 @@ class _Builder:
                 if part.analog:
                     continue
                 moved = self.diagram.position(part.motion)
-                seen = {x: of(x.name) for x in moved.free_symbols}
-                travel, known = (rate_of(moved, f).xreplace(seen) for f in (rate, speed))
+                readings = {x: of(x.name) for x in moved.free_symbols}
+                travel, known = (rate_of(moved, f).xreplace(readings) for f in (rate, speed))
                 equation = _placed(part, of(part.input), travel, known, period)
                 rows.append(signal(part.output) - equation.output)
                 rates |= equation.rates
@@ -362,8 +362,8 @@ class _Builder:
         def of(name: str) -> sp.Symbol:
             return measured(name) if name in sensors else signal(name)
 
-        found, names = self._computer_rows(of, travel_rate, estimate, PERIOD)
-        rows, rates, steps, before = found
+        listed, names = self._computer_rows(of, travel_rate, estimate, PERIOD)
+        rows, rates, steps, before = listed
         solved, _ = solve_linear(rows, [signal(s) for s in names], self.diagram.name)
         return Computer(
             {x: r.xreplace(solved) for x, r in rates.items()},
@@ -384,10 +384,10 @@ def _check_inputs(diagram: Diagram, motions: list[str]) -> None:
 
 
 def _placed(
-    part: Control, given: sp.Expr, rate: sp.Expr, speed: sp.Expr, period: sp.Expr = sp.S.Zero
+    part: Control, input: sp.Expr, rate: sp.Expr, speed: sp.Expr, period: sp.Expr = sp.S.Zero
 ) -> ControllerEquation:
     assert isinstance(part.controller, Controller)
-    signals = {"input": given, "velocity": speed, "speed": sp.Abs(speed), "travel_rate": rate}
+    signals = {"input": input, "velocity": speed, "speed": sp.Abs(speed), "travel_rate": rate}
     signals["period"] = period
     return part.controller.equation(part.name, signals)
 
@@ -407,6 +407,6 @@ def _read(weight: Weight, of: _Reader) -> sp.Expr:
 def _parameter_names(diagram: Diagram) -> dict[sp.Symbol, str]:
     names = {}
     for full in diagram.values:
-        block, _, own = full.partition(".")
-        names[parameter_symbol(block, own)] = full
+        block, _, local_name = full.partition(".")
+        names[parameter_symbol(block, local_name)] = full
     return names

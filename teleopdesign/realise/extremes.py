@@ -118,20 +118,20 @@ def least_value(law: sp.Expr, ranges: Ranges) -> Least:
     search = _Search(law, ranges)
     waiting = [search.box(search.start)]
     typical = abs(search.over([(x, x) for x in search.point])[1])
-    settled = math.inf  # the least bound of boxes that cannot be halved
+    finished = math.inf  # the least bound of boxes that cannot be halved
     for looked_at in range(MOST_BOXES):
         tolerance = TIGHTNESS * max(abs(search.met), typical if math.isfinite(typical) else 0.0)
-        if not waiting or waiting[0].bound >= min(search.met, settled) - tolerance:
+        if not waiting or waiting[0].bound >= min(search.met, finished) - tolerance:
             break
         if math.isinf(waiting[0].bound) and looked_at >= MOST_UNBOUNDED:
             break
         lowest = heapq.heappop(waiting)
         halves = search.split(lowest)
         if not halves:
-            settled = min(settled, lowest.bound)
+            finished = min(finished, lowest.bound)
         for half in halves:
             heapq.heappush(waiting, half)
-    bound = min([settled, *(box.bound for box in waiting)])
+    bound = min([finished, *(box.bound for box in waiting)])
     return Least(bound, search.met, dict(zip(search.symbols, search.point, strict=True)))
 
 

@@ -53,7 +53,7 @@ def bound_friction(
 
 
 def _bound_sliding(motion: Motion, forward: Traced, backward: Traced) -> tuple[Traced, Traced]:
-    """sgn v times the level where the motion is told, anything up to it where it is not."""
+    """sgn v times the level where the direction is known; elsewhere any force up to the level."""
     ahead, back = motion.direction > 0, motion.direction < 0
     low = Traced(
         np.where(ahead, forward.value, -backward.value),
@@ -80,7 +80,7 @@ def balance_friction(motion: Motion, needed: Traced, low: Traced, high: Traced) 
     return Traced(both[0], both[1:])
 
 
-def own_friction(level: sp.Expr, friction: Traced, along: Along) -> Traced:
+def friction_of_acting_force(level: sp.Expr, friction: Traced, along: Along) -> Traced:
     """The part of the friction that the acting force itself makes."""
     if not level.has(_ACTING):
         return Traced(np.zeros_like(friction.value), np.zeros_like(friction.tangent))

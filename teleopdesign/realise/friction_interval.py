@@ -174,16 +174,16 @@ def _signals(
 ) -> dict[sp.Symbol, tuple[float, float]]:
     """Ranges of signals, and of speeds that lag, which must stay within those of the motion."""
     speeds = 0.0, largest_speed(reach)
-    found = signal_ranges(reach) | {SPEED: speeds}
+    known = signal_ranges(reach) | {SPEED: speeds}
     lagging = _lagging(body)
-    every = found | dict.fromkeys(lagging, speeds) | parameter_box(body, errors=errors)
+    every = known | dict.fromkeys(lagging, speeds) | parameter_box(body, errors=errors)
     for state, effect in lagging.items():
         if not stays_within(effect, state, every):
             raise ModelError(
                 f"friction level: {effect.name}: its speed can leave those of the motion, 0 to "
                 f"{speeds[1]:.4g}: no guaranteed bound"
             )
-    return found | dict.fromkeys(lagging, speeds)
+    return known | dict.fromkeys(lagging, speeds)
 
 
 def _either_way(law: sp.Expr, ranges: Ranges) -> tuple[Least, Mapping[sp.Symbol, float]]:
@@ -195,9 +195,9 @@ def _either_way(law: sp.Expr, ranges: Ranges) -> tuple[Least, Mapping[sp.Symbol,
     if laws[-1.0] == laws[1.0]:
         least = least_value(laws[1.0], ranges)
         return least, least.point
-    found = {way: least_value(one, ranges) for way, one in laws.items()}
-    way = min(found, key=lambda w: found[w].bound)
-    return found[way], {DIRECTION: way, **found[way].point}
+    by_way = {way: least_value(one, ranges) for way, one in laws.items()}
+    way = min(by_way, key=lambda w: by_way[w].bound)
+    return by_way[way], {DIRECTION: way, **by_way[way].point}
 
 
 def _one_way(law: sp.Expr, way: float) -> sp.Expr:

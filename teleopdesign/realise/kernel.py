@@ -27,8 +27,8 @@ from ..diagrams import Control, Diagram, Kinematics
 from ..effects import Effect
 from ..errors import ModelError
 from ._codegen import Generator, Layout
-from ._codegen_loop import loop_source
-from .compiled import compiled
+from ._loop import module_source
+from .compiled import compiled_module
 from .equations import Equations, equations
 from .private_names import PrivateNames, private_names
 
@@ -36,21 +36,34 @@ from .private_names import PrivateNames, private_names
 FASTEST = 0.3
 #: 1/s; a larger rate is no physics but a jump: 1 N at once on 1 kg within 1 nm/s is 1e9
 JUMP = 1e7
+#: m, m/s ...: below every smoothing velocity and bristle length, a state at rest
+_SMALL = 1e-9
 #: bound of h * (change of a bristle's decay rate in a step); 0.02: 10 steps a reload
 RELOAD = 0.02
+
+
+@dataclass(frozen=True)
+class Loop:
+    """Entries of `integrator.py` on the laws of one structure, compiled or plain Python."""
+
+    lanes: int
+    run: Callable[..., None]
+    differentiate_at_rest: Callable[..., None]
 
 
 @dataclass(frozen=True)
 class Program:
     """The simulation loop for one structure of a diagram, for any values.
 
-    run: generated loop, compiled or plain Python;  functions: the module's plain functions by name
+    laws: their source;  loop: the loop around them, for one simulation
+    functions: names of the plain module: its laws, its constants
     equations: on private symbols (`private_names`), their parameters by the user's names
     """
 
     equations: Equations
     layout: Layout
-    run: Callable[..., float]
+    laws: str
+    loop: Loop
     functions: Mapping[str, Any]
 
 
@@ -97,18 +110,26 @@ def program(
     jit: False runs the same generated source in plain Python, some hundred times slower
     """
     names = private_names(diagram)
-    given = tuple(names.private.get(motion, motion) for motion in prescribed)
-    key = (_structure(names.diagram), given, sampled, observer, jit)
+    motions = tuple(names.private.get(motion, motion) for motion in prescribed)
+    key = (_structure(names.diagram), motions, sampled, observer, jit)
     if key not in _programs:
         with names.in_errors():
-            found = equations(names.diagram, prescribed=given, sampled=sampled)
-        generator = Generator(found, observer=observer)
-        loop = loop_source(generator)
-        source = generator.source(jit=jit) + loop
-        plain = _executed(generator.source(jit=False) + loop)
-        run = compiled(source, "run") if jit else plain["run"]
-        _programs[key] = Program(generator.equations, generator.layout(), run, plain)
+            private = equations(names.diagram, prescribed=motions, sampled=sampled)
+        generator = Generator(private, observer=observer)
+        laws = generator.source()
+        plain = _executed(module_source(laws, jit=False))
+        loop = loop_of(laws, 1) if jit else _entries(plain, 1)
+        _programs[key] = Program(generator.equations, generator.layout(), laws, loop, plain)
     return _in_public(_programs[key], names)
+
+
+def loop_of(laws: str, lanes: int) -> Loop:
+    """The compiled loop on laws for that many simulations side by side."""
+    return _entries(compiled_module(module_source(laws, lanes=lanes), "run"), lanes)
+
+
+def _entries(module: Mapping[str, Any], lanes: int) -> Loop:
+    return Loop(lanes, module["run"], module["differentiate_at_rest"])
 
 
 def _in_public(private: Program, names: PrivateNames) -> Program:
@@ -121,8 +142,8 @@ def _in_public(private: Program, names: PrivateNames) -> Program:
         for field in fields(layout)
     }
     parameters = private.equations.parameters
-    told = {symbol: names.public_name(name) for symbol, name in parameters.items()}
-    equations = replace(private.equations, parameters=told)
+    public_parameters = {symbol: names.public_name(name) for symbol, name in parameters.items()}
+    equations = replace(private.equations, parameters=public_parameters)
     return replace(private, equations=equations, layout=Layout(**public))
 
 
@@ -189,30 +210,59 @@ def execute(
     start: state -> value, 0 where not given
     returns: rows of the columns of the layout, and the measure of the reload (see module)
     """
-    layout, n = made.layout, timing.steps
-    rows = (n if every_step else timing.samples) + 1
-    out = np.zeros((rows, len(layout.columns)))
+    layout, rows = made.layout, (timing.steps if every_step else timing.samples) + 1
+    kept = made.functions["COLUMNS"] + np.arange(len(layout.columns))
+    out = np.zeros((rows, len(kept)))
+    memory = first_memory(made, 1, start)
+    no_rows = np.zeros(0, dtype=np.int64)
     with np.errstate(all="ignore"):  # plain Python warns where compiled code gives inf
-        worst = made.run(
-            timing.samples,
-            timing.inner,
-            timing.step,
-            timing.period,
-            timing.lag,
-            np.array(timing.late or (0,), dtype=np.int64),
-            float(timing.encoder_step),
-            float(timing.smoothing),
-            np.array([values[p] for p in layout.parameters] or [0.0]),
+        made.loop.run(
+            *grid(made, timing, 1),
+            every_step,
+            np.array([values[p] for p in layout.parameters]),
             inputs,
             sampled,
-            np.array([start.get(s, 0.0) for s in layout.states] or [0.0]),
-            np.array([start.get(s, 0.0) for s in layout.computer_states] or [0.0]),
-            every_step,
-            np.zeros((timing.samples + 1, max(len(layout.commands), 1))),
-            np.zeros((n + 1, max(len(layout.late), 1))),
-            out,
+            memory,
+            kept,
+            out.reshape(-1),
+            rows,
+            no_rows,
+            no_rows,
+            no_rows,
+            np.zeros(0),
         )
-    return out, float(worst)
+    worst = made.functions["WORST"] + np.arange(len(layout.exponential))
+    return out, float(memory[worst].max(initial=0.0))
+
+
+def first_memory(made: Program, lanes: int, start: Mapping[str, float]) -> np.ndarray:
+    """What the loop remembers, at its start: rows times lanes, flat."""
+    layout, at = made.layout, made.functions
+    memory = np.zeros((at["ROWS"], lanes))
+    # states, bristles and the computer's states are the first rows, in this order
+    for row, name in enumerate((*layout.states, *layout.computer_states)):
+        memory[row] = start.get(name, 0.0)
+    return memory.reshape(-1)
+
+
+def grid(made: Program, timing: Timing, lanes: int) -> tuple[Any, ...]:
+    """The first arguments of the loop: its grid, and rings for what is delayed."""
+    held = timing.lag // timing.inner + 2
+    late = max(timing.late, default=0) + 1
+    return (
+        timing.samples,
+        timing.inner,
+        timing.step,
+        timing.period,
+        timing.lag,
+        np.array(timing.late, dtype=np.int64),
+        float(timing.encoder_step),
+        float(timing.smoothing),
+        np.zeros(held * len(made.layout.commands) * lanes),
+        held,
+        np.zeros(late * len(made.layout.late) * lanes),
+        late,
+    )
 
 
 def fastest_rate(made: Program, values: Mapping[str, float]) -> tuple[float, str]:
@@ -220,31 +270,38 @@ def fastest_rate(made: Program, values: Mapping[str, float]) -> tuple[float, str
 
     Hidden states stepped exactly by themselves count only through what they couple to.
     """
-    layout = made.layout
-    if not layout.states:
+    states = made.layout.states
+    if not states:
         return 0.0, ""
-    parameters = [values[p] for p in layout.parameters]
-    inputs = [0.0] * (len(layout.inputs) + len(layout.commands) + len(layout.late))
+    parameters = np.array([values[p] for p in made.layout.parameters], dtype=float)
+    rate, share = fastest_rates(slopes_at_rest(made, made.loop, parameters))
+    return float(rate[0]), states[int(share[0])] if rate[0] else ""
 
-    def rates(x: np.ndarray) -> np.ndarray:
-        with np.errstate(all="ignore"):  # a contact's law is evaluated where nothing touches too
-            return np.array(made.functions["rates"](0.0, *x, *inputs, *parameters))
 
-    n = len(layout.states)
-    small = 1e-9  # at rest: below every smoothing velocity and bristle length
-    jacobian = np.empty((n, n))
-    for i in range(n):
-        d = np.zeros(n)
-        d[i] = small
-        jacobian[:, i] = (rates(d) - rates(-d)) / (2 * small)
-    for i, name in enumerate(layout.states):
-        if name in layout.exponential:
-            jacobian[i, i] = 0.0
-    if not np.isfinite(jacobian).all():
-        return 0.0, ""
-    values_, vectors = np.linalg.eig(jacobian)
-    k = int(np.argmax(np.abs(values_)))
-    return float(abs(values_[k])), layout.states[int(np.argmax(np.abs(vectors[:, k])))]
+def slopes_at_rest(made: Program, loop: Loop, parameters: np.ndarray) -> np.ndarray:
+    """How rates change with states at rest, 1/s: (lanes, states, states).
+
+    parameters: flat, row by row;  exactly stepped states without their own slope
+    """
+    layout, n, lanes = made.layout, len(made.layout.states), loop.lanes
+    found = np.zeros(n * n * lanes)
+    memory = np.zeros(made.functions["ROWS"] * lanes)
+    inputs = np.zeros((max(len(layout.inputs), 1), 1))
+    with np.errstate(all="ignore"):  # a contact's law is evaluated where nothing touches too
+        loop.differentiate_at_rest(inputs, parameters, memory, _SMALL, found)
+    jacobian = np.moveaxis(found.reshape(n, n, lanes), -1, 0)
+    exact = [i for i, name in enumerate(layout.states) if name in layout.exponential]
+    jacobian[:, exact, exact] = 0.0
+    return jacobian
+
+
+def fastest_rates(jacobian: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Largest rate of each lane, 0 where it is not finite, and which state takes part in it."""
+    usable = np.isfinite(jacobian).all(axis=(1, 2))
+    rates, vectors = np.linalg.eig(np.where(usable[:, None, None], jacobian, 0.0))
+    sizes = np.abs(rates)
+    lane, k = np.arange(len(jacobian)), np.argmax(sizes, axis=1)
+    return sizes[lane, k] * usable, np.argmax(np.abs(vectors[lane, :, k]), axis=1)
 
 
 def refine_factor(measure: float, bound: float, power: float) -> int:

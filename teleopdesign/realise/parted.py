@@ -13,13 +13,13 @@ from .simulated import without_absent
 from .tips import led, linear_tips, with_tips
 
 
-def linear_parted(diagram: Diagram, given: tuple[str, ...]) -> tuple[Diagram, Mapping[str, str]]:
-    """The diagram with linear structures apart, and each given motion -> the one that is led.
+def linear_parted(diagram: Diagram, motions: tuple[str, ...]) -> tuple[Diagram, Mapping[str, str]]:
+    """The diagram with linear structures apart, and each prescribed motion -> the one that is led.
 
     Backlash has no linear form: there the body stays whole, and its left-out effects name it.
     """
     apart = linear_tips(diagram)
-    there = {name: led(diagram, name) for name in given}
+    there = {name: led(diagram, name) for name in motions}
     return apart, {name: tip if tip in apart.signals else name for name, tip in there.items()}
 
 

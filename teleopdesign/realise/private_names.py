@@ -53,16 +53,18 @@ class PrivateNames:
 
     def public_names(self, *names: str) -> tuple[str, ...]:
         """As `public_name`; ModelError where two are the same, or one is "time"."""
-        found: dict[str, str] = {"time": "the time"}
+        owners: dict[str, str] = {"time": "the time"}
         for name in dict.fromkeys(names):
-            own = self.public_name(name)
-            if own in found:
-                two = sorted((found[own], self._said(name)), key=lambda text: text != "the signal")
+            public = self.public_name(name)
+            if public in owners:
+                two = sorted(
+                    (owners[public], self._said(name)), key=lambda text: text != "the signal"
+                )
                 raise ModelError(
-                    f'{self.public[_TITLE]}: "{own}" is the name of {" and of ".join(two)}: '
+                    f'{self.public[_TITLE]}: "{public}" is the name of {" and of ".join(two)}: '
                     "call the signal otherwise"
                 )
-            found[own] = self._said(name)
+            owners[public] = self._said(name)
         return tuple(map(self.public_name, names))
 
     def _said(self, name: str) -> str:
@@ -107,7 +109,9 @@ def private_names(diagram: Diagram) -> PrivateNames:
         ),
         {signals[s]: x for s, x in diagram.pose.items() if s in signals},
     )
-    public = {_TITLE: diagram.name} | {p: n for own in (signals, blocks) for n, p in own.items()}
+    public = {_TITLE: diagram.name} | {
+        p: n for table in (signals, blocks) for n, p in table.items()
+    }
     return PrivateNames(inner, MappingProxyType(public), MappingProxyType(signals))
 
 
@@ -123,5 +127,5 @@ def _renamed(block: Block, name: str, signals: Mapping[str, str]) -> Block:
         motions, forces = (tuple(signals[s] for s in x) for x in (block.motions, block.forces))
         return replace(block, name=name, motions=motions, forces=forces)
     assert isinstance(block, Control)
-    given, made, along = (signals[s] for s in (block.input, block.output, block.motion))
-    return replace(block, name=name, input=given, output=made, motion=along)
+    source, made, along = (signals[s] for s in (block.input, block.output, block.motion))
+    return replace(block, name=name, input=source, output=made, motion=along)

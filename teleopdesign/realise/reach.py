@@ -67,7 +67,7 @@ def signal_ranges(reach: Reach | None) -> dict[sp.Symbol, tuple[float, float]]:
 
 
 def words_of(reach: Reach | None, law: sp.Expr, *, speed: bool, axis: str) -> str:
-    """Over what a law of signals is bounded: "speeds up to 3 m/s, position -0.1 to 0.1 m".
+    """The ranges of a law's signals in words: "speeds up to 3 m/s, position -0.1 to 0.1 m".
 
     speed: whether it follows a speed, its own or a lagging one
     """

@@ -59,11 +59,11 @@ def _used(effect: Effect) -> list[str]:
 
 def _slopes_by(effect: Effect, signal: str) -> dict[str, sp.Symbol]:
     """What slopes are taken by: a signal, and the parameters by their number."""
-    own = {str(i): s for i, s in enumerate(effect.symbols().values())}
-    return {signal: SIGNALS[signal], **own}
+    parameters = {str(i): s for i, s in enumerate(effect.symbols().values())}
+    return {signal: SIGNALS[signal], **parameters}
 
 
-def _own(effect: Effect, what: str) -> str:
+def _by_parameter(effect: Effect, what: str) -> str:
     """Slope by the parameter that column j stands for."""
     terms = (f"{what}_{i} * (columns[{i}] == j)" for i in range(len(effect.parameters)))
     return " + ".join(terms) or "0.0"
@@ -97,8 +97,8 @@ def stage(h, columns, {", ".join([*parameters, *(f"{n}_" for n in used)])}, dcom
         mean[k] = z * p1 + b * h * p2
         end[k] = z
         for j in range(p):
-            da = a_command * dcommand[j, k] + {_own(effect, "a")}
-            db = b_command * dcommand[j, k] + {_own(effect, "b")}
+            da = a_command * dcommand[j, k] + {_by_parameter(effect, "a")}
+            db = b_command * dcommand[j, k] + {_by_parameter(effect, "b")}
             if starting:
                 dz[j] = (b * da / a - db) / a
             dmean[j, k] = dz[j] * p1 + z * s1 * h * da + h * p2 * db + b * h * s2 * h * da
@@ -110,9 +110,10 @@ def stage(h, columns, {", ".join([*parameters, *(f"{n}_" for n in used)])}, dcom
 
 def columns_of(effect: Effect, columns: Sequence[Any]) -> Array:
     """Row of the tangents that belongs to each parameter of the effect; -1 where none does."""
-    own = effect.symbols()
+    symbols = effect.symbols()
     return np.array(
-        [columns.index(own[n]) if own[n] in columns else -1 for n in effect.parameters], dtype=int
+        [columns.index(symbols[n]) if symbols[n] in columns else -1 for n in effect.parameters],
+        dtype=int,
     )
 
 
@@ -198,11 +199,11 @@ def shape(h, half_step, columns, position, velocity, direction, {", ".join(argum
         high[k] = above if direction[k] != 0 else min(above, forward[k])
         for j in range(p):
             dlevel = dforward[j, k] if ahead else dbackward[j, k]
-            da = a_level * dlevel + {_own(effect, "a")}
-            db = b_level * dlevel + {_own(effect, "b")}
+            da = a_level * dlevel + {_by_parameter(effect, "a")}
+            db = b_level * dlevel + {_by_parameter(effect, "b")}
             dz[j] = dz[j] * e + before * e * h * da + h * p1 * db + b * h * s1 * h * da
-            df = slope * dz[j] + f_level * dlevel + {_own(effect, "f")}
-            dg = free * copysign(1.0, slope) * (g_level * dlevel + {_own(effect, "g")})
+            df = slope * dz[j] + f_level * dlevel + {_by_parameter(effect, "f")}
+            dg = free * copysign(1.0, slope) * (g_level * dlevel + {_by_parameter(effect, "g")})
             dlow[j, k] = df - dg if low[k] == below else -dbackward[j, k]
             dhigh[j, k] = df + dg if high[k] == above else dforward[j, k]
 """

@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -29,7 +30,7 @@ from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from .along_motion import Residual, measured_along, residual_along
 from .friction_along import level_along
-from .stages_along import Stage, stages_along
+from .stages_along import ActuationStage, stages_along
 from .traced import Along, slope
 
 #: part of the gain that a law has where it has most, below which a sample is blind. A command ten
@@ -48,7 +49,7 @@ _INTERACTION = SIGNALS["interaction_force"]
 
 @dataclass(frozen=True)
 class SeenAtCommand:
-    """What a model leaves along one motion (n samples), as an error of the recorded command.
+    """Residual of a model along one motion (n samples), as an error of the recorded command.
 
     residual: mapped back, SI; in blind samples only through what the command passes elsewhere
     blind: samples in which the command has next to no influence on what moves the body
@@ -132,10 +133,12 @@ def _function(expression: sp.Expr) -> tuple[tuple[sp.Symbol, ...], Any]:
 
 def _evaluate(expression: sp.Expr, along: Along, n: int) -> Array:
     """An expression along the motion (n,); a hidden state that is not given is at rest."""
-    given, values = along.signals, along.values
+    signals, values = along.signals, along.values
     symbols, call = _function(expression)
     # arrays all: what is printed for a Max of a number and an array stacks the two
-    numbers = [given[s].value if s in given else np.full(n, values.get(s, 0.0)) for s in symbols]
+    numbers = [
+        signals[s].value if s in signals else np.full(n, values.get(s, 0.0)) for s in symbols
+    ]
     with np.errstate(all="ignore"):
         return np.asarray(np.broadcast_to(np.asarray(call(*numbers), dtype=float), (n,)))
 
@@ -144,9 +147,10 @@ def _way(
     effect: Effect,
     law: sp.Expr,
     signal: sp.Symbol,
-    delays: Mapping[sp.Symbol, float],
     along: Along,
     motion: Motion,
+    *,
+    delays: Mapping[sp.Symbol, float] = MappingProxyType({}),
     parts: int = 1,
 ) -> _Way:
     """The way from a signal through a law, with its hidden states and delayed copies."""
@@ -182,19 +186,20 @@ def _solved(matrices: Array | NDArray[np.complex128], right: Array) -> Any:
         return np.full(right.shape, np.nan)
 
 
-def _of_stage(stage: Stage, motion: Motion, along: Along) -> _Way:
-    own = replace(along, signals=stage.given)
-    return _way(stage.effect, stage.law, _COMMAND, stage.delays, own, motion, stage.parts)
+def _of_stage(stage: ActuationStage, motion: Motion, along: Along) -> _Way:
+    at_stage = replace(along, signals=stage.signals)
+    delays, parts = stage.delays, stage.parts
+    return _way(stage.effect, stage.law, _COMMAND, at_stage, motion, delays=delays, parts=parts)
 
 
 def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
-    """From a force to what is left of it to move the body, less what it makes laws take away."""
+    """The way from a force to the part of it that moves the body, after all forces it causes."""
     gain, over = np.ones(len(motion.time)), np.ones(len(motion.spectrum.frequency), dtype=complex)
     for effect in _taking(body, signal):
         if effect.states and effect.is_absent(along.values):
             continue
-        taken = _way(effect, effect.expression(), signal, {}, along, motion)
-        gain, over = gain - taken.gain, over - taken.dynamics
+        way = _way(effect, effect.expression(), signal, along, motion)
+        gain, over = gain - way.gain, over - way.dynamics
     if body.level().has(signal):
         level, with_speeds = level_along(body, along)
         made_by_it = _evaluate(slope(level, signal), with_speeds, len(gain))
@@ -231,7 +236,7 @@ def _from_rest(way: _Way) -> NDArray[np.complex128]:
 
 
 def _through(force: Array, way: _Way, motion: Motion) -> Array:
-    """What a way passes of a force; a resonance adds nothing that was not recorded."""
+    """The part of a force that a way transmits; a resonance does not amplify it."""
     # a coupling that is open somewhere along the motion has no dynamics at rest: it is passed whole
     gain = np.where(np.isfinite(way.gain), way.gain, 1.0)
     dynamics = np.where(np.isfinite(way.dynamics), way.dynamics, 1.0)
@@ -268,9 +273,9 @@ def _is_weak(body: Body, motion: Motion, model: Residual, along: Along) -> bool:
     return bool(len(whole)) and float(np.median(whole)) > 0.0
 
 
-def blind_share(seen: Sequence[SeenAtCommand], motions: Sequence[Motion]) -> float:
+def blind_share(stretches: Sequence[SeenAtCommand], motions: Sequence[Motion]) -> float:
     """Share of blind samples among those where the body slides; of all, where it never does."""
-    blind = np.concatenate([s.blind for s in seen])
+    blind = np.concatenate([s.blind for s in stretches])
     slides = np.concatenate([m.direction != 0 for m in motions])
     counted = blind[slides] if slides.any() else blind
     return float(counted.mean()) if len(counted) else 0.0

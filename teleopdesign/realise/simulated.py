@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
+from functools import lru_cache
 
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..diagrams import Control, Diagram
-from ..effects import EFFECTS, SIGNALS
+from ..effects import EFFECTS, SIGNALS, Effect
 from ..errors import ModelError
 from .tips import with_tips
 
 
 def without_absent(body: Body, *, surely: bool = False) -> Body:
-    """The body without effects that are absent at their values, what needs those, and zeros.
+    """The body without absent effects, effects that need them, and parameters that are zero.
 
     An optional parameter at zero is left out too, for the equations are simpler without it.
     surely: keep those whose values have a standard error, so that they may be there
@@ -35,8 +37,11 @@ def without_absent(body: Body, *, surely: bool = False) -> Body:
     levels = {e.name for e in body.effects if e.role == "friction_level"}
     if levels <= gone:
         gone |= {e.name for e in body.effects if e.role == "friction_shape"}
+    if any(e.role == "structure" for e in body.effects if e.name in gone):
+        gone |= {e.name for e in body.effects if e.role == "tip_level"}
     needed = {n for e in body.effects if e.name not in gone for n in e.needs}
-    for name in gone - needed:
+    needing = {e.name for e in body.effects if e.needs}
+    for name in sorted(gone - needed, key=lambda n: n not in needing):
         body = body.without_effect(name)
     for effect in body.effects:
         for name, parameter in effect.parameters.items():
@@ -45,8 +50,15 @@ def without_absent(body: Body, *, surely: bool = False) -> Body:
     return body
 
 
-def with_give(body: Body, give: float, *, damping_ratio: float = 0.0) -> Body:
-    """Ideal Coulomb friction realised by a bristle that gives by `give` before it slides.
+@lru_cache(maxsize=2)  # laws compare by identity
+def _bristle(of_any_level: bool) -> Effect:
+    """Presliding, or presliding of any friction level: of a tip's, of a user's own."""
+    bristle = EFFECTS["presliding"]
+    return replace(bristle, needs=frozenset()) if of_any_level else bristle
+
+
+def with_give(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> Body:
+    """Ideal Coulomb friction realised by a bristle that gives by `deflection` before it slides.
 
     damping_ratio: of the inertia on this bristle while it sticks
     """
@@ -55,7 +67,8 @@ def with_give(body: Body, give: float, *, damping_ratio: float = 0.0) -> Body:
         return body
     at_rest = dict.fromkeys(SIGNALS.values(), 0) | dict.fromkeys(body.equation().rates, 0)
     level = float(body.equation().level.subs(at_rest).subs(body.numbers()))
-    lugre, stiffness = EFFECTS["presliding"], level / give
+    lugre = _bristle(bool(body.lacks(EFFECTS["presliding"])))
+    stiffness = level / deflection
     if not damping_ratio:
         return body.with_effect(lugre.without("bristle_damping"), {"stiffness": stiffness})
     damping = 2.0 * damping_ratio * (stiffness * body.parameters["inertia"].value) ** 0.5
@@ -70,15 +83,19 @@ def in_computer(diagram: Diagram, period: float) -> Diagram:
     return diagram
 
 
-def simulated(diagram: Diagram, give: float, prescribed: Iterable[str] = ()) -> Diagram:
+def simulated(diagram: Diagram, deflection: float, prescribed: Iterable[str] = ()) -> Diagram:
     """The diagram with bodies as they are simulated: absent effects out, ideal friction given.
 
     prescribed: motions that are given
     """
     for part in diagram.blocks:
-        found = part.controller if isinstance(part, Control) else part.body
-        if not isinstance(found, Body | MatrixImpedance | Controller):
+        content = part.controller if isinstance(part, Control) else part.body
+        if not isinstance(content, Body | MatrixImpedance | Controller):
             raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no equations")
-        if isinstance(found, Body):
-            diagram = diagram.with_block(part.name, with_give(without_absent(found), give))
-    return with_tips(diagram, prescribed=prescribed)
+        if isinstance(content, Body):
+            diagram = diagram.with_block(part.name, with_give(without_absent(content), deflection))
+    apart = with_tips(diagram, prescribed=prescribed)
+    for part in apart.bodies:
+        if isinstance(part.body, Body):  # of a tip that dry friction holds
+            apart = apart.with_block(part.name, with_give(part.body, deflection))
+    return apart

@@ -26,17 +26,17 @@ PARTS = 4
 
 
 @dataclass(frozen=True)
-class Stage:
-    """A stage of the actuation along a motion: what goes in, what comes out, hidden states between.
+class ActuationStage:
+    """A stage of the actuation along a motion: its input, hidden states and output.
 
     law: on symbols, its delayed signals as symbols of their own;  delays: those symbols -> s
-    given: symbols -> signals over `parts` equal parts of each row;  output: as long
+    signals: symbols -> signals over `parts` equal parts of each row;  output: as long
     """
 
     effect: Effect
     law: sp.Expr
     delays: Mapping[sp.Symbol, float]
-    given: Mapping[sp.Symbol, Traced]
+    signals: Mapping[sp.Symbol, Traced]
     parts: int
     output: Traced
 
@@ -47,7 +47,7 @@ def acting_along(body: Body, motion: Motion, along: Along) -> Traced:
     return through(motion.at_rows, stages[-1].output if stages else along.signals[_COMMAND])
 
 
-def stages_along(body: Body, motion: Motion, along: Along) -> list[Stage]:
+def stages_along(body: Body, motion: Motion, along: Along) -> list[ActuationStage]:
     """Each stage of the actuation, on averages over the hold of a row, or over parts of it.
 
     along: at the rows, the command among its signals
@@ -60,14 +60,14 @@ def stages_along(body: Body, motion: Motion, along: Along) -> list[Stage]:
         SIGNALS[name]: along.constant(np.repeat(getattr(motion, name), parts)) for name in _MOTION
     }
     fine = replace(along, signals=signals, step=along.step / parts)
-    stages: list[Stage] = []
+    stages: list[ActuationStage] = []
     for effect in effects:
         stages.append(_stage(effect, fine.with_signals({_COMMAND: signal}), parts))
         signal = stages[-1].output
     return stages
 
 
-def _stage(effect: Effect, along: Along, parts: int) -> Stage:
+def _stage(effect: Effect, along: Along, parts: int) -> ActuationStage:
     """A stage of the actuation, as averages over each step of its command."""
     law = effect.expression()
     delays: dict[sp.Symbol, float] = {}
@@ -80,7 +80,7 @@ def _stage(effect: Effect, along: Along, parts: int) -> Stage:
     along = along.with_signals(late)
     if effect.states:
         along = along.with_signals(stage_scan(effect, along))
-    return Stage(effect, law, delays, along.signals, parts, along.evaluate(law))
+    return ActuationStage(effect, law, delays, along.signals, parts, along.evaluate(law))
 
 
 def _shift(along: Along, delay: sp.Expr) -> Traced:

@@ -58,7 +58,7 @@ class Probe:
 
 @dataclass(frozen=True)
 class Along:
-    """What laws are evaluated on along one motion of n samples.
+    """Signals and values for laws along one motion of n samples.
 
     signals: symbol -> signal with its tangents;  values: parameter symbol -> value (SI)
     columns: the p parameters and probes that the tangents (p, n) are by;  step: s between samples
@@ -70,7 +70,7 @@ class Along:
     step: float
 
     def with_signals(self, signals: Mapping[sp.Symbol, Traced]) -> Along:
-        """The same with signals more, or others."""
+        """The same with additional or other signals."""
         return replace(self, signals={**self.signals, **signals})
 
     def constant(self, signal: Array) -> Traced:
@@ -98,9 +98,9 @@ class NumericLaw:
     call: Callable[..., Any]
 
     def __call__(self, along: Along) -> Traced:
-        given, values, columns = along.signals, along.values, along.columns
-        arrays = [given[s].value for s in self.signals]
-        n = len(next(iter(given.values())).value)
+        signals, values, columns = along.signals, along.values, along.columns
+        arrays = [signals[s].value for s in self.signals]
+        n = len(next(iter(signals.values())).value)
         with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
             out = self.call(*arrays, *[np.float64(values[p]) for p in self.parameters])
         value = np.broadcast_to(np.asarray(out[0], dtype=float), (n,))
@@ -112,17 +112,17 @@ class NumericLaw:
             if isinstance(column, Probe) and column.symbol in self.parameters:
                 tangent[j] += self._slope(column, arrays, values)
         for s, d in zip(self.signals, out[1 : 1 + len(arrays)], strict=True):
-            if given[s].tangent.any():
-                tangent += d * given[s].tangent
+            if signals[s].tangent.any():
+                tangent += d * signals[s].tangent
         return Traced(value.copy(), tangent)
 
     def _slope(
         self, probe: Probe, arrays: Sequence[Array], values: Mapping[sp.Symbol, float]
     ) -> Any:
         """Derivative by the probe's strength, at the probe's values of the other parameters."""
-        own = [np.float64(probe.values.get(p, values[p])) for p in self.parameters]
+        numbers = [np.float64(probe.values.get(p, values[p])) for p in self.parameters]
         with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
-            out = self.call(*arrays, *own)
+            out = self.call(*arrays, *numbers)
         return out[1 + len(arrays) + self.parameters.index(probe.symbol)]
 
 
@@ -132,7 +132,7 @@ TRACED = frozenset({SIGNALS["command"], SIGNALS["acting_force"], SIGNALS["level"
 
 
 def slope(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
-    """Derivative almost everywhere: at a jump, as of sgn, it is that of either side."""
+    """Derivative almost everywhere; at a jump, such as that of sgn, the derivative of its sides."""
     return sp.diff(expression, symbol).replace(sp.DiracDelta, lambda *_: sp.S(0))
 
 

@@ -26,7 +26,7 @@ YOURS = "your model"
 
 
 @dataclass(frozen=True)
-class Rows:
+class BodySamples:
     """Samples that count, of one body: (n,) each; residual: one for each rung."""
 
     time: Array
@@ -38,12 +38,12 @@ class Rows:
     measured: Array
     residual: tuple[Array, ...]
 
-    def only(self, rungs: list[int]) -> Rows:
+    def only(self, rungs: list[int]) -> BodySamples:
         """The same samples on these rungs."""
         return replace(self, residual=tuple(self.residual[i] for i in rungs))
 
 
-def over_velocity(rows: Rows, axis: str, force: Scaled) -> Graph:
+def over_velocity(rows: BodySamples, axis: str, force: Scaled) -> Graph:
     """Mean residual over velocity on the first and the last rung, with the band of most samples."""
     speed = scaled(unit_of("velocity", axis), size_of(rows.velocity))
     series = [
@@ -68,7 +68,7 @@ def _first_and_last(residual: tuple[Array, ...]) -> list[tuple[str, Array]]:
     return [("before", residual[0]), ("after", residual[-1])]
 
 
-def _profile(rows: Rows, residual: Array) -> list[tuple[float, float, float, float]]:
+def _profile(rows: BodySamples, residual: Array) -> list[tuple[float, float, float, float]]:
     """Velocity, mean, low and high residual of groups of equally many samples in each direction."""
     groups = []
     for way in (-1, 1):
@@ -84,8 +84,8 @@ def _profile(rows: Rows, residual: Array) -> list[tuple[float, float, float, flo
     return groups
 
 
-def excerpt(rows: Rows, axis: str, bandwidth: float) -> Graph:
-    """Measured and modelled force where most was taken away (or is left) of the force there."""
+def excerpt(rows: BodySamples, axis: str, bandwidth: float) -> Graph:
+    """Measured and modelled force where the residual fell most (or is largest)."""
     window = _window(rows, bandwidth)
     kept = window[:: max(1, len(window) // EXCERPT_POINTS)]  # low-passed: neighbours are alike
     force = scaled(unit_of("force", axis), size_of(rows.measured[window]))
@@ -96,7 +96,7 @@ def excerpt(rows: Rows, axis: str, bandwidth: float) -> Graph:
     return Graph("time (s)", f"force ({force.unit})", tuple(series))
 
 
-def _window(rows: Rows, bandwidth: float) -> NDArray[np.intp]:
+def _window(rows: BodySamples, bandwidth: float) -> NDArray[np.intp]:
     gain = rows.residual[0] ** 2
     if len(rows.residual) > 1:
         gain = gain - rows.residual[-1] ** 2

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ..diagnose import Diagnosis
 from ..diagnose.answer import answer
-from ..diagnose.ladder_text import seen_text
+from ..diagnose.ladder_text import command_error_text
 from ..diagnose.ranking import Ranked, Ranking
 from ..diagnose.rung import Rung
 from .words import step_name
@@ -16,7 +16,7 @@ from .words import step_name
 class LadderRow:
     """One rung; errors are relative to the measured force, floors are noise floors.
 
-    seen: the error seen at the command and the blind share in words, where they say more
+    at_command: the error seen at the command and the blind share in words, where they say more
     """
 
     name: str
@@ -25,7 +25,7 @@ class LadderRow:
     check_error: float
     floors: float
     alike: tuple[str, ...] = ()
-    seen: str | None = None
+    at_command: str | None = None
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def ladder_rows(diagnosis: Diagnosis) -> tuple[LadderRow, ...]:
             check_error=r.fit.check_error,
             floors=r.fit.check_error / floor if floor else float("inf"),
             alike=tuple(map(str, r.alternatives)),
-            seen=seen_text(r.fit),
+            at_command=command_error_text(r.fit),
         )
         for r in diagnosis.rungs
     )
@@ -92,7 +92,7 @@ def candidate_rows(diagnosis: Diagnosis) -> tuple[CandidateRow, ...]:
 
 
 def _outcome(rung: Rung | None, ranking: Ranking, ranked: Ranked) -> str:
-    """What became of a candidate on a step, where its error alone does not say it."""
+    """Outcome of a candidate at a step, where the error alone does not show it."""
     key = ranked.candidate.key
     if rung is not None and rung.added is not None and rung.added.key == key:
         return "added"

@@ -24,7 +24,7 @@ PAIRS = 6
 
 
 def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
-    """Effects, parameters and candidates that these records leave open; may be empty."""
+    """Effects, parameters and candidates that these records cannot decide; may be empty."""
     groups = [_group(r) for r in diagnosis.rungs if r.added is not None and r.alternatives]
     rest = [
         *_at_bound(diagnosis),
@@ -172,7 +172,7 @@ def _not_tried(diagnosis: Diagnosis) -> list[Finding]:
             elsewhere = (place in model.bodies) == (effect.role in CONTACT_ROLES)
             if elsewhere or body.has(name) or (name, place) in fitted:
                 continue
-            needs = sorted(n for n in effect.needs if not body.has(n))
+            needs = list(body.lacks(effect))
             because = f" (needs {listed(needs)} beside it)" if needs else ""
             reasons.append(f"{name} at {place}{because}")
     if not reasons:

@@ -12,7 +12,7 @@ from ..plot.diagnosis import AFTER, BEFORE
 from ..plot.graph import draw_graph
 from .before_and_after import YOURS
 from .picture import picture
-from .residuals import BodyView, Step
+from .residuals import BodyView, RungResidual
 from .words import number, percent
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def step_figure(view: BodyView, index: int) -> Markup:
     return picture(draw, size=size, alt=alt)
 
 
-def _map(view: BodyView, step: Step, axes: Axes) -> None:
+def _map(view: BodyView, step: RungResidual, axes: Axes) -> None:
     from matplotlib.ticker import MaxNLocator
 
     px, vx = view.position_scale, view.velocity_scale
@@ -115,7 +115,7 @@ def _map(view: BodyView, step: Step, axes: Axes) -> None:
     axes.set_ylabel(f"velocity ({vx.unit})")
 
 
-def _trace(view: BodyView, step: Step, axes: Axes, colour: str) -> None:
+def _trace(view: BodyView, step: RungResidual, axes: Axes, colour: str) -> None:
     factor = view.force_scale.factor
     axes.fill_between(
         view.time, factor * step.low, factor * step.high, color=colour, lw=0.4, alpha=1.0

@@ -109,15 +109,15 @@ def _stated(diagnosis: Diagnosis) -> dict[str, float]:
         model = Model.from_experiment(experiment, diagnosis.model.known)
     except ExperimentError:  # diagnosed with a model of its own: the file's cannot be built
         return {}
-    given = {f"{place}.inertia" for place in experiment.bodies}
+    stated = {f"{place}.inertia" for place in experiment.bodies}
     for place, body in experiment.bodies.items():
-        given |= {f"{place}.{e}.{p}" for e, values in body.effects.items() for p in values}
+        stated |= {f"{place}.{e}.{p}" for e, values in body.effects.items() for p in values}
     if experiment.environment is not None:
         at = CONTACT.name
-        given |= {f"{at}.{p}" for p in experiment.environment.values}
+        stated |= {f"{at}.{p}" for p in experiment.environment.values}
         effects = experiment.environment.effects.items()
-        given |= {f"{at}.{e}.{p}" for e, values in effects for p in values}
-    return {n: v.value for n, v in model.parameters.items() if n in given}
+        stated |= {f"{at}.{e}.{p}" for e, values in effects for p in values}
+    return {n: v.value for n, v in model.parameters.items() if n in stated}
 
 
 def _interval(value: Value, lower: float, upper: float) -> tuple[float | None, float | None]:

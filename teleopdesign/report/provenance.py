@@ -19,7 +19,7 @@ class RecordRow:
     duration: float
     rate: float
     segments: int
-    own: tuple[str, ...]
+    offset_names: tuple[str, ...]
     digest: str
 
 
@@ -45,7 +45,7 @@ def record_rows(experiment: Experiment) -> tuple[RecordRow, ...]:
             duration=r.duration,
             rate=1.0 / r.sample_time,
             segments=len(r.segments),
-            own=tuple(sorted(n.replace("_", " ") for n in r.own)),
+            offset_names=tuple(sorted(n.replace("_", " ") for n in r.offset_names)),
             digest=_digest(experiment, r.file),
         )
         for r in experiment.records

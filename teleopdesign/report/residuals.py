@@ -18,7 +18,7 @@ from ..diagnose.comparison import residual_data
 from ..diagnose.evidence import SAME
 from ..finding import Array, Graph
 from ..quantity import unit_of
-from .before_and_after import Rows, excerpt, over_velocity
+from .before_and_after import BodySamples, excerpt, over_velocity
 from .scaled import Scaled, scaled, size_of
 
 #: cells of a map along the travel and along velocity, and samples from which a cell shows a mean
@@ -30,7 +30,7 @@ OUTSIDE = 4.0
 
 
 @dataclass(frozen=True)
-class Step:
+class RungResidual:
     """One rung on one body: rms residual, its mean in cells of position and velocity, its trace.
 
     mean: (velocity cells, position cells), NaN where the motion hardly came
@@ -64,7 +64,7 @@ class BodyView:
     joints: tuple[float, ...]
     noise: float
     limit: float
-    steps: tuple[Step, ...]
+    steps: tuple[RungResidual, ...]
     excerpt: Graph
     over_velocity: Graph
 
@@ -94,13 +94,13 @@ def _changed(residual: tuple[Array, ...]) -> list[int]:
     return [0, *(i for i, size in enumerate(moved, 1) if size > SAME * scale)]
 
 
-def _rows(data: list[Any], body: str) -> Rows:
+def _rows(data: list[Any], body: str) -> BodySamples:
     chosen = (data[0]["body"].values == body) & data[0]["counts"].values
     one = {n: data[0][n].values[chosen] for n in ("time", "position", "velocity", "measured")}
     stretch = np.unique(data[0]["segment"].values[chosen], return_inverse=True)[1]
     step = np.diff(one["time"], prepend=one["time"][:1])
     step[np.flatnonzero(np.diff(stretch, prepend=stretch[:1]))] = 0.0
-    return Rows(
+    return BodySamples(
         time=np.cumsum(step),
         clock=one["time"],
         stretch=stretch,
@@ -112,7 +112,9 @@ def _rows(data: list[Any], body: str) -> Rows:
     )
 
 
-def _view(body: str, diagnosis: Diagnosis, names: list[tuple[str, float]], rows: Rows) -> BodyView:
+def _view(
+    body: str, diagnosis: Diagnosis, names: list[tuple[str, float]], rows: BodySamples
+) -> BodyView:
     axis = diagnosis.experiment.axis(body)
     position, velocity = _edges(rows.position, CELLS[0]), _edges(rows.velocity, CELLS[1])
     means = [_mean(rows, r, position, velocity) for r in rows.residual]
@@ -122,7 +124,7 @@ def _view(body: str, diagnosis: Diagnosis, names: list[tuple[str, float]], rows:
     buckets = np.array_split(np.arange(len(rows.time)), min(BUCKETS, len(rows.time)))
     force = scaled(unit_of("force", axis), size_of(rows.residual[0]))
     steps = tuple(
-        Step(
+        RungResidual(
             name=name,
             check_error=error,
             rms=float(np.sqrt(np.mean(r**2))),
@@ -171,7 +173,7 @@ def _edges(values: Array, cells: int) -> Array:
     return np.linspace(middle - half, middle + half, cells + 1)
 
 
-def _mean(rows: Rows, residual: Array, position: Array, velocity: Array) -> Array:
+def _mean(rows: BodySamples, residual: Array, position: Array, velocity: Array) -> Array:
     edges = [velocity, position]
     count, *_ = np.histogram2d(rows.velocity, rows.position, bins=edges)
     total, *_ = np.histogram2d(rows.velocity, rows.position, bins=edges, weights=residual)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ..diagrams import Diagram
-from ..errors import ModelError, did_you_mean
+from ..errors import GrowsWithoutBound, ModelError, did_you_mean
 from ..realise.simulated import in_computer, simulated
 from .sampling import SAMPLED, Sampling
 from .trajectory import Trajectory
@@ -169,7 +169,7 @@ class Setup:
             timing = self.timing(inner)
             rows, worst = self.run(timing, every_step=every_step)
             if not np.isfinite(rows).all():
-                raise ModelError(
+                raise GrowsWithoutBound(
                     f"simulate: signals grow beyond all bounds at a step of {timing.step:g} s: the "
                     "loop is unstable or a parameter makes no sense"
                 )

@@ -37,7 +37,7 @@ __all__ = [
 
 @dataclass(frozen=True, eq=False)
 class ResidualDescription(ByValue):
-    """What a fitted model leaves of every body, and what that depends on.
+    """Residual of a fitted model on every body, and the signals that it depends on.
 
     parts: one a body
     """

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..measurement.filtering import Array
-from .dependence import Columns, Dependence, own_columns
+from .dependence import Columns, Dependence, model_columns
 from .rows import Rows
 from .shapes import LOST, Shape, functions_of
 
@@ -38,7 +38,7 @@ class Curve:
 
 
 def curve_of(rows: Rows, dependence: Dependence, earlier: tuple[Dependence, ...] = ()) -> Curve:
-    """The curve that the residual shows once the earlier dependences are taken out.
+    """The curve in the residual without the earlier dependences.
 
     A constant, a sinusoid and what the command loses are given at their full size, that is with the
     model's own parameters free beside them; other lines are what the model as it is leaves.
@@ -48,7 +48,7 @@ def curve_of(rows: Rows, dependence: Dependence, earlier: tuple[Dependence, ...]
         left = left - before.columns.values @ before.columns.solve(left, rows.learnt)
     variable = dependence.shape.variable
     alone = variable is not None and not variable.wave and not dependence.shape.of_command
-    columns = dependence.columns if alone else own_columns(rows).beside(dependence.columns)
+    columns = dependence.columns if alone else model_columns(rows).beside(dependence.columns)
     value, spread = _coefficients(rows, columns, left, len(dependence.columns.penalty))
     x = _grid(rows, dependence.shape, dependence.knots)
     functions = functions_of(dependence.shape, dependence.knots, x)

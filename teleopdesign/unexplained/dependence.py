@@ -84,7 +84,7 @@ class Dependence:
         return float(self.after @ self.after)
 
 
-def own_columns(rows: Rows) -> Columns:
+def model_columns(rows: Rows) -> Columns:
     """The columns of the model's own free parameters: weighted, no penalty."""
     values = rows.tangents * rows.root[:, None]
     size = np.linalg.norm(values, axis=0)
@@ -93,7 +93,7 @@ def own_columns(rows: Rows) -> Columns:
 
 
 def shape_columns(rows: Rows, shape: Shape, left: Array) -> tuple[Array, Columns] | None:
-    """Knots and columns of a shape, as yet not smoothed; None where rows know nothing of it.
+    """Knots and columns of a shape, not smoothed; None where no row depends on it.
 
     left: weighted residual (n,) that a sinusoid is looked for in
     """
@@ -123,7 +123,7 @@ def held_out(rows: Rows, columns: Columns) -> Array:
 def fit_dependence(
     rows: Rows, beside: Columns, shape: Shape, knots_and_columns: tuple[Array, Columns]
 ) -> Dependence:
-    """Learn one dependence beside other columns and hold it against the checked rows."""
+    """Learn one dependence beside other columns and test it on the checked rows."""
     knots, columns = knots_and_columns
     if shape.variable is not None and not shape.is_wave:
         columns = _with_smoothness(rows, beside, columns, roughness(shape, knots))
@@ -144,7 +144,7 @@ def fit_dependence(
 
 
 def _with_smoothness(rows: Rows, beside: Columns, columns: Columns, rough: Array) -> Columns:
-    """With the weight of roughness that predicts blocks of the rows learnt from best."""
+    """Columns with the roughness penalty that best predicts held-out blocks."""
     target = rows.residual * rows.root
     where = np.flatnonzero(rows.learnt)
     together = beside.beside(columns)
@@ -153,11 +153,11 @@ def _with_smoothness(rows: Rows, beside: Columns, columns: Columns, rough: Array
     held = [where[part == fold] for fold in range(FOLDS)]
     normal = np.array([every[k].T @ every[k] for k in held])
     gradient = np.array([every[k].T @ target[k] for k in held])
-    seen = normal.sum(axis=0) - normal + together.penalty
+    others = normal.sum(axis=0) - normal + together.penalty
     size = np.trace(columns.penalty) / (n * SMALLNESS)
 
     def missed(weight: float) -> float:
-        penalised = seen.copy()
+        penalised = others.copy()
         penalised[:, -n:, -n:] += weight * size * rough
         x = solve_normal(penalised, gradient.sum(axis=0) - gradient)
         bent = np.einsum("fi,fij,fj->", x, normal, x)
@@ -168,7 +168,7 @@ def _with_smoothness(rows: Rows, beside: Columns, columns: Columns, rough: Array
 
 
 def is_not_itself(rows: Rows, beside: Columns, dependence: Dependence) -> bool:
-    """Whether a dependence on what holds the residual is more than that on itself."""
+    """Whether a dependence on a signal that contains the residual is more than self-correlation."""
     variable = dependence.shape.variable
     if variable is None or not variable.expected:
         return True
@@ -206,7 +206,7 @@ def dependences(
     target = rows.residual * rows.root
     whole = float(np.sum(target[rows.checked] ** 2))
     known = {s: shape_columns(rows, s, target) for s in SHAPES}
-    beside, chosen = own_columns(rows), list[Dependence]()
+    beside, chosen = model_columns(rows), list[Dependence]()
     first: tuple[Dependence, ...] = ()
     while len(chosen) < most:
         left = target - beside.values @ beside.solve(target, rows.learnt)
@@ -228,7 +228,7 @@ def dependences(
 
 
 def _simplest(real: list[Dependence]) -> Dependence:
-    """Of those that do as well as the best to all that matters, the first in `SHAPES`."""
+    """The first in `SHAPES` of those that explain as much as the best one."""
     best = max(t.explained for t in real)
     alike = [t for t in real if t.explained > (1.0 - CRITERIA.relevant) * best]
     return replace(alike[0], alike=tuple(t.shape.name for t in alike[1:]))

@@ -14,7 +14,7 @@ from ..finding import Finding, Graph
 from ..model import Model
 from .amounts import number
 from .curve import Curve, curve_of, without_columns
-from .dependence import ALARM, Dependence, dependences, own_columns
+from .dependence import ALARM, Dependence, dependences, model_columns
 from .formula import Formula, formula_for
 from .qualifiers import Contrast, contrasts
 from .rows import Rows, rows_of
@@ -48,7 +48,7 @@ class DescribedDependence:
 
 @dataclass(frozen=True)
 class BodyResidual:
-    """What the model leaves of one body.
+    """Residual of the model on one body, described.
 
     error: relative force error on the check records (blocks of the fit records where none)
     floor: what sensors alone would leave of it;  after: error once what was found is taken out,
@@ -76,7 +76,7 @@ class BodyResidual:
 
     @property
     def is_adequate(self) -> bool:
-        """Whether nothing is left that sensors would not leave."""
+        """Whether the residual is no larger than sensor noise."""
         return not self.dependences and self.floors <= CRITERIA.adequate
 
 
@@ -118,7 +118,7 @@ def _describe_dependences(
     rows: Rows, chosen: tuple[Dependence, ...]
 ) -> tuple[DescribedDependence, ...]:
     descriptions = []
-    beside = own_columns(rows)
+    beside = model_columns(rows)
     target = rows.residual * rows.root
     for i, dependence in enumerate(chosen):
         curve = curve_of(rows, dependence, chosen[:i])
@@ -173,7 +173,7 @@ def _finding(one: DescribedDependence, where: str) -> Finding:
 
 
 def _rest(part: BodyResidual, where: str) -> list[Finding]:
-    """Where what is left lies in frequency, whether it has a memory, and what stays unexplained."""
+    """Findings on the rest: its frequencies, its correlation in time, and its size."""
     low, high = part.whiteness.band
     numbers = {"low": low, "high": high, "probability of chance": part.whiteness.probability}
     said = f"Half of what is left lies between {number(low)} and {number(high)} Hz"

@@ -139,15 +139,15 @@ def _role(shape: Shape) -> str:
 
 def _return_statement(shape: Shape, law: str) -> str:
     variable = shape.variable
-    given = f"u = {SIGNALS[variable.name]}\n    " if variable is not None else ""
+    assignment = f"u = {SIGNALS[variable.name]}\n    " if variable is not None else ""
     if shape.of_command and variable is COMMAND:
-        given = "u = now.command\n    "
+        assignment = "u = now.command\n    "
     factor = FACTORS.get(shape.carrier.name, "")
     if shape.carrier is LOST:
-        return f"{given}return now.command * (1 - ({law}))"
+        return f"{assignment}return now.command * (1 - ({law}))"
     if shape.of_command:
-        return f"{given}return now.command - ({law})"
-    return f"{given}return ({law}){factor}" if factor else f"{given}return {law}"
+        return f"{assignment}return now.command - ({law})"
+    return f"{assignment}return ({law}){factor}" if factor else f"{assignment}return {law}"
 
 
 def _names(law: str) -> str:

@@ -20,7 +20,7 @@ EXACT = 0.01
 
 
 @dataclass(frozen=True)
-class Law:
+class LawText:
     """f as text on u and p, its parameters as lines of the file, those that are zero if absent."""
 
     text: str
@@ -41,7 +41,7 @@ def _parameter(
     )
 
 
-def law_of_formula(formula: Formula, axis: str, unit: Mapping[str, float]) -> Law:
+def law_of_formula(formula: Formula, axis: str, unit: Mapping[str, float]) -> LawText:
     """A formula, its coefficients and numbers as parameters."""
     variable = formula.shape.variable
     assert variable is not None
@@ -58,7 +58,7 @@ def law_of_formula(formula: Formula, axis: str, unit: Mapping[str, float]) -> La
         meaning = _meaning(term, _reach(variable.quantity, unit), variable.quantity, axis)
         lines.append(_parameter(strength, quantity, meaning, size / unit[quantity]))
         lines += number_line
-    return Law(" + ".join(texts), tuple(lines), tuple(strengths), formula_text(formula, axis))
+    return LawText(" + ".join(texts), tuple(lines), tuple(strengths), formula_text(formula, axis))
 
 
 def _reach(quantity: str, unit: Mapping[str, float]) -> float:
@@ -118,7 +118,7 @@ def _power(
     return f"p.{strength} * (u / {reach:g}){power}", value * reach**term.number, []
 
 
-def law_of_points(dependence: Dependence, axis: str, unit: Mapping[str, float]) -> Law:
+def law_of_points(dependence: Dependence, axis: str, unit: Mapping[str, float]) -> LawText:
     """A line between points, of which only the size is a parameter; or a constant."""
     shape = dependence.shape
     quantity = shape.carrier.quantity
@@ -126,7 +126,7 @@ def law_of_points(dependence: Dependence, axis: str, unit: Mapping[str, float]) 
     largest = float(values[np.argmax(np.abs(values))])
     line = _parameter("strength", quantity, "where it is largest", largest / unit[quantity])
     if shape.variable is None:
-        return Law("p.strength", (line,), ("strength",), f"a constant {shape.carrier.name}")
+        return LawText("p.strength", (line,), ("strength",), f"a constant {shape.carrier.name}")
     unit_x = unit_of(shape.variable.quantity, axis)
     form, knots = values / largest, dependence.knots
     equation = f"a line through {len(knots)} points over {shape.variable.name} ({unit_x})"
@@ -136,10 +136,10 @@ def law_of_points(dependence: Dependence, axis: str, unit: Mapping[str, float]) 
         text = (
             f"p.strength * ((1 + now.direction) * ({ahead}) + (1 - now.direction) * ({back})) / 2"
         )
-        return Law(text, (line,), ("strength",), equation)
+        return LawText(text, (line,), ("strength",), equation)
     if shape.of_command:
         form = form - np.interp(0.0, knots, form)
-    return Law(f"p.strength * ({_line(knots, form, 'u')})", (line,), ("strength",), equation)
+    return LawText(f"p.strength * ({_line(knots, form, 'u')})", (line,), ("strength",), equation)
 
 
 def _line(knots: Array, values: Array, u: str) -> str:

@@ -13,7 +13,7 @@ from ..diagnose.fit import standard_errors
 from ..measurement.filtering import Array
 from .dependence import Columns, Dependence, held_out
 from .library import Term, terms_of
-from .rows import Along, Rows
+from .rows import Rows, StretchSignals
 from .shapes import POSITION_WAVE, TIME_WAVE, Shape, columns_from
 from .waves import wave_number
 
@@ -72,7 +72,7 @@ def formula_for(rows: Rows, beside: Columns, dependence: Dependence) -> Formula 
         search = _Search.beside(rows, explained)
         ranked = search.ranked(terms, every)
         # what has no number to be found is simpler
-        simple = [t for t in ranked if not t.is_found]
+        simple = [t for t in ranked if not t.is_searched]
         for term in dict.fromkeys((*simple[:1], ranked[0])):
             longer = (*chosen, _refine_number(rows, search, dependence.shape, term))
             formula = _checked_formula(rows, beside, dependence, longer)
@@ -98,7 +98,7 @@ def _terms(rows: Rows, beside: Columns, dependence: Dependence) -> list[Term]:
 
 @dataclass(frozen=True)
 class _Search:
-    """What is left on the rows learnt from, beside columns that move freely.
+    """Residual on the learning rows, beside columns with free coefficients.
 
     span: orthonormal columns (n, k);  left: (n,), orthogonal to them
     """
@@ -132,7 +132,7 @@ def _columns(rows: Rows, shape: Shape, terms: tuple[Term, ...]) -> Columns:
     variable = shape.variable
     assert variable is not None
 
-    def functions(along: Along) -> Array:
+    def functions(along: StretchSignals) -> Array:
         u = along.signals[variable.name]
         known = np.isfinite(u)
         return np.vstack([t.values(np.where(known, u, 0.0)) for t in terms]) * known
@@ -143,7 +143,7 @@ def _columns(rows: Rows, shape: Shape, terms: tuple[Term, ...]) -> Columns:
 
 def _refine_number(rows: Rows, search: _Search, shape: Shape, term: Term) -> Term:
     """The term with its number searched between its neighbours on the grid."""
-    if not term.is_found or term.kind == "wave":  # a wave number is searched already
+    if not term.is_searched or term.kind == "wave":  # a wave number is searched already
         return term
 
     def lost(n: float) -> float:

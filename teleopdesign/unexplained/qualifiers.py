@@ -37,7 +37,7 @@ class Contrast:
 
     @property
     def only(self) -> str:
-        """The side that it is there on, if it is not on the other; "" otherwise."""
+        """The only side on which the dependence exists; "" where it exists on both."""
         weak = int(np.argmin(np.abs(self.sizes)))
         strong = self.sizes[1 - weak]
         return self.sides[1 - weak] if self.differs and self.sizes[weak] < ONLY * strong else ""

@@ -22,7 +22,7 @@ MOST, TURNS = 3, 4
 
 
 @dataclass(frozen=True)
-class Region:
+class SignRegion:
     """A range of the variable (SI) where f keeps its sign and half of its extreme there.
 
     low, high: infinite where the range goes on to the end of what is known
@@ -37,7 +37,7 @@ class Region:
     backward: bool
 
 
-def regions_of(curve: Curve, *, signed: bool = False) -> tuple[Region, ...]:
+def regions_of(curve: Curve, *, signed: bool = False) -> tuple[SignRegion, ...]:
     """The ranges where f differs from zero by more than its band, largest size first.
 
     signed: f has a branch for each sign of the variable, looked at apart
@@ -57,19 +57,19 @@ def regions_of(curve: Curve, *, signed: bool = False) -> tuple[Region, ...]:
     return tuple(regions)
 
 
-def largest_regions(regions: tuple[Region, ...]) -> tuple[Region, ...]:
+def largest_regions(regions: tuple[SignRegion, ...]) -> tuple[SignRegion, ...]:
     """The largest ranges, those of a tenth of the squares or more, from low to high."""
     chosen = regions[:1] + tuple(r for r in regions[1:MOST] if r.share > NAMED)
     return tuple(sorted(chosen, key=lambda r: r.low))
 
 
-def goes_up_and_down(regions: tuple[Region, ...]) -> bool:
+def goes_up_and_down(regions: tuple[SignRegion, ...]) -> bool:
     """Whether the curve has so many ranges that none stands out."""
     return sum(r.share > 0.5 * NAMED for r in regions) >= TURNS
 
 
 def _runs(sign: Array) -> list[slice]:
-    """Runs of one sign; what is not sure between two of the same sign parts them not."""
+    """Runs of one sign; an uncertain part between two runs of one sign does not split them."""
     edges = np.flatnonzero(np.diff(sign)) + 1
     runs: list[slice] = []
     for a, b in zip([0, *edges], [*edges, len(sign)], strict=True):
@@ -82,14 +82,14 @@ def _runs(sign: Array) -> list[slice]:
     return runs
 
 
-def _region(x: Array, values: Array, run: slice, share: float, weight: Array) -> Region:
+def _region(x: Array, values: Array, run: slice, share: float, weight: Array) -> SignRegion:
     size = np.abs(values)
     top = run.start + int(np.argmax(size[run]))
     large = (size > 0.5 * size[top]) & (np.sign(values) == np.sign(values[top]))
     low = top - int(np.argmin(np.append(large[top::-1], False))) + 1
     high = top + int(np.argmin(np.append(large[top:], False))) - 1
     few = NONE_BEYOND * float(weight.sum())
-    return Region(
+    return SignRegion(
         low=-np.inf if weight[:low].sum() <= few else float(x[low]),
         high=np.inf if weight[high + 1 :].sum() <= few else float(x[high]),
         extreme=float(values[top]),

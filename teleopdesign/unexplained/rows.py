@@ -35,7 +35,7 @@ PUSH, GRIP = _PUSH.named("unexplained_force", ""), _GRIP.named("unexplained_leve
 
 
 @dataclass(frozen=True)
-class Along:
+class StretchSignals:
     """One stretch at full rate: n samples, SI.
 
     signals: name -> (n,): what a residual may depend on
@@ -63,7 +63,7 @@ class Rows:
     body: str
     axis: str
     bandwidth: float
-    alongs: tuple[Along, ...]
+    alongs: tuple[StretchSignals, ...]
     residual: Array
     measured: Array
     tangents: Array
@@ -74,7 +74,7 @@ class Rows:
 
     @property
     def checked(self) -> NDArray[np.bool_]:
-        """The rows that something learnt elsewhere is held against."""
+        """The rows on which learnt dependences are tested."""
         return np.asarray(sum(test for _, test in self.splits), dtype=bool)
 
     @property
@@ -82,7 +82,7 @@ class Rows:
         """The rows that the description is learnt from in the end: those of the fit records."""
         return np.asarray(sum(train for train, _ in self.splits), dtype=bool)
 
-    def lowpassed(self, columns: Callable[[Along], Array]) -> Array:
+    def lowpassed(self, columns: Callable[[StretchSignals], Array]) -> Array:
         """Columns (n, k) at the rows, from signals (k, samples) of each stretch."""
         return np.concatenate(
             [a.stretch.motion.lowpassed(columns(a))[:, a.stretch.keep].T for a in self.alongs]
@@ -94,12 +94,12 @@ class Rows:
 
     @property
     def push(self) -> Array:
-        """`Along.push` at the rows."""
+        """`StretchSignals.push` at the rows."""
         return np.concatenate([a.push[a.stretch.keep] for a in self.alongs])
 
     @property
     def grip(self) -> Array:
-        """`Along.grip` at the rows."""
+        """`StretchSignals.grip` at the rows."""
         return np.concatenate([a.grip[a.stretch.keep] for a in self.alongs])
 
 
@@ -147,7 +147,7 @@ def _splits(
     return tuple(splits)
 
 
-def _along(model: Model, stretch: Stretch) -> Along:
+def _along(model: Model, stretch: Stretch) -> StretchSignals:
     motion = stretch.motion
     body = model.body(motion.body).with_effect(PUSH, {"size": 0.0}).with_effect(GRIP, {"size": 0.0})
     along = residual_along(body, motion, [f"{PUSH.name}.size", f"{GRIP.name}.size"])
@@ -176,7 +176,9 @@ def _along(model: Model, stretch: Stretch) -> Along:
     }
     push, grip = -along.residual.tangent
     grip = grip * (motion.direction != 0)
-    if not stretch.own_zero:
-        return Along(stretch, signals, push, grip)
+    if not stretch.has_zero_offset:
+        return StretchSignals(stretch, signals, push, grip)
     # its position cannot be compared with that of other records: nothing is said of it
-    return Along(stretch, {**signals, "position": np.full_like(acting, np.nan)}, push, grip)
+    return StretchSignals(
+        stretch, {**signals, "position": np.full_like(acting, np.nan)}, push, grip
+    )

@@ -13,7 +13,7 @@ from .curve import Curve
 from .formula import Formula
 from .library import Term
 from .qualifiers import Contrast
-from .regions import Region, goes_up_and_down, largest_regions, regions_of
+from .regions import SignRegion, goes_up_and_down, largest_regions, regions_of
 from .shapes import DAMPING, FORCE, FRICTION, LATENESS, LOST, MASS, Shape, Variable
 
 #: symbol of each variable in a formula
@@ -44,7 +44,7 @@ _PLACES = {
 _AFTER = {"time": " of a record", "since_reversal": " after it sets off", "travel": " of travel"}
 
 
-def place(region: Region, variable: Variable, axis: str) -> str:
+def place(region: SignRegion, variable: Variable, axis: str) -> str:
     """The range in words: "below 4 mm/s", "within 30 ms after it sets off"."""
     low, high = region.low, region.high
     if variable.signed:
@@ -59,7 +59,7 @@ def place(region: Region, variable: Variable, axis: str) -> str:
     return _PLACES.get(variable.name, "") + over if over else "throughout"
 
 
-def _range(region: Region, variable: Variable, axis: str, before: str = "") -> str:
+def _range(region: SignRegion, variable: Variable, axis: str, before: str = "") -> str:
     q = variable.quantity
     if math.isfinite(region.low) and math.isfinite(region.high):
         return f"{before}between {between(region.low, region.high, q, axis)}"
@@ -70,7 +70,7 @@ def _range(region: Region, variable: Variable, axis: str, before: str = "") -> s
     return ""
 
 
-def _since(region: Region, variable: Variable, axis: str) -> str:
+def _since(region: SignRegion, variable: Variable, axis: str) -> str:
     q, after = variable.quantity, _AFTER[variable.name]
     if variable.name == "travel":
         after += " after it sets off"
@@ -124,7 +124,7 @@ def sentence_for(
     return said + _qualified(shape, contrasts) + _followed(formula, axis)
 
 
-def _ranges(shape: Shape, regions: Sequence[Region], axis: str) -> str:
+def _ranges(shape: Shape, regions: Sequence[SignRegion], axis: str) -> str:
     assert shape.variable is not None
     parts = []
     for i, region in enumerate(largest_regions(tuple(regions))):

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..measurement.filtering import Array
-from .rows import Along, Rows
+from .rows import Rows, StretchSignals
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Carrier:
     signal: str = ""
     friction: bool = False
 
-    def along(self, along: Along) -> Array:
+    def along(self, along: StretchSignals) -> Array:
         """The residual per f, not yet low-passed (samples,)."""
         shown = along.grip if self.friction else along.push
         return shown * along.signals[self.signal] if self.signal else shown
@@ -190,7 +190,7 @@ def columns_of(shape: Shape, knots: Array, rows: Rows) -> Array:
     return columns_from(shape, rows, lambda a: functions_of(shape, knots, a.signals[name]))
 
 
-def columns_from(shape: Shape, rows: Rows, functions: Callable[[Along], Array]) -> Array:
+def columns_from(shape: Shape, rows: Rows, functions: Callable[[StretchSignals], Array]) -> Array:
     """What the residual would show (n, k) of functions (k, samples) times the shape's carrier."""
     columns = rows.lowpassed(lambda along: shape.carrier.along(along) * functions(along))
     return _relative_to_force(columns, rows) if shape.of_command else columns

@@ -25,7 +25,7 @@ LAGS = 12
 
 @dataclass(frozen=True)
 class Whiteness:
-    """Correlation of what is left with itself.
+    """Autocorrelation of the residual.
 
     lag: s, (l,);  correlation: (l,), with noise: the standard deviation that chance gives it
     probability: that chance alone brings the largest, over all lags

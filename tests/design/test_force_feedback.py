@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 import teleopdesign as td
 from teleopdesign.blocks import Body, Value
-from teleopdesign.design import Assumptions, Loop
+from teleopdesign.design import Assumptions, FeedbackLoop
 from teleopdesign.design.force_feedback import (
     MOST_GAIN,
     force_feedback,
@@ -29,7 +29,7 @@ def nyquist_loop(loop):
 
 @given(st.floats(1.2, 8.0), st.floats(5.0, 50.0), st.floats(5e-4, 4e-3))
 def test_the_phase_margin_is_that_of_python_control(gain, bandwidth, delay):
-    loop = Loop(gain, bandwidth, delay)
+    loop = FeedbackLoop(gain, bandwidth, delay)
     assume(5 < loop.phase_margin < 175)
     _, margin, _, crossover = control.margin(nyquist_loop(loop))
     assert loop.crossover == pytest.approx(crossover, rel=1e-4)
@@ -40,15 +40,15 @@ def test_the_phase_margin_is_that_of_python_control(gain, bandwidth, delay):
 @given(st.floats(0.1, 1.0), st.floats(5.0, 40.0), st.floats(5e-4, 8e-3), st.floats(1.0, 5.0))
 def test_the_largest_gain_is_at_its_limit_with_the_stated_delay(share, bandwidth, delay, factor):
     k = largest_gain(share=share, bandwidth=bandwidth, delay=delay, factor=factor)
-    loop = Loop(k * share, bandwidth, delay)
+    loop = FeedbackLoop(k * share, bandwidth, delay)
     assert loop.largest_delay >= factor * delay * (1 - 1e-6)
     if k < MOST_GAIN:
         assert loop.largest_delay == pytest.approx(factor * delay, rel=1e-6)
 
 
 def test_at_its_largest_delay_a_loop_has_a_pole_pair_on_the_axis():
-    loop = Loop(3.0, 20.0, 1e-3)
-    late = Loop(3.0, 20.0, loop.largest_delay)
+    loop = FeedbackLoop(3.0, 20.0, 1e-3)
+    late = FeedbackLoop(3.0, 20.0, loop.largest_delay)
     poles = control.poles(control.feedback(nyquist_loop(late)))
     rightmost = max(poles, key=lambda p: p.real)
     assert abs(rightmost.imag) == pytest.approx(loop.crossover, rel=1e-3)
@@ -56,7 +56,7 @@ def test_at_its_largest_delay_a_loop_has_a_pole_pair_on_the_axis():
 
 
 def test_a_loop_gain_below_one_bears_any_delay():
-    assert Loop(0.9, 20.0, 1.0).largest_delay == np.inf
+    assert FeedbackLoop(0.9, 20.0, 1.0).largest_delay == np.inf
 
 
 def test_identified_lag_and_delay_of_the_actuator_count():

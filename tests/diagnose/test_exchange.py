@@ -45,8 +45,8 @@ def test_a_stand_in_gives_way_to_the_spring_that_it_stood_for(scene):
     exchange = best_exchange(search, found, rivals, floor)
     assert exchange is not None
     assert exchange.dropped.key == ("hardening_spring", "device")
-    assert exchange.taken.candidate.key == ("spring", "device")
-    assert exchange.taken.fit.check_error < 0.5 * found.check_error
+    assert exchange.replacement.candidate.key == ("spring", "device")
+    assert exchange.replacement.fit.check_error < 0.5 * found.check_error
 
 
 def test_the_spring_gives_way_to_nothing(scene):

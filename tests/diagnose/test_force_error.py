@@ -224,7 +224,7 @@ def test_an_own_encoder_zero_costs_nothing_where_a_spring_knows_the_position(exp
     Exactly so for a linear model: a friction at rest balances up to its level, which bends.
     """
     sprung = model.without_effect("coulomb").with_effect("spring", values={"stiffness": 0.5})
-    record = replace(experiment.check_records[0], own=frozenset({"position_zero"}))
+    record = replace(experiment.check_records[0], offset_names=frozenset({"position_zero"}))
     x = record.signals["device.position"]
     shifted = replace(record, signals={**record.signals, "device.position": x + 0.3 * np.ptp(x)})
     fit_records = experiment.fit_records
@@ -234,7 +234,7 @@ def test_an_own_encoder_zero_costs_nothing_where_a_spring_knows_the_position(exp
     )
     np.testing.assert_allclose(found, plain, rtol=0, atol=1e-6 * np.abs(plain).max())
     common = prepare(
-        replace(experiment, records=(*fit_records, replace(shifted, own=frozenset())))
+        replace(experiment, records=(*fit_records, replace(shifted, offset_names=frozenset())))
     ).of("check")
     assert error_of(common, [residuals(sprung, common)[0][0]]) > 1.05 * force_error(
         sprung, prepare(replace(experiment, records=(*fit_records, shifted))).of("check")

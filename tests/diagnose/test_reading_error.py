@@ -43,7 +43,7 @@ def rod():
 def test_the_simulated_body_goes_about_where_the_device_did(rod):
     found, prepared = rod
     motion = prepared.of("fit")[0].motion
-    course = simulated_course(found.model.body("device"), motion, give=0.1)
+    course = simulated_course(found.model.body("device"), motion, deflection=0.1)
     assert np.std(course.position - motion.position) < 0.02 * np.std(motion.position)
     # what leads it is a small part of the command
     led = motion.lowpassed(motion.at_rows(course.command - motion.command))
@@ -60,7 +60,7 @@ def test_bodies_with_hidden_states_start_with_the_record(rod, effect):
         "actuator_lag": {"time_constant": 0.004},
     }[effect]
     model = found.model.with_effect(effect, values=values)
-    course = simulated_course(model.body("device"), motion, give=0.1)
+    course = simulated_course(model.body("device"), motion, deflection=0.1)
     # a tip that began elsewhere would fling the body off
     assert np.max(np.abs(course.position - motion.position)) < 0.2 * np.ptp(motion.position)
 
@@ -73,7 +73,7 @@ def test_a_dead_time_must_lie_on_the_grid(rod):
     )
     assert dead_times(body) == ("actuation_delay.delay",)
     with pytest.raises(ModelError, match="no whole number of steps"):
-        simulated_course(body, motion, give=0.1)
+        simulated_course(body, motion, deflection=0.1)
     late = found.model.with_effect("actuation_delay", values={"delay": 1.4 * grid(motion)})
     assert reading_error(estimate(late, prepared), prepared, np.random.default_rng(1)) is not None
 
@@ -102,7 +102,7 @@ def test_a_second_simulation_predicts_by_how_much_estimates_miss(rod):
     exact = replace(
         fit,
         motion=as_led(
-            fit.motion, simulated_course(found.model.body("device"), fit.motion, give=0.1)
+            fit.motion, simulated_course(found.model.body("device"), fit.motion, deflection=0.1)
         ),
     )
     # but the inertia, which misses by less than a thousandth before and after
@@ -196,7 +196,7 @@ def test_a_right_model_leaves_only_its_sensors_errors_at_turns(rod):
     found, prepared = rod
     fit = prepared.of("fit")[0]
     body = found.model.body("device")
-    course = simulated_course(body, fit.motion, give=0.1)
+    course = simulated_course(body, fit.motion, deflection=0.1)
     read = as_read(
         replace(fit, motion=as_led(fit.motion, course)), prepared, np.random.default_rng(3)
     )

@@ -41,7 +41,7 @@ def changed(rod, own, *, bias=0.0, factor=1.0, model=None):
         force = force.copy()
         force[motion.rows] += (factor - 1) * level * motion.direction
     signals = {**record.signals, "device.actuator_force": force}
-    own_record = replace(record, signals=signals, own=frozenset(own))
+    own_record = replace(record, signals=signals, offset_names=frozenset(own))
     return replace(rod, records=(*rod.fit_records, own_record))
 
 
@@ -114,5 +114,5 @@ def test_experiment_files_declare_it(tmp_path):
         text.replace('use = "check"', 'use = "check"\nbias = "own"\nfriction_level = "own"')
     )
     found = td.load_experiment(tmp_path)
-    assert found.check_records[0].own == {"bias", "friction_level"}
-    assert found.fit_records[0].own == frozenset()
+    assert found.check_records[0].offset_names == {"bias", "friction_level"}
+    assert found.fit_records[0].offset_names == frozenset()

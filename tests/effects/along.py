@@ -7,6 +7,7 @@ import numpy as np
 from teleopdesign.blocks import CONTACT, Body, Value
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.motion import motion_of
+from teleopdesign.quantity import AXES
 
 #: a value of the right order for each quantity, on the device and motions of this folder
 TYPICAL = {
@@ -31,6 +32,7 @@ OTHER = {
     "friction_drift.time_constant": 0.4,  # s; part of a record
     "backlash.gap": 1e-3,  # m; part of the travel
     "contact_hardening.power": 1.5,
+    "shear_thinning.exponent": 0.5,
     "environment.damping": 0.0,
     "environment.contact_position": 2e-3,  # m; part of the travel
 }
@@ -57,8 +59,13 @@ def typical(name, parameter):
     return OTHER.get(f"{name}.{parameter}", TYPICAL[quantity])
 
 
-def body_of(*names, absent=(), values=(), axis="prismatic"):
-    """A body with these effects at typical values.
+def axis_of(*names):
+    """An axis that all of these effects hold on: prismatic where they do."""
+    return next(a for a in AXES if not any(a in KNOWN[n].elsewhere for n in names))
+
+
+def body_of(*names, absent=(), values=(), axis=None):
+    """A body with these effects at typical values, on an axis that they hold on.
 
     absent: names of effects at the values at which they are not there
     values: {"effect.parameter": value} that replace the typical ones
@@ -71,7 +78,7 @@ def body_of(*names, absent=(), values=(), axis="prismatic"):
                 number = KNOWN[name].absent.get(parameter, number)
             numbers[f"{name}.{parameter}"] = number
     parameters = {n: Value(v) for n, v in (numbers | dict(values)).items()}
-    return Body(axis, parameters, tuple(KNOWN[n] for n in names))
+    return Body(axis or axis_of(*names), parameters, tuple(KNOWN[n] for n in names))
 
 
 def unled(body):

@@ -40,7 +40,7 @@ from teleopdesign.effects import (
 )
 from teleopdesign.effects._effect import ROLES
 from teleopdesign.errors import ModelError
-from teleopdesign.quantity import QUANTITIES, unit_of
+from teleopdesign.quantity import AXES, QUANTITIES, unit_of
 from teleopdesign.realise.along_motion import residual_along
 
 FILES = sorted(p for p in Path(folder.__file__).parent.glob("*.py") if p.name[0] != "_")
@@ -119,6 +119,8 @@ def test_what_an_effect_names_exists(name):
     effect = EFFECTS[name]
     assert effect.role in ROLES
     assert effect.needs <= set(KNOWN) - {name}
+    assert set(effect.elsewhere) < set(AXES)
+    assert set(effect.elsewhere.values()) <= set(KNOWN) - {name}
     assert effect.always <= set(CLAIMS), "a claim that no test checks"
     assert effect.absent, "without absent values an effect cannot be added at no change"
     for parameter, value in effect.absent.items():
@@ -266,6 +268,20 @@ def test_a_trace_of_an_effect_changes_a_trace(name):
     assert np.abs(little - without).max() < 1e-4 * np.abs(without).max()
 
 
+# axes
+
+
+@pytest.mark.parametrize(
+    ("name", "axis"), [(n, a) for n in NAMES for a in EFFECTS[n].elsewhere], ids=str
+)
+def test_an_effect_on_an_axis_that_it_does_not_hold_on_is_refused_with_what_to_write(name, axis):
+    other = EFFECTS[name].elsewhere[axis]
+    with pytest.raises(
+        ModelError, match=f'"{name}" holds on no {axis} axis: there it is "{other}"'
+    ):
+        body_of(*with_needs(name), axis=axis)
+
+
 # linear effects
 
 
@@ -349,6 +365,10 @@ def factors(force, position, time):
 @pytest.mark.parametrize("name", NAMES)
 def test_an_effect_gives_the_same_answer_in_other_units(name, force, position, time):
     """Every parameter has the quantity that its law needs: the residual scales like a force."""
+    if EFFECTS[name].elsewhere:
+        position = 1.0  # an angle has no other unit
+    if name == "shear_thinning":
+        position = time  # a force at the unit of speed, whatever that is
     # 0.4 s: shorter than the continuation at the ends, which is a fixed time
     x, u, f = signals(samples=400)
     step = 1e-6

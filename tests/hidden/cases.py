@@ -28,6 +28,7 @@ from truth_effects import (
     OTHERS,
     OUTSIDE,
     PUBLIC,
+    REVOLUTE,
     TEN,
     UNITS,
     Values,
@@ -269,7 +270,8 @@ def make_case(
         names = list(effects) if effects is not None else _choose(rng, level, kind)
         touch = kind == "teleoperator" and (bool(set(names) & set(CONTACT)) or rng.random() < 0.3)
         held = True if {"added_inertia", "actuator_gain"} & set(names) else hand
-        machine = make_machine(rng, kind, excitation, rate, held, touch)
+        turns = bool(REVOLUTE & set(names))
+        machine = make_machine(rng, kind, excitation, rate, held, touch, turns)
         hidden = [_place(rng, machine, e) for e in names]
         _prepare(rng, machine, hidden)
         if hidden and not _scale_strengths(rng, level, machine, hidden):

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from machines import Machine
-from truth_effects import CONTACT, NEEDS_LEVEL, NO_INVERSE, OTHERS, TEN, Values, draw
+from truth_effects import CONTACT, NEEDS_LEVEL, NO_INVERSE, OTHERS, REVOLUTE, TEN, Values, draw
 
 if TYPE_CHECKING:
     from cases import Hidden
@@ -16,7 +16,8 @@ TWINS = {"bias": "coulomb_asymmetry", "coulomb_asymmetry": "bias"}
 FAMILIES = (
     {"actuation_delay", "actuator_lag"}, {"spring", "hardening_spring"}, {"stribeck", "presliding"},
     {"viscous", "quadratic_drag", "load_dependent_friction"},
-    {"actuator_gain", "actuator_saturation"},
+    {"shear_thinning", "viscous", "coulomb", "actuator_saturation", "load_dependent_friction"},
+    {"actuator_gain", "actuator_saturation"}, {"gravity", "bias"}, {"gravity", "spring"},
 )  # fmt: skip
 PERIODIC = {"cogging", "torque_ripple", "position_dependent_friction"}
 # check error with effects added to the model of each body, after so many steps of the re-estimate
@@ -59,6 +60,8 @@ def _others(machine: Machine, hidden: Hidden, excitation: str) -> list[str]:
         return [e for e in CONTACT if e != hidden.effect]
     model = machine.in_model[hidden.body]
     skip = {hidden.effect, *model, *NO_INVERSE, *PERIODIC, TWINS.get(hidden.effect)}
+    if machine.axis == "prismatic":
+        skip |= REVOLUTE
     if "coulomb" not in model:
         skip |= NEEDS_LEVEL
     if not machine.fixed_inertia[hidden.body]:

@@ -80,8 +80,11 @@ def make_machine(
     rate: float,
     hand: bool | None,
     contact: bool,
+    turns: bool = False,
 ) -> Machine:
-    axis = str(rng.choice(["prismatic", "revolute"]))
+    """A random machine; turns: on a revolute axis in any case."""
+    drawn = str(rng.choice(["prismatic", "revolute"]))
+    axis = "revolute" if turns else drawn
     linear = axis == "prismatic"
     two = kind == "teleoperator"
     inertia = log_uniform(rng, 0.05, 2.0) if linear else log_uniform(rng, 1e-4, 1e-2)

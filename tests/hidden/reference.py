@@ -151,6 +151,10 @@ class Track:
         force = (
             force + p.get("bias", 0.0) + p.get("spring", 0.0) * x + p.get("hardening", 0.0) * x**3
         )
+        if p.get("thinning"):
+            force = force + p["thinning"] * np.sign(v) * np.abs(v) ** p["thinning_power"]
+        if p.get("gravity"):
+            force = force + p["gravity"] * np.sin(x + p["gravity_phase"])
         if p.get("cogging"):
             force = force + p["cogging"] * np.sin(
                 2 * np.pi * x / p["cogging_period"] + p["cogging_phase"]
@@ -208,7 +212,14 @@ def refit(track: Track, start: Parameters, free: list[str], steps: int = 8) -> P
         p = start | dict(zip(free, (q * scale).tolist(), strict=False))
         return track.inside(track.residual(p))[::step]
 
-    signed = {"bias", "half_difference", "damping_difference", "cogging_phase", "spring"}
+    signed = {
+        "bias",
+        "half_difference",
+        "damping_difference",
+        "cogging_phase",
+        "spring",
+        "gravity_phase",
+    }
     low = [-np.inf if n in signed else 1e-3 for n in free]
     q0 = np.array([start[n] for n in free]) / scale
     q = least_squares(

@@ -12,6 +12,7 @@ from truth_effects import Scale, shape
 def look_alikes(effect, explains, *, excitation="normal", hand=True, more=()):
     """Names in the group of a hidden effect when only `explains` leave what noise leaves."""
     machine = SimpleNamespace(
+        axis="prismatic",
         in_model=[["coulomb", "viscous"]],
         fixed_inertia=[False],
         sensors=[hand],

@@ -16,12 +16,13 @@ LINEAR = {
     "force": "N", "stiffness": "N/m", "damping": "N*s/m", "inertia": "kg", "velocity": "m/s",
     "time": "s", "length": "m", "drag": "N*s^2/m^2", "hardening": "N/m^3", "ratio": "1",
     "angle": "rad", "frequency": "Hz", "place_damping": "N*s/m^3", "power_stiffness": "N/m^n",
+    "thinning": "N",
 }  # fmt: skip
 ANGULAR = {
     "force": "N*m", "stiffness": "N*m/rad", "damping": "N*m*s/rad", "inertia": "kg*m^2",
     "velocity": "rad/s", "time": "s", "length": "rad", "drag": "N*m*s^2/rad^2",
     "hardening": "N*m/rad^3", "ratio": "1", "angle": "rad", "frequency": "Hz",
-    "place_damping": "N*m*s/rad^3", "power_stiffness": "N*m/rad^n",
+    "place_damping": "N*m*s/rad^3", "power_stiffness": "N*m/rad^n", "thinning": "N*m",
 }  # fmt: skip
 UNITS = {"prismatic": LINEAR, "revolute": ANGULAR}
 
@@ -33,6 +34,7 @@ OTHERS = (
     "quadratic_drag", "viscous_asymmetry", "position_dependent_friction", "load_dependent_friction",
     "friction_drift", "friction_memory", "hardening_spring", "cogging", "transmission_compliance",
     "backlash", "actuator_saturation", "actuator_gain", "torque_ripple",
+    "gravity", "shear_thinning",
 )  # fmt: skip
 CONTACT = ("contact_damping", "contact_hardening")
 OUTSIDE = ("outside_hum", "outside_position_dependent_damping", "outside_slow_force")
@@ -92,6 +94,13 @@ PUBLIC: dict[str, dict[str, tuple[str, str]]] = {
         "period": ("ripple_period", "length"),
         "phase": ("ripple_phase", "angle"),
     },
+    "gravity": {"amplitude": ("gravity", "force"), "phase": ("gravity_phase", "angle")},
+    "shear_thinning": {
+        "drag": ("thinning", "thinning"),
+        "exponent": ("thinning_power", "ratio"),
+    },
+    # beside `transmission_compliance` or `backlash`, which the reference does not re-estimate
+    "tip_friction": {"level": ("tip_level", "force")},
     "contact_damping": {"damping": ("contact_damping", "damping")},
     "contact_hardening": {"power": ("contact_power", "ratio")},
     "outside_hum": {"amplitude": ("hum", "force"), "frequency": ("hum_frequency", "frequency")},
@@ -102,6 +111,8 @@ PUBLIC: dict[str, dict[str, tuple[str, str]]] = {
     },
 }
 NO_INVERSE = {"transmission_compliance", "backlash", "friction_memory", *OUTSIDE}
+#: effects of a revolute axis alone
+REVOLUTE = {"gravity"}
 NEEDS_LEVEL = {
     "coulomb_asymmetry", "stribeck", "presliding", "position_dependent_friction",
     "load_dependent_friction", "friction_drift", "friction_memory",
@@ -192,6 +203,11 @@ def draw(effect: str, base: Values, scale: Scale, strength: float, q: Values) ->
         return {"gain": 1 + q["sign"] * 0.4 * s}
     if effect == "torque_ripple":
         return {"ripple": 0.6 * s, "ripple_period": d * (0.5 + 2 * a), "ripple_phase": turn}
+    if effect == "gravity":
+        return {"gravity": 2.0 * s * f, "gravity_phase": turn}
+    if effect == "shear_thinning":
+        power = 0.25 + 0.4 * a
+        return {"thinning": 1.2 * s * f / v**power, "thinning_power": power}
     if effect == "contact_damping":
         return {"contact_damping": 0.05 * s * base["contact_stiffness"]}
     if effect == "contact_hardening":

@@ -35,7 +35,7 @@ def test_an_experiment_knows_its_records_and_model(rod):
     experiment = load_experiment(rod)
     assert [record.file for record in experiment.fit_records] == ["fit.csv"]
     assert [record.file for record in experiment.check_records] == ["check.csv"]
-    assert [set(record.own) for record in experiment.records] == [set(), {"position_zero"}]
+    assert [set(record.offset_names) for record in experiment.records] == [set(), {"position_zero"}]
     assert experiment.bandwidth == 20
     assert experiment.axis("device") == "prismatic"
     body = experiment.bodies["device"]

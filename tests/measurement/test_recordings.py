@@ -41,8 +41,8 @@ def test_a_recording_is_the_experiment_known_beside_it(name, copies, shared, tmp
     assert ours.bodies == {key: body for key, body in known.bodies.items()}, (
         "the same starting model"
     )
-    assert [(r.file, r.use, r.own) for r in ours.records] == [
-        (r.file, r.use, r.own) for r in known.records
+    assert [(r.file, r.use, r.offset_names) for r in ours.records] == [
+        (r.file, r.use, r.offset_names) for r in known.records
     ]
 
 

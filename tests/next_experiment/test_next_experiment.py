@@ -130,7 +130,7 @@ def test_the_command_moves_the_model_as_asked(one_speed):
     motion = exact_motion(
         "device", 0.02 * np.sin(2 * np.pi * t) ** 3, sample_time=1e-3, bandwidth=50.0
     )
-    command = command_along(body, motion, give=1e-6)
+    command = command_along(body, motion, deflection=1e-6)
     left = residual_along(body, replace(motion, command=command)).residual.value
     whole = motion.lowpassed(motion.at_rows(command))
     assert np.std(motion.lowpassed(left)) < 2e-3 * np.std(whole)

@@ -12,11 +12,11 @@ from teleopdesign.cli import main
 from teleopdesign.papers import (
     HOW,
     STATEMENTS,
+    Correction,
     Figure,
     NotProved,
     Numbers,
-    Proof,
-    Refutation,
+    ProofSteps,
     check,
 )
 from teleopdesign.papers._proof import (
@@ -98,7 +98,7 @@ def test_a_statement_stands_alone(name):
 
 @pytest.mark.parametrize("name", SHOWN)
 def test_the_outcome_follows_from_the_kind_of_evidence(name):
-    expected = {"proved": "Proof", "refuted": "Refutation", "checked numerically": "Numbers"}
+    expected = {"proved": "ProofSteps", "refuted": "Correction", "checked numerically": "Numbers"}
     function = STATEMENTS[name].shown_by
     assert inspect.get_annotations(function)["return"] == expected[STATEMENTS[name].how]
 
@@ -218,9 +218,9 @@ def test_numbers_never_prove_a_statement():
 
 
 def test_a_refutation_needs_both_the_failure_and_the_corrected_form():
-    assert check(stated(Refutation(TRUE, TRUE), "refuted")).as_stated
-    assert check(stated(Refutation(WRONG, TRUE), "refuted")).outcome == "failed"
-    assert check(stated(Refutation(TRUE, WRONG), "refuted")).outcome == "failed"
+    assert check(stated(Correction(TRUE, TRUE), "refuted")).as_stated
+    assert check(stated(Correction(WRONG, TRUE), "refuted")).outcome == "failed"
+    assert check(stated(Correction(TRUE, WRONG), "refuted")).outcome == "failed"
 
 
 @pytest.mark.parametrize("found", [1.2, 0.8, float("nan")])
@@ -284,4 +284,4 @@ def test_an_unknown_statement_is_one_line(capsys):
 
 
 def test_a_proof_object_is_what_the_words_say():
-    assert isinstance(STATEMENTS["P2"].shown_by(), Proof)
+    assert isinstance(STATEMENTS["P2"].shown_by(), ProofSteps)

@@ -28,7 +28,7 @@ from teleopdesign.passivity import (
     quantised_spring,
     read_certificate,
     sampled_passivity,
-    teleoperator,
+    teleoperator_two_port,
 )
 from teleopdesign.realise.lti import S
 
@@ -36,9 +36,9 @@ FOLDER = Path(checker.__file__).parent
 
 PROVED = {
     "impedance": lambda: positive_real(0.15 * S + 4 + 300 / S),
-    "two-port": lambda: passive(teleoperator(master=S + 1, slave=S + 2, stiffness=10)),
+    "two-port": lambda: passive(teleoperator_two_port(master=S + 1, slave=S + 2, stiffness=10)),
     "stable two-port": lambda: absolutely_stable(
-        teleoperator(master=S + 1, slave=S + 2, stiffness=10)
+        teleoperator_two_port(master=S + 1, slave=S + 2, stiffness=10)
     ),
     "delayed coupling": lambda: delayed_spring(
         master_inertia=1, master_damping=2, slave_inertia=1, slave_damping=2, stiffness=9, delay=0.1

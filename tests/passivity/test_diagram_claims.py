@@ -41,7 +41,7 @@ def giving(friction=0.5, stiffness=2e4):
 
 def settled(diagram, search=QUICK):
     found = diagram_claims(diagram, rng=np.random.default_rng(1), search=search)
-    claims = {s.topic: s.claim for s in found.settled}
+    claims = {s.topic: s.claim for s in found.claims}
     for claim in claims.values():
         for certificate in claim.certificates:
             certificate.check()

@@ -140,7 +140,7 @@ def test_damping_that_a_theorem_spends_is_not_spent_again_by_the_linear_rest():
         rng=np.random.default_rng(0),
         search=Search(tries=1),
     )
-    by_topic = {one.topic: one.claim.status for one in whole.settled}
+    by_topic = {one.topic: one.claim.status for one in whole.claims}
     assert "proved" in [s for t, s in by_topic.items() if t.startswith("friction of Z_M with C")]
     assert by_topic.get("all ports, any motion") != "proved"
 

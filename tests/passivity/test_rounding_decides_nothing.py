@@ -33,7 +33,7 @@ def observed(bandwidth):
 
 
 def claims(diagram):
-    return [s.claim for s in diagram_claims(diagram, rng=np.random.default_rng(0)).settled]
+    return [s.claim for s in diagram_claims(diagram, rng=np.random.default_rng(0)).claims]
 
 
 @pytest.mark.parametrize("bandwidth", BANDWIDTHS)

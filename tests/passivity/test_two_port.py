@@ -14,7 +14,7 @@ from teleopdesign.passivity import (
     passive,
     read_record,
     region,
-    teleoperator,
+    teleoperator_two_port,
     two_port,
     write_record,
 )
@@ -27,7 +27,7 @@ MASTER, SLAVE = 0.2 * S + 1, 0.5 * S + 1
 def coupled(**changes):
     """A spring of 1000 N/m between dampings of 1 N s/m, unless changed."""
     given = {"master": MASTER, "slave": SLAVE, "stiffness": 1000} | changes
-    return teleoperator(**given)
+    return teleoperator_two_port(**given)
 
 
 def delayed(stiffness=1000, delay=1e-3, dampings=(1, 1)):

@@ -13,6 +13,7 @@ from passivity.random_two_ports import KINDS, attack, is_free_motion, random_two
 from teleopdesign.passivity import absolutely_stable, passive, two_port
 from teleopdesign.passivity.checker.absolute_stability import conditions
 from teleopdesign.passivity.two_port.growing_mode import entries_of, growing_mode
+from teleopdesign.realise.lti import S
 
 TRIES = 60  # pairs of terminations, and half as many steps from the worst of them
 
@@ -98,3 +99,23 @@ def test_the_attacker_finds_what_the_axis_does_not_show():
     ):
         z = sp.Matrix([[two_port(rows).z[i, j] for j in range(2)] for i in range(2)])
         assert attack(np.random.default_rng(1), z, TRIES) is not None
+
+
+@pytest.mark.parametrize("scale", [sp.Rational(1, 10**6), 1, 10**6])
+@pytest.mark.parametrize("corner", [sp.Rational(1, 10**9), 1, 10**9])
+def test_residues_that_are_not_hermitian_give_out_energy_however_near_to_their_pole(scale, corner):
+    """det(Z + Z*) = 4 scale^2 (1 - (corner/w)^2): negative below the corner, in rad/s, alone."""
+    k = corner / S
+    system = two_port([[scale, scale * (2 + 2 * k)], [scale * -2, scale]])
+    assert passive(system).status == "refuted"
+    one_sided = two_port([[scale * (1 + 3 * k), scale * 2 * k], [0, scale * (1 + 3 * k)]])
+    claim = passive(one_sided)
+    assert claim.status == "refuted" and claim.record.replay() > 0
+
+
+@pytest.mark.parametrize("share", ["1/10", "1/10000"])
+def test_masses_that_are_not_positive_give_out_energy_at_fast_growth(share):
+    """det of the masses is -share: only far out on the real axis do they outdo the dampers."""
+    m = S * (1 + sp.Rational(share))
+    claim = passive(two_port([[S + 9, m], [m, S + 1]]))
+    assert claim.status == "refuted" and claim.record.replay() > 0

@@ -110,7 +110,7 @@ def test_the_error_of_the_step_can_be_asked_for(hybrid, radau):
 def test_values_are_arguments_of_one_kernel(hybrid):
     made = prepare(hybrid, duration=0.1)
     other = prepare(hybrid.with_values({"H.velocity_schedule.gain": 2.0}), duration=0.1)
-    assert made.program.run is other.program.run
+    assert made.program.loop is other.program.loop
 
 
 def test_compiled_and_plain_code_give_the_same_numbers(hybrid):

@@ -4,7 +4,7 @@ import control
 import numpy as np
 import pytest
 from devices import CANCELLATION, FEEDBACK, body
-from effects.along import KNOWN
+from effects.along import KNOWN, axis_of
 
 from teleopdesign.blocks import Body, Value
 from teleopdesign.diagrams import Diagram, Junction, Moving, four_cases, haptic_interface
@@ -31,7 +31,8 @@ TYPICAL = {
     "frequency": 10.0,
 }
 LEVEL = 0.5  # N; above every effect that lowers it
-NAMES = sorted(n for n, e in EFFECTS.items() if e.role != "structure")
+#: those of one body: of two, `test_tips`
+NAMES = sorted(n for n, e in EFFECTS.items() if e.role not in ("structure", "tip_level"))
 LINEAR = [n for n in NAMES if EFFECTS[n].linear]
 
 
@@ -49,7 +50,7 @@ def device(*names, absent=False):
             if absent and name in names:
                 value = effect.absent.get(parameter, value)
             values[f"{name}.{parameter}"] = Value(value)
-    return Body("prismatic", values, tuple(KNOWN[n] for n in wanted))
+    return Body(axis_of(*wanted), values, tuple(KNOWN[n] for n in wanted))
 
 
 def push(t):

@@ -31,20 +31,20 @@ def digest(experiment: Experiment) -> str:
     whole = hashlib.sha256()
     for r in experiment.records:
         cuts = [(s.start, s.stop) for s in r.segments]
-        whole.update(repr((r.file, r.use, sorted(r.own), r.sample_time, cuts)).encode())
+        whole.update(repr((r.file, r.use, sorted(r.offset_names), r.sample_time, cuts)).encode())
         for name in sorted(r.signals):
             whole.update(f"{name} {len(r.signals[name])} ".encode())
             whole.update(np.ascontiguousarray(r.signals[name], dtype="<f8").tobytes())
     return whole.hexdigest()
 
 
-def difference(told: Mapping[str, Any], experiment: Experiment) -> str | None:
-    """How the experiment that was told of differs from this one, in words; None where it is it."""
-    found = experiment_data(experiment)
+def difference(expected: Mapping[str, Any], experiment: Experiment) -> str | None:
+    """How the expected experiment differs from this one, in words; None where they are the same."""
+    present = experiment_data(experiment)
     for key, words in (("title", "title"), ("axes", "bodies"), ("records", "records")):
-        if told[key] != found[key]:
-            return f"{words} {_short(told[key])}, found {_short(found[key])}"
-    if told["digest"] != found["digest"]:
+        if expected[key] != present[key]:
+            return f"{words} {_short(expected[key])}, found {_short(present[key])}"
+    if expected["digest"] != present["digest"]:
         return "records of the same names, but they read differently now"
     return None
 
@@ -54,10 +54,10 @@ def bodies_text(axes: Mapping[str, str]) -> str:
     return ", ".join(f"{place} ({axis})" for place, axis in axes.items())
 
 
-def _short(told: Any) -> str:
-    if isinstance(told, str):
-        return f'"{told}"' if len(told) <= 60 else f'"{told[:57]}..."'
-    if isinstance(told, Mapping):
-        return bodies_text(told)
-    listed = [f"{r['file']} ({r['use']}, {r['samples']} samples)" for r in told]
+def _short(entry: Any) -> str:
+    if isinstance(entry, str):
+        return f'"{entry}"' if len(entry) <= 60 else f'"{entry[:57]}..."'
+    if isinstance(entry, Mapping):
+        return bodies_text(entry)
+    listed = [f"{r['file']} ({r['use']}, {r['samples']} samples)" for r in entry]
     return ", ".join(listed[:4]) + (", ..." if len(listed) > 4 else "")

@@ -30,7 +30,7 @@ _NEEDED = ("models", "floor", "open", "bandwidth")
 
 @dataclass(frozen=True)
 class _Steps:
-    """What an answer says of a diagnosis, before any residual is computed.
+    """The content of an answer as objects, before any residual is computed.
 
     models: of each rung;  estimated: the last before what its readings do was taken off
     added, equals: of each rung;  open: candidates with the models that they were compared by
@@ -46,7 +46,7 @@ class _Steps:
 def restored(
     saved: SavedAnswer, experiment: Experiment, known: Mapping[str, Effect] = EFFECTS
 ) -> Diagnosis:
-    """The diagnosis that an answer tells of, with its figures; fits are evaluated, not made.
+    """The diagnosis in an answer, with its figures; residuals are computed, nothing is estimated.
 
     known: effects by name, the user's own among them
     It has no rankings: what was tried is in the answer, what is left open in `Diagnosis.open`.
@@ -90,7 +90,7 @@ def restored(
 
 
 def evaluated(model: Model, prepared: Prepared) -> Fit:
-    """What a fitted model leaves of these records, and its derivatives; the model stays as it is.
+    """A fit with the residuals of a model and their derivatives; no parameter changes.
 
     Without check records, what is held out is fitted from here, as `estimate` does.
     """
@@ -168,8 +168,8 @@ def _place(candidate: Candidate) -> dict[str, str]:
     return {"effect": effect, "at": at}
 
 
-def _error(told: float | None) -> float:
-    return float("nan") if told is None else float(told)
+def _error(number: float | None) -> float:
+    return float("nan") if number is None else float(number)
 
 
 def _floor(content: Mapping[str, Any]) -> NoiseFloor:
@@ -181,10 +181,10 @@ def _floor(content: Mapping[str, Any]) -> NoiseFloor:
     )
 
 
-def _moment(told: Mapping[str, Any] | None) -> Moment | None:
-    if told is None:
+def _moment(entry: Mapping[str, Any] | None) -> Moment | None:
+    if entry is None:
         return None
-    begin, end = (float(told[key]["value"]) for key in ("begin", "end"))
+    begin, end = (float(entry[key]["value"]) for key in ("begin", "end"))
     return Moment(
-        told["record"], told["at"], begin, end, float(told["left_over_noise_floors_without"])
+        entry["record"], entry["at"], begin, end, float(entry["left_over_noise_floors_without"])
     )

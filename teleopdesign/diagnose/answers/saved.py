@@ -64,15 +64,15 @@ class SavedAnswer:
         return model if experiment is None else _as_stated(model, experiment, known)
 
     def require(self, experiment: Experiment) -> None:
-        """Refuse the answer to another experiment; of an older answer, what is there is compared.
+        """Refuse the answer to another experiment; an older answer is compared as far as it goes.
 
         raises ExperimentError: with what differs
         """
-        told = self.content.get("experiment")
-        if told is None:
+        recorded = self.content.get("experiment")
+        if recorded is None:
             differs = _older_difference(self, experiment)
         else:
-            differs = difference(told, experiment)
+            differs = difference(recorded, experiment)
         if differs is not None:
             raise ExperimentError(
                 f"{self.file}: is not an answer to {experiment.folder.name} but to another "
@@ -81,11 +81,11 @@ class SavedAnswer:
 
     def require_bodies(self, model: Model, experiment: Experiment) -> None:
         """Refuse a model of other bodies, or on other axes, than were recorded."""
-        found = {name: body.axis for name, body in model.bodies.items()}
+        axes = {name: body.axis for name, body in model.bodies.items()}
         expected = {name: body.axis for name, body in experiment.bodies.items()}
-        if found != expected:
+        if axes != expected:
             raise ExperimentError(
-                f"{self.file}: models: found {bodies_text(found)}, expected "
+                f"{self.file}: models: found {bodies_text(axes)}, expected "
                 f"{bodies_text(expected)} as in {experiment.folder.name}"
             )
 
@@ -101,7 +101,7 @@ def load_answer(path: str | Path) -> SavedAnswer:
 def _parameters(saved: SavedAnswer) -> dict[str, Mapping[str, Any]]:
     """Every parameter of the last model by its full name: the user's, then those of each rung."""
     content = saved.content
-    found = dict(content["model_parameters"])
+    parameters = dict(content["model_parameters"])
     rows = {(c["effect"], c["at"]): c["parameters"] for c in content["candidates"]}
     for row in content["ladder"]:
         if (added := row["added"]) is None:
@@ -111,8 +111,8 @@ def _parameters(saved: SavedAnswer) -> dict[str, Mapping[str, Any]]:
             raise ExperimentError(
                 f"{saved.file}: candidates: none is {key[0]} at {key[1]}, which the ladder adds"
             )
-        found |= {f"{key[1]}.{key[0]}.{n}": p for n, p in rows[key].items()}
-    return found
+        parameters |= {f"{key[1]}.{key[0]}.{n}": p for n, p in rows[key].items()}
+    return parameters
 
 
 def _older_bodies(
@@ -130,10 +130,10 @@ def _older_bodies(
         axis = experiment.axis(place) if experiment else _axis_of(saved, place, inertia["unit"])
         tables[place] = {"axis": axis, "inertia": _value(inertia, False), "effects": {}}
     for name, parameter in parameters.items():
-        place, _, own = name.partition(".")
-        if own == "inertia" or not bodies:
+        place, _, local_name = name.partition(".")
+        if local_name == "inertia" or not bodies:
             continue
-        effect, _, key = own.rpartition(".")
+        effect, _, key = local_name.rpartition(".")
         if place == CONTACT.name:
             effect = effect or place  # environment.stiffness: the contact itself
         if not effect:
@@ -176,7 +176,7 @@ def _as_stated(model: Model, experiment: Experiment, known: Mapping[str, Effect]
 
 
 def _older_difference(saved: SavedAnswer, experiment: Experiment) -> str | None:
-    """What of an older answer cannot be of this experiment; None: nothing that it tells."""
+    """How an older answer contradicts this experiment, in words; None where it does not."""
     content = saved.content
     parameters = content["model_parameters"]
     places = dict.fromkeys(name.partition(".")[0] for name in parameters)
@@ -185,15 +185,15 @@ def _older_difference(saved: SavedAnswer, experiment: Experiment) -> str | None:
         return f"bodies {', '.join(bodies) or 'none'}, found {', '.join(experiment.bodies)}"
     for place in bodies:
         unit = unit_of("inertia", experiment.axis(place))
-        told = parameters.get(f"{place}.inertia", {}).get("unit", unit)
-        if told != unit:
-            return f"{place}.inertia in {quoted(told)}, found {quoted(unit)}"
+        stated_unit = parameters.get(f"{place}.inertia", {}).get("unit", unit)
+        if stated_unit != unit:
+            return f"{place}.inertia in {quoted(stated_unit)}, found {quoted(unit)}"
     stated = {place: set(body.effects) for place, body in experiment.bodies.items()}
     touched = experiment.environment
     stated[CONTACT.name] = set() if touched is None else set(touched.effects)
     for name in parameters:
-        place, _, own = name.partition(".")
-        effect, _, _ = own.partition(".") if "." in own else ("", "", "")
+        place, _, local_name = name.partition(".")
+        effect, _, _ = local_name.partition(".") if "." in local_name else ("", "", "")
         if effect and effect not in stated[place]:
             return f"a model with {effect} at {place}, found {', '.join(stated[place]) or 'none'}"
     check = "records" if experiment.check_records else "blocks of fit"

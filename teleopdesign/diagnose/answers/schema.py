@@ -43,14 +43,14 @@ def read_content(path: str | Path) -> dict[str, Any]:
         check_answer(content)
     except ExperimentError as error:
         raise ExperimentError(f"{path}: {error}") from None
-    found: dict[str, Any] = content
-    return found
+    answer: dict[str, Any] = content
+    return answer
 
 
 def check_answer(content: object) -> None:
     """Refuse what is no answer; raises ExperimentError with the key in front."""
     if not isinstance(content, dict):
-        raise ExperimentError(f"found {_found(content)}, expected an answer of {WRITER}")
+        raise ExperimentError(f"found {_described(content)}, expected an answer of {WRITER}")
     if lacking := [key for key in _REQUIRED if key not in content]:
         raise ExperimentError(f"no key {quoted(lacking[0])}, expected an answer of {WRITER}")
     for key, check in (_REQUIRED | _LATER).items():
@@ -62,12 +62,12 @@ def _constant(name: str) -> NoReturn:
     raise ValueError(f"found {name}, expected a finite number or null")
 
 
-def _found(value: object) -> str:
+def _described(value: object) -> str:
     return "null" if value is None else described(value)
 
 
 def _wrong(where: str, value: object, expected: str) -> ExperimentError:
-    return ExperimentError(f"{where}: found {_found(value)}, expected {expected}")
+    return ExperimentError(f"{where}: found {_described(value)}, expected {expected}")
 
 
 def _number(*, low: float = -math.inf, null: bool = False) -> Check:

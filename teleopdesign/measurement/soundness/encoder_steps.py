@@ -30,8 +30,8 @@ def true_step(x: Array, stated: float) -> float | None:
     """The step that the readings move in: the stated one or a multiple; None: neither."""
     if gridded(x, stated) < ON_GRID:
         return None
-    reached, seen = float(np.ptp(x)), round(reading_step(x) / stated)
-    multiples = [k for k in (*MULTIPLES, seen) if k > 1 and k * stated < 0.1 * reached]
+    reached, ratio = float(np.ptp(x)), round(reading_step(x) / stated)
+    multiples = [k for k in (*MULTIPLES, ratio) if k > 1 and k * stated < 0.1 * reached]
     on = [k for k in multiples if gridded(x, k * stated) > ON_GRID]
     return stated * max(on, default=1)
 
@@ -41,8 +41,8 @@ def check_steps(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
 
     others: channels of the same record, one of which may lie on the stated steps instead
     """
-    stated, seen = signal.channel.resolution, signal.step
-    if stated is None or seen == 0.0:
+    stated, read_step = signal.channel.resolution, signal.step
+    if stated is None or read_step == 0.0:
         return []
     step = true_step(signal.values, stated)
     if step == stated:
@@ -58,17 +58,17 @@ def check_steps(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
         text = f"is not read in steps of the stated {stated:.4g} {signal.unit}"
         if swapped:
             text += f", but {swapped[0]} is: are the two columns swapped?"
-        elif seen < stated:
+        elif read_step < stated:
             concern = "note"
             text += ", but finer: it leaves less open than is stated."
         else:
-            text += f", but of {seen:.4g}."
+            text += f", but of {read_step:.4g}."
     return [
         Finding(
             "encoder steps",
             concern,
             f"{signal.name} {text}",
-            {"stated": stated, "seen": seen if step is None else step},
+            {"stated": stated, "seen": read_step if step is None else step},
             signal.record.file,
         )
     ]

@@ -22,7 +22,7 @@ FACTOR = 1.6
 PIECE = 500
 
 
-def seen_noise(signal: Signal) -> float:
+def measured_noise(signal: Signal) -> float:
     """Rms noise of the readings, SI."""
     pieces: list[float] = []
     for _, x in signal.stretches:
@@ -36,25 +36,25 @@ def check_noise(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
 
     others: channels of the same record and unit, one of which may be the noisy one instead
     """
-    stated, seen = signal.channel.noise, seen_noise(signal)
+    stated, scatter = signal.channel.noise, measured_noise(signal)
     # rounding scatters by 0.29 steps at most
     rounding = 0.29 * (signal.channel.resolution or signal.step)
-    numbers = {"stated": stated or float("nan"), "seen": seen}
+    numbers = {"stated": stated or float("nan"), "seen": scatter}
     if stated is None:
         return []
     expected = float(np.hypot(stated, rounding if signal.channel.resolution else 0.0))
-    ratio = seen / expected
+    ratio = scatter / expected
     if 1 / FACTOR < ratio < FACTOR:
         return []
     alike = [o for o in others if o.channel.noise is None and o.unit == signal.unit]
-    noisy = [o.name for o in alike if 1 / FACTOR < seen_noise(o) / expected < FACTOR]
+    noisy = [o.name for o in alike if 1 / FACTOR < measured_noise(o) / expected < FACTOR]
     hint = f" {noisy[0]} has it: are the two columns swapped?" if noisy and ratio < 1 else ""
     effect = "hides effects" if ratio < 1 else "makes noise look like an effect"
     return [
         Finding(
             "noise",
             "warning",
-            f"{signal.name} scatters by {seen:.3g} {signal.unit} rms, {stated:.3g} is stated: a "
+            f"{signal.name} scatters by {scatter:.3g} {signal.unit} rms, {stated:.3g} is stated: a "
             f"noise floor that is wrong {effect}.{hint}",
             {**numbers, "ratio": ratio},
             signal.record.file,

@@ -209,8 +209,8 @@ def _residues(z: Entries) -> Iterator[Condition]:
         both = greatest_common_divisor(both, axis_poles(one[1]))
     alone = divide(shared, both)[0]
     name = f"{name} at s = j w"
-    for poles, own in ((both, True), (alone, False)):
-        tests = residue_tests(z, own=own)
+    for poles, of_both in ((both, True), (alone, False)):
+        tests = residue_tests(z, shared=of_both)
         wrong = [f for f in tests if signs_at_roots(f, poles)[0]]
         if wrong:
             where = f"at {first_root(wrong[0], poles) ** 0.5:.4g} rad/s"
@@ -219,17 +219,17 @@ def _residues(z: Entries) -> Iterator[Condition]:
     yield Condition(name, True)
 
 
-def residue_tests(z: Entries, *, own: bool) -> tuple[Polynomial, Polynomial]:
+def residue_tests(z: Entries, *, shared: bool) -> tuple[Polynomial, Polynomial]:
     """B and B^2 - C^2 in x = w^2, >= 0 at the poles that meet condition 4.
 
     B = 2 k11 k22 - Re k12 k21 and C = abs(k12 k21), both times the same positive number, with
-    k = p/q' at the simple zeros j w of q. own: whether z11 and z22 have that pole as well
+    k = p/q' at the simple zeros j w of q. shared: whether z11 and z22 have that pole as well
     """
     (p11, q11), (p12, q12), (p21, q21), (p22, q22) = ((p, derivative(q)) for p, q in z)
     above, below = multiply(p12, p21), multiply(q12, q21)
     size, cross = real_part(below, below), real_part(above, below)
     passed = multiply(real_part(above, above), size)
-    if not own:
+    if not shared:
         return [-c for c in cross], add(multiply(cross, cross), passed, -1)
     kept = real_part(multiply(p11, p22), multiply(q11, q22))
     weight = real_part(multiply(q11, q22), multiply(q11, q22))

@@ -114,12 +114,12 @@ class Algebra:
         above = self.over(a, below, a.below), self.over(b, below, b.below)
         return Quotient(self.plus(*above, factor), below)
 
-    def over(self, a: Quotient, below: Mapping[str, int], own: Mapping[str, int]) -> Poly:
+    def over(self, a: Quotient, below: Mapping[str, int], present: Mapping[str, int]) -> Poly:
         """a.above times the bases of `below` that are missing in `own`."""
         above = a.above
         for n in below:
-            if below[n] > own.get(n, 0):
-                above = self.times(above, self.power(self.bases[n], below[n] - own.get(n, 0)))
+            if below[n] > present.get(n, 0):
+                above = self.times(above, self.power(self.bases[n], below[n] - present.get(n, 0)))
         return above
 
     def read(self, text: object) -> Quotient:

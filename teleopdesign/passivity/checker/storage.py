@@ -167,11 +167,11 @@ class Storage:
 
     def _check_example(self, case: Meaning) -> None:
         """It meets all that is assumed, as given and at rest."""
-        given = {n: read_number(x, "example") for n, x in self.c["example"].items()}
-        need({*given} <= {*self.words}, "example: an unknown name")
-        need(all(given.get(x, 0) >= 0 for x in self.signs), "example: a size below 0")
+        example = {n: read_number(x, "example") for n, x in self.c["example"].items()}
+        need({*example} <= {*self.words}, "example: an unknown name")
+        need(all(example.get(x, 0) >= 0 for x in self.signs), "example: a size below 0")
         rest = {x: Fraction(0) for x in (*self.states, *self.signs)}
-        for at, (n, e) in itertools.product((rest | given, given | rest), case.factors.items()):
+        for at, (n, e) in itertools.product((rest | example, example | rest), case.factors.items()):
             missing = case.algebra.uses(e) - {*at}
             need(not missing, f"example: no value of {', '.join(sorted(missing))}")
             value = case.algebra.value(e.above, at)  # what is below is itself shown to be > 0

@@ -14,11 +14,11 @@ from .claim import Claim, Evidence, Proof, Refutation, Unknown
 
 _QUANTITIES = ("damping", "stiffness", "force", "velocity", "inertia", "position")
 #: unit on a prismatic axis -> on a revolute one, as claims write them, longest first
-_TURNED = {
+_ROTARY = {
     unit_of(q, "prismatic").replace("*", " "): unit_of(q, "revolute").replace("*", " ")
     for q in _QUANTITIES
 }
-_UNIT = "|".join(sorted(map(re.escape, _TURNED), key=len, reverse=True))
+_UNIT = "|".join(sorted(map(re.escape, _ROTARY), key=len, reverse=True))
 #: a unit behind a number, and behind no other unit
 _MEASURE = re.compile(rf"(?<=\d )({_UNIT})(?![\w/^*]| m\b| s/)")
 
@@ -34,14 +34,14 @@ def in_units_of(axis: str, claim: Claim) -> Claim:
         Evidence: ("searched",),
         Unknown: ("why",),
     }
-    changed = {name: turned(getattr(verdict, name)) for name in texts[type(verdict)]}
+    changed = {name: in_rotary_units(getattr(verdict, name)) for name in texts[type(verdict)]}
     if isinstance(verdict, Proof | Evidence):
         first, _, rest = verdict.unit.partition(" of ")
-        unit = _TURNED.get(first, first)
+        unit = _ROTARY.get(first, first)
         changed["unit"] = f"{unit} of {rest}" if rest else unit
-    return Claim(turned(claim.statement), replace(verdict, **changed))
+    return Claim(in_rotary_units(claim.statement), replace(verdict, **changed))
 
 
-def turned(text: str) -> str:
+def in_rotary_units(text: str) -> str:
     """The text with units behind numbers as on a revolute axis."""
-    return _MEASURE.sub(lambda found: _TURNED[found.group(1)], text)
+    return _MEASURE.sub(lambda found: _ROTARY[found.group(1)], text)

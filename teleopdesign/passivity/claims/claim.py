@@ -106,7 +106,7 @@ class Evidence(ByValue):
 
 @dataclass(frozen=True)
 class Unknown:
-    """Not settled, and why."""
+    """The claim is open, and why."""
 
     why: str
 
@@ -122,7 +122,7 @@ Verdict = Proof | Refutation | Evidence | Unknown
 
 @dataclass(frozen=True, eq=False)
 class Claim(ByValue):
-    """A statement about passivity at a port, with what settles it."""
+    """A statement about passivity at a port, with its proof, refutation or evidence."""
 
     statement: str
     verdict: Verdict

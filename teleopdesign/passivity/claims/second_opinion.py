@@ -42,8 +42,8 @@ def second_opinion(certificate: Certificate, *, seconds: float = 10.0) -> Second
     except Refused as problem:
         raise ModelError(f"second_opinion: {problem}") from None
     if storage is None:
-        found = certificate.kind
-        raise ModelError(f'second_opinion: a storage certificate is needed, found "{found}"')
+        kind = certificate.kind
+        raise ModelError(f'second_opinion: a storage certificate is needed, found "{kind}"')
     try:
         z3: Any = import_module("z3")
     except ModuleNotFoundError as missing:

@@ -168,7 +168,7 @@ def _candidates(made: Realisation) -> list[Rows]:
     if n == 0:
         return [[]]
     size = max(abs(float(x)) for x in [*made.c, made.d]) or 1.0
-    found = []
+    matrices = []
     for slack in (True, False):
         solved = _solve(made, size, slack=slack)
         if solved is None:
@@ -181,8 +181,8 @@ def _candidates(made: Realisation) -> list[Rows]:
             if made.d == 0:
                 for k, x in enumerate(made.c):
                     p[k][-1] = p[-1][k] = x
-            found.append(p)
-    return found
+            matrices.append(p)
+    return matrices
 
 
 def _rounded(x: float, digits: int) -> Fraction:
@@ -218,13 +218,13 @@ def _proof(
     energy = sum((x[i] * _dot(storage[i], x) for i in range(n)), sp.S(0)) / (2 * scale)
     half = sp.Rational(1, 2)
     kept: list[Term] = [(_rational(w) / (2 * scale), {}, _dot(e, x)) for w, e in stored]
-    taken: list[Term] = [(_rational(w) * half, {}, _dot(e, [*x, v])) for w, e in lost]
+    supply: list[Term] = [(_rational(w) * half, {}, _dot(e, [*x, v])) for w, e in lost]
     certificate = storage_certificate(
         statement,
         supply=sp.expand(force * v),
         storage=sp.expand(energy + mass * v**2 / 2),
         rates=rates,
-        proofs={"supply": {"": taken}, "storage": {"": [*kept, (mass * half, {}, v)]}},
+        proofs={"supply": {"": supply}, "storage": {"": [*kept, (mass * half, {}, v)]}},
         example={},
     )
     return Proof("a quadratic storage function, exact", (certificate,))

@@ -46,9 +46,9 @@ def where_negative(polynomial: sp.Poly) -> list[Fraction]:
         ends = [Fraction(0), *positive_roots(polynomial, bits=bits)]
         points = [(a + b) / 2 for a, b in zip(ends, ends[1:], strict=False)]
         points.append(2 * ends[-1] + 1)
-        found = [x for x in points if value(polynomial, x) < 0]
-        if found:
-            return found
+        negative = [x for x in points if value(polynomial, x) < 0]
+        if negative:
+            return negative
     return []
 
 
@@ -57,7 +57,7 @@ def positive_roots(polynomial: sp.Poly, *, bits: int = 80) -> list[Fraction]:
     if polynomial.degree() < 1:
         return []
     plain = polynomial.sqf_part()
-    found = []
+    roots = []
     for low, high in ((fraction(a), fraction(b)) for a, b in plain.intervals(inf=0, sqf=True)):
         while low == 0 and high > 0:  # a relative error needs an end that is not 0
             middle = high / 2
@@ -66,8 +66,8 @@ def positive_roots(polynomial: sp.Poly, *, bits: int = 80) -> list[Fraction]:
             middle = (low + high) / 2
             low, high = (low, middle) if _between(plain, low, middle) else (middle, high)
         if high > 0:
-            found.append((low + high) / 2)
-    return found
+            roots.append((low + high) / 2)
+    return roots
 
 
 def _between(plain: sp.Poly, low: Fraction, high: Fraction) -> bool:

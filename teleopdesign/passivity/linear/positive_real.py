@@ -112,7 +112,7 @@ class Excess:
 
 
 def damping_excess(system: Any, *, motion: Motion = "velocity") -> Excess:
-    """Damping (N s/m) that may be taken from an impedance, or that it lacks (< 0), to be passive.
+    """Excess of damping of a passive impedance, N s/m; < 0: damping that it lacks.
 
     This is the infimum of Re Z over frequency (the index of input passivity, velocity being the
     input), or -inf. Its bounds are verified by the exact test and differ by 1e-12 of its size.
@@ -135,17 +135,17 @@ def mobility_excess(system: Any, *, motion: Motion = "velocity") -> Excess:
 def _infimum(real: sp.Poly, size: sp.Poly) -> tuple[float, float]:
     """(x, value) where real/size is smallest over x >= 0, to rounding; inf for a limit."""
     slope = real.diff(X) * size - real * size.diff(X)
-    found = []
+    extremes = []
     for x in (Fraction(0), *positive_roots(slope)):
         below = value(size, x)
         if below != 0:
-            found.append((float(x), float(value(real, x) / below)))
+            extremes.append((float(x), float(value(real, x) / below)))
     if real.degree() <= size.degree():
         limit = real.LC() / size.LC() if real.degree() == size.degree() else 0
-        found.append((float("inf"), float(limit)))
+        extremes.append((float("inf"), float(limit)))
     elif real.LC() < 0:
-        found.append((float("inf"), float("-inf")))
-    return min(found, key=lambda pair: pair[1]) if found else (0.0, float("-inf"))
+        extremes.append((float("inf"), float("-inf")))
+    return min(extremes, key=lambda pair: pair[1]) if extremes else (0.0, float("-inf"))
 
 
 def _verified(z: Impedance, lowest: float) -> tuple[Fraction | float, Fraction | float]:

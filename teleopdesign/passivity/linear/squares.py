@@ -14,7 +14,7 @@ def sum_of_squares(
     """
     m = [list(row) for row in matrix]
     n = len(m)
-    found = []
+    squares = []
     for k in range(n):
         pivot = m[k][k]
         if pivot < 0 or (pivot == 0 and any(m[k][j] for j in range(n))):
@@ -22,9 +22,9 @@ def sum_of_squares(
         if pivot == 0:
             continue
         form = [x / pivot for x in m[k]]
-        found.append((pivot, form))
+        squares.append((pivot, form))
         for i in range(n):
             factor = m[i][k]
             if factor:
                 m[i] = [x - factor * f for x, f in zip(m[i], form, strict=True)]
-    return found
+    return squares

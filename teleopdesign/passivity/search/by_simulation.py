@@ -101,7 +101,7 @@ def given_out(
             "ask for fewer rounds or more speed"
         )
     motion, force = port
-    found = simulate(
+    simulation = simulate(
         diagram,
         duration=duration,
         motion={motion: strokes.motion()},
@@ -110,7 +110,10 @@ def given_out(
         give=give,
         every_step=True,
     )
-    t, power = found.data["time"].values, -found[force].values * found[f"{motion}_velocity"].values
+    t, power = (
+        simulation.data["time"].values,
+        -simulation[force].values * simulation[f"{motion}_velocity"].values,
+    )
     parts = np.diff(t) * (power[1:] + power[:-1]) / 2
     begin, end = strokes.last_round
     middle = (t[1:] + t[:-1]) / 2
@@ -129,7 +132,7 @@ def confirmed_motion(
     computer: Computer = "continuous",
     give: float = 1e-7,
 ) -> SimulatedMotion | None:
-    """These strokes, repeated as often as it takes, if they give out energy beyond numerical doubt.
+    """These strokes, repeated as needed, if they give out more energy than the numerical error.
 
     From rest, with hidden states at zero, to rest: so what comes out was never put in. It must come
     out with half the step, and with a tenth of the give too, and be thrice what these change.
@@ -184,20 +187,20 @@ def search_counterexample(
     )
 
     def score(strokes: Strokes) -> float:
-        found = given_out(diagram, strokes, port=port, computer=computer, give=give)
-        return found.last_round / found.turned if found.turned else 0.0
+        one = given_out(diagram, strokes, port=port, computer=computer, give=give)
+        return one.last_round / one.turned if one.turned else 0.0
 
-    tried = [
+    motions = [
         (score(s), name, s) for name, s in families(rng, stroke=stroke, speed=speed, tries=tries)
     ]
-    for _, name, strokes in sorted(tried, key=lambda found: -found[0])[:3]:
+    for _, name, strokes in sorted(motions, key=lambda one: -one[0])[:3]:
         better = _refined(strokes, score, stroke=stroke, speed=speed)
         confirmed = confirmed_motion(diagram, better, port=port, computer=computer, give=give)
         if confirmed is not None:
             return Claim(statement, Refutation(f"a motion found by search, {name}", confirmed))
-    best = max(s for s, _, _ in tried)
+    best = max(s for s, _, _ in motions)
     searched = (
-        f"{len(tried)} motions (sinusoids, stops and reversals, random paths), none gives out "
+        f"{len(motions)} motions (sinusoids, stops and reversals, random paths), none gives out "
         "energy; which is no proof"
     )
     return Claim(statement, Evidence(True, searched, -best, "of the energy turned over"))
@@ -219,5 +222,5 @@ def _refined(
     def lacking(x: np.ndarray) -> float:
         return -score(at(x))
 
-    found = minimize(lacking, np.zeros(2), method="Nelder-Mead", options={"maxfev": 20})
-    return at(found.x)
+    minimum = minimize(lacking, np.zeros(2), method="Nelder-Mead", options={"maxfev": 20})
+    return at(minimum.x)

@@ -130,9 +130,9 @@ def growing_wave(z: Impedance) -> GrowingWave | None:
     Re Z < 0 at its s is verified exactly.
     """
     waves = [_beside_the_axis(z, x) for x in where_negative(even_part(z.p, z.q))]
-    found = [w for w in waves if w is not None]
+    growing = [w for w in waves if w is not None]
     # the one that grows fastest against its frequency is the plainest to look at
-    return max(found, key=lambda w: w.rate / w.frequency) if found else _at_a_growing_mode(z)
+    return max(growing, key=lambda w: w.rate / w.frequency) if growing else _at_a_growing_mode(z)
 
 
 def square_root(x: Fraction, digits: int) -> Fraction:
@@ -174,15 +174,15 @@ def _at_a_growing_mode(z: Impedance) -> GrowingWave | None:
                 rate, frequency = (Fraction(str(sp.Float(x, digits))) for x in root.as_real_imag())
                 if rate > 0 and frequency >= 0:
                     waves.append(_checked(z, rate, frequency))
-            found = [w for w in waves if w is not None]
-            if found:
-                return max(found, key=lambda w: w.rate)
+            growing = [w for w in waves if w is not None]
+            if growing:
+                return max(growing, key=lambda w: w.rate)
     return None
 
 
 def _checked(z: Impedance, rate: Fraction, frequency: Fraction) -> GrowingWave | None:
     """The wave if Re Z < 0 there, exactly."""
-    found = z.at(rate, frequency)
-    if found is None or found[0] >= 0:
+    value = z.at(rate, frequency)
+    if value is None or value[0] >= 0:
         return None
     return wave_of(sp.ImmutableMatrix([[z.expression]]), rate, frequency)

@@ -35,5 +35,5 @@ def simulate_cycle(cycle: Counterexample) -> SimulatedMotion | None:
     law = controller(bristle.name, values)
     # friction does not depend on speed: a stroke takes about 10 ms
     strokes = Strokes(cycle.turning_points, speed=300 * max(map(abs, cycle.turning_points)))
-    give = min(*lengths, *map(abs, cycle.turning_points)) / 1000
-    return confirmed_motion(haptic_interface(body, cancellation=law), strokes, give=give)
+    deflection = min(*lengths, *map(abs, cycle.turning_points)) / 1000
+    return confirmed_motion(haptic_interface(body, cancellation=law), strokes, give=deflection)

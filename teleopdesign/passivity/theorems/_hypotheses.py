@@ -77,7 +77,7 @@ def under(**hypotheses: Hypothesis) -> Callable[[Function], Function]:
         defined, an argument without one
     """
 
-    def stated(function: Function) -> Function:
+    def with_hypotheses(function: Function) -> Function:
         signature = inspect.signature(function)
         if set(signature.parameters) != set(hypotheses):
             odd = sorted(set(signature.parameters) ^ set(hypotheses))
@@ -98,12 +98,12 @@ def under(**hypotheses: Hypothesis) -> Callable[[Function], Function]:
         call.hypotheses = hypotheses  # type: ignore[attr-defined]
         return call  # type: ignore[return-value]
 
-    return stated
+    return with_hypotheses
 
 
 def hypotheses_of(function: Callable[..., Any]) -> Mapping[str, Hypothesis]:
     """Argument -> what the theorem needs of it; ModelError where a function states none."""
-    found = getattr(function, "hypotheses", None)
-    if found is None:
+    stated = getattr(function, "hypotheses", None)
+    if stated is None:
         raise ModelError(f"{function.__name__}: states no hypotheses: see `under`")
-    return dict(found)
+    return dict(stated)

@@ -46,7 +46,7 @@ def any_environment(
     link_inertia: Any = 1,
     transmission_damping: Any = 0,
 ) -> Claim:
-    """Is the joint passive for any environment and any stroke: iff f_D <= f_1, whatever k and f_2.
+    """Is the joint passive for any environment and any stroke? Iff f_D <= f_1, for all k and f_2.
 
     f_1, f_2, N;  k, N/m;  f_D, N;  sigma_D, N/m;  kg, kg, N s/m
     refuted, where it is, with the link clamped and the spring's force left to the environment
@@ -122,9 +122,9 @@ def free_motion(
         compensator_level=compensator_level,
         compensator_stiffness=compensator_stiffness,
     )
-    found = _worst_cycle(helps, against) if margin < 0 else _searched(helps, against, rng, paths)
-    if found is not None and found.energy > 0:
-        return Claim(statement, Refutation("a closed path of the motor", found))
+    cycle = _worst_cycle(helps, against) if margin < 0 else _searched(helps, against, rng, paths)
+    if cycle is not None and cycle.energy > 0:
+        return Claim(statement, Refutation("a closed path of the motor", cycle))
     searched = (
         "all symmetric cycles by formula, cycles with a step back and forth at each reversal, and "
         f"{paths} random closed paths of up to ten strokes"
@@ -150,10 +150,10 @@ def free_motion_margin(
 def _worst_cycle(helps: Dahl, against: Sequence[Element]) -> Cycle | None:
     """The symmetric cycle that gives out most per travel; sliding cycles get long strokes."""
     stuck = against[1]
-    give = stuck.level / stuck.stiffness if isinstance(stuck, Spring) else 1.0
+    elastic = stuck.level / stuck.stiffness if isinstance(stuck, Spring) else 1.0
     amplitudes = [
-        give,
-        *np.geomspace(1e-2 * give, 1e6 * max(give, helps.level / helps.stiffness), 200),
+        elastic,
+        *np.geomspace(1e-2 * elastic, 1e6 * max(elastic, helps.level / helps.stiffness), 200),
     ]
     cycles = [symmetric_cycle(helps, against, float(a)) for a in amplitudes]
     return max(cycles, key=lambda c: c.energy / c.turning_points[0])

@@ -71,15 +71,15 @@ def dahl_compensation(
     helps = Dahl(float(f_d), float(stiffness))
     if presliding_stiffness is None:
         return _ideal(f_c, f_d, stiffness, helps)
-    (own,) = positive_numbers(presliding_stiffness=presliding_stiffness)
+    (presliding,) = positive_numbers(presliding_stiffness=presliding_stiffness)
     levels = f"{decimal(f_c)} N" if top == f_c else f"{decimal(f_c)} to {decimal(top)} N"
     statement = (
-        f"Dahl friction ({levels}, {decimal(own)} N/m) with a Dahl compensator "
+        f"Dahl friction ({levels}, {decimal(presliding)} N/m) with a Dahl compensator "
         f"({decimal(f_d)} N, {decimal(stiffness)} N/m) is passive"
     )
-    if f_d <= f_c and stiffness**2 * top <= own**2 * f_d:
-        return Claim(statement, _pair_proof(f_c, top, f_d, stiffness, own))
-    against = Dahl(float(f_c if f_d > f_c else top), float(own))
+    if f_d <= f_c and stiffness**2 * top <= presliding**2 * f_d:
+        return Claim(statement, _pair_proof(f_c, top, f_d, stiffness, presliding))
+    against = Dahl(float(f_c if f_d > f_c else top), float(presliding))
     cycle = _best_cycle(helps, against)
     if cycle is None:
         why = "the condition fails, but by so little that no cycle shows it in double precision"
@@ -192,13 +192,13 @@ def _ideal(f_c: sp.Expr, f_d: sp.Expr, stiffness: sp.Expr, helps: Dahl) -> Claim
 
 
 def _pair_proof(
-    f_c: sp.Expr, top: sp.Expr, f_d: sp.Expr, stiffness: sp.Expr, own: sp.Expr
+    f_c: sp.Expr, top: sp.Expr, f_d: sp.Expr, stiffness: sp.Expr, presliding: sp.Expr
 ) -> Proof:
-    equality = ["small motion"] if stiffness**2 * top == own**2 * f_d else []
-    if stiffness == own:  # then the conditions leave f_D = f_C = f_max
+    equality = ["small motion"] if stiffness**2 * top == presliding**2 * f_d else []
+    if stiffness == presliding:  # then the conditions leave f_D = f_C = f_max
         certificate = shown.identical_pair({"f_D": f_d, "sigma_D": stiffness})
         return proof_of_level("V = f abs(p - d)/sigma", f_d, f_c, certificate, also=equality)
-    values = {"f_D": f_d, "sigma_D": stiffness, "sigma_p": own, "F_min": f_c, "F_max": top}
+    values = {"f_D": f_d, "sigma_D": stiffness, "sigma_p": presliding, "F_min": f_c, "F_max": top}
     certificate = shown.presliding_pair(values)
     return proof_of_level("a quadratic storage function", f_d, f_c, certificate, also=equality)
 
@@ -220,8 +220,8 @@ def _best_cycle(helps: Dahl, against: Dahl) -> Cycle | None:
 
 
 def _share(helps: Dahl, against: Dahl, amplitude: float) -> float:
-    given = dahl_loss(helps.level, helps.stiffness, amplitude)
-    return 1 - dahl_loss(against.level, against.stiffness, amplitude) / given
+    energy = dahl_loss(helps.level, helps.stiffness, amplitude)
+    return 1 - dahl_loss(against.level, against.stiffness, amplitude) / energy
 
 
 def dahl_claim(
@@ -231,13 +231,13 @@ def dahl_claim(
 
     certain: for all levels within the intervals, else at the estimates
     """
-    own = device.presliding
+    presliding = device.presliding
     low = device.lowest.low if certain else device.lowest.estimate
     high = device.highest.high if certain else device.highest.estimate
     values = dict(coulomb_level=low, compensator_level=level, compensator_stiffness=stiffness)
-    if own is None:
+    if presliding is None:
         return dahl_compensation(**values)
-    softest = own.low if certain else own.estimate
+    softest = presliding.low if certain else presliding.estimate
     pair = dahl_compensation(**values, presliding_stiffness=softest, highest_level=high)
     return beside_bristle_damping(
         pair,

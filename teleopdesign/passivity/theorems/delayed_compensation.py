@@ -92,13 +92,13 @@ def _wave(z: sp.ImmutableMatrix, tau: float) -> GrowingWave | None:
         if tau:
             w = Fraction(y / tau)
             for rate in halvings(w, 24):
-                found = wave_of(z, rate, w)
-                if found is not None:
-                    return found
+                wave = wave_of(z, rate, w)
+                if wave is not None:
+                    return wave
     for k in range(40, -41, -1):
-        found = wave_of(z, Fraction(2) ** k, Fraction(0))
-        if found is not None:
-            return found
+        wave = wave_of(z, Fraction(2) ** k, Fraction(0))
+        if wave is not None:
+            return wave
     return None
 
 

@@ -17,7 +17,7 @@ from ..claims.certificate import Certificate, storage_certificate
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal, exact
 from ..two_port.claims import absolutely_stable
-from ..two_port.two_port import teleoperator
+from ..two_port.two_port import teleoperator_two_port
 from ._dahl_certificates import Values
 from ._hypotheses import NOT_NEGATIVE, REAL, under
 from ._theorem import Theorem
@@ -63,7 +63,7 @@ def delayed_spring(
         certificate = _certificate({"b_m": b_m, "b_s": b_s, "P": k, "T": late})
         return Claim(statement, Proof(method, (certificate,), margin, "(N s/m)^2", equality))
     general = absolutely_stable(
-        teleoperator(master=master, slave=slave, stiffness=k, damping=0, delay=late)
+        teleoperator_two_port(master=master, slave=slave, stiffness=k, damping=0, delay=late)
     )
     return Claim(statement, general.verdict)
 

@@ -48,7 +48,7 @@ def damping_given_out(
 def largest_passive_inertia(
     *, damping: float, delay: float, time_constant: float = 0.0, order: Order = 2
 ) -> float:
-    """Most inertia (kg) that damping B pays for at every frequency; inertia of the device aside.
+    """Largest cancelled inertia (kg) that damping B covers at every frequency.
 
     B T for r = 1; for r = 2 B over the maximum of g, at least 2 B T; without low-pass 0 with
     any delay, and without delay inf (the device's own inertia is then the bound)
@@ -143,19 +143,19 @@ def _maximum(delay: float, time_constant: float) -> tuple[float, float]:
     if values[k] < grid[-1] / (1 + (grid[-1] * time_constant) ** 2):
         raise AssertionError(f"g is larger beyond {grid[-1]} rad/s")
     near = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
-    found = minimize_scalar(
+    maximum = minimize_scalar(
         lambda w: -float(g(w)[0]), bounds=near, method="bounded", options={"xatol": 1e-9 * near[1]}
     )
-    return float(found.x), -float(found.fun)
+    return float(maximum.x), -float(maximum.fun)
 
 
 def _wave(z: sp.ImmutableMatrix, where: list[float]) -> GrowingWave | None:
     for w in where:
         frequency = Fraction(w)
         for rate in halvings(frequency, 30):
-            found = wave_of(z, rate, frequency)
-            if found is not None:
-                return found
+            wave = wave_of(z, rate, frequency)
+            if wave is not None:
+                return wave
     return None
 
 

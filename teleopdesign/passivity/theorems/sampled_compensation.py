@@ -69,7 +69,7 @@ class Trembling:
 
     def replay(self) -> float:
         """Energy given out, J, each stroke exactly, summed over all samples."""
-        force, seen, out = 0.0, [0.0] * (self.late + 1), 0.0
+        force, read, out = 0.0, [0.0] * (self.late + 1), 0.0
         for _ in range(2):  # the way back is the way there with all signs turned
             steady, forgets, by_force = self._steady_sample()[1:]
             k = np.arange(self.samples)
@@ -77,12 +77,12 @@ class Trembling:
             work = self._work(0.0) * self.samples + by_force * float(forces.sum())
             level, net = self.compensator.level, self.forth - self.back
             length = level / self.compensator.stiffness
-            helped = level + (seen[-1] - level) * np.exp(-net / length * np.arange(1, k[-1] + 2))
-            helped = np.concatenate([seen, helped])
+            helped = level + (read[-1] - level) * np.exp(-net / length * np.arange(1, k[-1] + 2))
+            helped = np.concatenate([read, helped])
             out += net * float(helped[: self.samples].sum()) - work
             out -= self.damping * self.path**2 / self.sample_time * self.samples
             force = -float(steady + (force - steady) * forgets**self.samples)
-            seen = [-float(d) for d in helped[self.samples : self.samples + self.late + 1]]
+            read = [-float(d) for d in helped[self.samples : self.samples + self.late + 1]]
         return out
 
     def strokes(self) -> Strokes:
@@ -149,16 +149,16 @@ def sampled_compensation(
     """
     if presliding_stiffness is None:
         return bounded_compensation(coulomb_level=coulomb_level, bound=compensator_level)
-    given = (coulomb_level, compensator_level, compensator_stiffness, sample_time)
-    f_c, f_d, stiffness, period, own, b = map(
-        exact, (*given, presliding_stiffness, viscous_damping)
+    numbers = (coulomb_level, compensator_level, compensator_stiffness, sample_time)
+    f_c, f_d, stiffness, period, presliding, b = map(
+        exact, (*numbers, presliding_stiffness, viscous_damping)
     )
     statement = (
-        f"Dahl friction {decimal(f_c)} N, {decimal(own)} N/m and damping {decimal(b)} N s/m with a "
-        f"Dahl compensator ({decimal(f_d)} N, {decimal(stiffness)} N/m) in a computer, each "
+        f"Dahl friction {decimal(f_c)} N, {decimal(presliding)} N/m and damping {decimal(b)} N s/m "
+        f"with a Dahl compensator ({decimal(f_d)} N, {decimal(stiffness)} N/m) in a computer, each "
         f"{decimal(period)} s, is passive"
     )
-    helps, against = Dahl(float(f_d), float(stiffness)), Dahl(float(f_c), float(own))
+    helps, against = Dahl(float(f_d), float(stiffness)), Dahl(float(f_c), float(presliding))
     motion = _best(helps, against, float(b), float(period), late)
     if motion is None:
         why = f"a motion gives out energy, but one of more than {LONGEST:g} samples"

@@ -118,8 +118,8 @@ def _positive(sample_time: Any) -> sp.Expr:
 
 def _law(controller: Any) -> sp.Expr:
     if isinstance(controller, bool | str) or controller is None:
-        found = described(controller)
-        raise ModelError(f"controller: found {found}, expected an expression of z, or a number")
+        wrong = described(controller)
+        raise ModelError(f"controller: found {wrong}, expected an expression of z, or a number")
     e = sp.sympify(controller)
     e = e.xreplace({x: Z for x in e.free_symbols if x.name == "z"})
     if e.free_symbols - {Z}:

@@ -131,19 +131,19 @@ def velocity_compensation(
     """
     f_c, f_d = exact(coulomb_level), exact(compensator_level)
     a, b = exact(smoothing_velocity), exact(viscous_damping)
-    own = None if presliding_stiffness is None else exact(presliding_stiffness)
+    presliding = None if presliding_stiffness is None else exact(presliding_stiffness)
     period = sp.S(0) if sample_time is None else exact(sample_time)
-    contact = "ideal" if own is None else f"presliding ({decimal(own)} N/m)"
+    contact = "ideal" if presliding is None else f"presliding ({decimal(presliding)} N/m)"
     computer = f", sampled each {decimal(period)} s, {late} late," if period else ""
     statement = (
         f"{contact} friction {decimal(f_c)} N and damping {decimal(b)} N s/m with a compensator of "
         f"velocity ({decimal(f_d)} N, a = {decimal(a)} m/s){computer} is passive"
     )
-    least = f_c if own is None else sp.S(0)
+    least = f_c if presliding is None else sp.S(0)
     gap = f_d - least - a * b
     if gap <= 0 or gap**2 <= 4 * least * a * b:
-        return Claim(statement, _proof(least, f_d, a, b, own, sampled=period > 0))
-    friction = Coulomb(float(f_c)) if own is None else Dahl(float(f_c), float(own))
+        return Claim(statement, _proof(least, f_d, a, b, presliding, sampled=period > 0))
+    friction = Coulomb(float(f_c)) if presliding is None else Dahl(float(f_c), float(presliding))
     strokes = _strokes((float(f_d), float(a)), friction, float(b), float(period), late)
     if strokes is None:
         why = "the condition fails, but by so little that no stroke shows it in double precision"
@@ -152,12 +152,18 @@ def velocity_compensation(
 
 
 def _proof(
-    least: sp.Expr, f_d: sp.Expr, a: sp.Expr, b: sp.Expr, own: sp.Expr | None, *, sampled: bool
+    least: sp.Expr,
+    f_d: sp.Expr,
+    a: sp.Expr,
+    b: sp.Expr,
+    presliding: sp.Expr | None,
+    *,
+    sampled: bool,
 ) -> Proof:
-    if own is None:
+    if presliding is None:
         certificates = [ideal_contact(f_c=least, f_d=f_d, smoothing=a, b=b)]
     else:
-        certificates = [yielding_contact(f_d=f_d, smoothing=a, b=b, stiffness=own)]
+        certificates = [yielding_contact(f_d=f_d, smoothing=a, b=b, stiffness=presliding)]
     if sampled:
         certificates.append(held_command(least=least, b=b))
     tight = (f_d - least - a * b) ** 2 == 4 * least * a * b and f_d >= least + a * b

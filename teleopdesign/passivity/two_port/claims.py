@@ -19,6 +19,7 @@ from ..checker.absolute_stability import conditions
 from ..claims.certificate import absolute_stability_certificate, positive_real_certificate
 from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown, Verdict
 from ..linear.impedance import impedance, readable
+from ..linear.polynomials import halves, where_negative
 from ..linear.positive_real import is_positive_real
 from ..search.growing_wave import GrowingWave, growing_wave, halvings, wave_of
 from .delayed_two_port import late_terms, obstacles
@@ -60,7 +61,11 @@ def passive(system: TwoPort) -> Claim:
     frequencies, margin = _lowest(system, passive_margin)
     hidden = obstacles(system, "passive") if system.has_delay else ()
     if margin < 0 or hidden or not system.has_delay:
-        wave = _wave_between(system, frequencies)
+        rates: list[float] = []
+        if not system.has_delay:
+            further, rates = _where_it_gives_out(_rational(system))
+            frequencies += further
+        wave = _wave_between(system, frequencies, rates)
         wave = wave or _best(_wave_at(system.z, f) for f in frequencies)
         if wave is not None:
             f = float(wave.frequency) / (2 * np.pi)
@@ -71,7 +76,7 @@ def passive(system: TwoPort) -> Claim:
 
 
 def absolutely_stable(system: TwoPort) -> Claim:
-    """Does it not grow, whatever passive holds its ports (Llewellyn, and residues on the axis)?
+    """Is the two-port stable between any passive terminations (Llewellyn, residues on the axis)?
 
     What is claimed, and why it follows, stands in `checker/absolute_stability.py`. A refutation is
     a motion that grows by itself between the two passive terminations that the method names; with
@@ -157,6 +162,23 @@ def _lowest(system: TwoPort, margin: Any) -> tuple[list[float], float]:
     return [lowest[0], *chosen], lowest[1]
 
 
+def _where_it_gives_out(z: sp.ImmutableMatrix) -> tuple[list[float], list[float]]:
+    """Where Z + Z* is not positive: frequencies (Hz) of the axis, and rates (1/s), wherever.
+
+    From exact polynomials in w^2 and in s: a residue that is not Hermitian, or not positive, gives
+    out energy only next to its pole, below or above every frequency of a grid.
+    """
+    axis = [x for p in _minors(z + z.T.subs(S, -S)) for x in where_negative(halves(p)[0])]
+    rates = [x for p in _minors(z + z.T) for x in where_negative(p)]
+    return [float(x) ** 0.5 / (2 * np.pi) for x in axis], [float(x) for x in rates]
+
+
+def _minors(twice: sp.ImmutableMatrix) -> list[sp.Poly]:
+    """Polynomials of the signs of both diagonal entries and of the determinant."""
+    minors = (sp.fraction(sp.together(m)) for m in (twice[0, 0], twice[1, 1], twice.det()))
+    return [sp.Poly(above * below, S, domain="QQ") for above, below in minors]
+
+
 def _best(waves: Iterable[GrowingWave | None]) -> GrowingWave | None:
     """The wave that grows fastest against its frequency."""
     growing = [w for w in waves if w is not None]
@@ -184,16 +206,20 @@ def _points(system: TwoPort) -> np.ndarray:
     return np.array([*points_near_poles(ratios)])
 
 
-def _wave_between(system: TwoPort, frequencies: Sequence[float]) -> GrowingWave | None:
-    """A growing wave beside those (Hz), beside a pole or anywhere, the plainest of them."""
+def _wave_between(
+    system: TwoPort, frequencies: Sequence[float], rates: Sequence[float]
+) -> GrowingWave | None:
+    """A growing wave beside those (Hz; 1/s), beside a pole or anywhere, the plainest of them."""
     beside = [2 * np.pi * f * (2.0**-k + 1j) for f in frequencies for k in range(33)]
-    points = np.concatenate([_points(system), beside])
+    points = np.concatenate([_points(system), beside, rates])
     z = system.at(points)
     finite = np.isfinite(z).all(axis=(1, 2))
     points, z = points[finite], z[finite]
     share = passive_margin(z) / np.abs(z).max(axis=(1, 2)) * points.real / np.abs(points)
     size = np.abs(np.log(np.abs(points) / np.median(np.abs(points))))
-    for k in np.lexsort((size, np.round(share, 2)))[:20]:  # of equals, neither slow nor fast ones
+    plainest = np.lexsort((size, np.round(share, 2)))[:20]  # of equals, neither slow nor fast ones
+    strongest = np.argsort(share)[:20]  # where all are weak, the rounded shares are all alike
+    for k in dict.fromkeys([*plainest, *strongest]):
         at = Fraction(points[k].real), Fraction(points[k].imag)
         wave = wave_of(system.z, *at)
         if wave is not None and wave.energy > 0 and (system.has_delay or _takes_out(system, at)):
@@ -217,8 +243,8 @@ def _terminated_elsewhere(system: TwoPort) -> Iterator[tuple[str, GrowingWave]]:
     for s, second, turned in candidates(values, points)[:40]:
         far = far_termination(s, second)
         z11, z12, z21, z22 = reversed(list(system.z)) if turned else system.z
-        seen = z11 if far.clamped else z11 - z12 * z21 / (z22 + far.expression)
-        wave = wave_of(sp.ImmutableMatrix([[seen]]), *rounded(s))
+        at_port = z11 if far.clamped else z11 - z12 * z21 / (z22 + far.expression)
+        wave = wave_of(sp.ImmutableMatrix([[at_port]]), *rounded(s))
         if wave is not None and wave.energy > 0:
             yield (f"{far}" if not turned else f"moved, port 1 {far}"), wave
             return
@@ -235,13 +261,13 @@ def _terminated(system: TwoPort, frequency: float) -> Iterator[tuple[str, Growin
     if r2 > 0 and loop != 0:
         reactance = (2 * r2 / (1 + np.exp(-1j * np.angle(loop))) - value[1, 1]).imag
         held = _reactive(reactance, 2 * np.pi * frequency)
-        seen = z[0, 0] - z[0, 1] * z[1, 0] / (z[1, 1] + held)
-        choices.append((f"held by {readable(held)} N s/m", seen))
-    for text, seen in choices:
-        if seen.has(sp.exp):
-            wave = _wave_at(sp.ImmutableMatrix([[seen]]), frequency)
+        at_port = z[0, 0] - z[0, 1] * z[1, 0] / (z[1, 1] + held)
+        choices.append((f"held by {readable(held)} N s/m", at_port))
+    for text, at_port in choices:
+        if at_port.has(sp.exp):
+            wave = _wave_at(sp.ImmutableMatrix([[at_port]]), frequency)
         else:
-            one = impedance(seen)
+            one = impedance(at_port)
             wave = None if is_positive_real(one) else growing_wave(one)
         if wave is not None:
             yield text, wave

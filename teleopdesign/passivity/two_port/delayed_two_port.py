@@ -71,8 +71,8 @@ def late_terms(entry: sp.Expr) -> tuple[Late, ...] | None:
         delay = sum((n * t for n, t in zip(times, delays, strict=True)), Fraction(0))
         one = polynomial([*[0] * power, Fraction(int(c.p), int(c.q))])
         by_delay[delay] = add(by_delay.get(delay, []), one)
-    found = ((coprime(p, q), delay) for delay, p in sorted(by_delay.items()) if p)
-    return tuple(Late(ratio, delay) for ratio, delay in found)
+    terms_by_delay = ((coprime(p, q), delay) for delay, p in sorted(by_delay.items()) if p)
+    return tuple(Late(ratio, delay) for ratio, delay in terms_by_delay)
 
 
 def obstacles(system: TwoPort, criterion: Criterion) -> tuple[str, ...]:
@@ -82,10 +82,10 @@ def obstacles(system: TwoPort, criterion: Criterion) -> tuple[str, ...]:
     if lost:
         return (f"a dead time in the denominator of {lost[0]}: its poles are not counted",)
     z = [e for e in entries if e is not None]
-    found = list(_growth(z))
-    if not found:
-        found += [*_at_zero(z, criterion), *_on_the_axis(z, criterion), *_far_out(z, criterion)]
-    return tuple(found)
+    reasons = list(_growth(z))
+    if not reasons:
+        reasons += [*_at_zero(z, criterion), *_on_the_axis(z, criterion), *_far_out(z, criterion)]
+    return tuple(reasons)
 
 
 def _growth(z: Sequence[tuple[Late, ...]]) -> Iterator[str]:
@@ -214,12 +214,12 @@ def _residue(terms: Sequence[Late], s: complex) -> complex:
 
 def _allowed(k: Sequence[complex], criterion: Criterion, rounding: float) -> bool:
     k11, k12, k21, k22 = k
-    own = rounding * max(abs(x) for x in k)
-    if min(k11.real, k22.real) < -own or max(abs(k11.imag), abs(k22.imag)) > own:
+    tolerance = rounding * max(abs(x) for x in k)
+    if min(k11.real, k22.real) < -tolerance or max(abs(k11.imag), abs(k22.imag)) > tolerance:
         return False
     near = rounding * (abs(k11 * k22) + abs(k12 * k21))
     if criterion == "passive":
-        hermitian = abs(k12 - k21.conjugate()) <= own
+        hermitian = abs(k12 - k21.conjugate()) <= tolerance
         return hermitian and (k11 * k22).real >= abs(k12) ** 2 - near
     crossed = k12 * k21
     return 2 * (k11 * k22).real - crossed.real >= abs(crossed) - near
@@ -260,10 +260,10 @@ def _fades(z: Sequence[tuple[Late, ...]], criterion: Criterion) -> bool:
         return True
     if not any(t.delay for k in (1, 2) for t in z[k]):
         return True  # rational couplings: the sweep's end and the residues speak
-    own = [_real_far_out(z[k]) for k in (0, 3)]
-    if own[0] is None or own[1] is None:
+    diagonal = [_real_far_out(z[k]) for k in (0, 3)]
+    if diagonal[0] is None or diagonal[1] is None:
         return False
-    power, size = own[0][0] + own[1][0], own[0][1] * own[1][1]
+    power, size = diagonal[0][0] + diagonal[1][0], diagonal[0][1] * diagonal[1][1]
     ends = [_far_size(z[k]) for k in (1, 2)]
     if criterion == "passive":  # abs(z12) + abs(z21) <= 2 (r1 r2)^(1/2)
         top = max(n for n, _ in ends)

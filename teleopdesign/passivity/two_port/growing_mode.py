@@ -171,11 +171,11 @@ _UNIT: Ratio = ([Fraction(1)], [Fraction(1)])
 
 def entries_of(z: sp.ImmutableMatrix) -> Entries:
     """z11, z12, z21, z22 as coprime lists of Fractions; z: rational in s."""
-    found = []
+    ratios = []
     for entry in (z[0, 0], z[0, 1], z[1, 0], z[1, 1]):
         p, q = (sp.Poly(part, S, domain="QQ") for part in sp.fraction(sp.together(entry)))
-        found.append(coprime(rising(p), rising(q)))
-    return found[0], found[1], found[2], found[3]
+        ratios.append(coprime(rising(p), rising(q)))
+    return ratios[0], ratios[1], ratios[2], ratios[3]
 
 
 def rising(p: sp.Poly) -> Polynomial:
@@ -266,13 +266,13 @@ def points_near_poles(z: Sequence[Ratio]) -> Iterator[complex]:
     sizes = [abs(r) for r in roots if r != 0] or [1.0]
     low, high = min(sizes), max(sizes)
     turns = np.exp(1j * np.pi / 4 * np.arange(8))
-    found = [p + abs(p) * 2.0**-k * turn for p in poles for k in _CLOSER for turn in turns]
+    candidates = [p + abs(p) * 2.0**-k * turn for p in poles for k in _CLOSER for turn in turns]
     for k in _CLOSER:
         for turn in np.exp(1j * np.pi / 2 * np.array([0, 0.5, 0.9])):
-            found += [low * 2.0**-k * turn, high * 2.0**k * turn]
+            candidates += [low * 2.0**-k * turn, high * 2.0**k * turn]
     for size in np.geomspace(low / 4, high * 4, 25):
-        found += list(size * np.exp(1j * np.linspace(0, 0.46 * np.pi, 12)))
-    for s in found:
+        candidates += list(size * np.exp(1j * np.linspace(0, 0.46 * np.pi, 12)))
+    for s in candidates:
         imaginary = s.imag if abs(s.imag) > 1e-9 * abs(s) else 0.0  # rounding: growth without swing
         if s.real > 1e-12 * abs(s) and imaginary >= 0:
             yield complex(s.real, imaginary)
@@ -314,11 +314,11 @@ def _scored(
         inside = np.where(np.isfinite(near) & (near != 0), inside, -1)
         inside = np.where(half[:, None] > 0, inside, np.sign(inside))
         score = np.minimum(inside, 0.2) * (points.real / np.abs(points))[:, None]
-    found = []
+    scores = []
     for i in np.flatnonzero((score > 0).any(axis=1)):
         k = int(np.argmax(score[i]))
-        found.append((float(score[i, k]), complex(points[i]), complex(second[i, k]), turned))
-    return found
+        scores.append((float(score[i, k]), complex(points[i]), complex(second[i, k]), turned))
+    return scores
 
 
 def _best_far(loop: np.ndarray, z22: np.ndarray, s: np.ndarray) -> np.ndarray:
@@ -352,15 +352,15 @@ def _mode_at(
     z11, z12, z21, z22 = (value_at(one, at) for one in (_turned(z) if turned else z))
     if z11 is None or z12 is None or z21 is None or z22 is None:
         return None
-    seen, ratio = z11, 0j
+    at_port, ratio = z11, 0j
     if not far.clamped:
         below = _plus(z22, exact_value(far, at))
         if below == _ZERO:
             return None
-        seen = _plus(z11, _over_exact(_times(z12, z21), below), -1)
+        at_port = _plus(z11, _over_exact(_times(z12, z21), below), -1)
         ratio = -_number(_over_exact(z21, below))  # velocity of the far port for 1 m/s of the near
-    plain = termination_of((-seen[0], -seen[1]), at)
-    if plain is None or seen == _ZERO:
+    plain = termination_of((-at_port[0], -at_port[1]), at)
+    if plain is None or at_port == _ZERO:
         return None
     for near in (plain, _spread(plain, at)):
         velocity = _phased(near, far, ratio, _number(at))

@@ -82,7 +82,7 @@ def _entry(entry: Any) -> sp.Expr:
     return e
 
 
-def teleoperator(
+def teleoperator_two_port(
     *, master: Any, slave: Any, stiffness: float, damping: float = 0.0, delay: float = 0.0
 ) -> TwoPort:
     """Master and slave, coupled by spring and damper between their positions.

@@ -117,8 +117,8 @@ def _put_small(network: Network, cells: Cells, path: Path, spine: tuple[str, ...
     ahead = heading if start is not None else -heading
     behind = (column + ahead, row)
     beside = [(column, row + 1), (column, row - 1), (column + ahead, row + 1)]
-    taken = set(cells.at.values())
-    below, above = (sum(1 for _, r in taken if s * r > 0) for s in (1, -1))
+    occupied = set(cells.at.values())
+    below, above = (sum(1 for _, r in occupied if s * r > 0) for s in (1, -1))
     if start is None and row == 0 and above <= below:
         beside[:2] = beside[1::-1]
     straight = (
@@ -126,10 +126,10 @@ def _put_small(network: Network, cells: Cells, path: Path, spine: tuple[str, ...
     )
     wished = [behind, *beside] if straight else [*beside, behind]
     k = 2
-    while all(c in taken for c in wished):
+    while all(c in occupied for c in wished):
         wished += [(column, row + k), (column, row - k)]
         k += 1
-    cells.put(node, next(c for c in wished if c not in taken), heading)
+    cells.put(node, next(c for c in wished if c not in occupied), heading)
 
 
 def _fed(network: Network, cells: Cells, node: str) -> bool:

@@ -37,8 +37,8 @@ def network(diagram: Diagram) -> Network:
         if isinstance(block, Moving):
             making.forces(block)
         elif not isinstance(block, Linked):
-            taken = block.motion if isinstance(block, Attached) else block.input
-            making.join(making.net(taken), _box(block))
+            source = block.motion if isinstance(block, Attached) else block.input
+            making.join(making.net(source), _box(block))
     for kinematics in diagram.kinematics:
         making.kinematics(kinematics)
     for junction in diagram.junctions:
@@ -92,13 +92,13 @@ class _Making:
         """A box for each row of a matrix, on the motions that it sees."""
         title = (Run(MINUS, 0, False),) if block.sign < 0 else ()
         for i, force in enumerate(block.forces):
-            row, seen = f"row {i + 1}", [j for k, j in block.entries if k == i]
+            row, read = f"row {i + 1}", [j for k, j in block.entries if k == i]
             name = f"{_box(block)} {row}"
             self.made.nodes[name] = Node(
                 name, "box", (*title, *symbol(block.name)), (row, *_kinds(block, i))
             )
             self.wire(name, force)
-            self.gathered(name, [self.net(s) for s in _once(block.motions[j] for j in seen)])
+            self.gathered(name, [self.net(s) for s in _once(block.motions[j] for j in read)])
 
     def kinematics(self, part: Kinematics) -> None:
         name = f"block {part.name}"
@@ -191,9 +191,9 @@ def _same_signals(diagram: Diagram) -> dict[str, str]:
     }
     origins = {}
     for output in passed:
-        origin, seen = output, set()
-        while origin in passed and origin not in seen:
-            seen.add(origin)
+        origin, visited = output, set()
+        while origin in passed and origin not in visited:
+            visited.add(origin)
             origin = passed[origin]
         if origin not in passed:  # else signals that only pass each other on, in a ring
             origins[output] = origin

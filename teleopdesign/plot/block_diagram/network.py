@@ -64,7 +64,7 @@ class Network:
         """Nodes that the output of a node goes to."""
         return [t for net in self.nets.values() if net.source == node for t, _ in net.targets]
 
-    def taken(self, node: str) -> int:
+    def count_incoming(self, node: str) -> int:
         """Number of wires that a node takes."""
         return sum(t == node for net in self.nets.values() for t, _ in net.targets)
 

@@ -39,7 +39,7 @@ class Route:
 
 
 @dataclass
-class Grid:
+class RoutingGrid:
     """Lines of the grid around the cells, and what lies on it."""
 
     cells: Cells
@@ -98,14 +98,14 @@ class Grid:
             self.used.setdefault(b, {}).setdefault(net, set()).add((d + 2) % 4)
 
 
-def route(network: Network, cells: Cells) -> tuple[Grid, list[Route], float]:
+def route(network: Network, cells: Cells) -> tuple[RoutingGrid, list[Route], float]:
     """All wires, the grid that they lie on, and their cost."""
     jobs = [(net, t, w) for net in network.nets.values() for t, w in net.targets]
     for tracks in TRACKS:
-        grid = Grid(cells, tracks)
+        grid = RoutingGrid(cells, tracks)
         jobs.sort(key=lambda job: _far(job[0], job[1], grid))
         for _ in range(TRIALS):
-            grid = Grid(cells, tracks)
+            grid = RoutingGrid(cells, tracks)
             routes, total, failed = _routes(network, grid, jobs)
             if failed is None:
                 return grid, routes, total
@@ -114,7 +114,7 @@ def route(network: Network, cells: Cells) -> tuple[Grid, list[Route], float]:
 
 
 def _routes(
-    network: Network, grid: Grid, jobs: Sequence[tuple[Net, str, float]]
+    network: Network, grid: RoutingGrid, jobs: Sequence[tuple[Net, str, float]]
 ) -> tuple[list[Route], float, int | None]:
     """Routes in the order of the jobs, their cost, and the number of the job that found no way."""
     routes: list[Route] = []
@@ -131,13 +131,13 @@ def _routes(
     return routes, total, None
 
 
-def _far(net: Net, target: str, grid: Grid) -> tuple[bool, int]:
+def _far(net: Net, target: str, grid: RoutingGrid) -> tuple[bool, int]:
     (x0, y0), (x, y) = grid.vertex(net.source), grid.vertex(target)
     ahead = (x - x0) * grid.cells.heading[net.source] > 0
     return not (y == y0 and ahead), abs(x - x0) + abs(y - y0)
 
 
-def _out(network: Network, grid: Grid, node: str) -> dict[int, float]:
+def _out(network: Network, grid: RoutingGrid, node: str) -> dict[int, float]:
     """Steps by which a wire may leave a node, with what each costs more than the best."""
     ahead = 0 if grid.cells.heading[node] == RIGHT else 2
     if network.nodes[node].kind != "source":
@@ -145,11 +145,11 @@ def _out(network: Network, grid: Grid, node: str) -> dict[int, float]:
     return {d: (0.0 if d == ahead else BESIDE_RIGHT) for d in range(4)}
 
 
-def _into(network: Network, grid: Grid, node: str) -> set[int]:
+def _into(network: Network, grid: RoutingGrid, node: str) -> set[int]:
     """Steps by which a wire may come to a node."""
     kind = network.nodes[node].kind
     ahead = 2 if grid.cells.heading[node] == LEFT else 0
-    if kind == "box" and network.taken(node) <= 1:
+    if kind == "box" and network.count_incoming(node) <= 1:
         return {ahead}
     if kind in ("box", "bar", "sum"):
         return {0, 1, 2, 3} - {(ahead + 2) % 4}
@@ -157,7 +157,7 @@ def _into(network: Network, grid: Grid, node: str) -> set[int]:
 
 
 def _cheapest(
-    network: Network, grid: Grid, net: Net, target: str
+    network: Network, grid: RoutingGrid, net: Net, target: str
 ) -> tuple[tuple[Vertex, ...], float] | None:
     goal, entries = grid.vertex(target), _into(network, grid, target)
     heap: list[tuple[float, float, Vertex, int]] = []
@@ -200,7 +200,7 @@ def _cheapest(
     return None
 
 
-def _starts(network: Network, grid: Grid, net: Net) -> Iterator[tuple[Vertex, int, float]]:
+def _starts(network: Network, grid: RoutingGrid, net: Net) -> Iterator[tuple[Vertex, int, float]]:
     """Where a wire of a net may begin, with what that costs: its source, or a wire of its own."""
     if net.name not in grid.begun:
         source = grid.vertex(net.source)

@@ -10,7 +10,7 @@ from typing import Literal
 from .cells import LEFT, RIGHT, Cells
 from .drawing import Drawing
 from .network import MINUS, RADIUS, Network, Node, label
-from .routes import Grid, Route
+from .routes import Route, RoutingGrid
 from .shapes import SIZES, Box, Circle, Dot, Point, Run, Shape, Text, Wire, width
 
 MARGIN, PITCH = 8.0, 11.0
@@ -24,7 +24,7 @@ LABEL_BEHIND = 5.0  # between a node and the name on its wire
 
 
 def sheet(
-    network: Network, cells: Cells, grid: Grid, routes: Sequence[Route], title: str
+    network: Network, cells: Cells, grid: RoutingGrid, routes: Sequence[Route], title: str
 ) -> Drawing:
     """The shapes of a laid out diagram, in the order in which they are painted."""
     x = _across(network, cells, grid, routes)
@@ -52,7 +52,7 @@ def sheet(
 
 
 def _across(
-    network: Network, cells: Cells, grid: Grid, routes: Sequence[Route]
+    network: Network, cells: Cells, grid: RoutingGrid, routes: Sequence[Route]
 ) -> dict[int, float]:
     """x of every used line."""
     used = _lines(routes, 0)
@@ -102,7 +102,9 @@ def _room(network: Network, cells: Cells, routes: Sequence[Route], column: int, 
     return need
 
 
-def _down(network: Network, cells: Cells, grid: Grid, routes: Sequence[Route]) -> dict[int, float]:
+def _down(
+    network: Network, cells: Cells, grid: RoutingGrid, routes: Sequence[Route]
+) -> dict[int, float]:
     """y of every used line."""
     used = _lines(routes, 1)
     rows = sorted({r for _, r in cells.at.values()})
@@ -132,7 +134,7 @@ def _half(network: Network, cells: Cells, axis: int, line: int) -> float:
 
 
 def _wire(
-    network: Network, grid: Grid, one: Route, x: dict[int, float], y: dict[int, float]
+    network: Network, grid: RoutingGrid, one: Route, x: dict[int, float], y: dict[int, float]
 ) -> Wire:
     corners = [one.vertices[0]]
     for a, b, c in zip(one.vertices, one.vertices[1:], one.vertices[2:], strict=False):

@@ -1,0 +1,177 @@
+"""measure a model over named parameters, on all cores or on a cluster"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import ExperimentError, did_you_mean
+from ._options import add_effect_files, check_output, say
+
+if TYPE_CHECKING:
+    from ..studies import Progress, Study
+
+#: name that a file of Python gives its study
+_NAME = "STUDY"
+#: s between two lines of progress where no terminal shows them
+_BETWEEN_LINES = 10.0
+_MOST_REASONS = 5
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument(
+        "file",
+        type=Path,
+        help="a study: FILE.toml, which needs no Python; or FILE.py, which is RUN, with all that "
+        f"it does, and sets {_NAME} to the arguments of td.study",
+    )
+    parser.add_argument(
+        "--workers", type=_count, metavar="N", help="processes (default: one for each core)"
+    )
+    parser.add_argument(
+        "--scheduler", default="", metavar="A", help="a Dask cluster: tcp://ADDRESS:PORT"
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="F",
+        help="write the data set (.nc); finished points are kept in F.part, and the same command "
+        "goes on from there",
+    )
+    parser.add_argument("--figure", type=Path, metavar="F", help="draw it (.pdf, .svg, .png)")
+    add_effect_files(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the study, print what it measured, write what was asked for."""
+    if options.scheduler and options.workers is not None:
+        raise ExperimentError("--workers: found beside --scheduler: a cluster brings its own")
+    if options.out is not None:
+        check_output(options.out, (".nc",))
+    if options.figure is not None:
+        check_output(options.figure, (".pdf", ".svg", ".png"))
+    arguments = _arguments(options)
+    from ..studies import study
+
+    told = _Told()
+    try:
+        result = study(
+            **arguments,
+            workers=options.workers,
+            scheduler=options.scheduler,
+            out=options.out,
+            progress=told,
+        )
+    except KeyboardInterrupt:
+        say("")
+        print(f"teleopdesign: stopped{_kept(options.out, told.last)}", file=sys.stderr)
+        return 130
+    say("")
+    print(result)
+    _print_failures(result)
+    if options.figure is not None:
+        from ..plot import save_figure
+
+        save_figure(result.plot(), options.figure, suffixes=(options.figure.suffix,))
+    return 0
+
+
+def _arguments(options: argparse.Namespace) -> dict[str, Any]:
+    path: Path = options.file
+    if path.suffix == ".toml":
+        from ..effects import catalogue
+        from ..studies import read_study_file
+
+        return read_study_file(path, effects=catalogue(*options.effect))
+    if path.suffix != ".py":
+        raise ExperimentError(f"{path}: found {path.suffix!r}, expected .toml or .py")
+    return _run_file(path)
+
+
+def _run_file(path: Path) -> dict[str, Any]:
+    """Run a user's file, as the user asked, and take its study."""
+    import inspect
+
+    from ..studies import study
+
+    try:
+        source = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise ExperimentError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise ExperimentError(f"{path}: not UTF-8 text (byte {error.start})") from None
+    sys.path.insert(0, str(path.resolve().parent))
+    names: dict[str, Any] = {"__name__": "__study__", "__file__": str(path)}
+    try:
+        exec(compile(source, str(path.resolve()), "exec"), names)
+    except SyntaxError as error:
+        raise ExperimentError(f"{path}: line {error.lineno}: {error.msg}") from None
+    if _NAME not in names:
+        raise ExperimentError(
+            f"{path}: sets no {_NAME}, expected {_NAME} = dict(model=..., axes=..., measures=...)"
+            f"{did_you_mean(_NAME, names)}"
+        )
+    given = names[_NAME]
+    if not isinstance(given, dict):
+        raise ExperimentError(f"{path}: {_NAME}: found {type(given).__name__}, expected a dict")
+    beside = {"workers", "scheduler", "out", "progress"}
+    known = [n for n in inspect.signature(study).parameters if n not in beside]
+    for name in given:
+        if name not in known:
+            raise ExperimentError(
+                f"{path}: {_NAME}: unknown {name!r}, expected {', '.join(known)}"
+                f"{did_you_mean(name, known)}"
+            )
+    for name in ("model", "axes", "measures"):
+        if name not in given:
+            raise ExperimentError(f"{path}: {_NAME}: {name} is missing")
+    return given
+
+
+class _Told:
+    """Progress: one line that changes on a terminal, else a line now and then."""
+
+    def __init__(self) -> None:
+        self.last: Progress | None = None
+        self._shown = time.monotonic()
+
+    def __call__(self, progress: Progress) -> None:
+        if self.last is None and progress.kept:
+            print(f"goes on after {progress.kept} points", file=sys.stderr)
+        self.last = progress
+        if sys.stderr.isatty():
+            say(str(progress))
+        elif (now := time.monotonic()) - self._shown > _BETWEEN_LINES or (
+            progress.done == progress.total
+        ):
+            self._shown = now
+            print(progress, file=sys.stderr, flush=True)
+
+
+def _kept(out: Path | None, last: Progress | None) -> str:
+    if out is None:
+        return "; nothing is kept: give --out F to keep what is finished"
+    count = f"{last.done} of {last.total} points are" if last is not None else "finished points are"
+    return f"; {count} kept in {out}.part, the same command goes on from there"
+
+
+def _print_failures(result: Study) -> None:
+    found = result.failures
+    for reason, count in list(found.items())[:_MOST_REASONS]:
+        print(f"  {count} failed: {reason}")
+    if len(found) > _MOST_REASONS:
+        print(f"  and {len(found) - _MOST_REASONS} other reasons")
+
+
+def _count(text: str) -> int:
+    try:
+        number = int(text)
+    except ValueError:
+        number = 0
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"found {text!r}, expected a whole number from 1")
+    return number

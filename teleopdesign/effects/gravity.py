@@ -1,0 +1,34 @@
+"""Gravity on a revolute axis: a torque that repeats once a turn.
+
+    F = A sin(x + phi),   A = m g l;   x + phi = 0 where the centre of mass hangs straight down
+
+A pendulum, a link, an unbalanced drum. On a prismatic axis gravity is a constant: `bias`. Seen over
+a small part of a turn it is a `bias` and a `spring`; where it repeats several times a turn, as
+teeth and magnets do, it is `cogging`.
+"""
+
+from sympy import sin
+
+from ._effect import Effect, FitSearch, Parameter, positive_amplitude
+
+
+def law(now, p):
+    return p.amplitude * sin(now.position + p.phase)
+
+
+EFFECT = Effect(
+    role="force",
+    energy="stores",
+    law=law,
+    elsewhere={"prismatic": "bias"},
+    parameters={
+        "amplitude": Parameter("force", "A: torque where the link lies level", lower=-float("inf")),
+        "phase": Parameter(
+            "angle", "phi: angle at x = 0", lower=-float("inf"), search=FitSearch(starts=(0.0,))
+        ),
+    },
+    absent={"amplitude": 0.0},
+    canonical=positive_amplitude,
+    source="equation of the pendulum; Spong, Hutchinson, Vidyasagar, Robot Modeling and Control "
+    "(2006), section 6.3",
+)

@@ -1,0 +1,50 @@
+"""Source of a whole module: the laws of a structure, then the loop of `integrator.py`."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+
+from .exponentials import PHI, WEIGHTS
+
+_HEAD = """from math import *
+
+import numpy as np
+
+"""
+# every part is inlined: then what one of them leaves in memory for the next one stays in registers
+_COMPILED = """from numba import njit
+
+inlined = dict(forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+jitted = njit(nogil=True, error_model="numpy", **inlined)
+entry = njit(nogil=True, error_model="numpy", cache=True)
+"""
+_PLAIN = """
+
+def jitted(function):
+    return function
+
+
+entry = jitted
+"""
+
+
+def module_source(laws: str, *, jit: bool = True, lanes: int = 1) -> str:
+    """The module whose `run` simulates that many lanes;  laws: as `Generator.source` gives them."""
+    return "\n".join([*_laws_part(laws, jit=jit, lanes=lanes), _integrator()])
+
+
+def _laws_part(laws: str, *, jit: bool, lanes: int) -> list[str]:
+    text = '"""Generated from the laws of the blocks of a diagram; do not edit."""'
+    # numba takes as long for a product of constants as for any other
+    laws = re.sub(r"(\d+) \* LANES", lambda found: str(int(found[1]) * lanes), laws)
+    decorators = _COMPILED if jit else _PLAIN
+    return [text, _HEAD, decorators, f"LANES = {lanes}\n", PHI, WEIGHTS, "", laws]
+
+
+@cache
+def _integrator() -> str:
+    """The file behind its line of "#": in front of that it imports what the laws give here."""
+    text = Path(__file__).with_name("integrator.py").read_text(encoding="utf-8")
+    return text.split("#" * 98 + "\n", 1)[1]

@@ -1,0 +1,385 @@
+# ruff: noqa: F403, F405
+"""The simulation loop: exponential Runge-Kutta of order four around the laws of one structure.
+
+Cox, Matthews, J. Comput. Phys. 176 (2002) 430, eqs (26) to (29), with the rate of a bristle split
+as A z + B, A frozen at the start of the step; for all other states the classical Runge-Kutta
+method. At every sample the computer reads its sensors and steps its states as its laws say.
+
+Several simulations of one grid run side by side in lanes; one lane is a simulation by itself. What
+the loop remembers is `memory`: a row for each quantity, in it an entry for each lane. A constant
+such as STATES is where its group begins, MANY_STATES how many there are, so that state i of a lane
+is `memory[STATES + i * LANES + lane]`. With constant addresses the compiler keeps a step in
+registers, and works on several lanes by one instruction.
+
+Everything below the line of "#" is the second half of every generated module; the first half holds
+the laws and constants that are imported here (`_codegen.py`). Those of `_free_mass.py` let this
+file be read, checked and tested by itself.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ._free_mass import *
+
+##################################################################################################
+
+
+@jitted
+def largest_change(worst, slope, last, h):
+    """Largest change of a bristle's decay in a step, abs(A h), where it is reloaded."""
+    z = abs(slope) * h
+    y = abs(last) * h
+    change = abs(z - y)
+    if min(z, y) < 0.5 and change > worst:
+        return change
+    return worst
+
+
+@jitted
+def prepare_step(first, time, h, inputs, column, parameters, memory, lane):
+    """Slopes A of the bristles, the factors of their step, and how well the step resolves them."""
+    slopes(time, STATES, BRISTLES, inputs, column, LATE, parameters, memory, SLOPES, lane)
+    for i in range(MANY_BRISTLES):
+        at = i * LANES + lane
+        slope = memory[SLOPES + at]
+        if not first:
+            last = memory[LAST_SLOPES + at]
+            memory[WORST + at] = largest_change(memory[WORST + at], slope, last, h)
+        memory[LAST_SLOPES + at] = slope
+        e_half, g_half, e, w0, w1, w3 = weights(h * slope)
+        memory[E_HALF + at] = e_half
+        memory[G_HALF + at] = 0.5 * h * g_half
+        memory[E_STEP + at] = e
+        memory[WEIGHT_0 + at] = w0
+        memory[WEIGHT_1 + at] = w1
+        memory[WEIGHT_3 + at] = w3
+    for i in range(MANY_LATE):
+        at = i * LANES + lane
+        memory[LATE_MIDDLE + at] = 0.5 * (memory[LATE + at] + memory[LATE_END + at])
+
+
+@jitted
+def take_rests(bristles, rests, memory, lane):
+    """B of each bristle, whose rate A z + B is given."""
+    for i in range(MANY_BRISTLES):
+        at = i * LANES + lane
+        memory[rests + at] -= memory[SLOPES + at] * memory[bristles + at]
+
+
+@jitted
+def move_straight(rates, length, memory, lane):
+    """States for the next stage: from the start of the step with these rates."""
+    for i in range(MANY_STATES):
+        at = i * LANES + lane
+        memory[STAGE_STATES + at] = memory[STATES + at] + length * memory[rates + at]
+
+
+@jitted
+def move_half(rests, bristles, memory, lane):
+    """Bristles after half a step from its start."""
+    for i in range(MANY_BRISTLES):
+        at = i * LANES + lane
+        decayed = memory[E_HALF + at] * memory[BRISTLES + at]
+        memory[bristles + at] = decayed + memory[G_HALF + at] * memory[rests + at]
+
+
+@jitted
+def move_second_half(memory, lane):
+    """Bristles after the second half of a step, from where the first stage led."""
+    for i in range(MANY_BRISTLES):
+        at = i * LANES + lane
+        rest = 2 * memory[RESTS_2 + at] - memory[RESTS_0 + at]
+        decayed = memory[E_HALF + at] * memory[FIRST_BRISTLES + at]
+        memory[STAGE_BRISTLES + at] = decayed + memory[G_HALF + at] * rest
+
+
+@jitted
+def end_step(h, memory, lane):
+    """The states at the end of the step, from the rates of all four stages."""
+    for i in range(MANY_STATES):
+        at = i * LANES + lane
+        inner = 2 * (memory[RATES_1 + at] + memory[RATES_2 + at])
+        memory[STATES + at] += h / 6.0 * (memory[RATES_0 + at] + inner + memory[RATES_3 + at])
+    for i in range(MANY_BRISTLES):
+        at = i * LANES + lane
+        outer = memory[WEIGHT_0 + at] * memory[RESTS_0 + at]
+        inner = memory[WEIGHT_1 + at] * (memory[RESTS_1 + at] + memory[RESTS_2 + at])
+        rest = outer + inner + memory[WEIGHT_3 + at] * memory[RESTS_3 + at]
+        memory[BRISTLES + at] = memory[E_STEP + at] * memory[BRISTLES + at] + h * rest
+    for i in range(MANY_LATE):
+        memory[LATE + i * LANES + lane] = memory[LATE_END + i * LANES + lane]
+
+
+@jitted
+def step(first, time, h, inputs, column, parameters, memory, lane):
+    """One step of the scheme;  column: of the inputs at its start, two of them a step."""
+    x, z, z1, p, m = STAGE_STATES, STAGE_BRISTLES, FIRST_BRISTLES, parameters, memory
+    middle = time + 0.5 * h
+    prepare_step(first, time, h, inputs, column, p, m, lane)
+    rates(time, STATES, BRISTLES, inputs, column, LATE, p, m, RATES_0, RESTS_0, lane)
+    take_rests(BRISTLES, RESTS_0, m, lane)
+    move_straight(RATES_0, 0.5 * h, m, lane)
+    move_half(RESTS_0, z1, m, lane)
+    rates(middle, x, z1, inputs, column + 1, LATE_MIDDLE, p, m, RATES_1, RESTS_1, lane)
+    take_rests(z1, RESTS_1, m, lane)
+    move_straight(RATES_1, 0.5 * h, m, lane)
+    move_half(RESTS_1, z, m, lane)
+    rates(middle, x, z, inputs, column + 1, LATE_MIDDLE, p, m, RATES_2, RESTS_2, lane)
+    take_rests(z, RESTS_2, m, lane)
+    move_straight(RATES_2, h, m, lane)
+    move_second_half(m, lane)
+    rates(time + h, x, z, inputs, column + 2, LATE_END, p, m, RATES_3, RESTS_3, lane)
+    take_rests(z, RESTS_3, m, lane)
+    end_step(h, m, lane)
+
+
+@jitted
+def know_velocity(at, seen, period, smoothing, memory, lane):
+    """Travel rate of a motion over the last sample, and velocity as the computer knows it.
+
+    The observer is Luenberger's for a motion of constant velocity (order 2) or acceleration
+    (order 3), in its predictor-corrector form (alpha-beta and alpha-beta-gamma filters), all its
+    poles at one place p = `smoothing`. It estimates the derivative of the position through
+        order 2: w^2/(s + w)^2, late by 2/w      order 3: (3 w^2 s + w^3)/(s + w)^3, late by nothing
+    for slow motion. OBSERVER 0 is the filtered difference, w/(s + w), late by 1/w.
+    """
+    travel = (seen - memory[SEEN + at]) / period
+    known = memory[KNOWN + at]
+    left = 1.0 - smoothing
+    memory[TRAVEL + at] = travel
+    if OBSERVER == 0:
+        memory[KNOWN + at] = smoothing * known + left * travel
+        return
+    bend = memory[BEND + at]
+    observed = memory[OBSERVED + at] + period * (known + 0.5 * period * bend)
+    known += period * bend
+    missing = seen - observed
+    if OBSERVER == 2:
+        position_gain, velocity_gain, bend_gain = 1.0 - smoothing**2, left**2 / period, 0.0
+    else:
+        position_gain = 1.0 - smoothing**3
+        velocity_gain = 1.5 * left**2 * (1.0 + smoothing) / period
+        bend_gain = (left / period) ** 2 * left
+    memory[KNOWN + at] = known + velocity_gain * missing
+    memory[OBSERVED + at] = observed + position_gain * missing
+    memory[BEND + at] = bend + bend_gain * missing
+
+
+@jitted
+def read_sensors(n, encoder_step, period, smoothing, inputs, column, memory, lane):
+    """Positions in encoder steps, and what the computer makes of them."""
+    motions(STATES, inputs, column, memory, POSITIONS, VELOCITIES, lane)
+    for i in range(MANY_MOTIONS):
+        at = i * LANES + lane
+        seen = memory[POSITIONS + at]
+        if encoder_step > 0.0:
+            seen = np.floor(seen / encoder_step + 0.5) * encoder_step
+        if n == 0:
+            velocity = memory[VELOCITIES + at]
+            memory[TRAVEL + at] = velocity
+            memory[KNOWN + at] = velocity
+            memory[OBSERVED + at] = seen
+        else:
+            know_velocity(at, seen, period, smoothing, memory, lane)
+        memory[SEEN + at] = seen
+
+
+@jitted
+def sample(
+    n, time, period, encoder_step, smoothing, inputs, column, sampled, parameters, memory, lane
+):
+    """The computer reads its sensors, makes its signals and steps its states."""
+    # what sensors see: just before the new command
+    signals(time, STATES, BRISTLES, inputs, column, LATE, parameters, memory, NOW, lane)
+    read_sensors(n, encoder_step, period, smoothing, inputs, column, memory, lane)
+    if n > 0:
+        computer_before(n, period, sampled, parameters, memory, lane)
+    computer_signals(n, period, sampled, parameters, memory, MADE, lane)
+    held_commands(n, sampled, memory, NEW_COMMANDS, lane)
+    computer_after(n, period, sampled, parameters, memory, lane)
+
+
+@jitted
+def delay(j, time, inputs, column, late_steps, history, slots, parameters, memory, lane):
+    """Late signals at the start and at the end of the step that begins.
+
+    history: ring of what they were, `slots` nodes long
+    """
+    late_values(time, STATES, BRISTLES, inputs, column, LATE, parameters, memory, LATE_VALUES, lane)
+    for i in range(MANY_LATE):
+        at = i * LANES + lane
+        value = memory[LATE_VALUES + at]
+        history[(j % slots) * MANY_LATE * LANES + at] = value
+    for i in range(MANY_LATE):
+        at = i * LANES + lane
+        now, end = 0.0, 0.0
+        then = j - late_steps[i]
+        if then >= 0:
+            now = history[(then % slots) * MANY_LATE * LANES + at]
+        if not SMOOTH[i]:
+            end = now  # what is held over a step stays
+        elif then >= -1:
+            end = history[((then + 1) % slots) * MANY_LATE * LANES + at]
+        memory[LATE + at] = now
+        memory[LATE_END + at] = end
+
+
+@jitted
+def keep(row, width, kept, out, kinds, columns, others, results, memory, lane):
+    """Rows of `kept` into the result, and the reductions brought up to this row.
+
+    kinds: 0 last value, 1 largest, 2 least, 3 integral, 4 integral of a product with `others`
+    width: that the row stands for in an integral, in rows; < 0: none is reduced
+    """
+    for k in range(len(kept)):
+        out[(row * len(kept) + k) * LANES + lane] = memory[kept[k] + lane]
+    for i in range(len(kinds)):
+        at = i * LANES + lane
+        value = memory[columns[i] + lane]
+        before = results[at]
+        if width < 0.0:
+            value = before
+        elif kinds[i] == 1:
+            value = max(value, before)
+        elif kinds[i] == 2:
+            value = min(value, before)
+        elif kinds[i] == 3:
+            value = before + width * value
+        elif kinds[i] == 4:
+            value = before + width * value * memory[others[i] + lane]
+        results[at] = value
+
+
+@entry
+def differentiate_at_rest(inputs, parameters, memory, small, slopes_of):
+    """How rates change with states at rest, by a central difference over 2 small.
+
+    memory: zeros;  slopes_of: entry of d(rate i)/d(state k) of a lane, states before bristles
+    """
+    many = MANY_STATES + MANY_BRISTLES
+    for k in range(many):
+        state = STATES + k * LANES if k < MANY_STATES else BRISTLES + (k - MANY_STATES) * LANES
+        for side in range(2):
+            to_states, to_bristles = (RATES_0, RESTS_0) if side == 0 else (RATES_1, RESTS_1)
+            for lane in range(LANES):
+                memory[state + lane] = small if side == 0 else -small
+                rates(
+                    0.0,
+                    STATES,
+                    BRISTLES,
+                    inputs,
+                    0,
+                    LATE,
+                    parameters,
+                    memory,
+                    to_states,
+                    to_bristles,
+                    lane,
+                )
+                memory[state + lane] = 0.0
+        for lane in range(LANES):
+            for i in range(many):
+                if i < MANY_STATES:
+                    at = i * LANES + lane
+                    change = memory[RATES_0 + at] - memory[RATES_1 + at]
+                else:
+                    at = (i - MANY_STATES) * LANES + lane
+                    change = memory[RESTS_0 + at] - memory[RESTS_1 + at]
+                slopes_of[(i * many + k) * LANES + lane] = change / (2.0 * small)
+
+
+@entry
+def run(
+    samples,
+    inner,
+    h,
+    period,
+    lag,
+    late_steps,
+    encoder_step,
+    smoothing,
+    held,
+    held_slots,
+    history,
+    late_slots,
+    every_step,
+    parameters,
+    inputs,
+    sampled,
+    memory,
+    kept,
+    out,
+    begin,
+    kinds,
+    columns,
+    others,
+    results,
+):
+    """Advance all lanes over samples of `inner` steps of h; see `kernel.execute` for the arrays."""
+    nodes = samples * inner
+    row = 0
+    for j in range(nodes + 1):
+        time = j * h
+        now = j % inner == 0
+        if COMPUTER and now:
+            n = j // inner
+            first = (n % held_slots) * MANY_COMMANDS * LANES
+            for lane in range(LANES):
+                sample(
+                    n,
+                    time,
+                    period,
+                    encoder_step,
+                    smoothing,
+                    inputs,
+                    2 * j,
+                    sampled,
+                    parameters,
+                    memory,
+                    lane,
+                )
+                for i in range(MANY_COMMANDS):
+                    at = i * LANES + lane
+                    value = memory[NEW_COMMANDS + at]
+                    held[first + at] = value
+        if COMPUTER and j >= lag and (j - lag) % inner == 0:
+            first = ((j - lag) // inner % held_slots) * MANY_COMMANDS * LANES
+            for lane in range(LANES):
+                for i in range(MANY_COMMANDS):
+                    at = i * LANES + lane
+                    memory[COMMANDS + at] = held[first + at]
+        if MANY_LATE > 0:
+            for lane in range(LANES):
+                delay(
+                    j,
+                    time,
+                    inputs,
+                    2 * j,
+                    late_steps,
+                    history,
+                    late_slots,
+                    parameters,
+                    memory,
+                    lane,
+                )
+        if every_step or now:
+            width = -1.0
+            if row >= begin:
+                width = 0.5 if row == begin or j == nodes else 1.0
+            for lane in range(LANES):
+                if not (COMPUTER and now):
+                    signals(
+                        time, STATES, BRISTLES, inputs, 2 * j, LATE, parameters, memory, NOW, lane
+                    )
+                record(inputs, 2 * j, memory, COLUMNS, lane)
+                for i in range(MANY_COLUMNS):
+                    at = i * LANES + lane
+                    # 0 for a number, NaN for what is none
+                    value = memory[COLUMNS + at]
+                    memory[SPOILED + lane] += 0.0 * value
+                keep(row, width, kept, out, kinds, columns, others, results, memory, lane)
+            row += 1
+        if j < nodes:
+            for lane in range(LANES):
+                step(j == 0, time, h, inputs, 2 * j, parameters, memory, lane)

@@ -1,0 +1,53 @@
+"""Parameter studies: a model at every point of named axes, measured, on one machine or many.
+
+import teleopdesign as td
+
+result = td.study(
+    diagram,
+    {"C.dahl.level": [0.5, 1.0, 1.5], "computer.delay": [0, 1e-3, 2e-3]},
+    measures=["force_error", td.measure("peak", signal="R_M")],
+    duration=2.0,
+    motion={"L": td.sine(amplitude=0.01, frequency=2.0)},
+)
+result["force_error"]                       # a labelled array over both axes
+result.plot.map("force_error")
+"""
+
+from ..arguments import check_arguments
+from .case import Case
+from .diagnosed import diagnosed
+from .from_toml import read_study_file
+from .journal import Outcome
+from .measures import MEASURES, Amount, Measure, Point, measure
+from .onset import growth, least_that_grows
+from .progress import Progress
+from .result import Study, read_study
+from .run import study
+from .samples import Samples, latin_hypercube, random_samples, sensitivity_samples, sobol
+from .sensitivity import sensitivity
+
+__all__ = [
+    "MEASURES",
+    "Amount",
+    "Case",
+    "Measure",
+    "Outcome",
+    "Point",
+    "Progress",
+    "Samples",
+    "Study",
+    "diagnosed",
+    "growth",
+    "latin_hypercube",
+    "least_that_grows",
+    "measure",
+    "random_samples",
+    "read_study",
+    "read_study_file",
+    "sensitivity",
+    "sensitivity_samples",
+    "sobol",
+    "study",
+]
+
+check_arguments(globals(), __all__)

@@ -1,0 +1,193 @@
+"""What is simulated at a point: a diagram with everything that `simulate` takes.
+
+A parameter is named as in `Diagram.values` ("C.dahl.level"), or is one of the simulation's own:
+
+    computer.delay, .period, .encoder_step, .velocity_bandwidth    of `Sampling`
+    inputs.R_D, initial.L                          signals from outside and states at the start
+    motion.L.amplitude, .frequency, .phase         of a motion made by `sine`
+    duration, step, give                           s, s, m or rad
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from ..arguments import checked
+from ..blocks import Body
+from ..by_value import ByValue
+from ..diagrams import Control, Diagram
+from ..diagrams.parts import AnyBlock
+from ..errors import ModelError, did_you_mean
+from ..quantity import unit_of
+from ..simulate import Sampling, Simulation, Trajectory, simulate, sine
+from ..simulate.sampling import SAMPLED
+from ..simulate.units import signal_units
+
+#: numbers of a computer that may be varied -> unit; "": that of the first body's motion
+_COMPUTER = {"period": "s", "delay": "s", "encoder_step": "", "velocity_bandwidth": "Hz"}
+_SINE = {"amplitude": "", "frequency": "Hz", "phase": "rad"}
+_OWN = {"duration": "s", "step": "s", "give": ""}
+
+
+@checked
+@dataclass(frozen=True, eq=False)
+class Case(ByValue):
+    """A diagram and how it is simulated; arguments as of `simulate`.
+
+    duration: s; 0: nothing is simulated, measures that need a motion are refused
+    """
+
+    diagram: Diagram
+    duration: float = 0.0
+    inputs: Mapping[str, Any] = field(default_factory=dict)
+    motion: Mapping[str, Trajectory] = field(default_factory=dict)
+    initial: Mapping[str, float] = field(default_factory=dict)
+    computer: Sampling | Literal["continuous"] = SAMPLED
+    step: float = 1e-4
+    give: float = 1e-5
+    every_step: bool = False
+
+    def simulate(self) -> Simulation:
+        """The simulation; raises ModelError where the case has no duration, and as `simulate`."""
+        if not self.duration:
+            raise ModelError("study: found no duration, expected the time to simulate, s")
+        return simulate(
+            self.diagram,
+            duration=self.duration,
+            inputs=self.inputs,
+            motion=self.motion,
+            initial=self.initial,
+            computer=self.computer,
+            step=self.step,
+            give=self.give,
+            every_step=self.every_step,
+        )
+
+    def names(self) -> tuple[str, ...]:
+        """Every parameter that can be varied; states at the start by those given."""
+        computer = [] if isinstance(self.computer, str) else [f"computer.{n}" for n in _COMPUTER]
+        inputs = [f"inputs.{s}" for s in self.diagram.outside if s not in self.motion]
+        initial = [f"initial.{s}" for s in self.initial]
+        motions = [f"motion.{s}.{n}" for s, m in self.motion.items() if _is_sine(m) for n in _SINE]
+        return (*self.diagram.values, *computer, *inputs, *initial, *motions, *_OWN)
+
+    def check_names(self, names: Iterable[str]) -> None:
+        """Refuse with ModelError, and the nearest name, what is no parameter."""
+        known = self.names()
+        for name in names:
+            if name in known or (name.startswith("initial.") and name.count(".") == 1):
+                continue
+            stem, _, rest = name.partition(".")
+            if stem == "motion" and (motion := rest.rpartition(".")[0]) in self.motion:
+                if not _is_sine(self.motion[motion]):
+                    raise ModelError(f'study: "{name}": the motion of {motion} is none of `sine`')
+            if stem == "computer" and isinstance(self.computer, str):
+                raise ModelError(f'study: "{name}": the computer is "continuous"')
+            raise ModelError(
+                f'study: no parameter "{name}", has {_listed(known)}{did_you_mean(name, known)}'
+            )
+
+    def with_values(self, values: Mapping[str, Any]) -> Case:
+        """The case with other values, by the names in `names`."""
+        self.check_names(values)
+        own: dict[str, Any] = {n: values[n] for n in _OWN if n in values}
+        computer: dict[str, float] = {}
+        inputs, motion, initial = dict(self.inputs), dict(self.motion), dict(self.initial)
+        within: dict[str, float] = {}
+        known = self.diagram.values
+        for name, value in values.items():
+            stem, _, rest = name.partition(".")
+            if name in known:
+                within[name] = value
+            elif stem == "computer":
+                computer[rest] = value
+            elif stem == "inputs":
+                inputs[rest] = value
+            elif stem == "initial":
+                initial[rest] = value
+            elif stem == "motion":
+                signal, _, part = rest.rpartition(".")
+                motion[signal] = _sine_with(motion[signal], part, value)
+        if computer:
+            own["computer"] = replace(self.computer, **computer)  # type: ignore[type-var]
+        diagram = self.diagram.with_values(within) if within else self.diagram
+        return replace(self, diagram=diagram, inputs=inputs, motion=motion, initial=initial, **own)
+
+    def unit(self, name: str) -> str:
+        """SI unit of a parameter; "1" where it has none."""
+        stem, _, rest = name.partition(".")
+        length = unit_of("position", self._axis)
+        if name in self.diagram.values:
+            return self._unit_of_value(name)
+        if name in _OWN:
+            return _OWN[name] or length
+        if stem == "computer":
+            return _COMPUTER.get(rest, "1") or length
+        units = signal_units(self.diagram)
+        if stem == "motion":
+            signal, _, part = rest.rpartition(".")
+            return _SINE.get(part, "1") or units(signal)
+        return units(rest)
+
+    def value(self, name: str) -> Any:
+        """Value of a parameter as it is; None of an input that is no number."""
+        stem, _, rest = name.partition(".")
+        if name in self.diagram.values:
+            return self.diagram.values[name]
+        if name in _OWN:
+            return getattr(self, name)
+        if stem == "computer":
+            return getattr(self.computer, rest)
+        if stem == "motion":
+            signal, _, part = rest.rpartition(".")
+            return _sine_parts(self.motion[signal])[part]
+        found = (self.inputs if stem == "inputs" else self.initial).get(rest, 0.0)
+        return float(found) if np.ndim(found) == 0 and not callable(found) else None
+
+    @property
+    def _axis(self) -> str:
+        bodies = (b.body for b in self.diagram.bodies if isinstance(b.body, Body))
+        return next((b.axis for b in bodies), "prismatic")
+
+    def _unit_of_value(self, name: str) -> str:
+        block_name, _, rest = name.partition(".")
+        block = self.diagram.block(block_name)
+        if not isinstance(block, Control):
+            body = block.body
+            return body.unit(rest) if isinstance(body, Body) else "1"
+        if isinstance(block.controller, AnyBlock):
+            return "1"
+        stage_name, _, parameter = rest.rpartition(".")
+        stage = next(s for s in block.controller.stages if s.name == stage_name)
+        return unit_of(stage.law.parameters[parameter].quantity, self._axis)
+
+    def settings(self) -> dict[str, Any]:
+        """How it is simulated, without the diagram: plain where it is."""
+        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "diagram"}
+
+
+def _is_sine(motion: Trajectory) -> bool:
+    wanted = ("size", "rate", "phase")
+    return all(hasattr(motion.position, name) for name in wanted)
+
+
+def _sine_parts(motion: Trajectory) -> dict[str, float]:
+    made: Any = motion.position
+    return {
+        "amplitude": made.size,
+        "frequency": made.rate / (2 * np.pi),
+        "phase": made.phase,
+    }
+
+
+def _sine_with(motion: Trajectory, part: str, value: float) -> Trajectory:
+    return sine(**{**_sine_parts(motion), part: value})
+
+
+def _listed(known: tuple[str, ...], most: int = 12) -> str:
+    more = f", ... ({len(known)} in all)" if len(known) > most else ""
+    return ", ".join(known[:most]) + more

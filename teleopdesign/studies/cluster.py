@@ -1,0 +1,111 @@
+"""Points on an existing Dask cluster: the same task in its workers."""
+
+from __future__ import annotations
+
+import pickle
+import time
+from collections import deque
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+from ..errors import ExperimentError, ModelError
+from .evaluate import Task, evaluate_all
+from .journal import Outcome
+from .processes import Sink, packed
+from .versions import versions
+
+#: s that a task of the cluster takes: long against the scheduler's ms for each
+_TASK_TIME = 1.0
+_MOST_IN_TASK = 1000
+#: tasks a thread that the cluster knows of at once: enough to be busy, few enough to stop soon
+_AHEAD = 3
+
+
+def run_on_cluster(task: Task, todo: list[int], sink: Sink, address: str) -> None:
+    """Points in the workers of the scheduler at that address, such as "tcp://10.0.0.1:8786".
+
+    raises ExperimentError: no scheduler there, no worker, dask is not installed
+    raises ModelError: workers have another version of the package
+    """
+    try:
+        from distributed import Client, as_completed
+    except ImportError:
+        raise ExperimentError(
+            "study: a cluster needs dask: pip install 'teleopdesign[cluster]'"
+        ) from None
+    try:
+        client = Client(address, timeout="5s", set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:  # TimeoutError is an OSError
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise ExperimentError(f"study: no scheduler answers at {address}: {reason}") from None
+    try:
+        _check_versions(client, address)
+        payload = packed(task)
+        waiting, seconds_each = deque(todo), 0.0
+        deaths: dict[int, int] = {}
+        known: dict[Any, list[int]] = {}
+        every = as_completed([], loop=client.loop)
+
+        def fill() -> None:
+            threads = max(sum(client.nthreads().values()), 1)
+            while waiting and len(known) < _AHEAD * threads:
+                size = int(_TASK_TIME / seconds_each) if seconds_each else 1
+                share = -(-len(waiting) // threads)
+                size = min(max(size, 1), _MOST_IN_TASK, max(share, 1), len(waiting))
+                batch = [waiting.popleft() for _ in range(size)]
+                if any(deaths.get(i) for i in batch):  # one that may end a worker goes alone
+                    waiting.extendleft(reversed(batch[1:]))
+                    batch = batch[:1]
+                future = client.submit(_evaluated, payload, batch, pure=False)
+                known[future.key] = batch
+                every.add(future)
+
+        fill()
+        for future in every:
+            batch = known.pop(future.key)
+            if future.status == "finished":
+                outcomes, seconds = future.result()
+                seconds_each = seconds / len(batch)
+                for outcome in outcomes:
+                    sink(outcome)
+            else:
+                for index in batch:
+                    deaths[index] = deaths.get(index, 0) + 1
+                if len(batch) == 1:
+                    ended = type(future.exception()).__name__
+                    sink(Outcome(batch[0], reason=f"{ended} on the cluster"))
+                else:
+                    waiting.extendleft(reversed(batch))
+            fill()
+    finally:
+        client.close(timeout=5)
+
+
+def _check_versions(client: Any, address: str) -> None:
+    found = client.run(versions)
+    if not found:
+        raise ExperimentError(f"study: the scheduler at {address} has no worker")
+    here = versions()
+    for worker, there in found.items():
+        for name, own in here.items():
+            if there.get(name) != own:
+                raise ModelError(
+                    f"study: worker {worker} has {name} {there.get(name)}, here is {own}: results "
+                    "could differ"
+                )
+
+
+def _evaluated(payload: bytes, batch: Sequence[int]) -> tuple[list[Outcome], float]:
+    """In a worker: the outcomes, and the time that they took, s."""
+    from threadpoolctl import threadpool_limits
+
+    task, start = _task(payload), time.monotonic()
+    with threadpool_limits(1):
+        return evaluate_all(task, batch), time.monotonic() - start
+
+
+@lru_cache(maxsize=4)
+def _task(payload: bytes) -> Task:
+    task: Task = pickle.loads(payload)
+    return task

@@ -1,0 +1,16 @@
+"""Diagnoses as points of a study: one recording each, by its folder."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..diagnose import Diagnosis
+
+
+def diagnosed(experiment: str) -> Diagnosis:
+    """The diagnosis of the recording in that folder; see `find_missing`."""
+    from ..diagnose import find_missing
+    from ..measurement import load_experiment
+
+    return find_missing(load_experiment(experiment))

@@ -1,0 +1,108 @@
+"""One point of a study: what the model gives there, and what the measures make of that."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from ..diagrams import Diagram
+from ..errors import ModelError, TeleopDesignError, did_you_mean
+from .case import Case
+from .journal import Outcome
+from .measures import Amount, Measure, Point
+from .points import Points
+
+_LONGEST_REASON = 300  # characters
+
+
+@dataclass(frozen=True)
+class Task:
+    """A study as every process gets it.
+
+    model: a case, whose parameters are varied, or a function of the parameters
+    case: how a diagram that the function returns is simulated
+    """
+
+    model: Case | Callable[..., Any]
+    case: Mapping[str, Any]
+    points: Points
+    measures: tuple[Measure, ...]
+    seed: int = 0
+
+
+def evaluate(task: Task, index: int) -> Outcome:
+    """What becomes of a point: its values, or the reason why it failed.
+
+    Whatever a model or a measure raises is such a reason: one point never ends a study.
+    """
+    try:
+        values = task.points.at(index)
+        point = Point(_given(task, values), values, (task.seed, index))
+        amounts: dict[str, Amount] = {}
+        for measure in task.measures:
+            for name, amount in measure(point).items():
+                if name in amounts:
+                    raise ModelError(f'study: two measures give "{name}"')
+                amounts[name] = amount
+    except TeleopDesignError as error:
+        return Outcome(index, reason=_shortened(str(error)))
+    except Exception as error:
+        return Outcome(index, reason=_shortened(f"{type(error).__name__}: {error}"))
+    form = tuple(
+        (
+            name,
+            "text" if isinstance(a.value, str) else "number",
+            a.unit,
+            a.text,
+            *((a.over[0], a.over[1], a.over[2]) if a.over else ()),
+        )
+        for name, a in amounts.items()
+    )
+    return Outcome(index, form, tuple(_whole(a.value) for a in amounts.values()))
+
+
+def evaluate_all(task: Task, indices: Iterable[int]) -> list[Outcome]:
+    """Several points, one after the other."""
+    return [evaluate(task, i) for i in indices]
+
+
+def _given(task: Task, values: Mapping[str, Any]) -> Any:
+    if isinstance(task.model, Case):
+        return task.model.with_values(values)
+    found = task.model(**values)
+    return Case(found, **task.case) if isinstance(found, Diagram) else found
+
+
+def check_parameters(model: Callable[..., Any], points: Points) -> None:
+    """Refuse with ModelError parameters that a model's function does not take, or that it lacks."""
+    try:
+        signature = inspect.signature(model)
+    except (TypeError, ValueError):  # a function of C says nothing of its arguments
+        return
+    takes = {
+        n: p
+        for n, p in signature.parameters.items()
+        if p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)
+    }
+    anything = any(p.kind is p.VAR_KEYWORD for p in signature.parameters.values())
+    name = getattr(model, "__name__", "model")
+    for parameter in points.names:
+        if parameter not in takes and not anything:
+            raise ModelError(
+                f'study: {name} takes no parameter "{parameter}", has {", ".join(takes) or "none"}'
+                f"{did_you_mean(parameter, takes)}"
+            )
+    for parameter, declared in takes.items():
+        if declared.default is declared.empty and parameter not in points.names:
+            raise ModelError(f'study: {name}: parameter "{parameter}" has no axis and no value')
+
+
+def _shortened(text: str) -> str:
+    line = " ".join(text.split())
+    return line if len(line) <= _LONGEST_REASON else line[: _LONGEST_REASON - 3] + "..."
+
+
+def _whole(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value

@@ -1,0 +1,312 @@
+"""A study from a TOML file, without Python; the page "Parameter studies" has the format.
+
+[study]
+model = "late.toml"                 # a diagram's file, or a shipped diagram
+[axes]
+"C.dahl.level" = { from = 0.2, to = 1.2, points = 6 }
+"computer.delay" = [0, 1e-3]
+[simulation]
+duration = 2.0
+motion.L = { amplitude = 0.01, frequency = 2.0 }
+[measures]
+force_error = {}
+hand = { measure = "peak", signal = "R_M" }
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..diagrams import Diagram, read_diagram
+from ..effects import EFFECTS, Effect
+from ..errors import ExperimentError, ModelError, did_you_mean, quoted
+from ..measurement.toml_table import Table, described, read_toml
+from ..simulate import Sampling, sine
+from .diagnosed import diagnosed
+from .measures import MEASURES, Measure, measure
+from .samples import (
+    Samples,
+    latin_hypercube,
+    random_samples,
+    sensitivity_samples,
+    sobol,
+)
+
+#: most values of one axis
+_MOST_VALUES = 1_000_000
+_METHODS: Mapping[str, Callable[..., Samples]] = {
+    "latin_hypercube": latin_hypercube,
+    "sobol": sobol,
+    "random": random_samples,
+    "sensitivity": sensitivity_samples,
+}
+_SCALES = ("linear", "log")
+_NUMBERS = ("step", "give")
+
+
+@dataclass(frozen=True)
+class SineInput:
+    """An input from a file: offset + amplitude sin(2 pi frequency t + phase)."""
+
+    amplitude: float
+    frequency: float
+    phase: float = 0.0
+    offset: float = 0.0
+
+    def __call__(self, time: np.ndarray) -> np.ndarray:
+        turned = np.sin(2 * np.pi * self.frequency * time + self.phase)
+        return np.asarray(self.offset + self.amplitude * turned)
+
+
+def read_study_file(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS) -> dict[str, Any]:
+    """The arguments of `study` that a file describes.
+
+    raises ExperimentError: what cannot be read or has no meaning: file, key, found, expected
+    """
+    path = Path(path)
+    root = read_toml(path, path.name)
+    root.allow(("study", "axes", "samples", "simulation", "measures"))
+    head = root.table("study")
+    head.allow(("model", "experiments", "seed"))
+    try:
+        found = _model(head, path.parent, effects)
+        found["axes"] = [*found.pop("axes", []), *_axes(root)]
+        found["measures"] = _measures(root.table("measures")) or found.get("measures", {})
+        found |= _simulation(root.table("simulation"))
+    except ModelError as error:
+        raise ExperimentError(f"{path.name}: {error}") from error
+    if "seed" in head.content:
+        found["seed"] = _whole(head, "seed")
+    if not found["measures"]:
+        raise ExperimentError(
+            f"{path.name}: measures: found none, expected one of {', '.join(MEASURES)}"
+        )
+    return found
+
+
+def _model(head: Table, folder: Path, effects: Mapping[str, Effect]) -> dict[str, Any]:
+    if ("model" in head.content) == ("experiments" in head.content):
+        raise ExperimentError(
+            f"{head.where()}: expected model (a diagram) or experiments (folders), one of them"
+        )
+    if "model" in head.content:
+        return {"model": _diagram(head, folder, effects)}
+    given = head.content["experiments"]
+    if not isinstance(given, list) or not all(isinstance(g, str) for g in given):
+        raise ExperimentError(
+            f"{head.where('experiments')}: found {described(given)}, expected a list of folders, "
+            'such as ["rod", "runs/*"]'
+        )
+    folders = _folders(given, folder, head.where("experiments"))
+    return {"model": diagnosed, "axes": [{"experiment": folders}], "measures": ["verdict"]}
+
+
+def _folders(given: Iterable[str], home: Path, where: str) -> list[str]:
+    """Folders of experiments, patterns with * resolved."""
+    found: list[str] = []
+    for text in given:
+        matches = sorted(home.glob(text)) if "*" in text and text[0] != "/" else [home / text]
+        chosen = [m for m in matches if (m / "experiment.toml").is_file()]
+        if not chosen:
+            raise ExperimentError(f"{where}: {quoted(text)}: no folder with an experiment.toml")
+        found += [str(m) for m in chosen]
+    return list(dict.fromkeys(found))
+
+
+def _diagram(head: Table, folder: Path, effects: Mapping[str, Effect]) -> Diagram:
+    from ..diagrams import SHIPPED, shipped
+
+    name = head.text("model")
+    if name in SHIPPED:
+        return shipped(name)
+    if not name.endswith(".toml"):
+        raise ExperimentError(
+            f"{head.where('model')}: found {quoted(name)}, expected a file NAME.toml or one of "
+            f"{', '.join(SHIPPED)}{did_you_mean(name, SHIPPED)}"
+        )
+    return read_diagram(folder / name, effects=effects)
+
+
+def _axes(root: Table) -> list[Any]:
+    table = root.table("axes")
+    parts: list[Any] = []
+    if table.content:
+        parts.append({name: _axis(table, name) for name in table.content})
+    if "samples" in root.content:
+        parts.append(_samples(root.table("samples")))
+    return parts
+
+
+def _axis(table: Table, name: str) -> Any:
+    """A list, one value, or { from, to, points, scale }."""
+    given = table.content[name]
+    if isinstance(given, dict):
+        grid = table.table(name)
+        grid.allow(("from", "to", "points", "scale"))
+        low, high, count = grid.number("from"), grid.number("to"), _whole(grid, "points")
+        if not 1 < count <= _MOST_VALUES or low == high:
+            raise ExperimentError(
+                f"{grid.where()}: found {count} points from {low:g} to {high:g}, expected at least "
+                "2 between two numbers"
+            )
+        if _scale(grid) == "log":
+            if min(low, high) <= 0:
+                raise ExperimentError(f"{grid.where()}: a log scale needs from and to above 0")
+            return np.geomspace(low, high, count)
+        return np.linspace(low, high, count)
+    if isinstance(given, list):
+        if not given or not (all(map(_is_number, given)) or all(isinstance(x, str) for x in given)):
+            raise ExperimentError(
+                f"{table.where(name)}: found {described(given)}, expected numbers or texts, at "
+                "least one"
+            )
+        return given if isinstance(given[0], str) else [float(x) for x in given]
+    return given if isinstance(given, str) else table.number(name)
+
+
+def _samples(table: Table) -> Samples:
+    table.allow(("method", "points", "seed", "ranges"))
+    method = table.text("method")
+    if method not in _METHODS:
+        raise ExperimentError(
+            f"{table.where('method')}: found {quoted(method)}, expected {', '.join(_METHODS)}"
+            f"{did_you_mean(method, _METHODS)}"
+        )
+    ranges = table.table("ranges")
+    if not ranges.content:
+        raise ExperimentError(f"{table.where('ranges')}: found none, expected at least one")
+    seed = _whole(table, "seed") if "seed" in table.content else 0
+    given = {name: _range(ranges.table(name)) for name in ranges.content}
+    return _METHODS[method](given, _whole(table, "points"), seed=seed)
+
+
+def _range(table: Table) -> Any:
+    """{ from, to }, { from, to, scale = "log" }, { from, to, step } or a normal distribution."""
+    from scipy.stats import loguniform, norm
+
+    if "mean" in table.content:
+        table.allow(("mean", "standard_deviation"))
+        return norm(table.number("mean"), table.number("standard_deviation", above=0.0))
+    table.allow(("from", "to", "scale", "step"))
+    low, high = table.number("from"), table.number("to")
+    if low >= high:
+        raise ExperimentError(f"{table.where()}: found {low:g} to {high:g}, expected from < to")
+    if "step" in table.content:
+        return low, high, table.number("step", above=0.0)
+    if _scale(table) == "log":
+        if low <= 0:
+            raise ExperimentError(f"{table.where()}: a log scale needs from and to above 0")
+        return loguniform(low, high)
+    return low, high
+
+
+def _simulation(table: Table) -> dict[str, Any]:
+    table.allow(("duration", "inputs", "motion", "initial", "computer", "every_step", *_NUMBERS))
+    found: dict[str, Any] = {n: table.number(n, above=0.0) for n in _NUMBERS if n in table.content}
+    if "duration" in table.content:
+        found["duration"] = table.number("duration", above=0.0)
+    found["every_step"] = table.flag("every_step", False)
+    initial = table.table("initial")
+    found["initial"] = {name: initial.number(name) for name in initial.content}
+    inputs, motions = table.table("inputs"), table.table("motion")
+    found["inputs"] = {name: _input(inputs, name) for name in inputs.content}
+    found["motion"] = {name: sine(**_sine(motions.table(name))) for name in motions.content}
+    if "computer" in table.content:
+        found["computer"] = _computer(table)
+    return found
+
+
+def _computer(table: Table) -> Any:
+    given = table.content["computer"]
+    if isinstance(given, str):
+        if given != "continuous":
+            raise ExperimentError(
+                f"{table.where('computer')}: found {quoted(given)}, expected a table or "
+                f'"continuous"{did_you_mean(given, ["continuous"])}'
+            )
+        return given
+    computer = table.table("computer")
+    known = {f.name: f for f in fields(Sampling)}
+    computer.allow(known)
+    values: dict[str, Any] = {}
+    for name in computer.content:
+        if name == "velocity":
+            values[name] = computer.text(name)
+        elif name == "observer_order":
+            values[name] = _whole(computer, name)
+        else:
+            values[name] = computer.number(name)
+    return Sampling(**values)
+
+
+def _input(table: Table, name: str) -> Any:
+    if not isinstance(table.content[name], dict):
+        return table.number(name)
+    own = table.table(name)
+    offset = own.number("offset") if "offset" in own.content else 0.0
+    return SineInput(**_sine(own, "offset"), offset=offset)
+
+
+def _sine(table: Table, *more: str) -> dict[str, float]:
+    table.allow(("amplitude", "frequency", "phase", *more))
+    phase = table.number("phase") if "phase" in table.content else 0.0
+    frequency = table.number("frequency", above=0.0)
+    return {"amplitude": table.number("amplitude"), "frequency": frequency, "phase": phase}
+
+
+def _measures(table: Table) -> dict[str, Measure]:
+    """Name -> measure; its name is that of a measure, or its table says which."""
+    found: dict[str, Measure] = {}
+    for name in table.content:
+        own = table.table(name)
+        kind = own.text("measure", default=name)
+        if kind not in MEASURES:
+            raise ExperimentError(
+                f"{own.where()}: no measure {quoted(kind)}, has {', '.join(MEASURES)}"
+                f"{did_you_mean(kind, MEASURES)}"
+            )
+        options = {k: v for k, v in own.content.items() if k != "measure"}
+        own.allow(("measure", *MEASURES[kind].options))
+        for option in options:
+            given, default = options[option], MEASURES[kind].options[option]
+            if isinstance(default, float | int):
+                options[option] = own.number(option)
+                if isinstance(default, int):
+                    options[option] = _whole(own, option)
+            elif isinstance(default, str):
+                options[option] = own.text(option)
+            elif not isinstance(given, str | int | float | list) or isinstance(given, bool):
+                raise ExperimentError(
+                    f"{own.where(option)}: found {described(given)}, expected a number or a text"
+                )
+        try:
+            found[name] = measure(kind, **options)
+        except ModelError as error:
+            raise ExperimentError(f"{own.where()}: {error}") from error
+    return found
+
+
+def _scale(table: Table) -> str:
+    scale = table.text("scale", default="linear")
+    if scale not in _SCALES:
+        raise ExperimentError(
+            f"{table.where('scale')}: found {quoted(scale)}, expected {' or '.join(_SCALES)}"
+            f"{did_you_mean(scale, _SCALES)}"
+        )
+    return scale
+
+
+def _whole(table: Table, key: str) -> int:
+    number = table.number(key)
+    if number != int(number) or number < 0:
+        raise ExperimentError(f"{table.where(key)}: found {number:g}, expected a whole number")
+    return int(number)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

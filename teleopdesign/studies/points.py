@@ -1,0 +1,147 @@
+"""The points of a study: the product of grids and of points drawn together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import ModelError
+from ..expectations import described
+from .samples import Samples, distribution_text
+
+#: dimension of points that were drawn together
+SAMPLE = "sample"
+#: most points of a study: the labels and results of 1e9 points need some 10 GB for each measure
+MOST_POINTS = 1_000_000_000
+
+#: parameter -> values (a dimension of its own), or one value;  or points drawn together
+Axes = Mapping[str, Any] | Samples | Sequence[Mapping[str, Any] | Samples]
+
+
+@dataclass(frozen=True)
+class Column:
+    """A parameter's values along the dimension that it varies with."""
+
+    dimension: str
+    values: np.ndarray
+
+
+@dataclass(frozen=True)
+class Points:
+    """Every point of a study, by its number in the order of rows (the last dimension runs first).
+
+    sizes: dimension -> length;  columns: parameters that vary;  fixed: those that do not
+    samples: points drawn together, None where there are none
+    """
+
+    sizes: Mapping[str, int]
+    columns: Mapping[str, Column]
+    fixed: Mapping[str, Any]
+    samples: Samples | None = None
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return tuple(self.sizes.values())
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return (*self.columns, *self.fixed)
+
+    def __len__(self) -> int:
+        return int(np.prod([*self.shape], dtype=object)) if self.sizes else 1
+
+    def at(self, index: int) -> dict[str, Any]:
+        """Parameter -> value at the point of that number."""
+        where = dict(zip(self.sizes, np.unravel_index(index, self.shape), strict=True))
+        varied = {n: _plain(c.values[where[c.dimension]]) for n, c in self.columns.items()}
+        return {**varied, **self.fixed}
+
+    def table(self, first: int, last: int) -> dict[str, np.ndarray]:
+        """Parameter -> its values at the points of these numbers, (last - first,)."""
+        where = dict(
+            zip(self.sizes, np.unravel_index(np.arange(first, last), self.shape), strict=True)
+        )
+        return {n: c.values[where[c.dimension]] for n, c in self.columns.items()}
+
+
+def points_of(axes: Axes) -> Points:
+    """The points that grids and samples span.
+
+    raises ModelError: a parameter twice, an axis without a value, two samples, too many points
+    """
+    parts = [axes] if isinstance(axes, Mapping | Samples) else list(axes)
+    sizes: dict[str, int] = {}
+    columns: dict[str, Column] = {}
+    fixed: dict[str, Any] = {}
+    samples = None
+    for part in parts:
+        if not isinstance(part, Mapping | Samples):
+            raise ModelError(
+                f"study: axes: found {described(part)}, expected a mapping of parameters to "
+                "values, or samples"
+            )
+        names = part.names if isinstance(part, Samples) else tuple(part)
+        for name in names:
+            if name in columns or name in fixed:
+                raise ModelError(f'study: axes: parameter "{name}" is there twice')
+            if not isinstance(name, str):
+                raise ModelError(f"study: axes: found {described(name)}, expected a parameter")
+        if isinstance(part, Samples):
+            if samples is not None:
+                raise ModelError("study: axes: points drawn together are there twice")
+            samples = part
+            sizes[SAMPLE] = len(part)
+            columns |= {n: Column(SAMPLE, part.values[:, i]) for i, n in enumerate(names)}
+            continue
+        for name, given in part.items():
+            values = _values(name, given)
+            if values is None:
+                fixed[name] = _plain(given)
+            else:
+                sizes[name] = len(values)
+                columns[name] = Column(name, values)
+    points = Points(sizes, columns, fixed, samples)
+    if len(points) > MOST_POINTS:
+        raise ModelError(f"study: {len(points):.3g} points, expected at most {MOST_POINTS:.0e}")
+    return points
+
+
+def _values(name: str, given: Any) -> np.ndarray | None:
+    """Values of an axis, (n,) of numbers or texts; None where it is one value."""
+    if hasattr(given, "ppf"):
+        raise ModelError(
+            f"study: {name}: found the distribution {distribution_text(given)}, expected values; "
+            'draw points with latin_hypercube({"' + name + '": ...}, 100, seed=1)'
+        )
+    is_one = not hasattr(given, "__len__") or getattr(given, "shape", None) == ()
+    if is_one or isinstance(given, str):
+        if not isinstance(given, str | bool | int | float | np.number | np.bool_):
+            raise ModelError(f"study: {name}: found {described(given)}, expected values")
+        return None
+    listed = list(given) if not isinstance(given, np.ndarray) else given
+    if len(listed) and all(isinstance(x, str) for x in listed):
+        values = np.array(listed, dtype=object)
+    else:
+        try:
+            values = np.asarray(listed)
+        except ValueError:  # rows of different lengths
+            values = np.empty((0, 0))
+        if values.dtype.kind not in "biuf" or values.ndim != 1:
+            raise ModelError(
+                f"study: {name}: found {described(given)}, expected numbers or texts in one row"
+            )
+        if values.dtype.kind == "f" and not np.isfinite(values).all():
+            raise ModelError(f"study: {name}: found values that are not finite")
+    if not len(values):
+        raise ModelError(f"study: {name}: found no value, expected at least one")
+    if len(set(values.tolist())) < len(values):
+        raise ModelError(f"study: {name}: a value is there twice")
+    return values
+
+
+def _plain(value: Any) -> Any:
+    """A number of numpy as one of Python."""
+    return value.item() if isinstance(value, np.generic) else value

@@ -1,0 +1,250 @@
+"""Points on all cores of this machine: processes that compute them, one after the other.
+
+Each point is computed by the same code with the same numbers wherever it is: how many processes
+there are changes the time alone. A process that dies is started again; a point at which that
+happens twice is recorded as failed.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import queue
+import subprocess
+import sys
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import Any, BinaryIO, cast
+
+from ..errors import ModelError, TeleopDesignError
+from .evaluate import Task, evaluate
+from .frames import receive, send
+from .journal import Outcome
+
+Sink = Callable[[Outcome], None]
+
+#: s: points handed to a process at once; short against a look at the progress, long against the
+#: 0.1 ms that a message takes
+_BATCH_TIME = 0.2
+_MOST_IN_BATCH = 1000
+#: s, of processor time: what a process needs before its first point
+_START_TIME = 4.0
+#: times that a point may end the process that computes it
+_MOST_DEATHS = 2
+#: threads that libraries start by themselves would compete with the other processes, and could add
+#: numbers in another order
+_ONE_THREAD = {
+    name: "1"
+    for name in (
+        "OMP_NUM_THREADS",
+        "OPENBLAS_NUM_THREADS",
+        "MKL_NUM_THREADS",
+        "NUMBA_NUM_THREADS",
+        "VECLIB_MAXIMUM_THREADS",
+    )
+}
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def packed(task: Task) -> bytes:
+    """The task for another process; functions of a script or a notebook go with their code.
+
+    raises ModelError: something in it is code that cannot be sent
+    """
+    import cloudpickle
+
+    try:
+        return bytes(cloudpickle.dumps(task))
+    except TeleopDesignError as error:
+        raise ModelError(f"study: {error}; or take workers=1") from error
+    except (TypeError, AttributeError, pickle.PicklingError) as error:
+        raise ModelError(
+            f"study: the model or a measure cannot be sent to another process: {error}; take "
+            "workers=1, or define it at the top of a module"
+        ) from error
+
+
+def run_here(task: Task, todo: Iterable[int], sink: Sink, *, until: float = float("inf")) -> None:
+    """Points in this process, for at most `until` s."""
+    from threadpoolctl import threadpool_limits
+
+    start = time.monotonic()
+    with threadpool_limits(1):
+        for index in todo:
+            sink(evaluate(task, index))
+            if time.monotonic() - start > until:
+                return
+
+
+def run_in_processes(task: Task, todo: list[int], sink: Sink, workers: int) -> None:
+    """Points in that many processes beside this one."""
+    pool = _Pool(packed(task), todo, sink)
+    try:
+        pool.run(workers)
+    finally:
+        pool.close()
+
+
+def run_on_this_machine(task: Task, todo: list[int], sink: Sink, workers: int | None) -> None:
+    """Points in as many processes as there are cores; in this one where that is as fast."""
+    if workers is None:
+        count, start, done = cores(), time.monotonic(), set[int]()
+
+        def noted(outcome: Outcome) -> None:
+            done.add(outcome.point)
+            sink(outcome)
+
+        # the first point alone compiles what the others find in the cache
+        run_here(task, todo[:1], noted)
+        start = time.monotonic()
+        run_here(task, todo[1:], noted, until=1.0)
+        each = (time.monotonic() - start) / max(len(done) - 1, 1)
+        todo = [i for i in todo if i not in done]
+        pays = each * len(todo) * (1 - 1 / count) > _START_TIME
+        workers = count if pays else 1
+    if not todo:
+        return
+    if workers == 1:
+        run_here(task, todo, sink)
+    else:
+        run_in_processes(task, todo, sink, min(workers, len(todo)))
+
+
+@dataclass
+class _Worker:
+    """A process with what it was asked and has not answered yet."""
+
+    process: subprocess.Popen[bytes]
+    batch: deque[int] = field(default_factory=deque)
+    seconds: float = 0.0
+    points: int = 0
+    asked: float = 0.0
+
+
+class _Pool:
+    def __init__(self, payload: bytes, todo: list[int], sink: Sink) -> None:
+        self.payload, self.sink = payload, sink
+        self.todo = deque(todo)
+        self.left = len(todo)
+        self.answers: queue.Queue[tuple[_Worker, str, Any]] = queue.Queue()
+        self.workers: list[_Worker] = []
+        self.deaths: dict[int, int] = {}
+        self.each = 0.0  # s a point, from the latest batch
+
+    def run(self, count: int) -> None:
+        """Until every point is done: one process first, which fills the cache for the others."""
+        self._start()
+        while self.left:
+            worker, what, content = self.answers.get()
+            if what == "outcome":
+                if worker.batch and worker.batch[0] == content.point:
+                    worker.batch.popleft()
+                worker.points += 1
+                self._settle(content)
+                while len(self.workers) < min(count, self.left):
+                    self._start()
+            elif what == "ready":
+                if worker.points:
+                    self.each = (time.monotonic() - worker.asked) / worker.points
+                self._ask(worker)
+            else:
+                self._bury(worker)
+
+    def _settle(self, outcome: Outcome) -> None:
+        self.left -= 1
+        self.sink(outcome)
+
+    def _start(self) -> None:
+        code = (
+            f"import sys; sys.path[:] = {sys.path!r}; "
+            "from teleopdesign.studies.worker import main; main()"
+        )
+        process = subprocess.Popen(
+            [sys.executable, "-c", code],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env={**os.environ, **_ONE_THREAD},
+        )
+        worker = _Worker(process)
+        self.workers.append(worker)
+        threading.Thread(target=self._listen, args=(worker,), daemon=True).start()
+        try:
+            send(cast(BinaryIO, process.stdin), self.payload)
+        except OSError:
+            return  # it died at once: its listener says so
+        self._ask(worker)
+
+    def _listen(self, worker: _Worker) -> None:
+        """Hand on what a process says, to the end."""
+        pipe = cast(BinaryIO, worker.process.stdout)
+        try:
+            while True:
+                message = receive(pipe)
+                self.answers.put((worker, "ready" if message is None else "outcome", message))
+        except (EOFError, OSError, ValueError, pickle.UnpicklingError):
+            self.answers.put((worker, "died", None))
+
+    def _ask(self, worker: _Worker) -> None:
+        fair = -(-len(self.todo) // max(len(self.workers), 1))
+        size = int(_BATCH_TIME / self.each) if self.each > 0 else 1
+        batch = [
+            self.todo.popleft()
+            for _ in range(min(max(size, 1), _MOST_IN_BATCH, max(fair, 1), len(self.todo)))
+        ]
+        if not batch:
+            return
+        worker.batch, worker.points, worker.asked = deque(batch), 0, time.monotonic()
+        try:
+            send(cast(BinaryIO, worker.process.stdin), batch)
+        except OSError:
+            return  # its listener says that it died; the batch is taken back there
+
+    def _bury(self, worker: _Worker) -> None:
+        """Take back what a dead process had not answered, and start another."""
+        status = worker.process.wait()
+        self.workers.remove(worker)
+        _close(worker.process)
+        lost = worker.batch
+        if not lost:
+            if not worker.points and not self.each:
+                raise ModelError(f"study: a process ended before its first point, {_how(status)}")
+            return
+        first = lost.popleft()
+        self.todo.extendleft(reversed(lost))
+        self.deaths[first] = self.deaths.get(first, 0) + 1
+        if self.deaths[first] >= _MOST_DEATHS:
+            self._settle(Outcome(first, reason=f"its process ended twice, {_how(status)}"))
+        else:
+            self.todo.appendleft(first)
+        if self.left:
+            self._start()
+
+    def close(self) -> None:
+        """End every process; what they were at is dropped."""
+        for worker in self.workers:
+            worker.process.kill()
+        for worker in self.workers:
+            worker.process.wait()
+            _close(worker.process)
+
+
+def _close(process: subprocess.Popen[bytes]) -> None:
+    for pipe in (process.stdin, process.stdout):
+        try:
+            if pipe is not None:
+                pipe.close()
+        except OSError:  # what was left to write has no reader
+            continue
+
+
+def _how(status: int) -> str:
+    return f"by signal {-status}" if status < 0 else f"with status {status}"

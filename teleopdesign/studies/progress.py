@@ -1,0 +1,72 @@
+"""How far a study is: what a caller is told while it runs."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from .journal import Outcome
+
+#: s between two reports: as often as one can read
+_BETWEEN = 0.5
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Points done of all, failed among them; kept: done by an earlier run; rate: points a second.
+
+    left: s until the end at that rate, NaN where no rate is known yet
+    """
+
+    done: int
+    total: int
+    failed: int
+    kept: int
+    rate: float
+    left: float
+
+    def __str__(self) -> str:
+        text = f"{self.done} of {self.total} points"
+        if self.failed:
+            text += f", {self.failed} failed"
+        if self.rate > 0:
+            text += f", {self.rate:.3g}/s"
+        if self.left == self.left and self.done < self.total:
+            text += f", {duration_text(self.left)} left"
+        return text
+
+
+class Clock:
+    """Counts outcomes, and tells the caller now and then."""
+
+    def __init__(self, total: int, kept: int, tell: Callable[[Progress], object] | None) -> None:
+        self.total, self.kept, self.tell = total, kept, tell
+        self.done, self.failed = kept, 0
+        self.start = self.last = time.monotonic()
+
+    def count(self, outcome: Outcome) -> None:
+        """One more outcome."""
+        self.done += 1
+        self.failed += bool(outcome.reason)
+        now = time.monotonic()
+        if self.tell is not None and (now - self.last > _BETWEEN or self.done == self.total):
+            self.last = now
+            self.tell(self.now())
+
+    def now(self) -> Progress:
+        """How far it is."""
+        passed, fresh = time.monotonic() - self.start, self.done - self.kept
+        rate = fresh / passed if passed > 0 else 0.0
+        left = (self.total - self.done) / rate if rate > 0 else float("nan")
+        return Progress(self.done, self.total, self.failed, self.kept, rate, left)
+
+
+def duration_text(seconds: float) -> str:
+    """ "42 s", "7 min", "3.5 h", "12 days"."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    if seconds < 90 * 60:
+        return f"{seconds / 60:.0f} min"
+    hours = seconds / 3600
+    return f"{hours:.3g} h" if hours < 48 else f"{hours / 24:.3g} days"

@@ -1,0 +1,229 @@
+"""What a study gives: one labelled data set, and figures of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..arguments import checked
+from ..by_value import ByValue
+from ..errors import ExperimentError, ModelError, did_you_mean
+from ..notebook import html_table
+from ..plain_data import replacing
+from .journal import Outcome
+from .points import SAMPLE, Points
+
+if TYPE_CHECKING:
+    import xarray
+
+    from ..plot.studies import StudyPlots
+
+#: variable that says why a point failed, "" where it did not
+REASON = "failure"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Study(ByValue):
+    """Measures over the points of a study.
+
+    data: one variable for each measure over the axes, NaN (or "") where the point failed, and
+    `failure` with the reason. Parameters of points drawn together stand over `sample`. Units are
+    attributes of variables; attributes of the whole: fixed values, settings, seed, versions, hashes
+    """
+
+    data: xarray.Dataset
+
+    def __getitem__(self, name: str) -> xarray.DataArray:
+        if name not in self.data:
+            if not self.measures:
+                raise ModelError(f"study: every point failed, most: {next(iter(self.failures))}")
+            known = [str(n) for n in self.data.variables]
+            raise ModelError(
+                f'study: no measure or parameter "{name}", has {", ".join(known)}'
+                f"{did_you_mean(name, known)}"
+            )
+        return self.data[name]
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """Names of what was measured."""
+        return tuple(str(n) for n in self.data.data_vars if n != REASON)
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """Parameters that vary."""
+        return tuple(json.loads(self.data.attrs["axes"]))
+
+    @property
+    def failures(self) -> dict[str, int]:
+        """Reason -> at how many points, most frequent first."""
+        reasons, counts = np.unique(self.data[REASON].values.astype(str), return_counts=True)
+        found = {str(r): int(n) for r, n in zip(reasons, counts, strict=True) if r}
+        return dict(sorted(found.items(), key=lambda one: -one[1]))
+
+    def sensitivity(self, measure: str = "") -> xarray.Dataset:
+        """Sobol indices of the parameters for a measure: see `sensitivity`."""
+        from .sensitivity import sensitivity
+
+        return sensitivity(self, measure)
+
+    @property
+    def plot(self) -> StudyPlots:
+        """Figures: .curves(), .map(), .panels(), .sensitivity(); .plot() takes what fits."""
+        from ..plot.studies import StudyPlots
+
+        return StudyPlots(self.data)
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write everything to a netCDF file, which `read_study` reads.
+
+        raises ExperimentError: it cannot be written, or h5netcdf is not installed
+        """
+        check_netcdf()
+        with replacing(path) as part:
+            self.data.to_netcdf(part, engine="h5netcdf")
+
+    def _repr_html_(self) -> str:
+        rows = [(n, _range(self.data[n]), _unit(self.data[n])) for n in self.measures]
+        return html_table(self._title, ("measure", "from to", "unit"), rows, note=self._failed)
+
+    @property
+    def _title(self) -> str:
+        sizes = " x ".join(f"{n} {d}" for d, n in self.data.sizes.items() if d in self._own)
+        return f"Study of the {self.data.attrs['model']}: {sizes or '1 point'}"
+
+    @property
+    def _own(self) -> tuple[str, ...]:
+        return tuple(str(d) for d in self.data[REASON].dims)
+
+    @property
+    def _failed(self) -> str:
+        found = self.failures
+        if not found:
+            return ""
+        first = next(iter(found))
+        return f"{sum(found.values())} of {self.data[REASON].size} points failed, most: {first}"
+
+    def __repr__(self) -> str:
+        lines = [self._title]
+        lines += [f"  {n:<24} {_range(self.data[n])} {_unit(self.data[n])}" for n in self.measures]
+        return "\n".join([*lines, *([f"  {self._failed}"] if self._failed else [])])
+
+
+@checked
+def read_study(path: str | Path) -> Study:
+    """The study that a file holds; raises ExperimentError where it holds none."""
+    import xarray
+
+    check_netcdf()
+    try:
+        data = xarray.load_dataset(path, engine="h5netcdf")
+    except (OSError, ValueError, KeyError) as error:
+        raise ExperimentError(f"{path}: no study can be read: {error}") from error
+    if REASON not in data or "study" not in data.attrs:
+        raise ExperimentError(f"{path}: holds no study")
+    return Study(data)
+
+
+def check_netcdf() -> None:
+    """Refuse with ExperimentError where netCDF files cannot be written."""
+    from importlib.util import find_spec
+
+    if find_spec("h5netcdf") is None:
+        raise ExperimentError(
+            "study: a netCDF file needs h5netcdf: pip install 'teleopdesign[studies]'"
+        )
+
+
+def labelled(
+    points: Points,
+    outcomes: Mapping[int, Outcome],
+    *,
+    units: Mapping[str, str],
+    attributes: Mapping[str, Any],
+) -> Study:
+    """Outcomes of all points as one data set; it depends on nothing but them.
+
+    What a measure gives is settled by the first point that did not fail: one that gives something
+    else (other names, units or dimensions) has failed.
+    """
+    import xarray
+
+    n = len(points)
+    form, reasons = _form_of([outcomes[i] for i in range(n)])
+    coordinates: dict[str, Any] = {}
+    for name, column in points.columns.items():
+        values = column.values
+        coordinates[name] = ((column.dimension,), values, {"units": units.get(name, "1")})
+    if SAMPLE in points.sizes:
+        coordinates[SAMPLE] = ((SAMPLE,), np.arange(points.sizes[SAMPLE]), {"units": "1"})
+    data: dict[str, Any] = {}
+    for k, (name, kind, unit, text, *over) in enumerate(form):
+        shape, dims = points.shape, tuple(points.sizes)
+        if over:
+            dimension, along, along_unit = over
+            shape, dims = (*shape, len(along)), (*dims, dimension)
+            coordinates[dimension] = ((dimension,), np.array(along), {"units": along_unit})
+        width = shape[len(points.shape) :]
+        values = np.full((n, *width), "" if kind == "text" else np.nan, dtype=_DTYPES[kind])
+        for i in range(n):
+            if not reasons[i]:
+                values[i] = outcomes[i].values[k]
+        data[name] = (dims, values.reshape(shape), {"units": unit, "text": text})
+    data[REASON] = (
+        tuple(points.sizes),
+        reasons.reshape(points.shape),
+        {"text": "why the point failed, empty where it did not"},
+    )
+    return Study(xarray.Dataset(data, coordinates, dict(attributes)))
+
+
+def _form_of(outcomes: Sequence[Outcome]) -> tuple[list[tuple[Any, ...]], np.ndarray]:
+    """What the measures give, and why points have failed, "" where they have not."""
+    first = next((o.form for o in outcomes if not o.reason), ())
+    units = ["" for _ in first]
+    verdicts: dict[tuple[Any, ...], str] = {}  # few forms, many points
+    reasons = []
+    for outcome in outcomes:
+        if not outcome.reason and outcome.form not in verdicts:
+            verdicts[outcome.form] = _against(first, outcome.form, units)
+        reasons.append(outcome.reason or verdicts[outcome.form])
+    form = [
+        (name, kind, unit or "1", text, *over)
+        for (name, kind, _, text, *over), unit in zip(first, units, strict=True)
+    ]
+    return form, np.array(reasons, dtype=object)
+
+
+def _against(first: tuple[Any, ...], form: tuple[Any, ...], units: list[str]) -> str:
+    """Why a form does not fit the first, "" where it does; units not known before are noted."""
+    if [(f[0], f[1], *f[4:]) for f in form] != [(f[0], f[1], *f[4:]) for f in first]:
+        return "the measures give other names or dimensions than at the first point"
+    for k, (name, _, unit, *_rest) in enumerate(form):
+        if unit and units[k] and unit != units[k]:
+            return f"{name} is in {unit}, at the first point in {units[k]}"
+        units[k] = units[k] or unit
+    return ""
+
+
+_DTYPES: Mapping[str, Any] = {"text": object, "number": float}
+
+
+def _range(array: Any) -> str:
+    values = array.values
+    if values.dtype.kind not in "biuf":
+        found, counts = np.unique(values.astype(str), return_counts=True)
+        return ", ".join(f"{n} {t}" for t, n in zip(found, counts, strict=True) if t)[:60]
+    finite = values[np.isfinite(values)]
+    if not finite.size:
+        return "no number"
+    return f"{finite.min():.4g} to {finite.max():.4g}"
+
+
+def _unit(array: Any) -> str:
+    return str(array.attrs.get("units", ""))

@@ -1,0 +1,198 @@
+"""A study: a model, named parameters and measures, at every point of their axes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+from ..diagrams import Diagram
+from ..errors import ExperimentError, ModelError
+from ..simulate import Sampling, Trajectory
+from ..simulate.sampling import SAMPLED
+from .case import Case
+from .evaluate import Task, check_parameters
+from .fingerprint import fingerprint
+from .journal import Journal, Outcome
+from .measures import measures_of
+from .points import points_of
+from .processes import run_on_this_machine
+from .progress import Clock, Progress
+from .result import Study, check_netcdf, labelled, read_study
+from .versions import versions
+
+
+def study(
+    model: Diagram | Case | Callable[..., Any],
+    axes: Mapping[str, Any] | Any,
+    *,
+    measures: Any,
+    duration: float = 0.0,
+    inputs: Mapping[str, Any] | None = None,
+    motion: Mapping[str, Trajectory] | None = None,
+    initial: Mapping[str, float] | None = None,
+    computer: Sampling | Literal["continuous"] = SAMPLED,
+    step: float = 1e-4,
+    give: float = 1e-5,
+    every_step: bool = False,
+    units: Mapping[str, str] | None = None,
+    seed: int = 0,
+    workers: int | None = None,
+    scheduler: str = "",
+    out: str | Path | None = None,
+    progress: Callable[[Progress], object] | None = None,
+) -> Study:
+    """Measure a model at every point of its parameters' axes.
+
+    model: a diagram, whose parameters are varied by the names of `Diagram.values` and of `Case`; or
+        a function of the parameters that returns a diagram, a `Case`, or what the measures take
+    axes: parameter -> values (several parameters: their product) or one value; points drawn
+        together (`latin_hypercube`, `sobol`, ...); or a sequence of such, whose product is taken
+    measures: names of `MEASURES`, `measure(...)`, functions; several in a list, or by name
+    duration ... every_step: how a diagram is simulated, as in `simulate`; no duration: not at all
+    units: of a function's parameters and of measures, by name
+    seed: of measures that need randomness
+    workers: processes of this machine; None: as many as it has cores, none where that is as fast
+    scheduler: address of a Dask cluster, "tcp://..."; the points are computed there
+    out: netCDF file; finished points are kept beside it, and the same study goes on from there
+    progress: is told now and then, such as `print`
+    raises ModelError: an unknown parameter or measure, a model that cannot be sent
+    raises ExperimentError: a file that cannot be written or is of another study, a cluster that
+        cannot be reached
+    A point that fails is NaN, and `failure` says why. The data do not depend on where the points
+    were computed.
+    """
+    points, chosen = points_of(axes), measures_of(measures)
+    settings: dict[str, Any] = {
+        "duration": duration,
+        "inputs": dict(inputs or {}),
+        "motion": dict(motion or {}),
+        "initial": dict(initial or {}),
+        "computer": computer,
+        "step": step,
+        "give": give,
+        "every_step": every_step,
+    }
+    if workers is not None and workers < 1:
+        raise ModelError(f"study: workers: found {workers}, expected 1 or more")
+    if scheduler and workers is not None:
+        raise ModelError("study: workers and scheduler: a cluster brings its own workers")
+    if isinstance(model, Diagram):
+        model = Case(model, **settings)
+    if isinstance(model, Case):
+        model.check_names(points.names)
+    else:
+        check_parameters(model, points)
+    task = Task(model, settings, points, chosen, seed)
+    attributes = _attributes(task)
+    target = None if out is None else Path(out)
+    if target is not None:
+        check_netcdf()
+        if target.exists():
+            return _finished(target, str(attributes["study"]))
+        if not target.parent.is_dir():
+            raise ExperimentError(f"{target}: there is no folder {str(target.parent)!r}")
+    part = None if target is None else target.with_name(f"{target.name}.part")
+    journal = Journal(part, str(attributes["study"]), len(points))
+    try:
+        _run(task, journal, workers=workers, scheduler=scheduler, progress=progress)
+        result = labelled(
+            points, journal.outcomes, units=_units(task, units or {}), attributes=attributes
+        )
+        _with_units(result, units or {})
+        if target is not None:
+            result.to_netcdf(target)
+            journal.remove()
+    finally:
+        journal.close()
+    return result
+
+
+def _run(
+    task: Task,
+    journal: Journal,
+    *,
+    workers: int | None,
+    scheduler: str,
+    progress: Callable[[Progress], object] | None,
+) -> None:
+    todo = [i for i in range(len(task.points)) if i not in journal.outcomes]
+    clock = Clock(len(task.points), len(journal.outcomes), progress)
+
+    def sink(outcome: Outcome) -> None:
+        journal.add(outcome)
+        clock.count(outcome)
+
+    if not todo:
+        return
+    if scheduler:
+        from .cluster import run_on_cluster
+
+        run_on_cluster(task, todo, sink, scheduler)
+    else:
+        run_on_this_machine(task, todo, sink, workers)
+
+
+def _finished(target: Path, key: str) -> Study:
+    """The study that a file holds already, where it is this one."""
+    found = read_study(target)
+    if found.data.attrs["study"] != key:
+        raise ExperimentError(
+            f"{target}: holds another study (other model, axes, measures or version): choose "
+            "another file, or remove it"
+        )
+    return found
+
+
+def _units(task: Task, given: Mapping[str, str]) -> dict[str, str]:
+    """Units of the parameters."""
+    if isinstance(task.model, Case):
+        case = task.model
+        return {n: given.get(n) or case.unit(n) for n in task.points.names}
+    return {n: given.get(n, "1") for n in task.points.names}
+
+
+def _with_units(result: Study, given: Mapping[str, str]) -> None:
+    """Units of measures that a user's functions cannot say themselves."""
+    for name in result.measures:
+        if name in given:
+            result.data[name].attrs["units"] = given[name]
+
+
+def _attributes(task: Task) -> dict[str, Any]:
+    """What stands beside the numbers: enough to compute them again."""
+    points, model = task.points, task.model
+    values: dict[str, Any] = dict(points.fixed)
+    if isinstance(model, Case):
+        name, values = model.diagram.name, {**model.diagram.values, **values}
+        settings = model.settings()
+        values = {n: v for n, v in values.items() if n not in points.columns}
+    else:
+        name, settings = getattr(model, "__name__", "model"), dict(task.case)
+    made_with = versions()
+    model_hash = fingerprint(model, task.case)
+    samples = points.samples
+    return {
+        "model": name,
+        "model_hash": model_hash,
+        "study": fingerprint(
+            model_hash,
+            points.sizes,
+            [(n, c.dimension, c.values) for n, c in points.columns.items()],
+            points.fixed,
+            task.measures,
+            task.seed,
+            made_with,
+        ),
+        "axes": json.dumps(list(points.columns)),
+        "fixed": json.dumps({n: v for n, v in values.items() if isinstance(v, int | float | str)}),
+        "settings": json.dumps({k: str(v) for k, v in settings.items()}),
+        "measures": json.dumps(
+            {m.name: {k: str(v) for k, v in m.options.items()} for m in task.measures}
+        ),
+        "seed": task.seed,
+        "sampling": samples.method if samples is not None else "",
+        "sampling_seed": samples.seed if samples is not None else 0,
+        "versions": json.dumps(made_with),
+    }

@@ -1,0 +1,164 @@
+"""Points drawn in several parameters together: Latin hypercube, Sobol, random, for sensitivities.
+
+A range is (low, high), uniform between them; (low, high, step), of which every low + n step is as
+probable, for delays that are whole steps of a simulation; or a distribution of `scipy.stats`, such
+as `scipy.stats.loguniform(1e-4, 1e-2)`. The same seed gives the same points on every machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from ..by_value import ByValue
+from ..errors import ModelError
+from ..expectations import described
+
+Method = Literal["latin_hypercube", "sobol", "random", "sensitivity"]
+#: most points of one sample: 8 bytes each and parameter, 0.8 GB for ten parameters
+_MOST = 10_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Samples(ByValue):
+    """Points in several parameters.
+
+    names: parameters;  values: (points, parameters), SI;  ranges: each parameter's, in words
+    method: how they were drawn;  base: of "sensitivity", points from which the others are made
+    """
+
+    names: tuple[str, ...]
+    values: np.ndarray
+    ranges: tuple[str, ...]
+    method: Method
+    seed: int
+    base: int = 0
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __repr__(self) -> str:
+        listed = ", ".join(f"{n} {r}" for n, r in zip(self.names, self.ranges, strict=True))
+        return f"{len(self)} points ({self.method}, seed {self.seed}): {listed}"
+
+
+def latin_hypercube(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
+    """Points of which each parameter's range, cut into `samples` slices, has one in each slice.
+
+    ranges: parameter -> (low, high), (low, high, step) or a distribution of `scipy.stats`
+    raises ModelError: no range, a range without width, no whole number of points above 0
+    """
+    from scipy.stats import qmc
+
+    _check_count("latin_hypercube", samples)
+    unit = qmc.LatinHypercube(len(_of(ranges)), rng=np.random.default_rng(seed)).random(samples)
+    return _placed(ranges, unit, "latin_hypercube", seed)
+
+
+def sobol(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
+    """Points of a scrambled Sobol sequence, which fills space evenly; see `latin_hypercube`.
+
+    samples: a power of two: with another number the sequence loses its balance
+    """
+    _check_count("sobol", samples)
+    return _placed(ranges, _sequence("sobol", len(_of(ranges)), samples, seed), "sobol", seed)
+
+
+def random_samples(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
+    """Points drawn independently; see `latin_hypercube`."""
+    _check_count("random_samples", samples)
+    unit = np.random.default_rng(seed).random((samples, len(_of(ranges))))
+    return _placed(ranges, unit, "random", seed)
+
+
+def sensitivity_samples(ranges: Mapping[str, Any], base: int, *, seed: int = 0) -> Samples:
+    """base (k + 2) points in k parameters, from which Sobol indices are estimated.
+
+    Each of `base` pairs of points of a Sobol sequence of 2 k dimensions gives its two points and k
+    between them, in each of which one parameter is the second point's. Saltelli et al., Computer
+    Physics Communications 181 (2010) 259, in the order that SALib expects.
+    base: a power of two;  ranges: as in `latin_hypercube`
+    """
+    _check_count("sensitivity_samples", base)
+    k = len(_of(ranges))
+    pairs = _sequence("sensitivity_samples", 2 * k, base, seed)
+    first, second = pairs[:, :k], pairs[:, k:]
+    rows = np.empty((base, k + 2, k))
+    rows[:, 0], rows[:, -1] = first, second
+    for i in range(k):
+        rows[:, i + 1] = first
+        rows[:, i + 1, i] = second[:, i]
+    return _placed(ranges, rows.reshape(-1, k), "sensitivity", seed, base)
+
+
+def _sequence(where: str, dimensions: int, samples: int, seed: int) -> np.ndarray:
+    from scipy.stats import qmc
+
+    if samples & (samples - 1):
+        near = 2 ** round(float(np.log2(samples)))
+        raise ModelError(
+            f"{where}: found {samples} points, expected a power of two; did you mean {near}?"
+        )
+    sequence = qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
+    return np.asarray(sequence.random(samples))
+
+
+def _placed(
+    ranges: Mapping[str, Any], unit: np.ndarray, method: Method, seed: int, base: int = 0
+) -> Samples:
+    """Points of the unit cube, brought into the ranges."""
+    columns, words = [], []
+    for (name, given), column in zip(ranges.items(), unit.T, strict=True):
+        if hasattr(given, "ppf"):
+            columns.append(np.asarray(given.ppf(column), dtype=float))
+            words.append(distribution_text(given))
+        else:
+            low, high, step = _ends(name, given)
+            if step:
+                count = round((high - low) / step) + 1
+                columns.append(low + step * np.minimum(np.floor(count * column), count - 1))
+            else:
+                columns.append(low + (high - low) * column)
+            words.append(f"{low:g} to {high:g}" + (f" in steps of {step:g}" if step else ""))
+        if not np.isfinite(columns[-1]).all():
+            raise ModelError(f"samples: {name}: the distribution gives points that are not finite")
+    return Samples(tuple(ranges), np.column_stack(columns), tuple(words), method, seed, base)
+
+
+def distribution_text(given: Any) -> str:
+    """A frozen distribution of scipy in words: "lognorm(0.3, scale=2.0)"."""
+    name = getattr(getattr(given, "dist", None), "name", type(given).__name__)
+    parts = [f"{float(a):g}" for a in getattr(given, "args", ())]
+    parts += [f"{k}={float(v):g}" for k, v in getattr(given, "kwds", {}).items()]
+    return f"{name}({', '.join(parts)})"
+
+
+def _of(ranges: Mapping[str, Any]) -> Mapping[str, Any]:
+    if not ranges:
+        raise ModelError("samples: found no range, expected at least one, by parameter")
+    return ranges
+
+
+def _ends(name: str, given: Any) -> tuple[float, float, float]:
+    """low, high and step; 0 where there is no step."""
+    try:
+        low, high, *more = (float(x) for x in given)
+        (step,) = more or [0.0]
+    except (TypeError, ValueError):
+        raise ModelError(
+            f"samples: {name}: found {described(given)}, expected (low, high), (low, high, "
+            "step) or a distribution of scipy.stats"
+        ) from None
+    if not (np.isfinite([low, high]).all() and low < high):
+        raise ModelError(f"samples: {name}: found {low:g} to {high:g}, expected low < high")
+    if step < 0 or step > high - low:
+        raise ModelError(f"samples: {name}: found a step of {step:g}, expected 0 to high - low")
+    return low, high, step
+
+
+def _check_count(where: str, samples: int) -> None:
+    if not 0 < samples <= _MOST:
+        raise ModelError(f"{where}: found {samples} points, expected 1 to {_MOST}")

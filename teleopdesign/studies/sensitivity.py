@@ -1,0 +1,84 @@
+"""Which parameter a measure depends on most: Sobol indices, estimated by SALib.
+
+The first index is the share of the measure's variance that a parameter causes alone; the total
+index adds what it causes together with others. The sum of first indices is 1 where parameters act
+independently of each other.
+"""
+
+from __future__ import annotations
+
+import json
+import warnings
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import ExperimentError, ModelError
+from .points import SAMPLE
+
+if TYPE_CHECKING:
+    import xarray
+
+    from .result import Study
+
+#: resamplings of the estimate's interval, as SALib takes by default
+_RESAMPLED = 100
+
+
+def sensitivity(study: Study, measure: str = "") -> xarray.Dataset:
+    """`first` and `total` Sobol indices over `parameter`, with half their 95 % intervals.
+
+    measure: default the only one
+    raises ModelError: points are none of `sensitivity_samples`, some failed, or it never varies
+    raises ExperimentError: SALib is not installed
+    """
+    import xarray
+
+    try:
+        from SALib.analyze import sobol
+    except ImportError:
+        raise ExperimentError(
+            "study: Sobol indices need SALib: pip install 'teleopdesign[studies]'"
+        ) from None
+    name = measure or _only(study)
+    values, attrs = study[name], study.data.attrs
+    if attrs.get("sampling") != "sensitivity" or values.dims != (SAMPLE,):
+        raise ModelError(
+            "study: Sobol indices need points of sensitivity_samples alone, and a number at each; "
+            f"found {attrs.get('sampling') or 'a grid'} over {', '.join(map(str, values.dims))}"
+        )
+    numbers = values.values.astype(float)
+    if bad := int((~np.isfinite(numbers)).sum()):
+        raise ModelError(
+            f"study: {name}: {bad} of {len(numbers)} points are no numbers; Sobol indices need all"
+        )
+    if np.ptp(numbers) == 0:
+        raise ModelError(f"study: {name}: is {numbers[0]:g} at every point: nothing depends")
+    names = json.loads(attrs["axes"])
+    problem = {"num_vars": len(names), "names": names, "bounds": [[0.0, 1.0]] * len(names)}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", FutureWarning)  # of pandas, inside SALib
+        found = sobol.analyze(
+            problem,
+            numbers,
+            calc_second_order=False,
+            num_resamples=_RESAMPLED,
+            seed=int(attrs["sampling_seed"]),
+        )
+    text = {"units": "1"}
+    return xarray.Dataset(
+        {
+            "first": ("parameter", np.asarray(found["S1"]), text),
+            "first_interval": ("parameter", np.asarray(found["S1_conf"]), text),
+            "total": ("parameter", np.asarray(found["ST"]), text),
+            "total_interval": ("parameter", np.asarray(found["ST_conf"]), text),
+        },
+        {"parameter": names},
+        {"measure": name, "method": "Saltelli et al. (2010), by SALib"},
+    )
+
+
+def _only(study: Study) -> str:
+    if len(study.measures) != 1:
+        raise ModelError(f"study: which measure? It has {', '.join(study.measures)}")
+    return study.measures[0]

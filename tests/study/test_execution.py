@@ -1,0 +1,332 @@
+"""Where and how often a study is stopped, killed or spread changes its time, never its numbers."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import study_models as models
+import xarray
+
+import teleopdesign as td
+from teleopdesign.errors import ExperimentError, ModelError
+
+TESTS = Path(__file__).parents[1]
+AXES = {"x": np.arange(6.0), "y": np.linspace(0.1, 1.0, 5)}
+EXPECTED = AXES["x"][:, None] * np.sin(AXES["y"])
+
+
+def in_a_process(code, *, limit="", **options):
+    """Start Python with this package and these tests in reach."""
+    head = f"import sys; sys.path[:0] = [{str(TESTS)!r}, {str(TESTS.parent)!r}]\n{limit}\n"
+    return subprocess.Popen([sys.executable, "-c", head + code], **options)
+
+
+def study_code(out, model="slow_product", points=300, **more):
+    """A study of `points` points that writes into `out`."""
+    given = "".join(f", {k}={v!r}" for k, v in more.items())
+    return (
+        "import numpy as np, teleopdesign as td, study_models as models\n"
+        f"td.study(models.{model}, {{'x': np.arange({points}.0), 'y': 0.5}}, "
+        f"measures=models.value, out={str(out)!r}{given})\n"
+    )
+
+
+def test_two_processes_give_the_data_set_of_one(tmp_path):
+    one = td.study(models.product, AXES, measures=models.value, workers=1)
+    two = td.study(models.product, AXES, measures=models.value, workers=2)
+    xarray.testing.assert_identical(one.data, two.data)
+    np.testing.assert_array_equal(
+        one["value"].values, [[x * np.sin(y) for y in AXES["y"]] for x in AXES["x"]]
+    )
+
+
+def test_functions_without_a_name_go_to_other_processes_too():
+    offset = 3.0
+    found = td.study(lambda x: x + offset, {"x": [1.0, 2.0]}, measures=lambda r: r, workers=2)
+    assert list(found["measure"].values) == [4.0, 5.0]
+
+
+@pytest.mark.slow
+def test_a_point_whose_process_is_killed_is_computed_again(tmp_path):
+    axes = {**AXES, "folder": str(tmp_path)}
+    found = td.study(models.deadly_product, axes, measures=models.value, workers=2)
+    assert (tmp_path / "killed").exists()
+    np.testing.assert_allclose(found["value"].values, EXPECTED, rtol=1e-15)
+
+
+@pytest.mark.slow
+def test_a_point_that_kills_its_process_every_time_is_a_failure_and_no_other_is():
+    found = td.study(models.lethal_product, AXES, measures=models.value, workers=2)
+    assert found.failures == {"its process ended twice, by signal 9": 1}
+    expected = EXPECTED.copy()
+    expected[3, 0] = np.nan
+    np.testing.assert_allclose(found["value"].values, expected, rtol=1e-15)
+
+
+def test_progress_says_how_many_are_done_and_ends_with_all():
+    told = []
+    td.study(models.product, AXES, measures=models.value, progress=told.append, workers=1)
+    assert told[-1].done == told[-1].total == 30
+    assert str(told[-1]).startswith("30 of 30 points")
+
+
+def test_a_file_that_holds_the_study_is_not_computed_again(tmp_path):
+    out = tmp_path / "s.nc"
+    first = td.study(models.product, AXES, measures=models.value, out=out)
+    written = out.stat().st_mtime_ns
+    again = td.study(models.product, AXES, measures=models.value, out=out)
+    assert out.stat().st_mtime_ns == written
+    np.testing.assert_array_equal(first["value"].values, again["value"].values)
+    assert [p.name for p in tmp_path.iterdir()] == ["s.nc"]
+
+
+def test_another_study_never_takes_the_place_of_one(tmp_path):
+    out = tmp_path / "s.nc"
+    td.study(models.product, AXES, measures=models.value, out=out)
+    with pytest.raises(ExperimentError, match="holds another study"):
+        td.study(models.product, {**AXES, "x": [1.0]}, measures=models.value, out=out)
+    with pytest.raises(ExperimentError, match="holds another study"):
+        td.study(models.slow_product, AXES, measures=models.value, out=out)
+
+
+def test_what_an_interrupted_study_has_finished_is_not_computed_again(tmp_path):
+    """Every point leaves a mark when it is computed: none leaves two."""
+    out, count = tmp_path / "s.nc", [0]
+
+    def marked(x):
+        count[0] += 1
+        if count[0] == 7:
+            raise KeyboardInterrupt
+        return x
+
+    # the same study: what the function encloses is its own, and counted before it changes
+    axes = {"x": np.arange(10.0)}
+    with pytest.raises(KeyboardInterrupt):
+        td.study(marked, axes, measures=models.value, out=out, workers=1)
+    lines = (tmp_path / "s.nc.part").read_text().splitlines()
+    assert sum('"point"' in line for line in lines) == 6
+    count[0] = 0
+    found = td.study(marked, axes, measures=models.value, out=out, workers=1)
+    assert count[0] == 4
+    np.testing.assert_array_equal(found["value"].values, np.arange(10.0))
+    assert [p.name for p in tmp_path.iterdir()] == ["s.nc"]
+
+
+def damaged_journal(tmp_path, damage):
+    """A study of 10 points, of which 6 stand in a journal whose last line is damaged."""
+    out = tmp_path / "s.nc"
+
+    def stopped(progress):
+        if progress.done >= 6:
+            raise KeyboardInterrupt
+
+    axes = {"x": np.arange(10.0), "y": 0.5}
+    from teleopdesign.studies import progress as module
+
+    module._BETWEEN, before = -1.0, module._BETWEEN
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            td.study(
+                models.product, axes, measures=models.value, out=out, workers=1, progress=stopped
+            )
+    finally:
+        module._BETWEEN = before
+    part = tmp_path / "s.nc.part"
+    part.write_bytes(damage(part.read_bytes()))
+    first = []
+    found = td.study(
+        models.product, axes, measures=models.value, out=out, workers=1, progress=first.append
+    )
+    return first[-1].kept, found
+
+
+@pytest.mark.parametrize(
+    ("damage", "kept"),
+    [
+        (lambda data: data, 6),
+        (lambda data: data[:-1], 5),  # the last line has no end
+        (lambda data: data[:-9], 5),
+        (lambda data: data[:-3] + b"9" + data[-2:], 5),  # a digit of the last line is another
+        (lambda data: data + b"0000", 6),
+        (lambda data: data + b"\0" * 4096, 6),  # a system that crashed leaves zeros
+        (lambda data: b"", 0),
+    ],
+)
+def test_a_broken_end_of_the_kept_points_is_cut_off_and_computed_again(tmp_path, damage, kept):
+    found_kept, found = damaged_journal(tmp_path, damage)
+    assert found_kept == kept
+    np.testing.assert_array_equal(
+        found["value"].values, [models.product(x, 0.5) for x in np.arange(10.0)]
+    )
+
+
+def test_points_of_another_study_are_not_taken_up(tmp_path):
+    out = tmp_path / "s.nc"
+    out.with_name("s.nc.part").write_text("")
+    with in_a_process(study_code(out), stderr=subprocess.DEVNULL) as process:
+        wait_for_points(out, 5)
+        process.kill()
+    with pytest.raises(ExperimentError, match="holds points of another study"):
+        td.study(models.product, AXES, measures=models.value, out=out)
+
+
+def wait_for_points(out, count, limit=60.0):
+    """Wait until that many points are kept."""
+    part, end = out.with_name(f"{out.name}.part"), time.monotonic() + limit
+    while time.monotonic() < end:
+        if out.exists() or (part.exists() and part.read_bytes().count(b'"point":') >= count):
+            return
+        time.sleep(0.01)
+    raise AssertionError("no point within a minute")
+
+
+def test_two_processes_do_not_write_into_one_file(tmp_path):
+    out = tmp_path / "s.nc"
+    with in_a_process(study_code(out, points=100_000), stderr=subprocess.DEVNULL) as process:
+        wait_for_points(out, 1)
+        try:
+            axes = {"x": np.arange(100_000.0), "y": 0.5}
+            with pytest.raises(ExperimentError, match="another process computes this study"):
+                td.study(models.slow_product, axes, measures=models.value, out=out)
+        finally:
+            process.kill()
+
+
+def test_a_full_disk_ends_in_one_line_and_keeps_every_finished_point(tmp_path):
+    """The system refuses files over 4 kB, as a full disk refuses more: in the middle of a line."""
+    out = tmp_path / "s.nc"
+    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))"
+    code = (
+        "from teleopdesign.errors import TeleopDesignError\n"
+        "try:\n    " + "\n    ".join(study_code(out, "product", 500).splitlines()) + "\n"
+        "except TeleopDesignError as error:\n    print(error)\n"
+    )
+    with in_a_process(code, limit=limit, stdout=subprocess.PIPE, text=True) as process:
+        said, _ = process.communicate(timeout=60)
+    assert "cannot be written" in said and said.count("\n") == 1
+    kept = int(said.split(" of 500 points are kept")[0].split()[-1])
+    assert kept > 10
+    first = []
+    found = td.study(
+        models.product,
+        {"x": np.arange(500.0), "y": 0.5},
+        measures=models.value,
+        out=out,
+        progress=first.append,
+    )
+    assert first[-1].kept == kept
+    np.testing.assert_array_equal(
+        found["value"].values, [models.product(x, 0.5) for x in np.arange(500.0)]
+    )
+
+
+@pytest.mark.slow
+def test_after_twenty_kills_at_random_times_no_finished_point_is_lost_and_none_is_wrong(tmp_path):
+    out, choose = tmp_path / "s.nc", random.Random(1)
+    part, points, kept = tmp_path / "s.nc.part", 40_000, 0
+    for run in range(20):
+        process = in_a_process(
+            study_code(out, points=points, workers=1 + run % 2), stderr=subprocess.DEVNULL
+        )
+        with process:
+            wait_for_points(out, kept + 1)
+            time.sleep(choose.uniform(0.0, 0.3))
+            assert process.poll() is None
+            process.send_signal(signal.SIGKILL)
+        now = part.read_bytes().count(b'"point":')
+        assert now > kept  # what was there stays, and each run adds to it
+        kept = now
+    values = _kept_values(part)
+    assert len(values) >= kept - 1  # the last line may be broken
+    assert all(v == models.product(i, 0.5) for i, v in values.items())
+    assert len(values) == len(set(values))
+
+
+def _kept_values(part):
+    import json
+
+    values = {}
+    for line in part.read_bytes().splitlines(keepends=True):
+        if b'"point":' in line and line.endswith(b"\n"):
+            content = json.loads(line.split(b" ", 1)[1])
+            assert content["point"] not in values
+            values[content["point"]] = content["values"][0]
+    return values
+
+
+# ---- a cluster ------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    """A scheduler and two workers, each a process of its own."""
+    distributed = pytest.importorskip("distributed")
+    made = distributed.LocalCluster(
+        n_workers=2,
+        threads_per_worker=1,
+        processes=True,
+        dashboard_address=None,
+        host="127.0.0.1",
+        silence_logs=50,
+    )
+    yield made
+    made.close(timeout=20)
+
+
+@pytest.mark.slow
+def test_a_cluster_gives_the_data_set_of_one_process(cluster):
+    axes = {"C.dahl.level": np.linspace(0.2, 1.2, 4), "computer.delay": [0, 1.5e-4, 1e-3]}
+    given = {"measures": ["force_error", "energy_drawn"], **models.SIMULATED}
+    one = td.study(models.interface(), axes, workers=1, **given)
+    two = td.study(models.interface(), axes, workers=2, **given)
+    spread = td.study(models.interface(), axes, scheduler=cluster.scheduler_address, **given)
+    xarray.testing.assert_identical(one.data, two.data)
+    xarray.testing.assert_identical(one.data, spread.data)
+    assert sum(one.failures.values()) == 4
+
+
+@pytest.mark.slow
+def test_a_worker_of_a_cluster_that_is_killed_costs_no_point(cluster):
+    from distributed import Client
+
+    with Client(cluster.scheduler_address, set_as_default=False) as client:
+        (first, *_) = client.run(os.getpid).values()
+    killed = []
+
+    def kill(progress):
+        if not killed and progress.done > 100:
+            os.kill(first, signal.SIGKILL)
+            killed.append(progress.done)
+
+    axes = {"x": np.arange(1500.0), "y": 0.5}
+    found = td.study(
+        models.slow_product,
+        axes,
+        measures=models.value,
+        scheduler=cluster.scheduler_address,
+        progress=kill,
+    )
+    assert killed and killed[0] < 1500
+    np.testing.assert_array_equal(
+        found["value"].values, [models.product(x, 0.5) for x in axes["x"]]
+    )
+
+
+@pytest.mark.slow
+def test_a_cluster_that_does_not_answer_is_one_line():
+    pytest.importorskip("distributed")
+    with pytest.raises(ExperimentError, match="no scheduler answers at tcp://127.0.0.1:1"):
+        td.study(models.product, AXES, measures=models.value, scheduler="tcp://127.0.0.1:1")
+
+
+def test_workers_and_a_cluster_are_one_or_the_other():
+    with pytest.raises(ModelError, match="a cluster brings its own workers"):
+        td.study(models.product, AXES, measures=models.value, scheduler="tcp://a:1", workers=2)
+    with pytest.raises(ModelError, match="expected 1 or more"):
+        td.study(models.product, AXES, measures=models.value, workers=0)

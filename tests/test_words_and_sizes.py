@@ -1,0 +1,169 @@
+"""Names say what things are, one name means one thing, and functions stay readable."""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import teleopdesign
+
+PACKAGE = Path(teleopdesign.__file__).parent
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+#: participles and the like: they name grammar, where a name should say what it holds
+BANNED = frozenset("asked found give given own referred seen settled taken told tried".split())
+#: keywords of public functions, kept under the names that users type
+PUBLIC_KEYWORDS = {
+    # m or rad by which ideal friction gives before it slides: `simulate(..., give=...)`
+    "give": (
+        "blocks/environments",
+        "frequency/measured_impedance",
+        "frequency/measured_response",
+        "frequency/sinusoid",
+        "identify/largest_stiffness",
+        "passivity/search/by_simulation",
+        "realise/iosystem",
+    ),
+    # motions that are prescribed: `bode(..., given=...)`, `transfer_function(..., given=...)`
+    "given": ("derive", "frequency"),
+}
+#: written anew elsewhere: names there are not judged yet
+UNJUDGED = ("realise/_codegen_loop", "simulate")
+
+MOST_LINES = 60
+MOST_POSITIONAL = 6
+MOST_CONSTANTS_OF_DIAGNOSE = 60
+
+
+@cache
+def modules() -> dict[str, ast.Module]:
+    """Name such as "passivity/ports" -> syntax tree."""
+    files = sorted(PACKAGE.rglob("*.py"))
+    return {
+        f.relative_to(PACKAGE).with_suffix("").as_posix(): ast.parse(f.read_text()) for f in files
+    }
+
+
+def functions() -> Iterator[tuple[str, Function]]:
+    for module, tree in modules().items():
+        for node in ast.walk(tree):
+            if isinstance(node, Function):
+                yield module, node
+
+
+def under(module: str, places: tuple[str, ...]) -> bool:
+    return any(module == place or module.startswith(f"{place}/") for place in places)
+
+
+def names(tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """Line and name of everything that a tree names: functions, parameters, locals, fields."""
+    for node in ast.walk(tree):
+        if isinstance(node, Function):
+            yield node.lineno, node.name
+        elif isinstance(node, ast.arg):
+            yield node.lineno, node.arg
+        elif isinstance(node, ast.ExceptHandler) and node.name is not None:
+            yield node.lineno, node.name
+        elif isinstance(node, ast.alias) and node.asname is not None:
+            yield node.lineno, node.asname
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            yield node.lineno, node.id
+
+
+def misnamed(module: str, tree: ast.AST) -> list[str]:
+    return [
+        f"{module}:{line}: {name}"
+        for line, name in names(tree)
+        if name.strip("_") in BANNED and not under(module, PUBLIC_KEYWORDS.get(name, ()))
+    ]
+
+
+def positional(function: Function) -> int:
+    arguments = [*function.args.posonlyargs, *function.args.args]
+    return len([a for a in arguments if a.arg not in ("self", "cls")])
+
+
+def length(function: Function) -> int:
+    assert function.end_lineno is not None
+    return function.end_lineno - function.lineno + 1
+
+
+def test_no_name_says_grammar_instead_of_a_thing():
+    wrong = [
+        one
+        for module, tree in modules().items()
+        if not under(module, UNJUDGED)
+        for one in misnamed(module, tree)
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "found = 1",
+        "def found(): ...",
+        "def _taken(): ...",
+        "def f(own): ...",
+        "def f(*, told=0): ...",
+        "for tried in x: pass",
+        "[seen for seen in x]",
+        "class A:\n    settled: int",
+        "(taken := 1)",
+        "with x as asked: pass",
+        "import x as referred",
+        "try: pass\nexcept ValueError as seen: pass",
+    ],
+)
+def test_a_misnamed_thing_is_seen_wherever_it_is_named(code):
+    assert misnamed("module", ast.parse(code))
+
+
+def test_a_name_that_says_what_it_holds_is_not_judged():
+    assert not misnamed("module", ast.parse("def f(roots, *, given_out=0): x.found(roots, own=1)"))
+
+
+def test_no_two_public_classes_have_the_same_name():
+    homes = defaultdict(list)
+    for module, tree in modules().items():
+        for node in tree.body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                homes[node.name].append(module)
+    assert {name: found for name, found in homes.items() if len(found) > 1} == {}
+
+
+def test_one_function_is_called_teleoperator():
+    assert [m for m, f in functions() if f.name == "teleoperator"] == ["diagrams/teleoperator"]
+
+
+def test_no_function_is_longer_than_a_page():
+    long = [f"{m}.{f.name}: {length(f)}" for m, f in functions() if length(f) > MOST_LINES]
+    assert not long, "\n".join(long)
+
+
+def test_no_function_takes_more_positional_arguments_than_one_can_remember():
+    wide = [
+        f"{m}.{f.name}: {positional(f)}" for m, f in functions() if positional(f) > MOST_POSITIONAL
+    ]
+    assert not wide, "\n".join(wide)
+
+
+def test_diagnose_has_few_constants():
+    constants = Counter[str]()
+    for module, tree in modules().items():
+        if under(module, ("diagnose",)):
+            targets = [
+                target
+                for node in tree.body
+                if isinstance(node, ast.Assign | ast.AnnAssign)
+                for target in (node.targets if isinstance(node, ast.Assign) else [node.target])
+            ]
+            constants[module] += sum(
+                isinstance(t, ast.Name) and t.id.strip("_").isupper() for t in targets
+            )
+    assert constants.total() <= MOST_CONSTANTS_OF_DIAGNOSE, constants.most_common(10)
