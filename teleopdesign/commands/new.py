@@ -79,7 +79,7 @@ def run(options: argparse.Namespace) -> int:
     survey = survey_log(logs[0], options.logs[0].name, choices)
     ask = not options.yes and sys.stdin.isatty()
     if ask:
-        choices = _asked(survey, choices, input)
+        choices = _ask_about(survey, choices, input)
         survey = survey_log(logs[0], options.logs[0].name, choices)
     print(survey_text(survey, options.logs[0].name))
     if survey.guesses and not options.yes and not ask:
@@ -165,7 +165,7 @@ def _constant(text: str | None) -> tuple[float, str] | None:
     raise ExperimentError(f'--torque-constant: found {text!r}, expected such as "0.037 N*m/A"')
 
 
-def _asked(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> Choices:
+def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> Choices:
     """The user's answers to what was guessed; an empty answer takes the guess."""
     units = dict(choices.units)
     for key, why in list(survey.guesses.items()):

@@ -194,20 +194,20 @@ def _constant(table: Table, key: str, example: str | None) -> tuple[float, str]:
 
 def _counted(table: Table, unit: str, *, kind: str, axis: str) -> tuple[str, float]:
     """Unit of a count and how much of it one count is; other units are one of themselves."""
-    given = [key for key in ("count", "counts_per_turn") if key in table.content]
+    keys = [key for key in ("count", "counts_per_turn") if key in table.content]
     if unit not in COUNTS:
-        if given:
+        if keys:
             raise ExperimentError(
-                f"{table.where(given[0])}: found with unit {quoted(unit)}, "
+                f"{table.where(keys[0])}: found with unit {quoted(unit)}, "
                 f"expected unit {quoted(COUNTS[0])}"
             )
         return unit, 1.0
-    if len(given) != 1:
+    if len(keys) != 1:
         raise ExperimentError(
             f'{table.where("unit")}: found "{unit}", expected beside it counts_per_turn = 4096, or '
             'count = { value = 0.5, unit = "um" }: what one count is'
         )
-    if given == ["counts_per_turn"]:
+    if keys == ["counts_per_turn"]:
         return "turns", 1.0 / table.number("counts_per_turn", above=0)
     entry = table.table("count")
     entry.allow(("value", "unit"))

@@ -29,5 +29,5 @@ def reading_step(position: Array) -> float:
     rounding = float(np.sqrt(12.0)) * reading_noise(position)
     moving = float(np.mean(np.diff(position) != 0)) > 0.5
     # readings that are all alike in their fourth difference show no noise at all
-    seen = rounding > 1e-9 * float(np.ptp(position))
-    return min(step, rounding) if seen and moving and step > 3.0 * rounding else step
+    is_noisy = rounding > 1e-9 * float(np.ptp(position))
+    return min(step, rounding) if is_noisy and moving and step > 3.0 * rounding else step

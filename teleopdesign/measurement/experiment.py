@@ -140,8 +140,13 @@ def load_experiment(folder: str | Path) -> Experiment:
 
 def _found_folder(path: Path) -> Path:
     try:
-        if path.name == _FILE and path.is_file():
+        if path.is_file() and (path.parent / _FILE).is_file():
             path = path.parent
+        elif path.is_file() and path.suffix not in (".toml", ".json"):
+            raise ExperimentError(
+                f"{path.name}: a log with no {_FILE} beside it; to make one: "
+                f"teleopdesign new {path.name}"
+            )
         path = path.resolve()
         if path.is_dir():
             names = sorted(entry.name for entry in path.iterdir())
@@ -170,9 +175,11 @@ def _record_entries(
         table.allow(("file", "use", "span", *OWN))
         file, span = table.text("file"), _span(table)
         _check_path(table, folder, file)
-        for other, _, _, taken in entries:
-            if file == other and (span is None or taken is None or _overlap(span, taken)):
-                what = "is listed twice" if span == taken else "is listed with spans that overlap"
+        for other, _, _, other_span in entries:
+            if file == other and (span is None or other_span is None or _overlap(span, other_span)):
+                what = (
+                    "is listed twice" if span == other_span else "is listed with spans that overlap"
+                )
                 raise ExperimentError(f"{table.where('file')}: {quoted(file)} {what}")
         use = _choice(table, "use", ("fit", "check"))
         separate = {

@@ -71,8 +71,8 @@ def experiment(
             f"{_WHERE}: axis: found {quoted(axis)}, expected {' or '.join(map(quoted, AXES))}"
             f"{did_you_mean(axis, AXES)}"
         )
-    given = {key: entry for key, entry in entries.items() if entry is not None}
-    channels = {key: channel_table(e, key, axis, log, units or {}) for key, e in given.items()}
+    entered = {key: entry for key, entry in entries.items() if entry is not None}
+    channels = {key: channel_table(e, key, axis, log, units or {}) for key, e in entered.items()}
     content: dict[str, Any] = {"channels": channels}
     if sample_rate is not None:
         channels["sample_rate"] = {"value": sample_rate, "unit": "Hz"}

@@ -13,7 +13,7 @@ from ..errors import ExperimentError, quoted
 from .channel import Channel
 from .reading import ReadingStep, count_of
 from .tables import LogColumns
-from .time_grid import DATE, EVEN, Clock, clock_of, counted_time, segments_of, stamps_are_true
+from .time_grid import DATE, EVEN, RecordClock, clock_of, counted_time, segments_of, stamps_are_true
 
 Array = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ SURE = 3.0
 class LogClock:
     """The clock, and whether its stamps say when a row was taken or are on an even one."""
 
-    clock: Clock
+    clock: RecordClock
     stamped: bool
 
 
@@ -46,8 +46,8 @@ def clock_of_log(
     name: of the log in messages;  to_seconds: factor of the time channel's unit
     raises ExperimentError: see `clock_of`; too many cells without a number
     """
-    own = {c for c in columns.values if c not in columns.stamps}
-    filled = _filled_rows(columns, channels, own, name)
+    on_this_clock = {c for c in columns.values if c not in columns.stamps}
+    filled = _filled_rows(columns, channels, on_this_clock, name)
     empty = len(filled) - int(filled.sum())
     if sample_rate is not None:
         count = len(filled)
@@ -65,9 +65,9 @@ def clock_of_log(
         steps.append(ReadingStep(file, "stamps that are dates", "time from the first row", "none"))
     segments = segments_of(None if labels is None else labels[rows], len(rows))
     if sample_rate is not None and empty == 0:
-        clock = Clock(rows, time, rows, time, sample_time, segments, segments)
+        clock = RecordClock(rows, time, rows, time, sample_time, segments, segments)
     else:
-        clock = clock_of(stamps, segments, _same(columns, channels, rows, own), where)
+        clock = clock_of(stamps, segments, _same(columns, channels, rows, on_this_clock), where)
         clock = replace(clock, rows=rows[clock.rows])
     stamped, more = _stamps(clock, columns, channels, file)
     if empty:
@@ -83,14 +83,14 @@ def clock_of_log(
 
 
 def _filled_rows(
-    columns: LogColumns, channels: Mapping[str, Channel], own: set[str], name: str
+    columns: LogColumns, channels: Mapping[str, Channel], on_this_clock: set[str], name: str
 ) -> NDArray[np.bool_]:
     """Rows with a number in every wanted cell."""
-    length = max((len(columns.values[c]) for c in own), default=0)
+    length = max((len(columns.values[c]) for c in on_this_clock), default=0)
     filled = np.ones(length, dtype=bool)
     for key, channel in channels.items():
         for column in channel.columns:
-            if column not in own:
+            if column not in on_this_clock:
                 continue
             bad = ~np.isfinite(columns.values[column])
             if bad.mean() > MOST_EMPTY:
@@ -119,19 +119,22 @@ def _labels(columns: LogColumns, channels: Mapping[str, Channel], name: str) -> 
 
 
 def _same(
-    columns: LogColumns, channels: Mapping[str, Channel], rows: NDArray[np.intp], own: set[str]
+    columns: LogColumns,
+    channels: Mapping[str, Channel],
+    rows: NDArray[np.intp],
+    on_this_clock: set[str],
 ) -> NDArray[np.bool_]:
     """Rows that say the same as the one before in every channel but the time."""
     same = np.ones(len(rows), dtype=bool)
     same[:1] = False
     for key, channel in channels.items():
         for column in channel.columns:
-            if key != "time" and column in own:
+            if key != "time" and column in on_this_clock:
                 same[1:] &= np.diff(columns.values[column][rows]) == 0
     return same
 
 
-def _order(clock: Clock, file: str, count: int) -> list[ReadingStep]:
+def _order(clock: RecordClock, file: str, count: int) -> list[ReadingStep]:
     """What is said of rows that were twice, out of order, lost, and of pauses."""
     steps = []
     if clock.dropped:
@@ -157,7 +160,7 @@ def _order(clock: Clock, file: str, count: int) -> list[ReadingStep]:
 
 
 def _stamps(
-    clock: Clock, columns: LogColumns, channels: Mapping[str, Channel], file: str
+    clock: RecordClock, columns: LogColumns, channels: Mapping[str, Channel], file: str
 ) -> tuple[bool, list[ReadingStep]]:
     """Whether the stamps say when a row was taken, and what is said of that."""
     h = clock.sample_time
@@ -184,16 +187,16 @@ def _stamps(
         return True, [ReadingStep(file, text, rule, effect, topic="sample clock", numbers=numbers)]
     slope, error = stamps_are_true(clock, positions)
     text = f"stamps {100 * clock.jitter / h:.2g} % of a row off an even clock"
-    told = f"{slope:.2f} +- {error:.1g} of what they say"
+    share = f"{slope:.2f} +- {error:.1g} of what they say"
     sure = abs(slope - 0.5) > SURE * error
     stamped = slope > 0.5 and math.isfinite(error)
     if stamped:
         rule = (
-            f"the position was read at its stamps ({told}): positions interpolated, commands held"
+            f"the position was read at its stamps ({share}): positions interpolated, commands held"
         )
         effect = _own_stamps(clock, positions)
     else:
-        rule = f"an even clock: the position does not follow the stamps ({told})"
+        rule = f"an even clock: the position does not follow the stamps ({share})"
         effect = "none"
     if not sure:
         effect = "the position hardly tells, so that it makes little difference"
@@ -201,7 +204,7 @@ def _stamps(
     return stamped, [ReadingStep(file, text, rule, effect, topic="sample clock", numbers=numbers)]
 
 
-def _own_stamps(clock: Clock, positions: list[Array]) -> str:
+def _own_stamps(clock: RecordClock, positions: list[Array]) -> str:
     """What even stamps would have done to the position."""
     off = clock.stamps - clock.time[clock.places]
     speeds = [

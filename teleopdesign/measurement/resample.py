@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .time_grid import Clock
+from .time_grid import RecordClock
 
 Array = NDArray[np.float64]
 Rule = Literal["held", "position", "line"]
@@ -29,7 +29,7 @@ TRIALS = 2000
 
 
 def on_grid(
-    values: Array, clock: Clock, rule: Rule, *, stamped: bool, step: float, delay: float = 0.0
+    values: Array, clock: RecordClock, rule: Rule, *, stamped: bool, step: float, delay: float = 0.0
 ) -> Array:
     """A signal (m,), a value a used row, on the record's grid (n,).
 
@@ -67,7 +67,7 @@ def placed(
     return np.interp(grid, at, values)
 
 
-def command_phase(values: Array, clock: Clock) -> float | None:
+def command_phase(values: Array, clock: RecordClock) -> float | None:
     """Phase of the even clock on which a command changes, in samples; None: it follows the rows.
 
     A log may read the command of a controller at instants of its own. Then two rows between the
@@ -99,7 +99,7 @@ def command_phase(values: Array, clock: Clock) -> float | None:
     return None if best is None else best[1]
 
 
-def commands_on_clock(values: Array, clock: Clock, phase: float) -> tuple[Array, float]:
+def commands_on_clock(values: Array, clock: RecordClock, phase: float) -> tuple[Array, float]:
     """A command that changes on an even clock, on the record's grid, and the part in no row.
 
     values: (m,) of the clock's rows;  phase: of the command's clock (`command_phase`)
@@ -174,7 +174,7 @@ def _cubic(values: Array, at: Array, grid: Array, left: NDArray[np.intp]) -> Arr
     return total
 
 
-def filling_error(values: Array, clock: Clock, rule: Rule, *, step: float) -> float:
+def filling_error(values: Array, clock: RecordClock, rule: Rule, *, step: float) -> float:
     """Rms error of a filled row: rows that are there, filled as if each were lost."""
     error: list[Array] = []
     for rows in clock.of_rows:

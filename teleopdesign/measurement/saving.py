@@ -69,8 +69,8 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
         lines += ["[model.environment]"]
         lines += [f"{n} = {_value(values[n])}" for n in _ENVIRONMENT if n in values]
         lines += ["[model.environment.effects]"]
-        for name, given in experiment.environment.effects.items():
-            lines.append(f"{name} = {_inline({k: _value(v) for k, v in given.items()})}")
+        for name, parameters in experiment.environment.effects.items():
+            lines.append(f"{name} = {_inline({k: _value(v) for k, v in parameters.items()})}")
         lines.append("")
     lines += [f"# {line}".rstrip() for line in reading_table(experiment.reading)]
     lines += ["[channels]", 'time = { column = "t", unit = "s" }']
@@ -96,7 +96,7 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
     lines.append("")
     for record, name in zip(experiment.records, names, strict=True):
         lines += ["[[records]]", f"file = {_text(name)}", f"use = {_text(record.use)}"]
-        lines += [f'{own} = "own"' for own in sorted(record.offset_names)]
+        lines += [f'{offset} = "own"' for offset in sorted(record.offset_names)]
     return "\n".join(lines) + "\n"
 
 

@@ -26,6 +26,8 @@ Array = NDArray[np.float64]
 
 #: values of a channel up to which whole numbers are states and no measurement
 STATES = 16
+#: mean of exp(2 pi i x / step) from which readings x lie on steps: 1 on them, 0 anywhere
+ON_STEPS = 0.9
 
 
 def signals_of_log(
@@ -120,7 +122,10 @@ def _stepped(out: Array, values: Array, channel: Channel, step: float) -> Array:
     """Where no resolution is stated it is seen in the readings, and filling must leave it there."""
     if out is values or channel.quantity != "position" or channel.resolution or step <= 0.0:
         return out
-    return np.asarray(values[0] + step * np.round((out - values[0]) / step), dtype=np.float64)
+    if np.abs(np.exp(2j * np.pi * (values - values[0]) / step).mean()) < ON_STEPS:
+        return out
+    stepped = values[0] + step * np.round((out - values[0]) / step)
+    return np.where(np.isin(out, values), out, stepped)
 
 
 def _of_another_clock(

@@ -39,7 +39,7 @@ FIT_PART = 0.6
 
 
 @dataclass(frozen=True)
-class Column:
+class SurveyedColumn:
     """One column on the even grid of the survey: `values` (n,); `readings` (m,) as written."""
 
     name: str
@@ -62,7 +62,7 @@ class Survey:
     duration: float
     guesses: dict[str, str] = field(default_factory=dict)
     time: Array = field(default_factory=lambda: np.zeros(0))
-    columns: dict[str, Column] = field(default_factory=dict)
+    columns: dict[str, SurveyedColumn] = field(default_factory=dict)
     first: FirstGuess | None = None
     notes: list[str] = field(default_factory=list)
 
@@ -191,21 +191,21 @@ def _on_one_grid(
     unit: str,
     choices: Choices,
     file: str,
-) -> tuple[Array, dict[str, Column]]:
+) -> tuple[Array, dict[str, SurveyedColumn]]:
     """All columns on one even grid, by straight lines: good enough to tell which is which."""
     if time_name is None:
         count = max(map(len, raw.values()))
         stamps = np.arange(count) / (choices.sample_rate or 1000.0)
     else:
         stamps = raw[time_name] * si_factor(unit, quantity="time")
-    own = {n: x for n, x in raw.items() if len(x) == len(stamps)}
+    beside_time = {n: x for n, x in raw.items() if len(x) == len(stamps)}
     rows = np.flatnonzero(np.isfinite(stamps))[:MOST]
     origin = stamps[rows[0]]
     clock = clock_of(
         stamps[rows] - origin, (slice(0, len(rows)),), np.zeros(len(rows), dtype=bool), file
     )
     used = rows[clock.rows]
-    columns: dict[str, Column] = {}
+    columns: dict[str, SurveyedColumn] = {}
     for name, values in raw.items():
         if name == time_name:
             continue
@@ -213,7 +213,7 @@ def _on_one_grid(
         at, x = clock.time[clock.places], values
         if clock_name is not None and clock_name != time_name and name not in log.clocks.values():
             at = raw[clock_name] - origin
-        elif name in own:
+        elif name in beside_time:
             x = values[used]
         else:
             continue
@@ -221,7 +221,9 @@ def _on_one_grid(
         if fine.sum() < 2:
             continue
         said = choices.units.get(name) or log.units.get(name) or unit_in_name(name)
-        columns[name] = Column(name, np.interp(clock.time, at[fine], x[fine]), x[fine], said)
+        columns[name] = SurveyedColumn(
+            name, np.interp(clock.time, at[fine], x[fine]), x[fine], said
+        )
     return clock.time, columns
 
 
@@ -267,7 +269,7 @@ def derivative_factor(x: Array, v: Array, sample_time: float) -> tuple[float, fl
     return float(a @ b) / power, float(a @ b) / math.sqrt(power * float(b @ b))
 
 
-def _moves(column: Column) -> bool:
+def _moves(column: SurveyedColumn) -> bool:
     return bool(np.ptp(column.values) > 0)
 
 
@@ -394,7 +396,7 @@ def _seen_step(values: Array) -> float:
 
 
 def _position_unit(
-    survey: Survey, column: Column, velocity: str | None, axis: str
+    survey: Survey, column: SurveyedColumn, velocity: str | None, axis: str
 ) -> tuple[str, str]:
     """A unit where the name says none: from the velocity's, or from the range."""
     whole = unwrapped(column.values, wrap_of(column.values))
@@ -428,11 +430,11 @@ def _forces(
     h = _step(survey)
     entry = survey.channels["position"]
     x = unwrapped(survey.columns[position].values, wrap_of(survey.columns[position].values))
-    taken = {position, velocity, time_name}
+    used = {position, velocity, time_name}
     free = {
         n: c
         for n, c in survey.columns.items()
-        if n not in taken and _moves(c) and not _rises(c.values)
+        if n not in used and _moves(c) and not _rises(c.values)
     }
     free = {
         n: c
@@ -466,16 +468,16 @@ def _forces(
         survey.channels["actuator_force"]["gear_ratio"] = entry["gear_ratio"]
 
 
-def _force_score(column: Column, guess: FirstGuess) -> float:
+def _force_score(column: SurveyedColumn, guess: FirstGuess) -> float:
     score = likeness(column.name, "actuator_force") + max(guess.explained, 0.0)
     score -= 0.7 * (likeness(column.name, "interaction_force") >= SURE_NAME)
     # the command is wanted, not what a drive says that it reached
-    asked = set(words_of(column.name)) & set(WANTED)
-    score += 0.3 * bool(asked) + 0.5 * _is_of(column.unit, "force")
+    wanted_words = set(words_of(column.name)) & set(WANTED)
+    score += 0.3 * bool(wanted_words) + 0.5 * _is_of(column.unit, "force")
     return score - 0.6 * (likeness(column.name, "position") >= SURE_NAME)
 
 
-def _hand(free: Mapping[str, Column], force: str, choices: Choices) -> str | None:
+def _hand(free: Mapping[str, SurveyedColumn], force: str, choices: Choices) -> str | None:
     if choices.interaction_force is not None:
         return choices.interaction_force
     scores = {n: likeness(n, "interaction_force") for n in free if n != force}
@@ -523,18 +525,18 @@ def _signs(survey: Survey, x: Array, h: float, force: str, hand: str | None) -> 
     with_hand = whole
     if hand is not None:
         f = survey.columns[hand].values * _to_si(survey, "interaction_force")
-        tried = {s: explain_force(u + s * f, x * scale, h) for s in (1.0, -1.0)}
-        better = max(tried, key=lambda s: tried[s].explained)
-        if better < 0 and tried[-1.0].explained > tried[1.0].explained + 0.05:
+        by_sign = {s: explain_force(u + s * f, x * scale, h) for s in (1.0, -1.0)}
+        better = max(by_sign, key=lambda s: by_sign[s].explained)
+        if better < 0 and by_sign[-1.0].explained > by_sign[1.0].explained + 0.05:
             survey.channels["interaction_force"]["sign"] = -1
             survey.guesses["channels.interaction_force.sign"] = (
                 f"-1: {hand!r} then balances with {force!r}, which leaves "
-                f"{1 - tried[-1.0].explained:.0%} of the force instead of "
-                f"{1 - tried[1.0].explained:.0%}"
+                f"{1 - by_sign[-1.0].explained:.0%} of the force instead of "
+                f"{1 - by_sign[1.0].explained:.0%}"
             )
         else:
             better = 1.0
-        with_hand = tried[better]
+        with_hand = by_sign[better]
     turned = with_hand.inertia < -3.0 * with_hand.errors[0] or (
         abs(with_hand.inertia) < 3.0 * with_hand.errors[0] and with_hand.level < 0
     )

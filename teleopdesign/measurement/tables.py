@@ -107,16 +107,16 @@ def columns_of(log: Log, file: str, wanted: Wanted) -> LogColumns:
     require_columns(log.names, file, wanted)
     names = list(wanted)
     base = next((c for c, channel in wanted.items() if channel == "channels.time"), None)
-    own = {n: log.clocks[n] for n in names if n in log.clocks and log.clocks[n] != base}
+    clocks = {n: log.clocks[n] for n in names if n in log.clocks and log.clocks[n] != base}
     if base is not None and base in log.clocks and log.clocks[base] != base:
-        own = {n: clock for n, clock in own.items() if clock != log.clocks[base]}
-    asked = {**wanted, **dict.fromkeys(own.values(), "channels.time")}
-    read = _reading(lambda: log.read(asked), file)
+        clocks = {n: clock for n, clock in clocks.items() if clock != log.clocks[base]}
+    channel_of = {**wanted, **dict.fromkeys(clocks.values(), "channels.time")}
+    read = _reading(lambda: log.read(channel_of), file)
     try:
         values = {n: numbers_of(read[n], n, file, wanted.get(n, "")) for n in read}
     except MemoryError:
         raise ExperimentError(f"{file}: too large for this machine's memory") from None
-    stamps = {n: values[clock] for n, clock in own.items()}
+    stamps = {n: values[clock] for n, clock in clocks.items()}
     columns = LogColumns({n: values[n] for n in names}, stamps, log.notes)
     _refuse_different_lengths(columns, file, wanted)
     return columns

@@ -41,7 +41,7 @@ DATE = 1e8
 
 
 @dataclass(frozen=True, eq=False)
-class Clock:
+class RecordClock:
     """Which row of the log stands where on the even grid of a record.
 
     rows: (m,) rows of the log that are used, in order;  stamps: (m,) s, of these
@@ -88,7 +88,7 @@ def counted_time(count: int, rate: float, where: str) -> tuple[Array, float]:
 
 def clock_of(
     stamps: Array, segments: tuple[slice, ...], same_as_before: NDArray[np.bool_], where: str
-) -> Clock:
+) -> RecordClock:
     """The clock of a log.
 
     stamps: (n,) s, finite, as written;  segments: as labelled in the log
@@ -112,7 +112,7 @@ def _mostly_back(stamps: Array) -> bool:
     return float(np.mean(np.diff(stamps) < 0)) > 0.5
 
 
-def _even_clock(stamps: Array, segments: tuple[slice, ...], where: str) -> Clock | None:
+def _even_clock(stamps: Array, segments: tuple[slice, ...], where: str) -> RecordClock | None:
     """The clock where stamps are even, or even and rounded; None where they are neither."""
     period = _least_squares_period(stamps, segments)
     if period is None or not _is_even(stamps, segments, period):
@@ -125,7 +125,7 @@ def _even_clock(stamps: Array, segments: tuple[slice, ...], where: str) -> Clock
     _check_duration(len(stamps), period, where)
     rows = np.arange(len(stamps))
     jitter = float(np.sqrt(np.mean((stamps - time) ** 2)))
-    return Clock(rows, stamps, rows, time, period, segments, segments, jitter=jitter)
+    return RecordClock(rows, stamps, rows, time, period, segments, segments, jitter=jitter)
 
 
 def _least_squares_period(stamps: Array, segments: Sequence[slice]) -> float | None:
@@ -202,7 +202,7 @@ def _in_order(
 
 def _sparse_clock(
     stamps: Array, parts: list[Rows], changes: tuple[int, int, int], labelled: int, where: str
-) -> Clock:
+) -> RecordClock:
     """The clock of stamps with steps of any length, ascending in each part."""
     dropped, moved, restarts = changes
     count = sum(map(len, parts))
@@ -228,28 +228,16 @@ def _sparse_clock(
         )
         places = [np.rint((stamps[p] - stamps[p[0]]) / period).astype(np.intp) for p in pieces]
     rows = np.concatenate(pieces)
-    time, index, segments, of_rows = [], [], [], []
-    first = row = 0
-    end = -math.inf
-    for piece, place in zip(pieces, places, strict=True):
-        length = int(place[-1]) + 1
-        start = float(np.mean(stamps[piece] - period * place))
-        if placed is None:
-            start = float(stamps[piece[0]])
-        # a clock that was set back goes on where the stretch before it ended
-        start = max(start, end + period) if restarts else start
-        time.append(start + period * np.arange(length))
-        end = float(time[-1][-1])
-        index.append(first + place)
-        segments.append(slice(first, first + length))
-        of_rows.append(slice(row, row + len(piece)))
-        first, row = first + length, row + len(piece)
+    on_clock = placed is not None
+    time, index, segments, of_rows = _grid_of(
+        stamps, pieces, places, period, on_clock=on_clock, goes_on=bool(restarts)
+    )
     whole = np.concatenate(time)
     places_of_rows = np.concatenate(index)
     _check_size(len(whole), where)
     _check_duration(len(whole), period, where)
     off = _off_clock(stamps[rows], whole[places_of_rows], of_rows)
-    return Clock(
+    return RecordClock(
         rows=rows,
         stamps=stamps[rows],
         places=places_of_rows,
@@ -268,6 +256,39 @@ def _sparse_clock(
     )
 
 
+def _grid_of(
+    stamps: Array,
+    pieces: Sequence[Rows],
+    places: Sequence[Rows],
+    period: float,
+    *,
+    on_clock: bool,
+    goes_on: bool,
+) -> tuple[list[Array], list[Rows], list[slice], list[slice]]:
+    """Even time and places of each piece, and where it lies among samples and rows.
+
+    on_clock: the stamps follow an even clock, whose phase is their mean
+    goes_on: a clock that was set back goes on where the stretch before it ended
+    """
+    time: list[Array] = []
+    index: list[Rows] = []
+    segments: list[slice] = []
+    of_rows: list[slice] = []
+    first = row = 0
+    end = -math.inf
+    for piece, place in zip(pieces, places, strict=True):
+        length = int(place[-1]) + 1
+        start = float(np.mean(stamps[piece] - period * place) if on_clock else stamps[piece[0]])
+        start = max(start, end + period) if goes_on else start
+        time.append(np.asarray(start + period * np.arange(length), dtype=np.float64))
+        end = float(time[-1][-1])
+        index.append(first + place)
+        segments.append(slice(first, first + length))
+        of_rows.append(slice(row, row + len(piece)))
+        first, row = first + length, row + len(piece)
+    return time, index, segments, of_rows
+
+
 def _off_clock(stamps: Array, time: Array, stretches: Sequence[slice]) -> Array:
     """Stamps less the even time, each stretch about its own mean: its clock may have been set."""
     off = stamps - time
@@ -276,13 +297,13 @@ def _off_clock(stamps: Array, time: Array, stretches: Sequence[slice]) -> Array:
     return off
 
 
-def _counted_clock(stamps: Array, where: str) -> Clock:
+def _counted_clock(stamps: Array, where: str) -> RecordClock:
     count = len(stamps)
     period = float(f"{(stamps.max() - stamps.min()) / (count - 1):.12g}")
     _check_duration(count, period, where)
     rows, whole = np.arange(count), (slice(0, count),)
     time = stamps.min() + period * rows
-    return Clock(rows, time, rows, time, period, whole, whole, counted=True)
+    return RecordClock(rows, time, rows, time, period, whole, whole, counted=True)
 
 
 def _usual_step(pieces: Sequence[Array]) -> float:
@@ -334,7 +355,7 @@ def _line_through(stamps: Array, period: float) -> float | None:
         count = min(2 * count, len(stamps))
 
 
-def stamps_are_true(clock: Clock, positions: Sequence[Array]) -> tuple[float, float]:
+def stamps_are_true(clock: RecordClock, positions: Sequence[Array]) -> tuple[float, float]:
     """Whether a position moved as long as the stamps say: 1, or a row as its neighbours: 0.
 
     What a reading lies off its neighbours is regressed on speed times what the stamp lies off the

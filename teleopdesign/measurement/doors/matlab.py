@@ -60,13 +60,13 @@ def open_matlab(path: Path, file: str) -> Log:
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         plain = [columns[n][0] for n in wanted if columns[n][0] not in arrays]
         try:
-            found = loadmat(path, variable_names=list(dict.fromkeys(plain))) if plain else {}
+            contents = loadmat(path, variable_names=list(dict.fromkeys(plain))) if plain else {}
         except (matlab.MatReadError, ValueError, TypeError, KeyError, IndexError) as problem:
             raise ExperimentError(f"{file}: not a readable MAT file: {problem}") from None
         out = {}
         for name in wanted:
             array, column = columns[name]
-            values = arrays[array] if array in arrays else found[array]
+            values = arrays[array] if array in arrays else contents[array]
             out[name] = values if column == -1 else part(values, column)
         return out
 
@@ -77,10 +77,10 @@ def _fields(name: str, value: Any, depth: int) -> dict[str, Any]:
     """Numeric fields of a struct, "log.q"; of structs within as well."""
     array = np.asarray(value)
     if array.dtype.names and array.size == 1 and depth < _DEPTH:
-        found: dict[str, Any] = {}
+        contents: dict[str, Any] = {}
         for field in array.dtype.names:
-            found |= _fields(f"{name}.{field}", array.reshape(-1)[0][field], depth + 1)
-        return found
+            contents |= _fields(f"{name}.{field}", array.reshape(-1)[0][field], depth + 1)
+        return contents
     if array.dtype.kind in "fiub" and array.size > 1:
         return {name: array}
     return {}

@@ -31,6 +31,7 @@ class Signal:
 
     name: as the user writes it ("position", "slave.position");  unit: SI
     values: (n,);  step: smallest step between its values, 0 where it is constant
+    axis: of its body
     """
 
     name: str
@@ -39,6 +40,7 @@ class Signal:
     record: Record
     values: Array
     step: float
+    axis: str = "prismatic"
 
     @property
     def stretches(self) -> Iterator[tuple[int, Array]]:
@@ -83,7 +85,17 @@ def signals(experiment: Experiment) -> list[Signal]:
             unit = unit_of(BODY_QUANTITIES[channel.quantity], experiment.axis(channel.body))
             middle = max(0, (len(values) - ENOUGH) // 2)
             step = reading_step(values[middle : middle + ENOUGH])
-            rows.append(Signal(written(experiment, key), unit, channel, record, values, step))
+            rows.append(
+                Signal(
+                    written(experiment, key),
+                    unit,
+                    channel,
+                    record,
+                    values,
+                    step,
+                    experiment.axis(channel.body),
+                )
+            )
     return rows
 
 
