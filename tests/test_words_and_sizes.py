@@ -35,7 +35,9 @@ PUBLIC_KEYWORDS = {
     "given": ("derive", "frequency"),
 }
 #: written anew elsewhere: names there are not judged yet
-UNJUDGED = ("realise/_codegen_loop", "simulate")
+UNJUDGED = ("simulate",)
+#: compiled: their functions take arrays and places in them, for which there are no objects
+COMPILED = ("realise/integrator", "realise/_free_mass")
 
 MOST_LINES = 60
 MOST_POSITIONAL = 6
@@ -150,7 +152,9 @@ def test_no_function_is_longer_than_a_page():
 
 def test_no_function_takes_more_positional_arguments_than_one_can_remember():
     wide = [
-        f"{m}.{f.name}: {positional(f)}" for m, f in functions() if positional(f) > MOST_POSITIONAL
+        f"{m}.{f.name}: {positional(f)}"
+        for m, f in functions()
+        if positional(f) > MOST_POSITIONAL and not under(m, COMPILED)
     ]
     assert not wide, "\n".join(wide)
 

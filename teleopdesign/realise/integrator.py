@@ -135,7 +135,7 @@ def step(first, time, h, inputs, column, parameters, memory, lane):
 
 
 @jitted
-def know_velocity(at, seen, period, smoothing, memory, lane):
+def know_velocity(at, reading, period, smoothing, memory, lane):
     """Travel rate of a motion over the last sample, and velocity as the computer knows it.
 
     The observer is Luenberger's for a motion of constant velocity (order 2) or acceleration
@@ -144,7 +144,7 @@ def know_velocity(at, seen, period, smoothing, memory, lane):
         order 2: w^2/(s + w)^2, late by 2/w      order 3: (3 w^2 s + w^3)/(s + w)^3, late by nothing
     for slow motion. OBSERVER 0 is the filtered difference, w/(s + w), late by 1/w.
     """
-    travel = (seen - memory[SEEN + at]) / period
+    travel = (reading - memory[SEEN + at]) / period
     known = memory[KNOWN + at]
     left = 1.0 - smoothing
     memory[TRAVEL + at] = travel
@@ -154,7 +154,7 @@ def know_velocity(at, seen, period, smoothing, memory, lane):
     bend = memory[BEND + at]
     observed = memory[OBSERVED + at] + period * (known + 0.5 * period * bend)
     known += period * bend
-    missing = seen - observed
+    missing = reading - observed
     if OBSERVER == 2:
         position_gain, velocity_gain, bend_gain = 1.0 - smoothing**2, left**2 / period, 0.0
     else:
@@ -172,17 +172,17 @@ def read_sensors(n, encoder_step, period, smoothing, inputs, column, memory, lan
     motions(STATES, inputs, column, memory, POSITIONS, VELOCITIES, lane)
     for i in range(MANY_MOTIONS):
         at = i * LANES + lane
-        seen = memory[POSITIONS + at]
+        reading = memory[POSITIONS + at]
         if encoder_step > 0.0:
-            seen = np.floor(seen / encoder_step + 0.5) * encoder_step
+            reading = np.floor(reading / encoder_step + 0.5) * encoder_step
         if n == 0:
             velocity = memory[VELOCITIES + at]
             memory[TRAVEL + at] = velocity
             memory[KNOWN + at] = velocity
-            memory[OBSERVED + at] = seen
+            memory[OBSERVED + at] = reading
         else:
-            know_velocity(at, seen, period, smoothing, memory, lane)
-        memory[SEEN + at] = seen
+            know_velocity(at, reading, period, smoothing, memory, lane)
+        memory[SEEN + at] = reading
 
 
 @jitted
@@ -198,6 +198,22 @@ def sample(
     computer_signals(n, period, sampled, parameters, memory, MADE, lane)
     held_commands(n, sampled, memory, NEW_COMMANDS, lane)
     computer_after(n, period, sampled, parameters, memory, lane)
+
+
+@jitted
+def hold(slot, memory, held, lane):
+    """Keep the new commands until they act;  held: ring of slots."""
+    for i in range(MANY_COMMANDS):
+        at = i * LANES + lane
+        held[slot * MANY_COMMANDS * LANES + at] = memory[NEW_COMMANDS + at]
+
+
+@jitted
+def release(slot, held, memory, lane):
+    """Let the commands of that slot act."""
+    for i in range(MANY_COMMANDS):
+        at = i * LANES + lane
+        memory[COMMANDS + at] = held[slot * MANY_COMMANDS * LANES + at]
 
 
 @jitted
@@ -223,6 +239,13 @@ def delay(j, time, inputs, column, late_steps, history, slots, parameters, memor
             end = history[((then + 1) % slots) * MANY_LATE * LANES + at]
         memory[LATE + at] = now
         memory[LATE_END + at] = end
+
+
+@jitted
+def notice_spoiled(memory, lane):
+    """NaN in the place of a zero where a signal of the row is no finite number."""
+    for i in range(MANY_COLUMNS):
+        memory[SPOILED + lane] += 0.0 * memory[COLUMNS + i * LANES + lane]
 
 
 @jitted
@@ -296,78 +319,30 @@ def differentiate_at_rest(inputs, parameters, memory, small, slopes_of):
 
 @entry
 def run(
-    samples,
-    inner,
-    h,
-    period,
-    lag,
-    late_steps,
-    encoder_step,
-    smoothing,
-    held,
-    held_slots,
-    history,
-    late_slots,
-    every_step,
-    parameters,
-    inputs,
-    sampled,
-    memory,
-    kept,
-    out,
-    begin,
-    kinds,
-    columns,
-    others,
-    results,
-):
+    samples, inner, h, period, lag, late_steps, encoder_step, smoothing,
+    held, held_slots, history, late_slots, every_step, parameters, inputs, sampled,
+    memory, kept, out, begin, kinds, columns, others, results,
+):  # fmt: skip
     """Advance all lanes over samples of `inner` steps of h; see `kernel.execute` for the arrays."""
-    nodes = samples * inner
-    row = 0
+    nodes, row = samples * inner, 0
     for j in range(nodes + 1):
-        time = j * h
-        now = j % inner == 0
+        time, now = j * h, j % inner == 0
         if COMPUTER and now:
-            n = j // inner
-            first = (n % held_slots) * MANY_COMMANDS * LANES
             for lane in range(LANES):
                 sample(
-                    n,
-                    time,
-                    period,
-                    encoder_step,
-                    smoothing,
-                    inputs,
-                    2 * j,
-                    sampled,
-                    parameters,
-                    memory,
-                    lane,
-                )
-                for i in range(MANY_COMMANDS):
-                    at = i * LANES + lane
-                    value = memory[NEW_COMMANDS + at]
-                    held[first + at] = value
+                    j // inner, time, period, encoder_step, smoothing,
+                    inputs, 2 * j, sampled, parameters, memory, lane,
+                )  # fmt: skip
+                hold(j // inner % held_slots, memory, held, lane)
         if COMPUTER and j >= lag and (j - lag) % inner == 0:
-            first = ((j - lag) // inner % held_slots) * MANY_COMMANDS * LANES
             for lane in range(LANES):
-                for i in range(MANY_COMMANDS):
-                    at = i * LANES + lane
-                    memory[COMMANDS + at] = held[first + at]
+                release((j - lag) // inner % held_slots, held, memory, lane)
         if MANY_LATE > 0:
             for lane in range(LANES):
                 delay(
-                    j,
-                    time,
-                    inputs,
-                    2 * j,
-                    late_steps,
-                    history,
-                    late_slots,
-                    parameters,
-                    memory,
-                    lane,
-                )
+                    j, time, inputs, 2 * j, late_steps, history, late_slots,
+                    parameters, memory, lane,
+                )  # fmt: skip
         if every_step or now:
             width = -1.0
             if row >= begin:
@@ -378,11 +353,7 @@ def run(
                         time, STATES, BRISTLES, inputs, 2 * j, LATE, parameters, memory, NOW, lane
                     )
                 record(inputs, 2 * j, memory, COLUMNS, lane)
-                for i in range(MANY_COLUMNS):
-                    at = i * LANES + lane
-                    # 0 for a number, NaN for what is none
-                    value = memory[COLUMNS + at]
-                    memory[SPOILED + lane] += 0.0 * value
+                notice_spoiled(memory, lane)
                 keep(row, width, kept, out, kinds, columns, others, results, memory, lane)
             row += 1
         if j < nodes:

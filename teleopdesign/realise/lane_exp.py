@@ -27,8 +27,8 @@ _TERMS = tuple(1.0 / factorial(k) for k in range(13, -1, -1))
 
 def power_of_two(n: float) -> float:
     """2^n for a whole number n from -1022 to 1023."""
-    (found,) = struct.unpack("<d", struct.pack("<q", (int(n) + 1023) << 52))
-    return float(found)
+    (power,) = struct.unpack("<d", struct.pack("<q", (int(n) + 1023) << 52))
+    return float(power)
 
 
 @intrinsic  # type: ignore[untyped-decorator,unused-ignore]
@@ -59,9 +59,9 @@ def exp(x: float) -> float:
     series = _TERMS[0]
     for term in _TERMS[1:]:
         series = series * r + term
-    found = series * power_of_two(n)
+    value = series * power_of_two(n)
     if x < _LEAST:
-        found = 0.0
+        value = 0.0
     if x > _MOST:
-        found = np.inf
-    return found
+        value = np.inf
+    return value

@@ -8,14 +8,14 @@ by rounding: exp is another one (`lane_exp.py`).
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
 from .kernel import (
-    Loop,
+    CompiledLoop,
     Program,
     Timing,
     fastest_rates,
@@ -53,7 +53,7 @@ class Reduction:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class LaneResults:
     """What simulations side by side give, case by case.
 
     kept: (cases, rows, columns asked for);  reduced: (cases, reductions)
@@ -68,11 +68,13 @@ class Outcome:
 
 def workers() -> int:
     """Threads that compute: as many as cores, or NUMBA_NUM_THREADS."""
-    given = os.environ.get("NUMBA_NUM_THREADS", "")
-    return int(given) if given.isdigit() and int(given) else len(os.sched_getaffinity(0))
+    asked_for = os.environ.get("NUMBA_NUM_THREADS", "")
+    return (
+        int(asked_for) if asked_for.isdigit() and int(asked_for) else len(os.sched_getaffinity(0))
+    )
 
 
-def lanes_of(made: Program) -> Loop:
+def lanes_of(made: Program) -> CompiledLoop:
     """The loop of this program for a block of lanes."""
     return loop_of(made.laws, LANES)
 
@@ -85,11 +87,11 @@ def rates_of_cases(made: Program, parameters: np.ndarray) -> tuple[np.ndarray, n
     loop = lanes_of(made)
     if not made.layout.states:
         return np.zeros(len(parameters)), np.zeros(len(parameters), dtype=int)
-    found = [
+    blocks = [
         fastest_rates(slopes_at_rest(made, loop, _in_lanes(parameters[first : first + LANES])))
         for first in range(0, len(parameters), LANES)
     ]
-    rates, states = (np.concatenate(part)[: len(parameters)] for part in zip(*found, strict=True))
+    rates, states = (np.concatenate(part)[: len(parameters)] for part in zip(*blocks, strict=True))
     return rates, states
 
 
@@ -104,23 +106,19 @@ def execute_many(
     kept: Sequence[int],
     reductions: Sequence[Reduction],
     begin: int,
-) -> Outcome:
+) -> LaneResults:
     """Run all cases on one grid.
 
     parameters: (cases, parameters of the layout);  inputs, sampled: as `kernel.execute`, for all
     kept: columns whose rows are asked for;  begin: first row that is reduced
     """
     loop, cases, rows = lanes_of(made), len(parameters), timing.samples + 1
-    first_column = made.functions["COLUMNS"]
-    columns, others = (
-        LANES * (first_column + np.array([getattr(r, of) for r in reductions], dtype=np.int64))
-        for of in ("column", "other")
-    )
-    kinds = np.array([KINDS[r.kind][0] for r in reductions], dtype=np.int64)
+    columns = made.functions["COLUMNS"]
+    reduced = _reduction_arrays(columns, reductions)
     starts = np.repeat([KINDS[r.kind][1] for r in reductions], LANES).astype(float)
-    rows_kept = LANES * (first_column + np.array(kept, dtype=np.int64))
+    rows_kept = LANES * (columns + np.array(kept, dtype=np.int64))
     worst_rows = made.functions["WORST"] + np.arange(len(made.layout.exponential))
-    found = Outcome(
+    outcome = LaneResults(
         np.empty((cases, rows, len(kept))),
         np.empty((cases, len(reductions))),
         np.empty(cases),
@@ -142,27 +140,36 @@ def execute_many(
             rows_kept,
             out,
             begin,
-            kinds,
-            columns,
-            others,
+            *reduced,
             results,
         )
         table = memory.reshape(-1, LANES)[:, :used]
-        found.kept[here] = np.moveaxis(out.reshape(rows, len(kept), LANES), -1, 0)[:used]
-        found.reduced[here] = results.reshape(-1, LANES)[:, :used].T
-        found.worst[here] = table[worst_rows].max(axis=0, initial=0.0)
-        found.is_finite[here] = np.isfinite(table[made.functions["SPOILED"]])
+        outcome.kept[here] = np.moveaxis(out.reshape(rows, len(kept), LANES), -1, 0)[:used]
+        outcome.reduced[here] = results.reshape(-1, LANES)[:, :used].T
+        outcome.worst[here] = table[worst_rows].max(axis=0, initial=0.0)
+        outcome.is_finite[here] = np.isfinite(table[made.functions["SPOILED"]])
 
-    firsts = range(0, cases, LANES)
+    _over_threads(block, range(0, cases, LANES))
+    for i, reduction in enumerate(reductions):
+        outcome.reduced[:, i] = _scaled(reduction.kind, outcome.reduced[:, i], rows - begin, timing)
+    return outcome
+
+
+def _over_threads(block: Callable[[int], None], firsts: Sequence[int]) -> None:
     if len(firsts) == 1 or workers() == 1:
         for first in firsts:
             block(first)
-    else:
-        with ThreadPoolExecutor(workers()) as threads:
-            list(threads.map(block, firsts))
-    for i, reduction in enumerate(reductions):
-        found.reduced[:, i] = _scaled(reduction.kind, found.reduced[:, i], rows - begin, timing)
-    return found
+        return
+    with ThreadPoolExecutor(workers()) as threads:
+        list(threads.map(block, firsts))
+
+
+def _reduction_arrays(first: int, reductions: Sequence[Reduction]) -> tuple[np.ndarray, ...]:
+    """Kinds, columns and other columns of the reductions, as the loop takes them."""
+    kinds = [KINDS[r.kind][0] for r in reductions]
+    columns = [LANES * (first + r.column) for r in reductions]
+    others = [LANES * (first + r.other) for r in reductions]
+    return tuple(np.array(x, dtype=np.int64) for x in (kinds, columns, others))
 
 
 def _in_lanes(parameters: np.ndarray) -> np.ndarray:

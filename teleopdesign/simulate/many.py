@@ -70,38 +70,15 @@ def simulate_many(
     """
     columns = columns_of(diagram, values)
     cases = len(next(iter(columns.values()))) if columns else 1
-    study = _Study(
-        diagram,
-        columns,
-        dict(
-            duration=duration,
-            inputs=inputs,
-            motion=dict(motion or {}),
-            initial=initial,
-            computer=computer,
-            step=step,
-            give=give,
-        ),
-        long_step,
-        tuple(keep),
-        None if reduce is None else dict(reduce),
-        after,
-    )
-    result = _Result(cases)
+    arguments: dict[str, Any] = {"duration": duration, "inputs": inputs, "initial": initial}
+    arguments |= {"motion": dict(motion or {}), "computer": computer, "step": step, "give": give}
+    wanted = None if reduce is None else dict(reduce)
+    study = _Study(diagram, columns, arguments, long_step, tuple(keep), wanted, after)
     period = (SAMPLED if isinstance(computer, str) else computer).period
+    result = _Result(cases)
     result.open_rows(samples_of(duration, period), period, study.keep)
     result.refuse(refused(diagram, columns))
-    first_error: ModelError | None = None
-    for group in groups(diagram, columns, np.flatnonzero(result.open)):
-        try:
-            study.run(group, result)
-        except _Mistake as error:
-            raise ModelError(str(error)) from None
-        except ModelError as error:
-            first_error = first_error or error
-            result.refuse(dict.fromkeys(map(int, group.cases), str(error)))
-    if first_error is not None and not np.isfinite(result.steps).any():
-        raise first_error
+    study.run_all(result)
     return result.labelled(study)
 
 
@@ -126,6 +103,20 @@ class _Study:
         if self.reduce is None:
             return {} if self.keep else {f"{name}_rms": (name, "rms") for name in columns}
         return self.reduce
+
+    def run_all(self, result: _Result) -> None:
+        """Simulate the cases group by group; ModelError where all groups fail."""
+        first_error: ModelError | None = None
+        for group in groups(self.diagram, self.columns, np.flatnonzero(result.open)):
+            try:
+                self.run(group, result)
+            except _Mistake as error:
+                raise ModelError(str(error)) from None
+            except ModelError as error:
+                first_error = first_error or error
+                result.refuse(dict.fromkeys(map(int, group.cases), str(error)))
+        if first_error is not None and not np.isfinite(result.steps).any():
+            raise first_error
 
     def run(self, group: Group, result: _Result) -> None:
         """Simulate the cases of one structure."""
@@ -158,18 +149,27 @@ class _Study:
         while todo:
             # the longest step first: what has to be refined may join cases that begin finer
             key = min(todo)
-            for k, finer in self._run_grid(
-                setup, group, numbers[:, :many], key, todo.pop(key), kept, reductions, result
-            ):
+            unresolved = self._run_grid(
+                setup,
+                group,
+                key,
+                todo.pop(key),
+                numbers=numbers[:, :many],
+                kept=kept,
+                reductions=reductions,
+                result=result,
+            )
+            for k, finer in unresolved:
                 todo.setdefault((finer, key[1]), []).append(k)
 
     def _run_grid(
         self,
         setup: Setup,
         group: Group,
-        numbers: np.ndarray,
         key: tuple[int, tuple[float, ...]],
         members: list[int],
+        *,
+        numbers: np.ndarray,
         kept: dict[str, int],
         reductions: dict[str, Reduction],
         result: _Result,

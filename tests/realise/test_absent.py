@@ -10,7 +10,9 @@ from teleopdesign.realise.simulated import without_absent
 from teleopdesign.simulate import simulate
 
 
-@pytest.mark.parametrize("name", sorted(n for n, e in EFFECTS.items() if e.needs <= set(EFFECTS)))
+@pytest.mark.parametrize(
+    "name", sorted(n for n, e in EFFECTS.items() if e.needs <= set(EFFECTS) and n != "gravity")
+)
 def test_an_effect_goes_with_all_that_it_needs(name):
     """Levels at zero: no order in which they go may leave one without what it needs."""
     made, names = body(0.15), [name]

@@ -1,0 +1,205 @@
+"""What one simulated second costs, as a ratio to C: scalar and side by side, in one run.
+
+A device with a Dahl bristle and viscous friction under a sinusoidal force: 1 s, steps of 0.1 ms.
+C is the same scheme written by hand for this one model, compiled on the spot with -O3 -march=native
+where gcc is; it is not part of the package. scipy takes a compiled right-hand side, python-control
+its own form of the diagram, both by LSODA at rtol 1e-6. Times are processor time of one thread,
+medians; engines take turns, so that other jobs weigh on all of them. Errors: largest difference of
+the position from the kernel at a fifth of the step, over its largest value.
+
+    python benchmarks/kernel_speed.py [--json FILE] [--quick]
+"""
+
+from __future__ import annotations
+
+import argparse
+import ctypes
+import json
+import math
+import shutil
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import control
+import numpy as np
+from numba import njit
+from scipy.integrate import solve_ivp
+
+from teleopdesign.blocks import Body, Value
+from teleopdesign.diagrams import haptic_interface
+from teleopdesign.effects import EFFECTS
+from teleopdesign.realise.iosystem import to_iosystem
+from teleopdesign.realise.kernel import execute
+from teleopdesign.realise.side_by_side import LANES, Reduction, execute_many
+from teleopdesign.simulate import prepare
+
+MASS, LEVEL, STIFFNESS, DAMPING = 0.15, 0.5, 1e5, 0.1
+STEPS, INNER, H = 10_000, 10, 1e-4
+
+C = r"""
+#include <math.h>
+static void phi(double z, double *e, double *p1, double *p2, double *p3) {
+  if (fabs(z) < 1.0) {
+    double s = 0.0, c = 1.0 / 1307674368000.0;
+    static const double f[12] = {1.0/6, 1.0/24, 1.0/120, 1.0/720, 1.0/5040, 1.0/40320, 1.0/362880,
+      1.0/3628800, 1.0/39916800, 1.0/479001600, 1.0/6227020800.0, 1.0/87178291200.0};
+    s = c;
+    for (int k = 11; k >= 0; k--) s = f[k] + z * s;
+    *p3 = s; *p2 = z * s + 0.5; *p1 = z * *p2 + 1.0; *e = z * *p1 + 1.0;
+  } else {
+    *e = exp(z); *p1 = (*e - 1) / z; *p2 = (*p1 - 1) / z; *p3 = (*p2 - 0.5) / z;
+  }
+}
+void simulate(long steps, long inner, double h, const double *p, const double *force, double *out) {
+  const double m = p[0], level = p[1], stiffness = p[2], damping = p[3];
+  double x = 0, v = 0, z = 0;
+  for (long j = 0; j <= steps; j++) {
+    if (j % inner == 0) out[j / inner] = x;
+    if (j == steps) break;
+    double u0 = force[2*j], u1 = force[2*j+1], u2 = force[2*j+2];
+    double a = -stiffness * fabs(v) / level, e, p1, p2, p3;
+    phi(0.5 * h * a, &e, &p1, &p2, &p3);
+    double q1 = 0.5*(e+1)*p1, q2 = 0.25*(p1*p1+2*p2), q3 = 0.125*(p1*p2+p2+2*p3);
+    double w0 = q1-3*q2+4*q3, w1 = 2*q2-4*q3, w3 = 4*q3-q2, g = 0.5*h*p1;
+#define RATE(V, Z, U) ((U - damping*(V) - stiffness*(Z)) / m)
+#define REST(V, Z) ((V) - stiffness*fabs(V)/level*(Z) - a*(Z))
+    double a0 = RATE(v, z, u0), n0 = REST(v, z);
+    double v1 = v + 0.5*h*a0, z1 = e*z + g*n0, a1 = RATE(v1, z1, u1), n1 = REST(v1, z1);
+    double v2 = v + 0.5*h*a1, z2 = e*z + g*n1, a2 = RATE(v2, z2, u1), n2 = REST(v2, z2);
+    double v3 = v + h*a2, z3 = e*z1 + g*(2*n2-n0), a3 = RATE(v3, z3, u2), n3 = REST(v3, z3);
+    x += h/6*(v + 2*(v1+v2) + v3);
+    v += h/6*(a0 + 2*(a1+a2) + a3);
+    z = e*e*z + h*(w0*n0 + w1*(n1+n2) + w3*n3);
+  }
+}
+"""
+
+
+def force(t: Any) -> Any:
+    """N; slides both ways, three reversals in a second."""
+    return 2.0 * np.sin(2 * np.pi * 1.5 * t)
+
+
+@njit
+def rate(t, y):  # type: ignore[no-untyped-def]
+    x, v, z = y
+    acceleration = (2.0 * math.sin(2 * math.pi * 1.5 * t) - DAMPING * v - STIFFNESS * z) / MASS
+    return np.array([v, acceleration, v - STIFFNESS * abs(v) / LEVEL * z])
+
+
+def compiled_c(folder: Path) -> Callable[[], np.ndarray] | None:
+    """The simulation in C, or None where there is no gcc."""
+    if shutil.which("gcc") is None:
+        return None
+    (folder / "model.c").write_text(C)
+    library = folder / "model.so"
+    options = ["-O3", "-march=native", "-shared", "-fPIC"]
+    subprocess.run(["gcc", *options, "-o", library, folder / "model.c", "-lm"], check=True)
+    function = ctypes.CDLL(str(library)).simulate
+    parameters = np.array([MASS, LEVEL, STIFFNESS, DAMPING])
+    table = force(0.5 * H * np.arange(2 * STEPS + 1))
+    out = np.zeros(STEPS // INNER + 1)
+    pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for a in (parameters, table, out)]
+
+    def call() -> np.ndarray:
+        function(ctypes.c_long(STEPS), ctypes.c_long(INNER), ctypes.c_double(H), *pointers)
+        return out
+
+    return call
+
+
+def engines(folder: Path) -> dict[str, tuple[int, Callable[[], np.ndarray]]]:
+    """Name -> simulations a call, and the call; it returns positions at the samples."""
+    effects = {
+        "coulomb.level": LEVEL,
+        "presliding.stiffness": STIFFNESS,
+        "viscous.damping": DAMPING,
+    }
+    values = {n: Value(x) for n, x in {"inertia": MASS, **effects}.items()}
+    laws = tuple(EFFECTS[n] for n in ("coulomb", "presliding", "viscous"))
+    diagram = haptic_interface(Body("prismatic", values, laws))
+    duration = STEPS * H
+    setup = prepare(diagram, duration=duration, inputs={"R_V": force}, computer="continuous")
+    layout, timing = setup.program.layout, setup.timing(INNER)
+    column, numbers = layout.columns.index("L"), setup.diagram.values
+    arguments = setup.arguments(timing)
+    one = np.array([numbers[n] for n in layout.parameters])
+    grid = 1e-3 * np.arange(STEPS // INNER + 1)
+    system = to_iosystem(diagram)
+    inputs = np.zeros((len(system.input_labels), len(grid)))
+    inputs[system.input_labels.index("R_V")] = force(grid)
+
+    def scalar() -> np.ndarray:
+        rows, _ = execute(setup.program, numbers, timing, every_step=False, **arguments)
+        return rows[:, column]
+
+    def side_by_side() -> np.ndarray:
+        table = np.tile(one, (LANES, 1))
+        reductions = [Reduction("rms", column, column)]
+        kept = {"kept": [column], "reductions": reductions, "begin": 0}
+        return execute_many(setup.program, table, timing, **arguments, **kept).kept[0, :, 0]
+
+    def scipy() -> np.ndarray:
+        options = {"t_eval": grid, "rtol": 1e-6, "atol": 1e-9}
+        return solve_ivp(rate, (0.0, grid[-1]), np.zeros(3), "LSODA", **options).y[0]
+
+    def python_control() -> np.ndarray:
+        options = {"rtol": 1e-6, "atol": 1e-9}
+        found = control.input_output_response(
+            system, grid, inputs, solve_ivp_method="LSODA", solve_ivp_kwargs=options
+        )
+        return found.outputs[system.output_labels.index("L")]
+
+    made: dict[str, tuple[int, Callable[[], np.ndarray]]] = {}
+    if (c := compiled_c(folder)) is not None:
+        made["C, by hand"] = 1, c
+    made["kernel, one simulation"] = 1, scalar
+    made[f"kernel, {LANES} side by side"] = LANES, side_by_side
+    made["scipy, compiled right-hand side"] = 1, scipy
+    made["python-control"] = 1, python_control
+    fine = setup.timing(5 * INNER)
+    rows, _ = execute(setup.program, numbers, fine, every_step=False, **setup.arguments(fine))
+    made["reference"] = 0, lambda: rows[:, column]
+    return made
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--json", type=Path, help="also write the figures to this file")
+    parser.add_argument("--quick", action="store_true", help="3 turns in place of 15")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        made = engines(Path(folder))
+        reference = made.pop("reference")[1]()
+        times: dict[str, list[float]] = {name: [] for name in made}
+        errors = {}
+        for turn in range(3 if arguments.quick else 15):
+            for name, (many, call) in made.items():
+                if turn and times[name][-1] > 0.5 and turn > 2:
+                    continue  # python-control takes seconds: three turns do
+                if not turn:
+                    call()
+                start = time.thread_time()
+                position = call()
+                times[name].append((time.thread_time() - start) / many)
+                errors[name] = float(np.abs(position - reference).max() / np.abs(reference).max())
+    first = next(iter(made))
+    unit = median(times[first])
+    figures = [
+        {"engine": n, "ms": 1e3 * median(t), "ratio": median(t) / unit, "error": errors[n]}
+        for n, t in times.items()
+    ]
+    print(f"{'engine':<34} {'ms a simulated s':>16} {'ratio':>9} {'error':>9}")
+    for row in figures:
+        print(f"{row['engine']:<34} {row['ms']:>16.3f} {row['ratio']:>9.2f} {row['error']:>9.1e}")
+    if arguments.json:
+        arguments.json.write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
