@@ -12,8 +12,9 @@ from typing import Any, TextIO
 
 import numpy as np
 
+from ..measurement.reading import reading_data
 from ..model import Model
-from ..plain_data import plain, replacing, write_json
+from ..plain_data import harmless_cell, plain, replacing, write_json
 from ..realise.along_motion import residual_along
 from .answers.bodies import model_data
 from .answers.fingerprint import experiment_data
@@ -24,6 +25,7 @@ from .one_moment import Moment
 from .open_questions import open_questions
 from .probability import CandidateEvidence, evidence_of
 from .record_offsets import along_with_offsets
+from .record_shift import shift_data
 from .rung import Rung
 
 
@@ -53,12 +55,14 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "candidates": _candidates(diagnosis),
         "indistinguishable": [[_place(c.key) for c in g] for g in diagnosis.groups],
         "own": offset_rows(diagnosis),
+        "record_shift": shift_data(diagnosis.model, diagnosis.prepared.stretches),
         "model_parameters": _parameters(diagnosis.after, _added(diagnosis)),
         "left_over_noise_floors": plain(diagnosis.left),
         "one_moment": _moment(diagnosis.moment),
         "at_bound": list(diagnosis.after.at_bound),
         "evidence": [_evidence(one) for one in evidence_of(diagnosis) if one.share > 0],
         "experiment": experiment_data(diagnosis.experiment),
+        "reading": reading_data(diagnosis.experiment.reading),
         "models": {
             "ladder": [model_data(r.fit.model) for r in diagnosis.rungs],
             "estimated": model_data(diagnosis.estimated.model),
@@ -196,7 +200,11 @@ def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
             columns = _predicted(diagnosis, record.file)
             for k in range(len(record.time)):
                 out.writerow(
-                    [record.file, f"{record.time[k]:.9g}", *(f"{c[k]:.7g}" for c in columns)]
+                    [
+                        harmless_cell(record.file),
+                        f"{record.time[k]:.9g}",
+                        *(f"{c[k]:.7g}" for c in columns),
+                    ]
                 )
 
 

@@ -9,6 +9,7 @@ from ..quantity import unit_of
 from .decision import helps_but_is_barred
 from .fit import Fit
 from .record_offsets import offset_groups
+from .record_shift import shifts_of
 
 if TYPE_CHECKING:
     from .diagnosis import Diagnosis
@@ -114,6 +115,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         f"own of {o['record']}: {o['of'].replace('_', ' ')} {o['value']:.4g} {o['unit']}"
         for o in offset_rows(diagnosis)
     ]
+    lines += [str(shift) for shift in shifts_of(diagnosis.model, diagnosis.prepared.stretches)]
     lines.append(
         f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
         f"  ({diagnosis.floor.source})"
