@@ -16,7 +16,8 @@ from ..measurement.soundness.signal import written
 #: Hz, rates between which a machine is logged
 SLOWEST, FASTEST = 5.0, 1e6
 #: part of the force that the motion explains, at most as given and at least the other way round: on
-#: the recordings of `fetch` and twelve simulated ones it is 0.47 to 1.0 for columns in their places,
+#: the recordings of `fetch` and twelve simulated ones it is 0.47 to 1.0 for columns in their
+#: places,
 #: and with one exception (0.43) at most 0.2 for columns that are exchanged
 AS_GIVEN, EXCHANGED = 0.25, 0.6
 
