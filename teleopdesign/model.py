@@ -56,6 +56,14 @@ class Model:
         raises ExperimentError: unknown effect or parameter, wrong unit, value out of bounds
         """
         bodies = {n: _body(b, known) for n, b in experiment.bodies.items()}
+        for place, body in bodies.items():
+            for effect in body.effects:
+                wanted = sorted(effect.channels())
+                if missing := [c for c in wanted if f"{place}.{c}" not in experiment.channels]:
+                    raise ExperimentError(
+                        f"{experiment.bodies[place].where}.effects.{effect.name}: needs the "
+                        f'channel "{missing[0]}", which [channels] has not'
+                    )
         touching = list(bodies)[-1]
         measured = f"{touching}.interaction_force" in experiment.channels
         if experiment.environment is not None and not measured:

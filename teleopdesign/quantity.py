@@ -28,6 +28,8 @@ _TIME = _Kind("a time", ("s", "ms"))
 _FREQUENCY = _Kind("a frequency", ("Hz", "rad/s"))
 _ANGLE = _Kind("an angle", ("rad", "deg"))
 _NUMBER = _Kind("a number without dimension", ("1", "%"))
+_TEMPERATURE = _Kind("a temperature", ("K", "mK"))
+_PER_KELVIN = _Kind("a part per kelvin", ("1/K", "%/K"))
 
 # quantity -> (on a prismatic axis, on a revolute axis)
 QUANTITIES: Mapping[str, tuple[_Kind, _Kind]] = {
@@ -60,6 +62,8 @@ QUANTITIES: Mapping[str, tuple[_Kind, _Kind]] = {
         _Kind("a cubic stiffness", ("N/m^3", "N/mm^3")),
         _Kind("a rotary cubic stiffness", ("N*m/rad^3", "mNm/rad^3")),
     ),
+    "temperature": (_TEMPERATURE, _TEMPERATURE),
+    "temperature_coefficient": (_PER_KELVIN, _PER_KELVIN),
     "frequency": (_FREQUENCY, _FREQUENCY),
     "angle": (_ANGLE, _ANGLE),
     "dimensionless": (_NUMBER, _NUMBER),

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import Literal
 
 from ..diagnose.prepare import Prepared
+from ..diagnose.record_shift import LARGEST
 from ..finding import Finding
 from ..measurement.soundness.signal import written
 from ..model import Model
@@ -178,10 +179,12 @@ def _shifts(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     first, seconds = next(iter(late.items()))
     where = _name(prepared, balance.body, first)
     remedy = f'write delay = {{ value = {1e3 * seconds:.3g}, unit = "ms" }} at channels.{where}'
-    less = max(map(abs, late.values())) < h
-    if less or balance.left > UNEXPLAINED or len(late) > 1:
+    less = max(map(abs, late.values()))
+    if less < h or balance.left > UNEXPLAINED or len(late) > 1:
         # a shift by whole samples alone does not explain it: something between force and motion may
         concern, remedy = "note", "columns out of step, or something gives in between"
+    elif set(late) == {"actuator_force"} and less <= LARGEST * h:
+        concern, remedy = "note", "a diagnosis takes up to a row of it as the logger's"
     elif late.get("actuator_force", 0.0) < 0:
         # a cause before its effect: physics does that too
         concern, remedy = "note", "the actuator is late, or the position is logged late"

@@ -24,6 +24,7 @@ from ._controller import (
     Stage,
     parameter_symbol,
 )
+from ._exact import as_written, in_exact_numbers, resolvent
 from ._from_control import from_control, inverted
 from ._from_file import load_controller
 
@@ -34,14 +35,17 @@ __all__ = [
     "ControlLaw",
     "Controller",
     "ControllerEquation",
-    "Stage",
     "ControllerState",
+    "Stage",
+    "as_written",
     "controller",
     "from_control",
+    "in_exact_numbers",
     "inverted",
     "laws_that_declare",
     "load_controller",
     "parameter_symbol",
+    "resolvent",
     "scheduled_force_feedback",
 ]
 

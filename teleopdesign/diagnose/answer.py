@@ -14,7 +14,7 @@ import numpy as np
 
 from ..measurement.reading import reading_data
 from ..model import Model
-from ..plain_data import plain, replacing, write_json
+from ..plain_data import harmless_cell, plain, replacing, write_json
 from ..realise.along_motion import residual_along
 from .answers.bodies import model_data
 from .answers.fingerprint import experiment_data
@@ -200,7 +200,11 @@ def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
             columns = _predicted(diagnosis, record.file)
             for k in range(len(record.time)):
                 out.writerow(
-                    [record.file, f"{record.time[k]:.9g}", *(f"{c[k]:.7g}" for c in columns)]
+                    [
+                        harmless_cell(record.file),
+                        f"{record.time[k]:.9g}",
+                        *(f"{c[k]:.7g}" for c in columns),
+                    ]
                 )
 
 

@@ -44,8 +44,9 @@ def candidates(
     """Effects that the model lacks and could take, at each of its places.
 
     motions: all that the records hold; where a body never comes to a place at another time, no
-        effect of the place can be told from a drift: it is no candidate there. What repeats along
-        the way comes back to the same place of its period
+        effect of the place can be told from a drift: it is no candidate there; nor is one whose law
+        uses a channel that they have not. What repeats along the way comes back to the same place
+        of its period
     own_zero: files whose positions cannot be compared with those of others
     """
     possible = []
@@ -59,6 +60,8 @@ def candidates(
             if body.has(effect.name) or effect.role in roles or body.axis in effect.elsewhere:
                 continue
             if body.lacks(effect):
+                continue
+            if any(not effect.channels() <= set(m.further) for m in own):
                 continue
             if _is_seen_in_place(effect, own, own_zero):
                 possible.append(Candidate(effect, place))

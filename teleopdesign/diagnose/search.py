@@ -71,7 +71,8 @@ def at_stated(model: Model, stated: Model) -> Model:
     """The model with its user's values: without an effect that is missing, others may have gone
     where no step leads back from.
     """
-    return model.with_values({n: v.value for n, v in stated.parameters.items()})
+    there = model.parameters  # an effect of the user's may have given way to another
+    return model.with_values({n: v.value for n, v in stated.parameters.items() if n in there})
 
 
 def unchanged(model: Model, base: Fit) -> Fit:

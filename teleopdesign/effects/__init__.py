@@ -26,6 +26,7 @@ from ..names import check_name
 from ..recipes import remember
 from ._effect import (
     CONTACT_ROLES,
+    FURTHER,
     INERTIA,
     SIGNALS,
     UNEXPLAINED,
@@ -46,6 +47,7 @@ __all__ = [
     "BLOCK_EFFECTS",
     "CONTACT_ROLES",
     "EFFECTS",
+    "FURTHER",
     "INERTIA",
     "SIGNALS",
     "UNEXPLAINED",
@@ -117,7 +119,7 @@ def _read(path: Path) -> Effect:
                     f"{path}: Parameter: found {name}=..., expected search=FitSearch({name}=...)"
                 ) from error
         raise ModelError(f"{path}: TypeError: {error}") from error
-    except Exception as error:  # any failure of a user's file is reported, with its kind
+    except (Exception, SystemExit) as error:  # any failure of a user's file is reported: its kind
         raise ModelError(f"{path}: {type(error).__name__}: {error}") from error
     return _checked(module, path)
 
@@ -160,8 +162,12 @@ def _checked(module: ModuleType, path: Path) -> Effect:
         for law in effect.corrections().values():
             if strangers := law.free_symbols - allowed - {INERTIA, UNEXPLAINED}:
                 raise ModelError(f"{path}: correction uses {', '.join(map(str, strangers))}")
+    except TeleopDesignError:
+        raise
     except (AttributeError, TypeError, SympifyError) as error:
         raise ModelError(f"{path}: law: {error}") from error
+    except (Exception, SystemExit) as error:  # a law is the user's Python too
+        raise ModelError(f"{path}: law: {type(error).__name__}: {error}") from error
     return effect
 
 

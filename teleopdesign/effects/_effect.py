@@ -85,8 +85,15 @@ SIGNALS = {
     name: sp.Symbol(name, real=True)
     for name in (
         "time position velocity acceleration direction command acting_force interaction_force "
-        "level penetration".split()
+        "level penetration temperature other_position other_velocity other_acceleration".split()
     )
+}
+#: signal -> the further channel of a record that it is made from; without the channel it is unknown
+FURTHER = {
+    "temperature": "temperature",
+    "other_position": "other_position",
+    "other_velocity": "other_position",
+    "other_acceleration": "other_position",
 }
 #: what corrections may use besides: the inertia of the effect's body, and the force that is left
 #: unexplained along a measured motion
@@ -288,6 +295,10 @@ class Effect:
         """Name of the angle phi in a law strength * sin(... + phi); None for other laws."""
         return _phase(self)
 
+    def channels(self) -> frozenset[str]:
+        """Further channels of a record that its laws need: "temperature", "other_position"."""
+        return _channels(self)
+
     @property
     def title(self) -> str:
         """First line of the file's docstring."""
@@ -406,6 +417,13 @@ def _corrections(effect: Effect) -> dict[str, sp.Expr]:
         for name, state in effect.states.items()
         if state.correction is not None
     }
+
+
+@lru_cache(maxsize=256)
+def _channels(effect: Effect) -> frozenset[str]:
+    laws = (effect.expression(), *effect.rates().values())
+    used = {n for n in FURTHER if any(law.has(SIGNALS[n]) for law in laws)}
+    return frozenset(FURTHER[n] for n in used)
 
 
 @lru_cache(maxsize=256)

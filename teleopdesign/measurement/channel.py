@@ -16,6 +16,9 @@ BODY_QUANTITIES = {
     "velocity": "velocity",
     "actuator_force": "force",
     "interaction_force": "force",
+    # what laws of effects may use besides
+    "temperature": "temperature",
+    "other_position": "position",
 }
 _REQUIRED = ("position", "actuator_force")
 _OF_THE_RECORD = ("time", "segment")

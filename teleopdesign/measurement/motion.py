@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +35,7 @@ class Motion(ByValue):
     direction: +1, -1, or 0 where the reading cannot tell a motion
     step: what one reading leaves open of the position (encoder step, or twice its noise)
     rows: the samples' place in the record;  bandwidth: of the comparison, Hz
+    further: of channels besides: "temperature", "other_position" and its rates, smoothed alike
     command_late: s by which the log of the command is later than that of the position
     """
 
@@ -52,6 +54,7 @@ class Motion(ByValue):
     smoothing: Array
     bandwidth: float
     command_late: float = 0.0
+    further: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def sample_time(self) -> float:
@@ -137,10 +140,12 @@ def motion_of(
     rows: slice,
     bandwidth: float,
     resolution: float | None,
+    further: Mapping[str, Array] | None = None,
 ) -> Motion:
     """Smooth and differentiate one uninterrupted stretch of readings (n samples each, SI).
 
     bandwidth: Hz, of the comparison;  resolution: encoder step, None where not stated
+    further: readings of channels besides, "temperature" and "other_position"
     """
     n = len(position)
     s = spectrum(n, sample_time)
@@ -158,6 +163,13 @@ def motion_of(
     velocity = s.back(transformed * s.derivative(1))
     noise_left = step / np.sqrt(12.0) * float(np.sqrt(np.mean(np.abs(differentiated) ** 2)))
     direction = direction_of(reading, change, step, patience)
+    more = {}
+    for name, signal in (further or {}).items():
+        smooth = s.transform(signal) * smoothing
+        more[name] = s.back(smooth)
+        if name == "other_position":
+            more["other_velocity"] = s.back(smooth * s.derivative(1))
+            more["other_acceleration"] = s.back(smooth * s.derivative(2))
     direction[beside(np.abs(velocity) < SLOW * noise_left)] = 0
     return Motion(
         body=body,
@@ -174,7 +186,12 @@ def motion_of(
         spectrum=s,
         smoothing=smoothing,
         bandwidth=bandwidth,
+        further=more,
     )
+
+
+#: channels of a body that a law may use besides those of its own motion
+FURTHER = ("temperature", "other_position")
 
 
 def motions(
@@ -185,6 +202,7 @@ def motions(
     bandwidth: Hz, of the comparison;  resolution: encoder step (SI), None where not stated
     """
     interaction = record.signals.get(f"{body}.interaction_force")
+    names = {n: f"{body}.{n}" for n in FURTHER if f"{body}.{n}" in record.signals}
     return tuple(
         motion_of(
             body=body,
@@ -197,6 +215,7 @@ def motions(
             rows=rows,
             bandwidth=bandwidth,
             resolution=resolution,
+            further={n: record.signals[name][rows] for n, name in names.items()},
         )
         for rows in record.segments
         if (rows.stop - rows.start) * record.sample_time >= SHORTEST

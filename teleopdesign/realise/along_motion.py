@@ -20,6 +20,7 @@ import numpy as np
 
 from ..blocks import Body
 from ..effects import SIGNALS, UNEXPLAINED, Effect, rubbing, touching
+from ..errors import ModelError
 from ..measurement.motion import Motion
 from .friction_along import balance_friction, bound_friction, friction_of_acting_force, level_along
 from .ode_scan import ode_scan
@@ -98,6 +99,12 @@ def measured_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
     readings = {
         SIGNALS[n]: np.asarray(getattr(motion, column), float) for n, column in _MEASURED.items()
     }
+    readings |= {SIGNALS[n]: signal for n, signal in motion.further.items()}
+    for effect in body.effects:
+        if missing := [n for n in sorted(effect.channels()) if n not in motion.further]:
+            raise ModelError(
+                f'{effect.name}: needs the channel "{missing[0]}", which {motion.file} has not'
+            )
     return along.with_signals({s: along.constant(reading) for s, reading in readings.items()})
 
 

@@ -46,11 +46,13 @@ class Point:
 
     content: what the model gave there: a `SimulatedCase`, or anything that its function returned
     values: parameter -> value;  seed: of this point, the same wherever it is computed
+    simulated: gives the simulation, where it was computed with those of other points
     """
 
     content: Any
     values: Mapping[str, Any]
     seed: tuple[int, ...] = (0, 0)
+    simulated: Callable[[], Simulation] | None = None
 
     @property
     def case(self) -> SimulatedCase:
@@ -62,6 +64,8 @@ class Point:
     @cached_property
     def simulation(self) -> Simulation:
         """The simulation, computed once for all measures."""
+        if self.simulated is not None:
+            return self.simulated()
         return self.content if isinstance(self.content, Simulation) else self.case.simulate()
 
     @property
@@ -84,11 +88,13 @@ class Kind(ByValue):
     """A measure that the package has: function(point, **options) -> Amount, or several by name.
 
     options: name -> default; `...` where it must be given
+    signals: all that it needs of a simulation: signals, or options that name them
     """
 
     name: str
     function: Function
     options: Mapping[str, Any] = field(default_factory=dict)
+    signals: tuple[str, ...] = ()
 
     @property
     def text(self) -> str:
@@ -100,12 +106,14 @@ class Measure(ByValue):
     """A measure with its options, under the name that its values get.
 
     function: takes a `Point` (of the package's own), or what the point gave
+    signals: all that it needs of a simulation; none: it may need anything
     """
 
     name: str
     function: Function
     options: Mapping[str, Any] = field(default_factory=dict)
     of_package: bool = False
+    signals: tuple[str, ...] = ()
 
     def __call__(self, point: Point) -> dict[str, Amount]:
         """The values of a point, by name."""
@@ -134,7 +142,8 @@ def measure(name: str, **options: Any) -> Measure:
     values = {**{k: v for k, v in kind.options.items() if v is not ...}, **options}
     signal = values.get("signal") if kind.options.get("signal", "") is ... else None
     label = f"{name}_{signal}" if signal else name
-    return Measure(label, kind.function, values, of_package=True)
+    signals = tuple(str(values.get(s, s)) for s in kind.signals)
+    return Measure(label, kind.function, values, of_package=True, signals=signals)
 
 
 def measures_of(content: Any) -> tuple[Measure, ...]:
@@ -395,19 +404,29 @@ MEASURES: Catalogue[Kind] = Catalogue(
     {
         k.name: k
         for k in (
-            Kind("rms", _rms, {"signal": ..., **_AFTER}),
-            Kind("peak", _peak, {"signal": ..., **_AFTER}),
-            Kind("force_error", _force_error, _AFTER),
-            Kind("tracking_error", _tracking_error, _AFTER),
-            Kind("transparency_error", _transparency_error, _AFTER),
+            Kind("rms", _rms, {"signal": ..., **_AFTER}, ("signal",)),
+            Kind("peak", _peak, {"signal": ..., **_AFTER}, ("signal",)),
+            Kind("force_error", _force_error, _AFTER, ("E",)),
+            Kind("tracking_error", _tracking_error, _AFTER, ("X_e",)),
+            Kind(
+                "transparency_error",
+                _transparency_error,
+                _AFTER,
+                ("X_m", "F_m", "X_s", "F_s"),
+            ),
             Kind(
                 "impedance",
                 _impedance,
                 {"frequency": ..., "amplitude": ..., "motion": "L", "force": "E"},
             ),
-            Kind("energy_drawn", _energy_drawn, _PORT),
-            Kind("limit_cycle_amplitude", _limit_cycle_amplitude, {"signal": ..., "last": 0.25}),
-            Kind("growth", _growth, {"signal": ...}),
+            Kind("energy_drawn", _energy_drawn, _PORT, ("motion", "force")),
+            Kind(
+                "limit_cycle_amplitude",
+                _limit_cycle_amplitude,
+                {"signal": ..., "last": 0.25},
+                ("signal",),
+            ),
+            Kind("growth", _growth, {"signal": ...}, ("signal",)),
             Kind(
                 "onset",
                 _onset,

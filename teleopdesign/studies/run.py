@@ -22,6 +22,7 @@ from .points import points_of
 from .processes import run_on_this_machine
 from .progress import Clock, Progress
 from .result import Study, check_netcdf, labelled, read_study
+from .side_by_side import units_of
 from .versions import versions
 
 
@@ -151,17 +152,19 @@ def _run(
     clock = Clock(len(task.points), len(journal.outcomes), progress)
 
     def sink(outcome: Outcome) -> None:
-        journal.add(outcome)
-        clock.count(outcome)
+        if outcome.point not in journal.outcomes:  # of a block that was done in part
+            journal.add(outcome)
+            clock.count(outcome)
 
     if not todo:
         return
+    units = units_of(task, todo)
     if scheduler:
         from .cluster import run_on_cluster
 
-        run_on_cluster(task, todo, sink, scheduler)
+        run_on_cluster(task, units, sink, scheduler)
     else:
-        run_on_this_machine(task, todo, sink, workers)
+        run_on_this_machine(task, units, sink, workers)
 
 
 def _stored(target: Path, key: str) -> Study:

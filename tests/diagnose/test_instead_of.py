@@ -15,6 +15,7 @@ from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.answer import answer, write_answer
 from teleopdesign.diagnose.answers import load_answer, restored
 from teleopdesign.diagnose.ladder_text import ladder_text
+from teleopdesign.diagnose.search import at_stated
 from teleopdesign.effects import EFFECTS
 
 KNOWN = {n: EFFECTS[n] for n in ("coulomb", "viscous", "presliding", "spring", "bias", "stribeck")}
@@ -98,3 +99,15 @@ def test_a_damper_that_is_there_stays_beside_the_bristle(tmp_path):
     assert diagnosis.rungs[1].instead_of is None
     damping = diagnosis.model.parameters["device.viscous.damping"]
     assert damping.value == pytest.approx(300.0, rel=0.1)
+
+
+def test_a_search_that_follows_starts_from_the_users_values_of_what_is_still_there(found):
+    experiment, diagnosis = found
+    stated = Model.from_experiment(experiment, KNOWN)
+    again = at_stated(diagnosis.model, stated)
+    assert not again.body("device").has("viscous")
+    assert again.parameters["device.coulomb.level"].value == 1.0
+    assert (
+        again.parameters["device.presliding.stiffness"]
+        == (diagnosis.model.parameters["device.presliding.stiffness"])
+    )

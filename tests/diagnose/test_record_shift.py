@@ -8,6 +8,7 @@ import pytest
 from diagnose.own_cases import FEW, truth_of, write_own
 
 import teleopdesign as td
+from teleopdesign.check import check_experiment
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.answers.bodies import model_data, model_from
 from teleopdesign.diagnose.fit import estimate
@@ -198,3 +199,10 @@ def test_an_effect_keeps_its_name_under_a_shift(tmp_path, effect, rows):
     diagnosis = td.find_missing(shifted(td.load_experiment(folder), rows))
     named = [c.effect.name for c in diagnosis.missing]
     assert named == [e["effect"] for e in truth_of(folder)["effects"]]
+
+
+def test_a_check_of_the_recording_notes_what_a_diagnosis_estimates(adequate):
+    found = check_experiment(shifted(adequate, 1.0))
+    (shift,) = [f for f in found if f.topic == "time shift"]
+    assert shift.concern == "note"
+    assert "logger's" in shift.sentence

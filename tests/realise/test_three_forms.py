@@ -32,7 +32,11 @@ TYPICAL = {
 }
 LEVEL = 0.5  # N; above every effect that lowers it
 #: those of one body: of two, `test_tips`
-NAMES = sorted(n for n, e in EFFECTS.items() if e.role not in ("structure", "tip_level"))
+NAMES = sorted(
+    n
+    for n, e in EFFECTS.items()
+    if e.role not in ("structure", "tip_level") and not e.channels()  # only records have those
+)
 LINEAR = [n for n in NAMES if EFFECTS[n].linear]
 
 
