@@ -23,10 +23,10 @@ from typing import Any, BinaryIO, cast
 from ..errors import ModelError, TeleopDesignError
 from .evaluate import Task
 from .frames import receive, send
-from .journal import Outcome
+from .journal import PointOutcome
 from .side_by_side import Unit, evaluate_unit
 
-Sink = Callable[[Outcome], None]
+Sink = Callable[[PointOutcome], None]
 
 #: s: points handed to a process at once; short against a look at the progress, long against the
 #: 0.1 ms that a message takes
@@ -174,7 +174,7 @@ class _Pool:
             else:
                 self._bury(worker)
 
-    def _take(self, outcomes: list[Outcome]) -> None:
+    def _take(self, outcomes: list[PointOutcome]) -> None:
         self.left -= 1
         for outcome in outcomes:
             self.sink(outcome)
@@ -241,7 +241,7 @@ class _Pool:
             self.todo.appendleft(first)
         elif len(first) == 1:
             reason = f"its process ended twice, {_how(status)}"
-            self._take([Outcome(first[0], reason=reason)])
+            self._take([PointOutcome(first[0], reason=reason)])
         else:  # its points one by one
             self.todo.extendleft((index,) for index in reversed(first))
             self.left += len(first) - 1

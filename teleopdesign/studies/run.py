@@ -16,7 +16,7 @@ from ..simulate.sampling import SAMPLED
 from .case import SimulatedCase
 from .evaluate import Task, check_parameters
 from .fingerprint import fingerprint
-from .journal import Journal, Outcome
+from .journal import Journal, PointOutcome
 from .measures import measures_of
 from .points import points_of
 from .processes import run_on_this_machine
@@ -151,7 +151,7 @@ def _run(
     todo = [i for i in range(len(task.points)) if i not in journal.outcomes]
     clock = Clock(len(task.points), len(journal.outcomes), progress)
 
-    def sink(outcome: Outcome) -> None:
+    def sink(outcome: PointOutcome) -> None:
         if outcome.point not in journal.outcomes:  # of a block that was done in part
             journal.add(outcome)
             clock.count(outcome)

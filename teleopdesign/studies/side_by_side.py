@@ -16,7 +16,7 @@ from ..errors import GrowsWithoutBound, ModelError, TeleopDesignError
 from ..simulate import Simulation, simulate_many
 from .case import SimulatedCase
 from .evaluate import Task, evaluate, outcome_of
-from .journal import Outcome
+from .journal import PointOutcome
 from .measures import Point
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def signals_of(task: Task) -> tuple[str, ...]:
     return () if not all(listed) else tuple(dict.fromkeys(s for one in listed for s in one))
 
 
-def evaluate_unit(task: Task, unit: Unit) -> list[Outcome]:
+def evaluate_unit(task: Task, unit: Unit) -> list[PointOutcome]:
     """What becomes of the points of a unit."""
     if len(unit) == 1:
         return [evaluate(task, unit[0])]
@@ -78,7 +78,7 @@ def evaluate_unit(task: Task, unit: Unit) -> list[Outcome]:
     groups: dict[tuple[float, ...], list[int]] = {}
     for row in range(len(unit)):
         groups.setdefault(tuple(table[n][row].item() for n in beside), []).append(row)
-    outcomes: dict[int, Outcome] = {}
+    outcomes: dict[int, PointOutcome] = {}
     for content, rows in groups.items():
         chosen = np.array(rows)
         columns = {n: table[n][chosen] for n in within}
