@@ -11,7 +11,7 @@ class TeleopDesignError(Exception):
 
     def __init__(self, message: str) -> None:
         # A user's text may hold line breaks and control characters; a message stays one line.
-        super().__init__("".join(c if c.isprintable() else _escaped(c) for c in message))
+        super().__init__(printable(message))
 
 
 class ExperimentError(TeleopDesignError):
@@ -59,6 +59,14 @@ def quoted(text: str) -> str:
     if len(text) > _LONGEST_QUOTE:
         text = text[: _LONGEST_QUOTE - 3] + "..."
     return f'"{text}"'
+
+
+def printable(text: str, *, keep: str = "") -> str:
+    """`text` with its control characters, marks of direction and line breaks escaped.
+
+    keep: such characters that stay
+    """
+    return "".join(c if c.isprintable() or c in keep else _escaped(c) for c in text)
 
 
 def _escaped(character: str) -> str:

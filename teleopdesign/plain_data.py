@@ -20,6 +20,8 @@ import numpy as np
 
 from .errors import ExperimentError
 
+_TRIAL = 4096  # bytes that a trial writes: a block, which a full disk has not
+
 
 def plain(value: object, *, digits: int | None = None) -> Any:
     """What JSON knows: mappings, lists, texts, numbers, true and false, null.
@@ -67,7 +69,8 @@ def write_json(path: str | Path, data: object) -> None:
 def write_text(path: str | Path, text: str) -> None:
     """Write a text in UTF-8 with line feeds; raises ExperimentError where that cannot be done."""
     with replacing(path) as part:
-        part.write_text(text, encoding="utf-8", newline="\n")
+        # backslashes: a file name that is no UTF-8 comes as halves of pairs, which UTF-8 lacks
+        part.write_bytes(text.encode("utf-8", "backslashreplace"))
 
 
 @contextmanager
@@ -96,6 +99,36 @@ def replacing(path: str | Path) -> Iterator[Path]:
                 part.unlink()
     except OSError as error:
         raise ExperimentError(f"{path}: cannot be written: {error.strerror or error}") from error
+
+
+def check_writable(path: str | Path) -> None:
+    """Try whether `path` could be written, as `replacing` does it; leaves what is there.
+
+    raises ExperimentError: an unwritable folder, a full disk
+    """
+    try:
+        target = Path(os.path.realpath(path))
+        if target.exists() and not target.is_file():  # a pipe is opened once, for the result
+            return
+        part = target.with_name(f".{uuid4().hex[:8]}.{target.name}")
+        try:
+            with part.open("wb") as file:
+                file.write(bytes(_TRIAL))
+        finally:
+            with suppress(OSError):
+                part.unlink()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise ExperimentError(f"{path}: cannot be written: {reason}") from error
+
+
+def harmless_cell(text: str) -> str:
+    """A text as a cell of a table, which no spreadsheet takes for a formula.
+
+    What begins with = + - @, a tab or a carriage return is shown by spreadsheets as the result of
+    a formula; an apostrophe in front makes it a text.
+    """
+    return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 
 def _rounded(value: Any, digits: int) -> Any:

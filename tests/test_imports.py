@@ -68,6 +68,8 @@ def test_every_module_and_public_function_has_a_docstring(source):
     assert ast.get_docstring(tree), f"{source.name} has no docstring"
     if source.parent.name in ("effects", "controllers") and source.name[0] != "_":
         return  # the law's meaning is the file's docstring
+    if source.name == "_free_mass.py":
+        return  # a sample of generated source, held against what is generated
     bare = [
         node.name
         for node in tree.body

@@ -81,7 +81,7 @@ def misnamed(module: str, tree: ast.AST) -> list[str]:
     return [
         f"{module}:{line}: {name}"
         for line, name in names(tree)
-        if name in BANNED and not under(module, PUBLIC_KEYWORDS.get(name, ()))
+        if name.strip("_") in BANNED and not under(module, PUBLIC_KEYWORDS.get(name, ()))
     ]
 
 
@@ -110,6 +110,7 @@ def test_no_name_says_grammar_instead_of_a_thing():
     [
         "found = 1",
         "def found(): ...",
+        "def _taken(): ...",
         "def f(own): ...",
         "def f(*, told=0): ...",
         "for tried in x: pass",

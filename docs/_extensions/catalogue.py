@@ -39,6 +39,8 @@ _SYMBOLS = {
     "command": "u",
     "acting_force": r"f_{\mathrm{act}}",
     "level": r"F_{\mathrm{level}}",
+    "temperature": "T",
+    "other_acceleration": r"a_{\mathrm{other}}",
     "input": "e",
     "speed": r"\left|v\right|",
     "travel_rate": "v",
@@ -50,6 +52,7 @@ _LEFT = {
     "friction_speed": r"\left|v\right| \text{ in } F_{\mathrm{level}}",
     "friction_shape": r"F_{\mathrm{friction}}",
     "actuation": r"f_{\mathrm{out}}",
+    "tip_level": r"\text{adds to the friction level of the tip}:\quad",
 }
 ROLE_TEXTS = {
     "actuation": "stands between the commanded force and the force that acts",
@@ -58,6 +61,7 @@ ROLE_TEXTS = {
     "friction_factor": "multiplies the friction level",
     "friction_speed": "the speed that the friction level follows, in place of the body's own",
     "friction_shape": "sets how friction follows the motion; sgn v unless one is given",
+    "tip_level": "dry friction of the tip behind a structure; levels add up",
     "contact": "a force of a modelled environment while it is touched; they add up and never pull",
     "contact_shape": "takes the place of the penetration in the spring of a modelled environment",
 }

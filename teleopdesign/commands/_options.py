@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from ..errors import ExperimentError
+from ..plain_data import check_writable
+from ._terminal import replace_line
 
 
 def add_folder(parser: argparse.ArgumentParser) -> None:
@@ -34,18 +35,22 @@ def check_output(path: Path, endings: tuple[str, ...]) -> None:
         raise ExperimentError(f"{path}: there is no folder {str(path.parent)!r}")
     if path.is_dir():
         raise ExperimentError(f"{path}: is a folder, expected a file")
+    check_writable(path)
 
 
 def make_folder(path: Path) -> Path:
-    """The folder, made where it is not there; raises ExperimentError where it cannot be made."""
+    """The folder, made where it is not there; raises ExperimentError where nothing can be written.
+
+    A file of it that is there already may be written anew.
+    """
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ExperimentError(f"{path}: {error.strerror}") from error
+    check_writable(path / "trial")
     return path
 
 
 def say(text: str) -> None:
     """Show progress on one line of a terminal; print nothing elsewhere."""
-    if sys.stderr.isatty():
-        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
+    replace_line(text)

@@ -112,7 +112,7 @@ def _sound(options: argparse.Namespace) -> None:
         if not (math.isfinite(value) and value > 0):
             raise ExperimentError(f"--{name}: found {value:g}, expected more than 0")
     if is_diagram(options.source) and (
-        options_beside := [n for n in BESIDE_A_DIAGRAM if _given(options, n)]
+        options_beside := [n for n in BESIDE_A_DIAGRAM if _is_stated(options, n)]
     ):
         raise ExperimentError(
             f"--{options_beside[0]}: found beside a diagram, which brings its own blocks"
@@ -137,7 +137,7 @@ def _sound(options: argparse.Namespace) -> None:
         raise ExperimentError("--wall, --delay, --encoder-step: they need --period")
 
 
-def _given(options: argparse.Namespace, name: str) -> bool:
+def _is_stated(options: argparse.Namespace, name: str) -> bool:
     return getattr(options, name.replace("-", "_")) is not None
 
 

@@ -15,7 +15,7 @@ def loop_of(diagram: Diagram, signal: str) -> tuple[str, ...]:
         reached = [signal]
         for at in reached:
             part = makers.get(at)
-            for source in () if part is None else _taken(part):
+            for source in () if part is None else _inputs_of(part):
                 if source == signal:
                     return _back(before, at, signal)
                 if source not in before:
@@ -24,7 +24,7 @@ def loop_of(diagram: Diagram, signal: str) -> tuple[str, ...]:
     return ()
 
 
-def _taken(part: Part) -> tuple[str, ...]:
+def _inputs_of(part: Part) -> tuple[str, ...]:
     # of a controller the motion only sets where its law is frozen
     return (part.input,) if isinstance(part, Control) else part.inputs
 

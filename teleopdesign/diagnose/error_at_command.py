@@ -49,7 +49,7 @@ def at_command(model: Model, stretches: Sequence[Stretch]) -> AtCommand:
     """
     groups = offset_groups(model, stretches)
     along = along_offsets(model, stretches, groups)
-    command_errors = [_seen(body, motion) for body, motion in along]
+    command_errors = [_map_back(body, motion) for body, motion in along]
     values = [
         m.lowpassed(one.residual)[s.keep]
         for s, (_, m), one in zip(stretches, along, command_errors, strict=True)
@@ -78,7 +78,7 @@ def at_command(model: Model, stretches: Sequence[Stretch]) -> AtCommand:
     )
 
 
-def _seen(body: Body, motion: Motion) -> SeenAtCommand:
+def _map_back(body: Body, motion: Motion) -> SeenAtCommand:
     if is_between(body):
         return seen_at_command(body, motion)
     none = np.zeros(len(motion.time), dtype=bool)

@@ -48,7 +48,7 @@ def check_score(before: Fit, after: Fit) -> float:
     return gain_score(before.check_residual, after.check_residual, after.check_blocks)
 
 
-def seen_score(before: Fit, after: Fit) -> float:
+def score_at_command(before: Fit, after: Fit) -> float:
     """Score by which `after` has the smaller error at the command, on the check records.
 
     On the rows that both can tell: what a model is blind to speaks for neither.
@@ -59,7 +59,7 @@ def seen_score(before: Fit, after: Fit) -> float:
     )
 
 
-def seen_gain(before: Fit, after: Fit) -> float:
+def gain_at_command(before: Fit, after: Fit) -> float:
     """Share of the squares at the command that `after` removes, on rows sighted in both fits.
 
     No more than the error itself says of each model on its own rows: to be blind to where most is

@@ -143,13 +143,13 @@ def _frequency(parts: Sequence[tuple[Stretch, Array]]) -> float:
     step, peak = float(grid[1]), float(grid[int(np.argmax(power))])
 
     def lost(frequency: float) -> float:
-        return -sum(_taken(s, r, frequency) for s, r in parts)
+        return -sum(_tone_squares(s, r, frequency) for s, r in parts)
 
     bounds = (peak - step, peak + step)
     return float(minimize_scalar(lost, bounds=bounds, method="bounded").x)
 
 
-def _taken(stretch: Stretch, residual: Array, frequency: float) -> float:
+def _tone_squares(stretch: Stretch, residual: Array, frequency: float) -> float:
     """Squares that a tone of any amplitude and phase takes from one residual."""
     left = _without(stretch, residual, frequency)
     return float(residual @ residual - left @ left)

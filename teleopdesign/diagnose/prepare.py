@@ -41,7 +41,7 @@ class Stretch(ByValue):
     offset_names: frozenset[str] = frozenset()
 
     @property
-    def own_zero(self) -> bool:
+    def has_zero_offset(self) -> bool:
         """Whether the encoder's zero of this record differs from that of other records."""
         return "position_zero" in self.offset_names
 

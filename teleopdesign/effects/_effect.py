@@ -8,6 +8,7 @@ A body is a chain of roles:
     level       = sum of the friction_level laws, each times the friction_factor laws that need
                   it (a factor that needs no effect scales all); where a friction_speed law is
                   there, at that speed instead of the body's own
+    tip         = of a structure: held by dry friction of the sum of the tip_level laws
     contact     = sum of the contact laws where the environment is touched, and no pull: among the
                   forces; a contact_shape law takes the place of the penetration in them
 
@@ -32,6 +33,7 @@ from ..errors import ModelError, did_you_mean
 from ..notebook import html_table
 from ..quantity import QUANTITIES, unit_of
 from ..recipes import recipe, remember
+from ._facts import RecordFacts
 
 Role = Literal[
     "actuation",
@@ -41,6 +43,7 @@ Role = Literal[
     "friction_factor",
     "friction_speed",
     "friction_shape",
+    "tip_level",
     "contact",
     "contact_shape",
 ]
@@ -82,8 +85,15 @@ SIGNALS = {
     name: sp.Symbol(name, real=True)
     for name in (
         "time position velocity acceleration direction command acting_force interaction_force "
-        "level penetration".split()
+        "level penetration temperature other_position other_velocity other_acceleration".split()
     )
+}
+#: signal -> the further channel of a record that it is made from; without the channel it is unknown
+FURTHER = {
+    "temperature": "temperature",
+    "other_position": "other_position",
+    "other_velocity": "other_position",
+    "other_acceleration": "other_position",
 }
 #: what corrections may use besides: the inertia of the effect's body, and the force that is left
 #: unexplained along a measured motion
@@ -154,6 +164,10 @@ PERIOD = Parameter(
 )
 
 
+#: of a stop: a state that it holds rests up to here, or it would chatter between two rates
+HELD = 1.001
+
+
 @checked
 @dataclass(frozen=True)
 class State:
@@ -162,12 +176,28 @@ class State:
     start: the signal that it equals when a record starts; "": it starts settled, or at rest
     correction: correction(now, p), the rate by which the force that is left unexplained, also in
         `now`, leads the state back along a measured motion; None: it runs free
+    dry: dry(now, p), the largest rate by which dry friction slows the state down; at zero it holds
+        it where no more is needed. None: no such friction
+    stop: stop(now, p), the size that the state is held at, as by a spring that slips
     """
 
     quantity: str
     rate: Callable[[Any, Any], sp.Expr]
     start: str = ""
     correction: Callable[[Any, Any], sp.Expr] | None = None
+    dry: Callable[[Any, Any], sp.Expr] | None = None
+    stop: Callable[[Any, Any], sp.Expr] | None = None
+
+    def rate_with_stop(self, now: Any, p: Any, name: str) -> sp.Expr:
+        """The rate, none at the stop; where the stop itself has moved in, back to it."""
+        rate = sp.sympify(self.rate(now, p), strict=True)
+        if self.stop is None or rate == 0:
+            return rate
+        z, stop = sp.Abs(getattr(now, name)), self.stop(now, p)
+        at_stop = sp.And(z >= stop, getattr(now, name) * rate > 0)
+        return sp.Piecewise(
+            (rate * sp.Min((HELD * stop - z) / (stop + z), 0), at_stop), (rate, True)
+        )
 
 
 @checked
@@ -177,7 +207,8 @@ class Effect:
 
     law(now, p) returns the force it adds (role force; role structure: the same, the interaction
     force with it, for that acts on a tip of its own), its share of the friction level
-    (friction_level), a factor of the levels it needs (friction_factor), the speed that the level
+    (friction_level; tip_level: of the tip of a structure), a factor of the levels it needs
+    (friction_factor), the speed that the level
     follows (friction_speed), the friction force (friction_shape), the stage's output (actuation), a
     share of the force that a modelled environment takes (contact), or the penetration that its
     spring feels (contact_shape).
@@ -192,11 +223,15 @@ class Effect:
     effect out, and says so. It is never found by differentiating sgn.
     absent: parameter values at which the effect is not there at all.
     canonical: of parameter values that mean the same, those to report.
-    needs: effects that the model must have for this one to mean anything.
+    needs: effects that the model must have for this one to mean anything; where a body has one of a
+        role at most, another of that role will do.
     elsewhere: an axis that the law does not hold on ("prismatic" or "revolute") -> the effect that
         says the same there
     coupling: of a structure, coupling(now, p), which its law and states are made from
         (`make_structure`)
+    plausible: plausible(p, facts), what its parameters must obey to deserve the effect's name: None
+        where they do, else one sentence that says what they stand for instead. A diagnosis names no
+        effect that its own file does not believe
     led: inertia(p) of a body among the hidden states whose position is corrected: the force that it
         would take to lead it so is left unexplained as well
     """
@@ -215,6 +250,7 @@ class Effect:
     canonical: Callable[[Mapping[str, float]], dict[str, float]] = dict
     led: Callable[[Any], sp.Expr] | None = None
     coupling: Callable[[Any, Any], sp.Expr] | None = None
+    plausible: Callable[[Any, RecordFacts], str | None] | None = None
     source: str = ""
     name: str = ""
     text: str = ""
@@ -258,6 +294,10 @@ class Effect:
     def phase(self) -> str | None:
         """Name of the angle phi in a law strength * sin(... + phi); None for other laws."""
         return _phase(self)
+
+    def channels(self) -> frozenset[str]:
+        """Further channels of a record that its laws need: "temperature", "other_position"."""
+        return _channels(self)
 
     @property
     def title(self) -> str:
@@ -304,12 +344,25 @@ class Effect:
         if signals is None and values is None:
             return dict(_rates(self))
         now, p = self._now(signals), self._parameters(values)
-        rates = {name: state.rate(now, p) for name, state in self.states.items()}
+        rates = {name: s.rate_with_stop(now, p, name) for name, s in self.states.items()}
         return {name: sp.sympify(rate, strict=True) for name, rate in rates.items()}
+
+    def stops(self) -> dict[str, tuple[sp.Expr, sp.Expr]]:
+        """Hidden state -> its rate within its stop, and the stop, on symbols; {}: none has one."""
+        now, p = self._now(None), self._parameters(None)
+        return {
+            name: (sp.sympify(s.rate(now, p), strict=True), sp.sympify(s.stop(now, p), strict=True))
+            for name, s in self.states.items()
+            if s.stop is not None
+        }
 
     def corrections(self) -> dict[str, sp.Expr]:
         """Hidden state -> rate of its correction, on symbols; {} where no state is corrected."""
         return dict(_corrections(self))
+
+    def dry_bounds(self) -> dict[str, sp.Expr]:
+        """Hidden state -> largest rate by which dry friction slows it, on symbols; {}: none."""
+        return dict(_dry_bounds(self))
 
     def led_momentum(self) -> sp.Expr:
         """Momentum of the body that corrections lead, on symbols; 0 without corrections."""
@@ -367,6 +420,23 @@ def _corrections(effect: Effect) -> dict[str, sp.Expr]:
 
 
 @lru_cache(maxsize=256)
+def _channels(effect: Effect) -> frozenset[str]:
+    laws = (effect.expression(), *effect.rates().values())
+    used = {n for n in FURTHER if any(law.has(SIGNALS[n]) for law in laws)}
+    return frozenset(FURTHER[n] for n in used)
+
+
+@lru_cache(maxsize=256)
+def _dry_bounds(effect: Effect) -> dict[str, sp.Expr]:
+    now, p = effect._now(None), effect._parameters(None)
+    return {
+        name: sp.sympify(state.dry(now, p), strict=True)
+        for name, state in effect.states.items()
+        if state.dry is not None
+    }
+
+
+@lru_cache(maxsize=256)
 def _strength(effect: Effect) -> str | None:
     if len(effect.absent) != 1 or effect.states:
         return None
@@ -390,15 +460,21 @@ def _without(effect: Effect, parameter: str) -> Effect:
     def at_zero(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
         return lambda now, p: law(now, SimpleNamespace(**{**vars(p), parameter: sp.S(0)}))
 
-    def corrected(state: State) -> Callable[[Any, Any], sp.Expr] | None:
-        return None if state.correction is None else at_zero(state.correction)
+    def if_any(law: Callable[[Any, Any], sp.Expr] | None) -> Callable[[Any, Any], sp.Expr] | None:
+        return None if law is None else at_zero(law)
 
     less = replace(
         effect,
         law=at_zero(effect.law),
-        coupling=None if effect.coupling is None else at_zero(effect.coupling),
+        coupling=if_any(effect.coupling),
         states={
-            n: replace(s, rate=at_zero(s.rate), correction=corrected(s))
+            n: replace(
+                s,
+                rate=at_zero(s.rate),
+                correction=if_any(s.correction),
+                dry=if_any(s.dry),
+                stop=if_any(s.stop),
+            )
             for n, s in effect.states.items()
         },
         parameters={n: p for n, p in effect.parameters.items() if n != parameter},

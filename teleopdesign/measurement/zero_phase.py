@@ -9,9 +9,9 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numba import njit
 from scipy.signal import butter, sosfilt_zi
 
+from ..machine_code import kept
 from .filtering import CONTINUED, Array
 
 
@@ -30,7 +30,7 @@ def margin(n: int, sample_time: float) -> int:
     return max(1, min(round(CONTINUED / sample_time), n - 1))
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator,unused-ignore]
+@kept
 def one_way(y: Array, sos: Array, steady_state: Array, backward: bool) -> None:
     """Filter the columns of y (samples, signals) in place, from one end to the other."""
     n, r = y.shape
@@ -52,7 +52,7 @@ def one_way(y: Array, sos: Array, steady_state: Array, backward: bool) -> None:
                 y[k, j] = out
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator,unused-ignore]
+@kept
 def both_ways(y: Array, extended: Array, sos: Array, steady_state: Array) -> None:
     """Filter the columns of y (samples, signals) in place, zero phase; extended: work space."""
     n, r = y.shape

@@ -75,7 +75,7 @@ def shown_limits(prepared: Prepared) -> dict[str, Limits]:
 
 
 def _shown(stretches: Sequence[Stretch]) -> Limits:
-    common = [s for s in stretches if not s.own_zero] or [stretches[0]]
+    common = [s for s in stretches if not s.has_zero_offset] or [stretches[0]]
     accelerations = [s.motion.lowpassed(s.motion.acceleration)[_inside(s)] for s in stretches]
     jerks = [
         np.diff(a) / s.motion.sample_time for a, s in zip(accelerations, stretches, strict=True)

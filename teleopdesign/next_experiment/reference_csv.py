@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import csv
 from pathlib import Path
 
 import numpy as np
 
 from ..measurement.experiment import Experiment
-from ..plain_data import replacing
+from ..plain_data import harmless_cell, replacing
 from ..quantity import si_factor
 from .proposal import Reference
 
@@ -29,5 +30,5 @@ def write_reference(reference: Reference, experiment: Experiment, path: str | Pa
         columns.append(position / factor)
         forms.append("%.9g")
     with replacing(path) as part, part.open("w", encoding="utf-8", newline="") as file:
-        file.write(",".join(head) + "\n")
+        csv.writer(file, lineterminator="\n").writerow(map(harmless_cell, head))
         np.savetxt(file, np.column_stack(columns), fmt=forms, delimiter=",")

@@ -108,7 +108,7 @@ def plot_delay_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
             limit = data[f"limit_over_{name}"].values
             hatch_region(axis, x, 0.8 * stiffness[0], limit, "the condition holds")
             axis.plot(x, limit, color=THEORY, label="limit of the theorem")
-            _settled(axis, x, stiffness, data[f"status_over_{name}"].values)
+            _mark_status(axis, x, stiffness, data[f"status_over_{name}"].values)
             times = data[f"{name}_simulated"].values
             for ends, marker in zip(data["ends"].values, "^o", strict=True):
                 axis.plot(
@@ -142,7 +142,7 @@ def plot_period_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
             limit = here["limit"].values
             hatch_region(axis, x, 0.8 * stiffness[0], limit, "both conditions hold")
             axis.plot(x, limit, color=THEORY, label="limit of the two conditions")
-            _settled(axis, x, stiffness, here["status"].values)
+            _mark_status(axis, x, stiffness, here["status"].values)
             for ends, marker in zip(data["ends"].values, "^o", strict=True):
                 axis.plot(
                     data["period_simulated"].values,
@@ -164,7 +164,7 @@ def plot_period_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
     return figure
 
 
-def _settled(axis: Axes, x: np.ndarray, y: np.ndarray, status: np.ndarray) -> None:
+def _mark_status(axis: Axes, x: np.ndarray, y: np.ndarray, status: np.ndarray) -> None:
     """A dot at each point that a claim settled."""
     import numpy as np
 

@@ -10,8 +10,8 @@ right model then leaves two to four times its noise. Values and tangents go thro
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from ..machine_code import kept
 from ..measurement.filtering import Array
 from ..measurement.zero_phase import both_ways, margin, sections
 
@@ -20,7 +20,7 @@ from ..measurement.zero_phase import both_ways, margin, sections
 STEPS = 8
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator,unused-ignore]
+@kept
 def _clip(f: Array, low: Array, high: Array) -> None:
     """Columns: the value, then its tangents; where the value is clipped they are the bound's."""
     n, r = f.shape
@@ -33,7 +33,7 @@ def _clip(f: Array, low: Array, high: Array) -> None:
                 f[k, j] = low[k, j]
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator,unused-ignore]
+@kept
 def _balance(needed: Array, low: Array, high: Array, sos: Array, steady: Array, m: int) -> Array:
     n, r = needed.shape
     friction = needed.copy()

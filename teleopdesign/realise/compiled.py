@@ -1,40 +1,79 @@
 """Generated source -> compiled function, kept in a cache folder so that it compiles once a machine.
 
-The file name is a hash of the content; numba keeps its machine code beside it.
+The file name is a hash of the content; numba keeps its machine code beside it. What runs is the
+source in memory, never what a file holds: the file is what numba's cache goes by. The folder is the
+user's alone; where there is none, machine code is kept for this process, or not at all.
 """
 
 from __future__ import annotations
 
+import atexit
 import hashlib
-import importlib
 import os
+import shutil
+import stat
 import sys
 import tempfile
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from threading import Lock
+from types import ModuleType
 from typing import Any
+from uuid import uuid4
+
+from ..machine_code import without_cache_errors
+
+#: whether somebody else may write there
+_OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
 
 
-def cache_folder() -> Path:
-    """Where generated kernels are kept: TELEOPDESIGN_CACHE, or the platform's cache folder."""
+def cache_folder() -> Path | None:
+    """Where generated kernels are kept: in TELEOPDESIGN_CACHE, or the platform's cache folder.
+
+    The folder has mode 0700. Where it cannot be written, or belongs to or can be written by
+    somebody else, a folder for this process alone; None where there is no place at all.
+    """
     if path := os.environ.get("TELEOPDESIGN_CACHE"):
         folder = Path(path)
     else:
         import pooch
 
         folder = Path(pooch.os_cache("teleopdesign"))
-    folder = folder / "kernels"
+    folder = folder / "machine_code"
+    return folder if _is_private(folder) else _temporary_folder()
+
+
+def _is_private(folder: Path) -> bool:
+    """Make the folder and try it: ours alone, no link, and takes a file."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if hasattr(os, "getuid"):  # other systems have lists of access in place of modes
+            state = folder.lstat()
+            if not stat.S_ISDIR(state.st_mode) or state.st_uid != os.getuid():
+                return False
+            if stat.S_IMODE(state.st_mode) & 0o077:
+                if state.st_mode & _OTHERS_WRITE:
+                    return False  # what lies there may be another's
+                folder.chmod(0o700)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except (OSError, ValueError):
+        return False
+
+
+@lru_cache(maxsize=1)
+def _temporary_folder() -> Path | None:
+    try:
+        folder = Path(tempfile.mkdtemp(prefix="teleopdesign-kernels-"))  # mode 0700
     except OSError:
-        folder = Path(tempfile.gettempdir()) / "teleopdesign-kernels"
-        folder.mkdir(parents=True, exist_ok=True)
+        return None
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
 
 
-_IMPORTING = Lock()
+_EXECUTING = Lock()
 
 
 def compiled(source: str, function: str) -> Callable[..., Any]:
@@ -47,18 +86,42 @@ def compiled(source: str, function: str) -> Callable[..., Any]:
 def compiled_module(source: str, function: str) -> Mapping[str, Any]:
     """Names of that source, a module that uses numba;  function: main one, in the file's name."""
     digest = hashlib.sha256(source.encode()).hexdigest()[:20]
+    name = f"teleopdesign_{function}_{digest}"
     folder = cache_folder()
-    path = folder / f"teleopdesign_{function}_{digest}.py"
-    if not path.is_file():
-        # written aside and renamed: two processes may want the same kernel at once
-        with tempfile.NamedTemporaryFile(
-            "w", dir=path.parent, suffix=".tmp", delete=False, encoding="utf-8"
-        ) as file:
-            file.write(source)
-        Path(file.name).replace(path)
-    with _IMPORTING:  # candidates are fitted in threads, and the import system's caches are shared
-        if str(folder) not in sys.path:
-            sys.path.append(str(folder))  # numba's cache finds the module again by its name
-        importlib.invalidate_caches()
-        module = importlib.import_module(path.stem)
+    path = None if folder is None else folder / f"{name}.py"
+    if path is not None and not _holds(path, source):
+        path = None
+    with _EXECUTING:  # candidates are fitted in threads; numba's cache finds the module by its name
+        if path is not None:
+            with suppress(RuntimeError):  # numba finds no place for machine code
+                return _names(source, name, str(path))
+        return _names(source.replace("cache=True", "cache=False"), name, f"<{name}>")
+
+
+def _names(source: str, name: str, file: str) -> dict[str, Any]:
+    module = ModuleType(name)
+    module.__file__ = file
+    sys.modules[name] = module
+    exec(compile(source, file, "exec"), vars(module))
+    for value in vars(module).values():
+        without_cache_errors(value)
     return vars(module)
+
+
+def _holds(path: Path, source: str) -> bool:
+    """Whether the file holds the source; where it holds anything else it is written anew."""
+    content = source.encode()
+    try:
+        if path.is_file() and path.read_bytes() == content:
+            return True
+        # written aside and renamed: two processes may want the same kernel at once
+        part = path.with_name(f".{uuid4().hex[:8]}.{path.name}")
+        try:
+            part.write_bytes(content)
+            part.replace(path)
+        finally:
+            with suppress(OSError):
+                part.unlink()
+        return True
+    except OSError:
+        return False

@@ -199,7 +199,7 @@ class _Builder:
         rows, unknown = self._analog_rows()
         computer = Computer({}, {}, frozenset(), {})
         commands: dict[str, sp.Symbol] = {}
-        inputs = [s for s in self.outside if s not in self.sampled_inputs or self._taken(s)]
+        inputs = [s for s in self.outside if s not in self.sampled_inputs or self._feeds_analog(s)]
         if self.sampled:
             commands = {s: signal(s) for s in self._held()}
             computer = self._computer()
@@ -245,7 +245,7 @@ class _Builder:
         known = {s: e.xreplace(forces) for s, e in solved.items()} | forces
         return known, {s: e.xreplace(forces) for s, e in joined.items()}
 
-    def _taken(self, name: str) -> bool:
+    def _feeds_analog(self, name: str) -> bool:
         """Whether something analog takes this outside signal as it is."""
         parts = [p for p in self.diagram.parts if isinstance(p, Junction)]
         return any(name in p.terms and p.output not in self.digital for p in parts)
@@ -292,6 +292,11 @@ class _Builder:
             raise ModelError(
                 f"{self.diagram.name}: {part.name}: {parted[0]} has no simulated form: what holds "
                 "the body would have to be wired to its tip (transmission_compliance has one)"
+            )
+        if unknown := [e.name for e in part.body.effects if e.channels()]:
+            raise ModelError(
+                f"{self.diagram.name}: {part.name}: {unknown[0]} has no simulated form: its law "
+                "uses a channel of a record"
             )
         equation = part.body.equation()
         position, speed, change = motion_of(self.diagram, part.motion)

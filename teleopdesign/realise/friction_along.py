@@ -80,7 +80,7 @@ def balance_friction(motion: Motion, needed: Traced, low: Traced, high: Traced) 
     return Traced(both[0], both[1:])
 
 
-def own_friction(level: sp.Expr, friction: Traced, along: Along) -> Traced:
+def friction_of_acting_force(level: sp.Expr, friction: Traced, along: Along) -> Traced:
     """The part of the friction that the acting force itself makes."""
     if not level.has(_ACTING):
         return Traced(np.zeros_like(friction.value), np.zeros_like(friction.tangent))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ..diagnose import Diagnosis
 from ..diagnose.answer import answer
-from ..diagnose.ladder_text import seen_text
+from ..diagnose.ladder_text import command_error_text
 from ..diagnose.ranking import Ranked, Ranking
 from ..diagnose.rung import Rung
 from .words import step_name
@@ -58,7 +58,7 @@ def ladder_rows(diagnosis: Diagnosis) -> tuple[LadderRow, ...]:
             check_error=r.fit.check_error,
             floors=r.fit.check_error / floor if floor else float("inf"),
             alike=tuple(map(str, r.alternatives)),
-            at_command=seen_text(r.fit),
+            at_command=command_error_text(r.fit),
         )
         for r in diagnosis.rungs
     )
@@ -102,6 +102,8 @@ def _outcome(rung: Rung | None, ranking: Ranking, ranked: Ranked) -> str:
         return "no gain"
     if ranked.refused:
         return ranked.refused
+    if ranked.implausible:
+        return "implausible"
     if not ranked.is_identifiable:
         return "open"
     return "displaces" if set(ranked.fit.at_bound) - set(ranking.base.at_bound) else ""

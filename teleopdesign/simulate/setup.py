@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -36,8 +37,6 @@ def prepare(
     jit: bool = True,
 ) -> Setup:
     """Everything that `simulate` does before it runs; arguments as there."""
-    from ..realise.kernel import program
-
     motion, inputs, initial = dict(motion or {}), dict(inputs or {}), dict(initial or {})
     for name in inputs:
         if name not in diagram.outside:
@@ -49,16 +48,8 @@ def prepare(
     for name, value in positive.items():
         if not 0 < value < float("inf"):
             raise ModelError(f"simulate: {name}: found {value:g}, expected more than 0")
-    sampled = not isinstance(computer, str)
     setting = Sampling() if isinstance(computer, str) else computer
-    body = simulated_form(diagram, motion=motion, computer=computer, give=give)
-    made = program(
-        body,
-        prescribed=tuple(motion),
-        sampled=sampled,
-        observer=setting.observer if sampled else 0,
-        jit=jit,
-    )
+    body, made = _form_and_program(_Same(diagram), tuple(motion), computer, give, jit)
     states = (*made.layout.states, *made.layout.computer_states)
     for name in initial:
         if name not in states:
@@ -66,6 +57,37 @@ def prepare(
                 f'initial: no state "{name}", has {", ".join(states)}{did_you_mean(name, states)}'
             )
     return Setup(body, made, setting, duration, step, inputs, motion, initial)
+
+
+@dataclass(frozen=True, eq=False)
+class _Same:
+    """A diagram that counts by identity: it is frozen, so what was made of it stays right."""
+
+    diagram: Diagram
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and self.diagram is other.diagram
+
+    def __hash__(self) -> int:
+        return id(self.diagram)
+
+
+@lru_cache(maxsize=64)
+def _form_and_program(
+    same: _Same,
+    motion: tuple[str, ...],
+    computer: Sampling | Literal["continuous"],
+    give: float,
+    jit: bool,
+) -> tuple[Diagram, Program]:
+    """What is simulated of a diagram, and the loop for its structure."""
+    from ..realise.kernel import program
+
+    body = simulated_form(same.diagram, motion=motion, computer=computer, give=give)
+    sampled, observer = False, 0
+    if not isinstance(computer, str):
+        sampled, observer = True, computer.observer
+    return body, program(body, prescribed=motion, sampled=sampled, observer=observer, jit=jit)
 
 
 def simulated_form(

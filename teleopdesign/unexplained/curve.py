@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..measurement.filtering import Array
-from .dependence import Columns, Dependence, own_columns
+from .dependence import Columns, Dependence, model_columns
 from .rows import Rows
 from .shapes import LOST, Shape, functions_of
 
@@ -48,7 +48,7 @@ def curve_of(rows: Rows, dependence: Dependence, earlier: tuple[Dependence, ...]
         left = left - before.columns.values @ before.columns.solve(left, rows.learnt)
     variable = dependence.shape.variable
     alone = variable is not None and not variable.wave and not dependence.shape.of_command
-    columns = dependence.columns if alone else own_columns(rows).beside(dependence.columns)
+    columns = dependence.columns if alone else model_columns(rows).beside(dependence.columns)
     value, spread = _coefficients(rows, columns, left, len(dependence.columns.penalty))
     x = _grid(rows, dependence.shape, dependence.knots)
     functions = functions_of(dependence.shape, dependence.knots, x)

@@ -84,7 +84,7 @@ class Dependence:
         return float(self.after @ self.after)
 
 
-def own_columns(rows: Rows) -> Columns:
+def model_columns(rows: Rows) -> Columns:
     """The columns of the model's own free parameters: weighted, no penalty."""
     values = rows.tangents * rows.root[:, None]
     size = np.linalg.norm(values, axis=0)
@@ -206,7 +206,7 @@ def dependences(
     target = rows.residual * rows.root
     whole = float(np.sum(target[rows.checked] ** 2))
     known = {s: shape_columns(rows, s, target) for s in SHAPES}
-    beside, chosen = own_columns(rows), list[Dependence]()
+    beside, chosen = model_columns(rows), list[Dependence]()
     first: tuple[Dependence, ...] = ()
     while len(chosen) < most:
         left = target - beside.values @ beside.solve(target, rows.learnt)

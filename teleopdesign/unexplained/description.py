@@ -14,7 +14,7 @@ from ..finding import Finding, Graph
 from ..model import Model
 from .amounts import number
 from .curve import Curve, curve_of, without_columns
-from .dependence import ALARM, Dependence, dependences, own_columns
+from .dependence import ALARM, Dependence, dependences, model_columns
 from .formula import Formula, formula_for
 from .qualifiers import Contrast, contrasts
 from .rows import Rows, rows_of
@@ -118,7 +118,7 @@ def _describe_dependences(
     rows: Rows, chosen: tuple[Dependence, ...]
 ) -> tuple[DescribedDependence, ...]:
     descriptions = []
-    beside = own_columns(rows)
+    beside = model_columns(rows)
     target = rows.residual * rows.root
     for i, dependence in enumerate(chosen):
         curve = curve_of(rows, dependence, chosen[:i])

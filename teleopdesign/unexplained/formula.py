@@ -72,7 +72,7 @@ def formula_for(rows: Rows, beside: Columns, dependence: Dependence) -> Formula 
         search = _Search.beside(rows, explained)
         ranked = search.ranked(terms, every)
         # what has no number to be found is simpler
-        simple = [t for t in ranked if not t.is_found]
+        simple = [t for t in ranked if not t.is_searched]
         for term in dict.fromkeys((*simple[:1], ranked[0])):
             longer = (*chosen, _refine_number(rows, search, dependence.shape, term))
             formula = _checked_formula(rows, beside, dependence, longer)
@@ -143,7 +143,7 @@ def _columns(rows: Rows, shape: Shape, terms: tuple[Term, ...]) -> Columns:
 
 def _refine_number(rows: Rows, search: _Search, shape: Shape, term: Term) -> Term:
     """The term with its number searched between its neighbours on the grid."""
-    if not term.is_found or term.kind == "wave":  # a wave number is searched already
+    if not term.is_searched or term.kind == "wave":  # a wave number is searched already
         return term
 
     def lost(n: float) -> float:

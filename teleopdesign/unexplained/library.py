@@ -51,7 +51,7 @@ class Term:
         return 2 if self.kind == "wave" else 1
 
     @property
-    def is_found(self) -> bool:
+    def is_searched(self) -> bool:
         """Whether its number is found by search."""
         return self.kind != "power"
 

@@ -16,7 +16,7 @@ from teleopdesign.diagnose.answer import (
     write_answer,
     write_predictions,
 )
-from teleopdesign.diagnose.ladder_text import ladder_text, seen_text
+from teleopdesign.diagnose.ladder_text import command_error_text, ladder_text
 from teleopdesign.diagnose.probability import shares
 from teleopdesign.diagnose.ranking import REFUSALS
 from teleopdesign.diagnose.rungs import first_rise, without_rise
@@ -58,10 +58,10 @@ def test_a_ladder_ends_before_a_rung_that_leaves_more(diagnosis):
 
 def test_the_error_seen_at_the_command_is_told_where_it_differs(diagnosis):
     after = diagnosis.after
-    assert seen_text(after) is None  # nothing stands between command and force
+    assert command_error_text(after) is None  # nothing stands between command and force
     less = replace(after.at_command, error=2 * after.check_error, blind=0.1)
     said = f"{200 * after.check_error:.2f} %, blind in 10 % of the motion"
-    assert seen_text(replace(after, at_command=less)).endswith(said)
+    assert command_error_text(replace(after, at_command=less)).endswith(said)
     last = diagnosis.last
     first = replace(
         last.ranked[0], refused="blind", fit=replace(after, check_error=0.5 * after.check_error)

@@ -11,7 +11,7 @@ from teleopdesign.diagnose.decision import is_a_tone
 from teleopdesign.diagnose.evidence import check_squares
 from teleopdesign.diagnose.fit import estimate, weighted
 from teleopdesign.diagnose.noise_floor import NoiseFloor
-from teleopdesign.diagnose.outside_tone import Tone, _taken, acts_by_the_clock, best_tone
+from teleopdesign.diagnose.outside_tone import Tone, _tone_squares, acts_by_the_clock, best_tone
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.search import estimate_from_starts
@@ -118,7 +118,7 @@ def test_what_leaves_as_much_as_a_tone_does_not_beat_it(rod):
 def _off_the_residual(found, prepared):
     stretches = prepared.of("check")
     parts = np.split(found.check_residual, np.cumsum([len(s.keep) for s in stretches])[:-1])
-    taken = sum(_taken(s, r, 23.0) for s, r in zip(stretches, parts, strict=True))
+    taken = sum(_tone_squares(s, r, 23.0) for s, r in zip(stretches, parts, strict=True))
     return check_squares(found) - taken
 
 

@@ -10,11 +10,11 @@ from teleopdesign.measurement.filtering import spectrum
 from teleopdesign.measurement.motion import (
     SMOOTHING,
     TRAVEL,
+    direction_of,
     motion_of,
     play,
     reading_noise,
     reading_step,
-    told_direction,
 )
 
 RATE = 1000.0
@@ -84,7 +84,7 @@ PATIENCE = 20
 
 
 def told(position):
-    return told_direction(position, STEP, STEP, PATIENCE)
+    return direction_of(position, STEP, STEP, PATIENCE)
 
 
 def read(position):

@@ -15,7 +15,7 @@ from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.decision import is_better, is_supported, refusal
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.error_at_command import at_command
-from teleopdesign.diagnose.evidence import seen_gain
+from teleopdesign.diagnose.evidence import gain_at_command
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.prepare import prepare
@@ -186,7 +186,7 @@ def test_the_figure_that_counts_does_not_fall_by_a_force_that_is_thrown_away(nam
         found = lowest(base, effect, {first: value, **others}, prepared)
         plain.append(found.check_error)
         # a texture drawn anew is matched by chance to a few percent, as any model's is
-        lower = seen_gain(base, found) > 2 * CRITERIA.relevant
+        lower = gain_at_command(base, found) > 2 * CRITERIA.relevant
         assert refusal(base, found) in ("blind", "weak") or not lower, (value, found.at_command)
         assert not is_better(base, found, floor)
     if name in ("actuator_saturation", "soft_limit", "feeds_back", "takes_up_what_acts"):

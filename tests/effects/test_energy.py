@@ -19,10 +19,12 @@ from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.extremes import least_value
 
 SPEED = sp.Symbol("speed", positive=True)
-LEVELS = ("friction_level", "friction_factor")
+LEVELS = ("friction_level", "friction_factor", "tip_level")
 STATIC = [n for n in NAMES if not EFFECTS[n].states and EFFECTS[n].role in ("force", *LEVELS)]
 CONTACTS = [n for n in NAMES if EFFECTS[n].role in ("contact", "contact_shape")]
 STRUCTURES = [n for n in NAMES if EFFECTS[n].role == "structure"]
+#: on the velocity of the tip, not of the body
+AT_TIPS = [n for n in NAMES if EFFECTS[n].role == "tip_level"]
 ON_COMMANDS = [n for n in NAMES if EFFECTS[n].role == "actuation"]
 
 
@@ -40,7 +42,8 @@ def everywhere(effect):
     """Every signal, and every value of the parameters within their bounds."""
     ranges = {s: (-inf, inf) for s in SIGNALS.values()} | {SPEED: (0.0, inf)}
     ranges[SIGNALS["time"]] = (0.0, inf)
-    own = {s: effect.parameters[n] for n, s in effect.symbols().items()}
+    effects = [effect, *(KNOWN[n] for n in effect.needs)]
+    own = {s: e.parameters[n] for e in effects for n, s in e.symbols().items()}
     return ranges | {s: (p.lower, p.upper) for s, p in own.items()}
 
 
@@ -128,7 +131,7 @@ def values_of(draw, name):
 
 
 @pytest.mark.parametrize(
-    "name", [n for n in declaring("dissipates") if n not in CONTACTS + STRUCTURES]
+    "name", [n for n in declaring("dissipates") if n not in CONTACTS + STRUCTURES + AT_TIPS]
 )
 @settings(max_examples=25, deadline=None)
 @given(data=st.data(), seed=st.integers(0, 2**31))

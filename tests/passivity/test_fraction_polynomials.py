@@ -90,6 +90,12 @@ def _positive(v):
     return v > 0
 
 
+def test_a_root_at_which_the_other_polynomial_vanishes_is_not_taken_for_the_next():
+    """f = 2 - 2 x is 0 at the root 1 and negative at the root 2."""
+    g = of_roots([(Fraction(1), 1), (Fraction(2), 1)])
+    assert first_root([Fraction(2), Fraction(-2)], g) == pytest.approx(2.0, rel=1e-3)
+
+
 @settings(deadline=None)
 @given(roots, rows)
 def test_the_first_root_with_a_negative_value_is_located(given_roots, f):

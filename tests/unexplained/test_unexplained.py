@@ -21,7 +21,7 @@ from teleopdesign.errors import ModelError
 from teleopdesign.unexplained import describe_residual, where_it_fails
 from teleopdesign.unexplained.amounts import amount, number
 from teleopdesign.unexplained.curve import curve_of
-from teleopdesign.unexplained.dependence import Dependence, dependences, own_columns
+from teleopdesign.unexplained.dependence import Dependence, dependences, model_columns
 from teleopdesign.unexplained.effect_file import effect_text, write_effect
 from teleopdesign.unexplained.formula import formula_for
 from teleopdesign.unexplained.qualifiers import contrasts
@@ -83,7 +83,7 @@ def planted(rows, missing):
 
 def said(rows, found, axis="prismatic"):
     """The sentence about a dependence, with its formula."""
-    formula = formula_for(rows, own_columns(rows), found)
+    formula = formula_for(rows, model_columns(rows), found)
     left = rows.residual * rows.root
     sides = contrasts(rows, found, left)
     return sentence_for(found.shape, curve_of(rows, found), formula, sides, axis), formula
@@ -255,7 +255,7 @@ def test_only_after_a_rest_is_said(rows):
     whole = rows.lowpassed(lambda a: low(a)[None])[:, 0] * rows.root
     after = rows.lowpassed(lambda a: (low(a) * (a.signals["rested"] >= 0.2))[None])[:, 0]
     here = replace(rows, residual=rows.residual + after)
-    columns = replace(own_columns(rows), values=whole[:, None], penalty=np.zeros((1, 1)))
+    columns = replace(model_columns(rows), values=whole[:, None], penalty=np.zeros((1, 1)))
     one = Dependence(
         shape, np.zeros(1), columns, np.ones(1), np.zeros(0), np.zeros(0), 9.0, 0.0, 1.0
     )

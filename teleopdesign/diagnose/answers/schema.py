@@ -50,7 +50,7 @@ def read_content(path: str | Path) -> dict[str, Any]:
 def check_answer(content: object) -> None:
     """Refuse what is no answer; raises ExperimentError with the key in front."""
     if not isinstance(content, dict):
-        raise ExperimentError(f"found {_found(content)}, expected an answer of {WRITER}")
+        raise ExperimentError(f"found {_described(content)}, expected an answer of {WRITER}")
     if lacking := [key for key in _REQUIRED if key not in content]:
         raise ExperimentError(f"no key {quoted(lacking[0])}, expected an answer of {WRITER}")
     for key, check in (_REQUIRED | _LATER).items():
@@ -62,12 +62,12 @@ def _constant(name: str) -> NoReturn:
     raise ValueError(f"found {name}, expected a finite number or null")
 
 
-def _found(value: object) -> str:
+def _described(value: object) -> str:
     return "null" if value is None else described(value)
 
 
 def _wrong(where: str, value: object, expected: str) -> ExperimentError:
-    return ExperimentError(f"{where}: found {_found(value)}, expected {expected}")
+    return ExperimentError(f"{where}: found {_described(value)}, expected {expected}")
 
 
 def _number(*, low: float = -math.inf, null: bool = False) -> Check:
@@ -154,6 +154,7 @@ def _table(required: Mapping[str, Check], optional: Mapping[str, Check] | None =
 
 
 _PLACE = _table({"effect": _text, "at": _text})
+_MISSING = _table({"effect": _text, "at": _text}, {"instead_of": _text})
 _SIZE = _number(low=0.0)
 #: null where there is no such record
 _ERROR = _number(low=0.0, null=True)
@@ -166,9 +167,13 @@ _BODIES = _table_of(_table({}))
 
 _REQUIRED: dict[str, Check] = {
     "verdict": _one_of(*VERDICTS),
-    "missing": _list_of(_PLACE),
+    "missing": _list_of(_MISSING),
     "ladder": _list_of(
-        _table({"added": _or_null(_PLACE), "fit_error": _ERROR, "check_error": _ERROR}), least=1
+        _table(
+            {"added": _or_null(_PLACE), "fit_error": _ERROR, "check_error": _ERROR},
+            {"instead_of": _or_null(_text), "could_be": _or_null(_list_of(_PLACE))},
+        ),
+        least=1,
     ),
     "noise_floor": _SIZE,
     "candidates": _list_of(

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...finding import Finding
+from ..encoder import reading_noise
 from ..filtering import Array
-from ..motion import reading_noise
 from .signal import Signal
 
 #: ratio of seen to stated noise that is worth a warning; noise of a quarter of a second of record
@@ -22,7 +22,7 @@ FACTOR = 1.6
 PIECE = 500
 
 
-def seen_noise(signal: Signal) -> float:
+def measured_noise(signal: Signal) -> float:
     """Rms noise of the readings, SI."""
     pieces: list[float] = []
     for _, x in signal.stretches:
@@ -36,7 +36,7 @@ def check_noise(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
 
     others: channels of the same record and unit, one of which may be the noisy one instead
     """
-    stated, scatter = signal.channel.noise, seen_noise(signal)
+    stated, scatter = signal.channel.noise, measured_noise(signal)
     # rounding scatters by 0.29 steps at most
     rounding = 0.29 * (signal.channel.resolution or signal.step)
     numbers = {"stated": stated or float("nan"), "seen": scatter}
@@ -47,7 +47,7 @@ def check_noise(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
     if 1 / FACTOR < ratio < FACTOR:
         return []
     alike = [o for o in others if o.channel.noise is None and o.unit == signal.unit]
-    noisy = [o.name for o in alike if 1 / FACTOR < seen_noise(o) / expected < FACTOR]
+    noisy = [o.name for o in alike if 1 / FACTOR < measured_noise(o) / expected < FACTOR]
     hint = f" {noisy[0]} has it: are the two columns swapped?" if noisy and ratio < 1 else ""
     effect = "hides effects" if ratio < 1 else "makes noise look like an effect"
     return [

@@ -219,6 +219,8 @@ def first_root(f: Polynomial, g: Polynomial) -> float:
     chains = _chains(f, g)[:2]
 
     def lies_below(x: Fraction | None) -> bool:
+        while x is not None and value(g, x) == 0:  # the chains count between roots, not at one
+            x *= 1 + _SHOWN / 16
         surplus, nonzero = (_surplus(chain, x) for chain in chains)
         return nonzero > surplus
 

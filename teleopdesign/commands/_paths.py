@@ -1,0 +1,85 @@
+"""What a command reads and writes: nothing that is read is written over.
+
+The names of the options say which is which, so that no command has to.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from ..errors import ExperimentError
+
+#: options that name what a command reads, and what it writes: a file or a folder
+INPUTS = ("folder", "source", "file", "diagram", "answer", "check", "effect")
+OUTPUTS = ("json", "predictions", "figure", "report", "output", "out", "effect_file")
+
+
+def inputs(options: argparse.Namespace | None) -> Iterator[Path]:
+    """What a command was told to read, as the user wrote it."""
+    return _paths(options, INPUTS)
+
+
+def outputs(options: argparse.Namespace | None) -> Iterator[Path]:
+    """What a command was told to write."""
+    return _paths(options, OUTPUTS)
+
+
+def python_files(options: argparse.Namespace | None) -> Iterator[Path]:
+    """The user's own Python files that a command runs: effects and studies."""
+    return (path for path in inputs(options) if path.suffix == ".py")
+
+
+def _paths(options: argparse.Namespace | None, names: tuple[str, ...]) -> Iterator[Path]:
+    for name in names:
+        value = getattr(options, name, None)
+        for one in value if isinstance(value, list) else [value]:
+            if isinstance(one, str | Path) and str(one):
+                yield Path(one)
+
+
+def check_paths(options: argparse.Namespace) -> None:
+    """Refuse an output that is an input, or another output; raises ExperimentError.
+
+    The records that an experiment names count as inputs, so do files that another TOML file names.
+    """
+    read = {os.path.realpath(p): p for p in _files_read(options)}
+    written: dict[str, Path] = {}
+    for path in outputs(options):
+        if path.is_dir():
+            continue
+        real = os.path.realpath(path)
+        if real in read:
+            raise ExperimentError(f"{path}: is read by this command, expected another file")
+        if real in written:
+            raise ExperimentError(f"{path}: is to hold two results, expected a file for each")
+        written[real] = path
+
+
+def _files_read(options: argparse.Namespace) -> Iterator[Path]:
+    for path in inputs(options):
+        file = path / "experiment.toml" if path.is_dir() else path
+        yield file
+        if file.suffix == ".toml":
+            yield from (file.parent / text for text in _texts_of(file))
+
+
+def _texts_of(file: Path) -> Iterator[str]:
+    """Every text in a TOML file; none where it is not sound, which is told where it is read."""
+    try:
+        content = tomllib.loads(file.read_bytes().decode("utf-8-sig"))
+        yield from _texts(content)
+    except (OSError, ValueError, RecursionError):
+        return
+
+
+def _texts(value: Any) -> Iterator[str]:
+    if isinstance(value, str) and value and "\0" not in value:
+        yield value
+    elif isinstance(value, dict | list):
+        for one in value.values() if isinstance(value, dict) else value:
+            yield from _texts(one)

@@ -1,0 +1,60 @@
+"""What a terminal is given: text alone, in characters that it has.
+
+A file's text may hold codes that move the cursor, clear lines or turn the direction of writing; a
+terminal may know ASCII alone. Everything that commands print goes through here.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, TextIO
+
+from ..errors import printable
+
+#: what of control characters lays out a text
+_LAYOUT = "\n\t"
+
+
+class PrintableStream:
+    """A text stream that escapes control characters, and characters that its encoding lacks."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self.stream = stream
+
+    def write(self, text: str) -> int:
+        """Write the text, escaped; returns its length."""
+        safe = text if text.isascii() and text.isprintable() else printable(text, keep=_LAYOUT)
+        encoding = getattr(self.stream, "encoding", None) or "utf-8"
+        self.stream.write(safe.encode(encoding, "backslashreplace").decode(encoding))
+        return len(text)
+
+    def writelines(self, lines: Any) -> None:
+        """Write each of the lines."""
+        for line in lines:
+            self.write(line)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.stream, name)
+
+
+@contextmanager
+def printable_streams() -> Iterator[None]:
+    """Within it, standard output and standard error take text alone."""
+    before = sys.stdout, sys.stderr
+    streams = [None if s is None else PrintableStream(s) for s in before]  # None: closed
+    sys.stdout, sys.stderr = streams
+    try:
+        yield
+    finally:
+        sys.stdout, sys.stderr = before
+
+
+def replace_line(text: str) -> None:
+    """Write the text over the last line of a terminal; print nothing elsewhere."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        return
+    terminal = getattr(sys.stderr, "stream", sys.stderr)
+    terminal.write("\r\033[K")
+    print(printable(text), end="", file=sys.stderr, flush=True)

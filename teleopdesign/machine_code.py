@@ -1,0 +1,67 @@
+"""Machine code that numba keeps on disk: kept where it can be, made anew where it cannot.
+
+Where nothing can be written (a package that only others may write to, no home, a full disk), or
+what is kept is damaged, a function is compiled in the process, which takes seconds; no error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+from numba import njit
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def kept(function: Function) -> Function:
+    """The compiled function, without the lock of the interpreter; its machine code is kept."""
+    dispatcher: Any
+    try:
+        dispatcher = njit(cache=True, nogil=True)(function)
+    except RuntimeError:  # numba finds no place for machine code
+        dispatcher = njit(nogil=True)(function)
+    without_cache_errors(dispatcher)
+    return cast(Function, dispatcher)
+
+
+def without_cache_errors(dispatcher: object) -> None:
+    """Let a compiled function go on where its cache cannot be read or written.
+
+    What is no compiled function with a cache stays as it is.
+    """
+    cache = getattr(dispatcher, "_cache", None)
+    if hasattr(cache, "load_overload") and hasattr(cache, "save_overload"):
+        dispatcher._cache = _ForgivingCache(cache)  # type: ignore[attr-defined]
+
+
+class _ForgivingCache:
+    """numba's cache of one function; what it cannot read is not there, what it cannot write waits.
+
+    numba unpickles what it reads, and a file cut short may raise whatever unpickling raises.
+    """
+
+    def __init__(self, cache: Any) -> None:
+        self._cache = cache
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        try:
+            return self._cache.load_overload(sig, target_context)
+        except Exception:
+            self._drop()
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        try:
+            self._cache.save_overload(sig, data)
+        except Exception:
+            self._drop()
+
+    def _drop(self) -> None:
+        try:
+            self._cache.flush()
+        except Exception:
+            self._cache.disable()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._cache, name)

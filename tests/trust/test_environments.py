@@ -1,0 +1,261 @@
+"""Odd places to run in: nothing can be written, a terminal knows ASCII, a reader stops early."""
+
+import os
+import shutil
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import teleopdesign
+from teleopdesign.cli import main
+
+PACKAGE = Path(teleopdesign.__file__).parent
+ROD = PACKAGE / "examples" / "rod"
+NOWHERE = "/proc/nothing"  # not even root can make it
+posix = pytest.mark.skipif(not Path("/proc").is_dir(), reason="modes and devices of Linux")
+
+KERNEL = """
+import numpy as np
+from teleopdesign.measurement import zero_phase
+from teleopdesign.realise.compiled import compiled
+f = compiled("from numba import njit\\n@njit(cache=True)\\ndef f(x):\\n    return 2 * x\\n", "f")
+sos, state = zero_phase.sections(20.0, 1e-3)
+y = np.ones((50, 1))
+zero_phase.one_way(y, sos, state, False)
+print(f(21), round(float(y[-1, 0]), 6), sum(f.stats.cache_hits.values()))
+"""
+
+
+def environment(**changed):
+    """This process's, with changes; None: left out."""
+    left_out = ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "TELEOPDESIGN_CACHE")
+    kept = {k: v for k, v in os.environ.items() if k not in left_out}
+    kept |= {"PYTHONPATH": str(PACKAGE.parent), "MPLCONFIGDIR": "/tmp"} | changed
+    return {k: v for k, v in kept.items() if v is not None}
+
+
+def python(code, **options):
+    env = environment(**options.pop("env", {}))
+    return subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env=env,
+        **options,
+    )
+
+
+def command(*arguments, **options):
+    env = environment(**options.pop("env", {}))
+    return subprocess.run(
+        [sys.executable, "-m", "teleopdesign.cli", *map(str, arguments)],
+        stderr=subprocess.PIPE,
+        text=True,
+        errors="surrogateescape",
+        timeout=120,
+        env=env,
+        **options,
+    )
+
+
+UNWRITABLE = {
+    "no cache folder": {"TELEOPDESIGN_CACHE": NOWHERE},
+    "a file for a cache folder": {"TELEOPDESIGN_CACHE": __file__},
+    "a home that is not there": {"HOME": NOWHERE},
+    "no home": {"HOME": None},
+    "nothing": {"HOME": NOWHERE, "TMPDIR": NOWHERE, "XDG_CACHE_HOME": NOWHERE},
+}
+
+
+@posix
+@pytest.mark.parametrize("place", UNWRITABLE)
+def test_laws_are_compiled_wherever_nothing_can_be_written(place, tmp_path):
+    given = {"XDG_CACHE_HOME": str(tmp_path)} if place == "no home" else {}
+    done = python(KERNEL, env=UNWRITABLE[place] | given)
+    assert (done.stdout.split()[:2], done.stderr) == (["42", "1.0"], "")
+
+
+@posix
+@pytest.mark.slow
+def test_laws_are_compiled_from_a_package_that_cannot_be_written(tmp_path):
+    copy = tmp_path / "install" / "teleopdesign"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__", "examples"))
+    for folder in (copy, *(p for p in copy.rglob("*") if p.is_dir())):
+        (folder / "__pycache__").write_text("")  # a file: then nothing is kept, for root too
+    place = {"PYTHONPATH": str(copy.parent), "HOME": NOWHERE, "XDG_CACHE_HOME": NOWHERE}
+    check = f"import teleopdesign; assert teleopdesign.__file__.startswith({str(tmp_path)!r})\n"
+    done = python(check + KERNEL, env=place | {"TELEOPDESIGN_CACHE": NOWHERE}, cwd=tmp_path)
+    assert (done.stdout, done.stderr) == ("42 1.0 0\n", "")
+
+
+@posix
+def test_machine_code_is_kept_for_the_user_alone_and_used_again(tmp_path):
+    place = {"XDG_CACHE_HOME": str(tmp_path)}
+    assert [python(KERNEL, env=place).stdout.split()[-1] for _ in range(2)] == ["0", "1"]
+    folder = tmp_path / "teleopdesign" / "machine_code"
+    assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+
+
+@posix
+@pytest.mark.parametrize("damage", ["another source", "a short index", "short code", "a folder"])
+def test_what_is_kept_is_not_run_where_it_is_not_what_was_kept(damage, tmp_path):
+    place = {"XDG_CACHE_HOME": str(tmp_path)}
+    python(KERNEL, env=place)
+    folder = tmp_path / "teleopdesign" / "machine_code"
+    (source,) = folder.glob("*.py")
+    text = source.read_text()
+    if damage == "another source":
+        source.write_text("print('it ran')\n" + text)
+    elif damage == "a folder":
+        source.unlink()
+        source.mkdir()
+    else:
+        ending = "nbi" if damage == "a short index" else "nbc"
+        (file,) = (folder / "__pycache__").glob(f"*.{ending}")
+        file.write_bytes(file.read_bytes()[:20])
+    for _ in range(2):
+        done = python(KERNEL, env=place)
+        assert (done.stdout.split()[:2], done.stderr) == (["42", "1.0"], "")
+    if damage == "another source":
+        assert source.read_text() == text
+    if damage.startswith("short"):
+        assert done.stdout.split()[-1] == "1", "what was damaged was made anew"
+
+
+@posix
+@pytest.mark.parametrize("whose", ["open to others", "a link"])
+def test_a_cache_folder_that_others_may_write_to_is_not_used(whose, tmp_path):
+    folder = tmp_path / "teleopdesign" / "machine_code"
+    folder.parent.mkdir()
+    if whose == "a link":
+        (tmp_path / "elsewhere").mkdir()
+        folder.symlink_to(tmp_path / "elsewhere")
+    else:
+        folder.mkdir()
+        folder.chmod(0o777)
+    done = python(KERNEL, env={"XDG_CACHE_HOME": str(tmp_path)})
+    assert (done.stdout, done.stderr) == ("42 1.0 0\n", "")
+    assert list(folder.iterdir()) == []
+
+
+@posix
+def test_processes_share_a_cold_cache(tmp_path):
+    env = environment(XDG_CACHE_HOME=str(tmp_path))
+    started = [
+        subprocess.Popen(
+            [sys.executable, "-c", KERNEL],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=env,
+        )
+        for _ in range(3)
+    ]
+    for process in started:
+        out, said = process.communicate(timeout=120)
+        assert (out.split()[:2], said) == (["42", "1.0"], "")
+    folder = tmp_path / "teleopdesign" / "machine_code"
+    assert [p.suffix for p in folder.iterdir() if p.is_file()] == [".py"]
+
+
+# terminals
+
+
+@pytest.mark.parametrize(
+    "terminal",
+    [
+        {"PYTHONIOENCODING": "ascii"},
+        {"LANG": "C", "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+    ],
+    ids=["ascii", "C"],
+)
+def test_a_terminal_that_knows_ascii_alone_is_given_ascii(terminal, tmp_path):
+    file = tmp_path / "drag_\u00b5.py"
+    file.write_text('"""\u00b5 \u2248 0.1"""\n')
+    done = command("effects", "--effect", file, env=terminal, stdout=subprocess.PIPE)
+    assert done.returncode == 2 and "Traceback" not in done.stderr
+    assert "\\xb5" in done.stderr or "\\udcc2" in done.stderr
+
+
+@posix
+def test_a_full_standard_output_is_one_line():
+    with open("/dev/full", "w") as full:
+        done = command("effects", stdout=full)
+    assert done.returncode == 2
+    assert done.stderr.startswith("teleopdesign: No space left") and done.stderr.count("\n") == 1
+
+
+@posix
+def test_a_closed_standard_output_is_no_error():
+    code = f"exec {sys.executable} -m teleopdesign.cli effects >&-"
+    done = subprocess.run(["sh", "-c", code], capture_output=True, text=True, env=environment())
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@posix
+def test_a_reader_that_never_reads_is_no_error():
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = command("effects", stdout=writing)
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+# results that cannot be written are refused before the work
+
+SOURCES = {"check": ROD, "describe": ROD, "design": ROD, "diagnose": ROD, "next": ROD,
+           "passivity": ROD, "derive": "haptic-interface", "study": "study.toml"}  # fmt: skip
+RESULTS = [
+    ("check", "--json", "a.json"),
+    ("check-papers", "--json", "a.json"),
+    ("demo", "--output", "demo"),
+    ("derive", "--figure", "a.svg"),
+    ("derive", "--json", "a.json"),
+    ("describe", "--effect-file", "a.py"),
+    ("describe", "--figure", "a.pdf"),
+    ("describe", "--json", "a.json"),
+    ("design", "--figure", "a.png"),
+    ("design", "--json", "a.json"),
+    ("design", "--output", "design"),
+    ("diagnose", "--figure", "a.png"),
+    ("diagnose", "--json", "a.json"),
+    ("diagnose", "--predictions", "a.csv.gz"),
+    ("diagnose", "--report", "a.html"),
+    ("next", "--figure", "a.png"),
+    ("next", "--json", "a.json"),
+    ("next", "--output", "a.csv"),
+    ("passivity", "--json", "a.json"),
+    ("study", "--figure", "a.png"),
+    ("study", "--out", "a.nc"),
+]
+
+
+@posix
+@pytest.mark.parametrize(("name", "option", "file"), RESULTS)
+def test_a_result_that_cannot_be_written_is_refused_before_the_work(name, option, file, capsys):
+    source = [str(SOURCES[name])] if name in SOURCES else []
+    assert main([name, *source, option, f"/proc/{file}"]) == 2
+    out = capsys.readouterr()
+    assert out.out == "" and out.err.count("\n") == 1 and f"/proc/{file}: " in out.err
+
+
+def test_a_disk_without_room_is_refused_before_the_work(tmp_path):
+    resource = pytest.importorskip("resource")
+    file = tmp_path / "answer.json"
+    file.write_text("the one before")
+    done = command(
+        "diagnose",
+        ROD,
+        "--json",
+        file,
+        stdout=subprocess.PIPE,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)),
+        env={"PYTHONDONTWRITEBYTECODE": "1"},
+    )
+    assert done.returncode == 2 and done.stdout == ""
+    assert f"{file}: cannot be written: File too large" in done.stderr
+    assert file.read_text() == "the one before" and list(tmp_path.iterdir()) == [file]

@@ -1,0 +1,336 @@
+"""Whatever a command meets ends in one line that names the file, and in no traceback."""
+
+import argparse
+import errno
+import io
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+import teleopdesign
+from teleopdesign.cli import _parser, main
+from teleopdesign.commands import _paths, effects
+from teleopdesign.commands._failures import TRACEBACK
+from teleopdesign.commands._terminal import PrintableStream, replace_line
+from teleopdesign.plain_data import harmless_cell
+
+ROD = Path(teleopdesign.__file__).parent / "examples" / "rod"
+DEEP = 100_000
+
+EFFECT = '''"""Own drag.
+
+    F = D v
+"""
+
+import sys
+
+from teleopdesign.effects import Effect, Parameter
+
+{before}
+
+
+def law(now, p):
+    {law}
+    return p.drag * now.velocity
+
+
+EFFECT = Effect(
+    role="force",
+    law=law,
+    parameters={{"drag": Parameter("damping", "D: force per velocity")}},
+    absent={{"drag": 0.0}},
+    source="made for a test",
+)
+'''
+
+RAISING = {
+    "exit": "sys.exit()",
+    "exit 0": "sys.exit(0)",
+    "exit with a text": "sys.exit('\\x1b[2J bye')",
+    "SystemExit": "raise SystemExit(0)",
+    "ValueError": "raise ValueError('two\\nlines')",
+    "KeyError": "{}['key']",
+    "ZeroDivisionError": "1 / 0",
+    "RecursionError": "exec('f = lambda: f()\\nf()', {})",
+    "MemoryError": "raise MemoryError",
+    "OSError": "open('/no/such/file')",
+    "UnicodeError": "b'\\xff'.decode()",
+    "AssertionError": "assert False",
+    "StopIteration": "raise StopIteration",
+    "GeneratorExit": "raise GeneratorExit",
+    "NotImplementedError": "raise NotImplementedError",
+}
+
+
+def one_line(capsys, arguments, status=2):
+    """The one line on stderr of a command that ends with this status."""
+    assert main([str(a) for a in arguments]) == status
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and said.startswith("teleopdesign: "), said
+    assert said[:-1].isprintable() and len(said) < 1200, said
+    return said
+
+
+@pytest.mark.parametrize("what", RAISING)
+@pytest.mark.parametrize("place", ["before", "law"])
+def test_an_effect_file_that_raises_anything_is_one_line_with_its_name(
+    place, what, tmp_path, capsys
+):
+    file = tmp_path / "own_drag.py"
+    file.write_text(EFFECT.format(**{"before": "", "law": "", place: RAISING[what]}))
+    line = one_line(capsys, ["effects", "--effect", file])
+    assert "own_drag.py" in line
+
+
+NO_PYTHON = {
+    "UTF-16": EFFECT.encode("utf-16"),
+    "null characters": b"\0" * 100,
+    "open brackets": b"x = " + b"(" * DEEP,
+    "nested lists": b"x = " + b"[" * 150 + b"]" * 150,
+    "signs": b"x = " + b"-" * DEEP + b"1",
+    "nothing": b"",
+    "bytes": bytes(range(256)),
+}
+
+
+@pytest.mark.parametrize("what", NO_PYTHON)
+def test_an_effect_file_that_is_no_python_is_one_line_with_its_name(what, tmp_path, capsys):
+    file = tmp_path / "own_drag.py"
+    file.write_bytes(NO_PYTHON[what])
+    assert "own_drag.py" in one_line(capsys, ["effects", "--effect", file])
+
+
+def test_a_law_that_raises_later_is_still_the_users_file(tmp_path, capsys, monkeypatch):
+    file = tmp_path / "own_drag.py"
+    file.write_text("def law():\n    raise ValueError('late')\n")
+    names = {}
+    exec(compile(file.read_text(), str(file), "exec"), names)
+    monkeypatch.setattr(effects, "run", lambda options: names["law"]())
+    line = one_line(capsys, ["effects", "--effect", file])
+    assert line == f"teleopdesign: {file}: line 2: ValueError: late\n"
+
+
+NO_TOML = {
+    "open brackets": b"[" * DEEP,
+    "nested lists": b"x = " + b"[" * DEEP,
+    "closed lists": b"x = " + b"[" * 5000 + b"]" * 5000,
+    "nested tables": b"x = " + b"{a=" * DEEP,
+    "a long key": b"a" + b".a" * 20_000 + b" = 1",
+    "a long table": b"[a" + b".a" * 20_000 + b"]",
+    "digits": b"x = " + b"9" * DEEP,
+    "UTF-16": "title = 'x'".encode("utf-16"),
+    "null characters": b"\0" * 100,
+    "bytes": bytes(range(256)),
+    "nothing": b"",
+    "a date": b"title = 1979-05-27T07:32:00Z",
+    "a code": b"title = '\x1b[2J'",
+}
+
+
+@pytest.mark.parametrize("what", NO_TOML)
+@pytest.mark.parametrize("command", ["check", "derive", "study", "passivity"])
+def test_a_toml_file_that_is_none_is_one_line_with_its_name(command, what, tmp_path, capsys):
+    name = "experiment.toml" if command == "check" else "own.toml"
+    (tmp_path / name).write_bytes(NO_TOML[what])
+    line = one_line(capsys, [command, tmp_path if command == "check" else tmp_path / name])
+    assert name in line
+
+
+NO_JSON = {
+    "open brackets": b"[" * DEEP,
+    "nested tables": b'{"claims":' * DEEP,
+    "closed lists": b'{"claims": ' + b"[" * 900 + b"]" * 900 + b"}",
+    "digits": b"9" * DEEP,
+    "UTF-16": '{"claims": []}'.encode("utf-16"),
+    "half a pair": b'{"claims": [{"statement": "\\ud800", "certificates": [{}]}]}',
+    "claims of another kind": b'{"claims": {"statement": []}}',
+    "certificates of another kind": b'{"claims": [{"statement": 1, "certificates": "x"}]}',
+    "certificates in lists": b'{"claims": [{"statement": "", "certificates": [[[]]]}]}',
+    "nothing": b"",
+    "a code": b'"\\u001b[2J"',
+}
+
+
+@pytest.mark.parametrize("what", NO_JSON)
+@pytest.mark.parametrize(
+    "option", [["passivity"], ["passivity", "--check"], ["design", ROD, "--answer"]]
+)
+def test_a_json_file_that_holds_no_result_is_one_line_with_its_name(option, what, tmp_path, capsys):
+    file = tmp_path / "own.json"
+    file.write_bytes(NO_JSON[what])
+    assert "own.json" in one_line(capsys, [*option, file])
+
+
+@pytest.mark.parametrize("file", ["experiment.toml", "own.toml", "own.json", "own.py"])
+def test_a_folder_in_place_of_a_file_is_one_line_with_its_name(file, tmp_path, capsys):
+    (tmp_path / file).mkdir()
+    command = {
+        "experiment.toml": ["check", tmp_path],
+        "own.toml": ["derive", tmp_path / file],
+        "own.json": ["design", ROD, "--answer", tmp_path / file],
+        "own.py": ["study", tmp_path / file],
+    }[file]
+    assert file in one_line(capsys, command)
+
+
+# what the system raises, wherever it is raised
+
+OF_SYSTEM = {
+    "no memory": (MemoryError(), "needs more memory"),
+    "recursion": (RecursionError("too deep"), "nested too deeply"),
+    "not UTF-8": (UnicodeDecodeError("utf-8", b"\xff", 0, 1, "invalid"), "expected UTF-8"),
+    "a file": (PermissionError(errno.EACCES, "Permission denied", "a\x1bb"), "a\\x1bb: Permission"),
+    "a full disk": (OSError(errno.ENOSPC, "No space left on device"), "No space left"),
+    "no text": (OSError(), "OSError"),
+    "a text alone": (OSError("HDF5\nbroke"), "HDF5\\nbroke"),
+    "too many files": (OSError(errno.EMFILE, "Too many open files"), "Too many open"),
+}
+
+
+@pytest.mark.parametrize("what", OF_SYSTEM)
+def test_an_error_of_the_system_is_one_line_with_status_2(what, capsys, monkeypatch):
+    error, expected = OF_SYSTEM[what]
+
+    def fail(options):
+        raise error
+
+    monkeypatch.setattr(effects, "run", fail)
+    assert expected in one_line(capsys, ["effects"])
+
+
+def broken(options):
+    raise RuntimeError("of our \x1b[2J own\n" + "x" * 9999)
+
+
+def test_a_mistake_of_the_package_is_one_line_with_status_70(capsys, monkeypatch):
+    monkeypatch.setattr(effects, "run", broken)
+    monkeypatch.delenv(TRACEBACK, raising=False)
+    line = one_line(capsys, ["effects"], status=70)
+    assert line.startswith("teleopdesign: internal error in cli.py:") and "RuntimeError" in line
+
+
+@pytest.mark.parametrize("by", ["option", "environment"])
+def test_a_traceback_is_printed_where_it_is_asked_for(by, capsys, monkeypatch):
+    monkeypatch.setattr(effects, "run", broken)
+    if by == "environment":
+        monkeypatch.setenv(TRACEBACK, "1")
+    assert main(["--traceback", "effects"] if by == "option" else ["effects"]) == 70
+    said = capsys.readouterr().err
+    assert "Traceback (most recent call last)" in said and "\x1b" not in said
+
+
+# what a terminal is given
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("plain\n\tlines\n", "plain\n\tlines\n"),
+        ("\x1b[2J", "\\x1b[2J"),
+        ("over\rwritten", "over\\rwritten"),
+        ("\u202etxt.exe", "\\u202etxt.exe"),
+        ("\u2066\u2028\x85\x9b\x7f\0", "\\u2066\\u2028\\x85\\x9b\\x7f\\x00"),
+        ("\ud800", "\\ud800"),
+        ("5 \xb1 1 \u03bcm", "5 \xb1 1 \u03bcm"),
+    ],
+)
+def test_a_terminal_is_given_text_alone(text, expected):
+    raw = io.BytesIO()
+    stream = PrintableStream(io.TextIOWrapper(raw, encoding="utf-8", newline="\n"))
+    print(text, end="", file=stream, flush=True)
+    assert raw.getvalue().decode() == expected
+
+
+def test_an_ascii_terminal_is_given_ascii():
+    raw = io.BytesIO()
+    stream = PrintableStream(io.TextIOWrapper(raw, encoding="ascii"))
+    print("5 \xb1 1 \u03bcm", end="", file=stream, flush=True)
+    assert raw.getvalue() == b"5 \\xb1 1 \\u03bcm"
+
+
+def test_a_files_title_reaches_a_terminal_escaped(tmp_path, capsys):
+    file = tmp_path / "own.toml"
+    title = "\x1b[31m\u202e\r"
+    file.write_text(
+        f"""
+        [diagram]
+        name = {json.dumps(title)}
+        measured = ["x"]
+        [outside]
+        f = "force"
+        [blocks.M]
+        kind = "moving"
+        motion = "x"
+        loads = {{ f = 1 }}
+        driver = "f"
+        """
+    )
+    main(["derive", str(file)])
+    out = capsys.readouterr()
+    for stream in out:
+        assert all(c.isprintable() or c in "\n\t" for c in stream)
+
+
+def test_progress_reaches_a_terminal_escaped(monkeypatch):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", PrintableStream(terminal))
+    replace_line("half \x1b[2J")
+    assert terminal.getvalue() == "\r\x1b[Khalf \\x1b[2J"
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@x", "\t=1", "\r=1"])
+def test_a_cell_that_a_spreadsheet_would_compute_is_made_a_text(text):
+    assert harmless_cell(text) == f"'{text}"
+
+
+def test_other_cells_stay():
+    assert [harmless_cell(t) for t in ("fit.csv", "x-1", "", "1")] == ["fit.csv", "x-1", "", "1"]
+
+
+# what is read is not written over
+
+
+def test_every_path_of_every_command_is_an_input_or_an_output():
+    subparsers = next(
+        a for a in _parser()._actions if isinstance(a, argparse._SubParsersAction)
+    ).choices
+    paths = {a.dest for p in subparsers.values() for a in p._actions if a.type is Path}
+    assert len(paths) > 8
+    assert paths <= {*_paths.INPUTS, *_paths.OUTPUTS}
+    assert not set(_paths.INPUTS) & set(_paths.OUTPUTS)
+
+
+@pytest.fixture
+def rod(tmp_path):
+    import shutil
+
+    return Path(shutil.copytree(ROD, tmp_path / "rod"))
+
+
+@pytest.mark.parametrize(
+    ("command", "option", "file"),
+    [
+        ("diagnose", "--predictions", "fit.csv.gz"),
+        ("diagnose", "--predictions", "../rod/./check.csv.gz"),
+        ("diagnose", "--json", "link.json"),
+    ],
+)
+def test_a_result_in_place_of_what_is_read_is_refused(command, option, file, rod, capsys):
+    (rod / "link.json").symlink_to(rod / "experiment.toml")
+    before = {p.name: p.read_bytes() for p in rod.iterdir()}
+    assert "is read by this command" in one_line(capsys, [command, rod, option, rod / file])
+    assert {p.name: p.read_bytes() for p in rod.iterdir()} == before
+
+
+def test_two_results_in_one_file_are_refused(rod, tmp_path, capsys):
+    file = tmp_path / "a.png"
+    file.write_bytes(b"")
+    (tmp_path / "b.json").symlink_to(file)
+    line = one_line(capsys, ["diagnose", rod, "--figure", file, "--json", tmp_path / "b.json"])
+    assert "two results" in line
