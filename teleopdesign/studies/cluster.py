@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import Any
 
 from ..errors import ExperimentError, ModelError
-from .evaluate import Task
+from .evaluate import StudyTask
 from .journal import PointOutcome
 from .processes import Sink, one_thread, packed
 from .side_by_side import Unit, evaluate_unit
@@ -23,7 +23,7 @@ _MOST_IN_TASK = 1000
 _AHEAD = 3
 
 
-def run_on_cluster(task: Task, units: list[Unit], sink: Sink, address: str) -> None:
+def run_on_cluster(task: StudyTask, units: list[Unit], sink: Sink, address: str) -> None:
     """Points in the workers of the scheduler at that address, such as "tcp://10.0.0.1:8786".
 
     raises ExperimentError: no scheduler there, no worker, dask is not installed
@@ -118,6 +118,6 @@ def _evaluated(payload: bytes, batch: Sequence[Unit]) -> tuple[list[PointOutcome
 
 
 @lru_cache(maxsize=4)
-def _task(payload: bytes) -> Task:
-    task: Task = pickle.loads(payload)
+def _task(payload: bytes) -> StudyTask:
+    task: StudyTask = pickle.loads(payload)
     return task

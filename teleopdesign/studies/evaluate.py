@@ -18,7 +18,7 @@ _LONGEST_REASON = 300  # characters
 
 
 @dataclass(frozen=True)
-class Task:
+class StudyTask:
     """A study as every process gets it.
 
     model: a case, whose parameters are varied, or a function of the parameters
@@ -32,7 +32,7 @@ class Task:
     seed: int = 0
 
 
-def evaluate(task: Task, index: int) -> PointOutcome:
+def evaluate(task: StudyTask, index: int) -> PointOutcome:
     """What becomes of a point: its values, or the reason why it failed."""
 
     def point() -> Point:
@@ -42,7 +42,7 @@ def evaluate(task: Task, index: int) -> PointOutcome:
     return outcome_of(task, index, point)
 
 
-def outcome_of(task: Task, index: int, made: Callable[[], Point]) -> PointOutcome:
+def outcome_of(task: StudyTask, index: int, made: Callable[[], Point]) -> PointOutcome:
     """What the measures make of a point.
 
     Whatever a model or a measure raises is the reason of a failure: one point never ends a study.
@@ -66,7 +66,7 @@ def outcome_of(task: Task, index: int, made: Callable[[], Point]) -> PointOutcom
     return PointOutcome(index, form, tuple(_whole(a.value) for a in amounts.values()))
 
 
-def _content(task: Task, values: Mapping[str, Any]) -> Any:
+def _content(task: StudyTask, values: Mapping[str, Any]) -> Any:
     if isinstance(task.model, SimulatedCase):
         return task.model.with_values(values)
     result = task.model(**values)

@@ -94,11 +94,11 @@ class Study(ByValue):
 
     @property
     def _title(self) -> str:
-        sizes = " x ".join(f"{n} {d}" for d, n in self.data.sizes.items() if d in self._own)
+        sizes = " x ".join(f"{n} {d}" for d, n in self.data.sizes.items() if d in self._point_axes)
         return f"Study of the {self.data.attrs['model']}: {sizes or '1 point'}"
 
     @property
-    def _own(self) -> tuple[str, ...]:
+    def _point_axes(self) -> tuple[str, ...]:
         return tuple(str(d) for d in self.data[REASON].dims)
 
     @property
