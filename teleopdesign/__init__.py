@@ -16,16 +16,17 @@
 
 The names that a user types:
 
-    experiments   Experiment, Record, load_experiment, check_experiment, example, fetch
+    experiments   Experiment, Record, experiment, load_experiment, check_experiment, example,
+                  fetch
     models        Model, Body, Value
     effects       EFFECTS, Effect, Parameter, FitSearch, State, load_effect
     diagnosis     fit, compare, rank, find_missing, describe, propose_experiment, Comparison,
                   Ranking, Diagnosis
     diagrams      Diagram, ANY, haptic_interface, teleoperator, hand, read_diagram,
                   write_diagram
-    controllers   CONTROLLERS, Controller, controller, from_control
+    controllers   CONTROLLERS, Controller, controller, load_controller, from_control
     responses     derive_transfers, transfer_functions, bode, measured_impedance,
-                  simulate_diagram, Simulation, Sampling, sine, to_iosystem
+                  simulate_diagram, simulate_many, Simulation, Sampling, sine, to_iosystem
     design        design_compensation, Design, Assumptions
     studies       study, Study, read_study, measure, MEASURES, latin_hypercube, sobol,
                   random_samples, sensitivity_samples
@@ -62,6 +63,7 @@ The folders, each importing only from those before it:
     papers        statements of the two papers, each with its proof or check
     plot          draws result objects, computes nothing
     report        the diagnosis as one page that needs nothing else
+    app           the page in the browser: a diagnosis step by step
     commands      what `teleopdesign COMMAND` does: one file each
 """
 
@@ -71,6 +73,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from . import app as app
     from . import blocks as blocks
     from . import check as check
     from . import controllers as controllers
@@ -92,7 +95,7 @@ if TYPE_CHECKING:
     from . import unexplained as unexplained
     from .blocks import Body, Value, hand
     from .check import check_experiment
-    from .controllers import CONTROLLERS, Controller, controller, from_control
+    from .controllers import CONTROLLERS, Controller, controller, from_control, load_controller
     from .derive import all_transfers as derive_transfers
     from .derive import transfer_functions
     from .design import Assumptions, Design
@@ -112,12 +115,13 @@ if TYPE_CHECKING:
     from .examples import example
     from .frequency import bode, measured_impedance
     from .measurement import Experiment, Record, load_experiment
+    from .measurement.from_arrays import experiment
     from .measurement.recordings import fetch
     from .model import Model
     from .next_experiment import propose as propose_experiment
     from .passivity import Certificate, Claim, diagram_claims, positive_real
     from .realise.iosystem import to_iosystem
-    from .simulate import Sampling, Simulation, sine
+    from .simulate import Sampling, Simulation, simulate_many, sine
     from .simulate import simulate as simulate_diagram
     from .studies import (
         MEASURES,
@@ -170,6 +174,7 @@ __all__ = [
     "design_compensation",
     "diagram_claims",
     "example",
+    "experiment",
     "fetch",
     "find_missing",
     "fit",
@@ -177,6 +182,7 @@ __all__ = [
     "hand",
     "haptic_interface",
     "latin_hypercube",
+    "load_controller",
     "load_effect",
     "load_experiment",
     "measure",
@@ -189,6 +195,7 @@ __all__ = [
     "read_study",
     "sensitivity_samples",
     "simulate_diagram",
+    "simulate_many",
     "sine",
     "sobol",
     "study",
@@ -204,6 +211,7 @@ GROUPS: dict[str, dict[str, str]] = {
     "experiments": {
         "Experiment": "measurement",
         "Record": "measurement",
+        "experiment": "measurement.from_arrays",
         "load_experiment": "measurement",
         "check_experiment": "check",
         "example": "examples",
@@ -246,6 +254,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "CONTROLLERS": "controllers",
         "Controller": "controllers",
         "controller": "controllers",
+        "load_controller": "controllers",
         "from_control": "controllers",
     },
     "responses": {
@@ -254,6 +263,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "bode": "frequency",
         "measured_impedance": "frequency",
         "simulate_diagram": "simulate:simulate",
+        "simulate_many": "simulate",
         "Simulation": "simulate",
         "Sampling": "simulate",
         "sine": "simulate",
@@ -290,6 +300,7 @@ GROUPS: dict[str, dict[str, str]] = {
 _HOMES = {name: home for group in GROUPS.values() for name, home in group.items()}
 #: folders that are there as `td.NAME`, imported when first used
 _FOLDERS = (
+    "app",
     "blocks",
     "check",
     "controllers",

@@ -23,7 +23,12 @@ class ModelError(TeleopDesignError):
 
 
 class GrowsWithoutBound(ModelError):
-    """Signals of a simulation grow beyond all bounds: the loop is unstable."""
+    """Signals of a simulation grow beyond all bounds: the loop is unstable.
+
+    words: what every such message holds
+    """
+
+    words = "grow beyond all bounds"
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:

@@ -7,7 +7,7 @@ what is kept is damaged, a function is compiled in the process, which takes seco
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from numba import njit
 
@@ -16,12 +16,13 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 def kept(function: Function) -> Function:
     """The compiled function, without the lock of the interpreter; its machine code is kept."""
+    dispatcher: Any
     try:
         dispatcher = njit(cache=True, nogil=True)(function)
     except RuntimeError:  # numba finds no place for machine code
         dispatcher = njit(nogil=True)(function)
     without_cache_errors(dispatcher)
-    return dispatcher  # type: ignore[no-any-return]
+    return cast(Function, dispatcher)
 
 
 def without_cache_errors(dispatcher: object) -> None:

@@ -21,10 +21,15 @@ from .notebook import html_table
 
 @dataclass(frozen=True)
 class Model:
-    """Bodies by their place ("device", or "master" and "slave"), each with its effects (SI)."""
+    """Bodies by their place ("device", or "master" and "slave"), each with its effects (SI).
+
+    record_shift: body -> s by which the log of its command is late: no physics, but what a logger
+        did to the records that the model was estimated on; none where it is not given
+    """
 
     bodies: Mapping[str, Body]
     known: Mapping[str, Effect] = field(default_factory=lambda: EFFECTS, repr=False)
+    record_shift: Mapping[str, Value] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         expected = 'bodies by their place, such as {"device": Body(...)}'
@@ -37,6 +42,8 @@ class Model:
         instance(self.known, Mapping, "Model: known", expected="effects by name, such as EFFECTS")
         if not isinstance(self.bodies, Frozen):
             object.__setattr__(self, "bodies", Frozen(self.bodies))
+        if not isinstance(self.record_shift, Frozen):
+            object.__setattr__(self, "record_shift", Frozen(self.record_shift))
 
     @classmethod
     @checked
@@ -49,6 +56,14 @@ class Model:
         raises ExperimentError: unknown effect or parameter, wrong unit, value out of bounds
         """
         bodies = {n: _body(b, known) for n, b in experiment.bodies.items()}
+        for place, body in bodies.items():
+            for effect in body.effects:
+                wanted = sorted(effect.channels())
+                if missing := [c for c in wanted if f"{place}.{c}" not in experiment.channels]:
+                    raise ExperimentError(
+                        f"{experiment.bodies[place].where}.effects.{effect.name}: needs the "
+                        f'channel "{missing[0]}", which [channels] has not'
+                    )
         touching = list(bodies)[-1]
         measured = f"{touching}.interaction_force" in experiment.channels
         if experiment.environment is not None and not measured:
@@ -113,6 +128,16 @@ class Model:
             if of_body:
                 model = model._with_body(place, body.with_values(of_body))
         return model
+
+    def command_late(self, at: str) -> float:
+        """Seconds by which the log of a body's command is late."""
+        shift = self.record_shift.get(at)
+        return 0.0 if shift is None else shift.value
+
+    def with_record_shift(self, shifts: Mapping[str, Value]) -> Model:
+        """The model with other shifts of the records, by body; {}: with none."""
+        instance(shifts, Mapping, "with_record_shift", expected='such as {"device": Value(0.001)}')
+        return replace(self, record_shift=Frozen(shifts))
 
     @property
     def parameters(self) -> dict[str, Value]:

@@ -3,7 +3,7 @@
 A quantity has one unit on a prismatic axis and another on a revolute one (`unit_of`). A user's unit
 is a product of symbols with powers and SI prefixes, such as `mm`, `N*s/m`, `N m s/rad`, `kg*m^2` or
 `deg/s`; `to_si` checks that it fits the quantity. Radians have no dimension; degrees, turns and rpm
-are converted.
+are converted. Currents and voltages become forces by a constant (`converting_factor`).
 """
 
 import math
@@ -28,6 +28,8 @@ _TIME = _Kind("a time", ("s", "ms"))
 _FREQUENCY = _Kind("a frequency", ("Hz", "rad/s"))
 _ANGLE = _Kind("an angle", ("rad", "deg"))
 _NUMBER = _Kind("a number without dimension", ("1", "%"))
+_TEMPERATURE = _Kind("a temperature", ("K", "mK"))
+_PER_KELVIN = _Kind("a part per kelvin", ("1/K", "%/K"))
 
 # quantity -> (on a prismatic axis, on a revolute axis)
 QUANTITIES: Mapping[str, tuple[_Kind, _Kind]] = {
@@ -60,6 +62,8 @@ QUANTITIES: Mapping[str, tuple[_Kind, _Kind]] = {
         _Kind("a cubic stiffness", ("N/m^3", "N/mm^3")),
         _Kind("a rotary cubic stiffness", ("N*m/rad^3", "mNm/rad^3")),
     ),
+    "temperature": (_TEMPERATURE, _TEMPERATURE),
+    "temperature_coefficient": (_PER_KELVIN, _PER_KELVIN),
     "frequency": (_FREQUENCY, _FREQUENCY),
     "angle": (_ANGLE, _ANGLE),
     "dimensionless": (_NUMBER, _NUMBER),
@@ -68,34 +72,39 @@ QUANTITIES: Mapping[str, tuple[_Kind, _Kind]] = {
 
 @dataclass(frozen=True)
 class _Unit:
-    """`scale` times kg^a m^b s^c rad^d; `powers` is (a, b, c, d)."""
+    """`scale` times kg^a m^b s^c A^d K^e rad^f; `powers` is (a, b, c, d, e, f)."""
 
     scale: float
-    powers: tuple[int, int, int, int]
+    powers: tuple[int, ...]
 
 
 _PREFIXES = {"n": 1e-9, "u": 1e-6, "µ": 1e-6, "μ": 1e-6, "m": 1e-3, "c": 1e-2, "d": 1e-1}
 _PREFIXES |= {"k": 1e3, "M": 1e6, "G": 1e9}
 _PREFIXED = {
-    "m": _Unit(1.0, (0, 1, 0, 0)),
-    "g": _Unit(1e-3, (1, 0, 0, 0)),
-    "s": _Unit(1.0, (0, 0, 1, 0)),
-    "N": _Unit(1.0, (1, 1, -2, 0)),
-    "J": _Unit(1.0, (1, 2, -2, 0)),
-    "Nm": _Unit(1.0, (1, 2, -2, 0)),
-    "Nms": _Unit(1.0, (1, 2, -1, 0)),
-    "Hz": _Unit(1.0, (0, 0, -1, 0)),
-    "rad": _Unit(1.0, (0, 0, 0, 1)),
+    "m": _Unit(1.0, (0, 1, 0, 0, 0, 0)),
+    "g": _Unit(1e-3, (1, 0, 0, 0, 0, 0)),
+    "s": _Unit(1.0, (0, 0, 1, 0, 0, 0)),
+    "N": _Unit(1.0, (1, 1, -2, 0, 0, 0)),
+    "J": _Unit(1.0, (1, 2, -2, 0, 0, 0)),
+    "Nm": _Unit(1.0, (1, 2, -2, 0, 0, 0)),
+    "Nms": _Unit(1.0, (1, 2, -1, 0, 0, 0)),
+    "Hz": _Unit(1.0, (0, 0, -1, 0, 0, 0)),
+    "A": _Unit(1.0, (0, 0, 0, 1, 0, 0)),
+    "V": _Unit(1.0, (1, 2, -3, -1, 0, 0)),
+    "K": _Unit(1.0, (0, 0, 0, 0, 1, 0)),
+    "rad": _Unit(1.0, (0, 0, 0, 0, 0, 1)),
 }
 _SYMBOLS = {
-    "1": _Unit(1.0, (0, 0, 0, 0)),
-    "%": _Unit(1e-2, (0, 0, 0, 0)),
-    "Nmm": _Unit(1e-3, (1, 2, -2, 0)),
-    "min": _Unit(60.0, (0, 0, 1, 0)),
-    "deg": _Unit(math.pi / 180, (0, 0, 0, 1)),
-    "°": _Unit(math.pi / 180, (0, 0, 0, 1)),
-    "rev": _Unit(2 * math.pi, (0, 0, 0, 1)),
-    "rpm": _Unit(2 * math.pi / 60, (0, 0, -1, 1)),
+    "1": _Unit(1.0, (0, 0, 0, 0, 0, 0)),
+    "%": _Unit(1e-2, (0, 0, 0, 0, 0, 0)),
+    "Nmm": _Unit(1e-3, (1, 2, -2, 0, 0, 0)),
+    "min": _Unit(60.0, (0, 0, 1, 0, 0, 0)),
+    "deg": _Unit(math.pi / 180, (0, 0, 0, 0, 0, 1)),
+    "°": _Unit(math.pi / 180, (0, 0, 0, 0, 0, 1)),
+    "rev": _Unit(2 * math.pi, (0, 0, 0, 0, 0, 1)),
+    "turn": _Unit(2 * math.pi, (0, 0, 0, 0, 0, 1)),
+    "turns": _Unit(2 * math.pi, (0, 0, 0, 0, 0, 1)),
+    "rpm": _Unit(2 * math.pi / 60, (0, 0, -1, 0, 0, 1)),
     **_PREFIXED,
 }
 _SYMBOLS |= {
@@ -108,6 +117,7 @@ _SYMBOLS |= {
 _TOKEN = re.compile(r"\s*(\*\*|[*·/^()²³]|[A-Za-zµμ°%]+|[-+]?\d+)")
 _LONGEST_UNIT = 60  # characters; also bounds the nesting of brackets
 _LARGEST_POWER = 4
+_ANGLE_POWER = 5  # place of the radian's power: radians have no dimension
 _SCALES = (1e-40, 1e40)
 
 
@@ -151,11 +161,59 @@ def si_factor(
         hint = did_you_mean(unit, kind.units) or did_you_mean(problem.part, _SYMBOLS)
         raise ExperimentError(f"{_begin(where)}found {quoted(unit)}, {expected}{hint}") from None
     wanted = _parse(kind.units[0])
-    if parsed.powers[:3] != wanted.powers[:3]:
+    if parsed.powers[:_ANGLE_POWER] != wanted.powers[:_ANGLE_POWER]:
         raise ExperimentError(f"{_begin(where)}found {quoted(unit)}, {expected}")
-    if quantity == "frequency" and parsed.powers[3] == 1:
+    if quantity == "frequency" and parsed.powers[_ANGLE_POWER] == 1:
         return parsed.scale / (2 * math.pi)  # an angular frequency in rad/s or rpm; Hz counts turns
     return parsed.scale
+
+
+def converting_factor(
+    unit: str, constant: str | None, *, quantity: str, axis: str = "prismatic", where: str = ""
+) -> float:
+    """Factor from `unit` to the SI unit of `quantity` by way of a constant written in `constant`.
+
+    A current in A times a torque constant in N*m/A is a torque; an angle in turns over a ratio in
+    rad/mm, written as the constant `mm/rad`, is a length.
+    constant: its unit; None: it has no dimension
+    raises ExperimentError: not units, or their product is no such quantity
+    """
+    kind = _kind(quantity, axis, where)
+    parts = []
+    for text in (unit, constant or "1"):
+        try:
+            parts.append(_parse(text))
+        except _NotAUnit as problem:
+            hint = did_you_mean(problem.part, _SYMBOLS)
+            raise ExperimentError(
+                f"{_begin(where)}found {quoted(text)}, expected a unit such as "
+                f"{quoted('A')} or {quoted(kind.units[0])}{hint}"
+            ) from None
+    product, wanted = _times(parts[0], parts[1], 1, unit), _parse(kind.units[0])
+    if product.powers[:_ANGLE_POWER] != wanted.powers[:_ANGLE_POWER]:
+        raise ExperimentError(
+            f"{_begin(where)}found {quoted(unit)} times {quoted(constant or '1')}, "
+            f"expected {kind.noun} such as {quoted(kind.units[0])}"
+        )
+    return product.scale
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text can be read as a unit: "N*m/A" is one, "Pos" is none."""
+    try:
+        _parse(text)
+    except _NotAUnit:
+        return False
+    return True
+
+
+def measures(unit: str, quantity: str, axis: str = "prismatic") -> bool:
+    """Whether a unit is one of that quantity on that axis."""
+    try:
+        powers = _parse(unit).powers
+    except _NotAUnit:
+        return False
+    return powers[:_ANGLE_POWER] == _parse(_kind(quantity, axis, "").units[0]).powers[:_ANGLE_POWER]
 
 
 def _kind(quantity: str, axis: str, where: str) -> _Kind:
@@ -242,5 +300,5 @@ def _times(unit: _Unit, factor: _Unit, power: int, text: str) -> _Unit:
     scale = unit.scale * factor.scale**power
     if not _SCALES[0] < scale < _SCALES[1]:
         raise _NotAUnit(text)
-    a, b, c, d = (u + power * f for u, f in zip(unit.powers, factor.powers, strict=True))
-    return _Unit(scale, (a, b, c, d))
+    powers = (u + power * f for u, f in zip(unit.powers, factor.powers, strict=True))
+    return _Unit(scale, tuple(powers))

@@ -28,6 +28,8 @@ PUBLIC_KEYWORDS = {
         "identify/largest_stiffness",
         "passivity/search/by_simulation",
         "realise/iosystem",
+        "studies/case",
+        "studies/run",
     ),
     # motions that are prescribed: `bode(..., given=...)`, `transfer_function(..., given=...)`
     "given": ("derive", "frequency"),

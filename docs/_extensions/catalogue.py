@@ -39,6 +39,8 @@ _SYMBOLS = {
     "command": "u",
     "acting_force": r"f_{\mathrm{act}}",
     "level": r"F_{\mathrm{level}}",
+    "temperature": "T",
+    "other_acceleration": r"a_{\mathrm{other}}",
     "input": "e",
     "speed": r"\left|v\right|",
     "travel_rate": "v",

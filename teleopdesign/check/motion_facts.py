@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..diagnose.candidates import COMES_BACK
+from ..diagnose.candidates import tells_place_from_time
 from ..finding import Finding
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
@@ -34,12 +34,8 @@ def missing_excitation(motions: Sequence[Motion], model: Model, place: str) -> d
         reasons["velocity"] = "it only ever moves one way"
     elif (spread := float(np.std(speed[direction != 0]) / np.mean(speed[direction != 0]))) < STEADY:
         reasons["velocity"] = f"it moves at one speed, give or take {100 * spread:.2g} %"
-    path = max(
-        (float(np.sum(np.abs(np.diff(m.position))) / max(np.ptp(m.position), 1e-300)))
-        for m in motions
-    )
-    if path < COMES_BACK:
-        reasons["position"] = "it never comes back to where it was"
+    if not tells_place_from_time(motions):
+        reasons["position"] = "it never comes to a place at another time"
     force = _rms([m.lowpassed(m.at_rows(m.command) + m.interaction) for m in motions])
     inertia = model.body(place).parameters["inertia"].value
     share = inertia * _rms([m.lowpassed(m.acceleration) for m in motions]) / force if force else 0.0

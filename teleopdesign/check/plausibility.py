@@ -7,10 +7,11 @@ user's columns, as they are labelled, contradict each other by far more than an 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Literal
 
 from ..diagnose.prepare import Prepared
+from ..diagnose.record_shift import LARGEST
 from ..finding import Finding
 from ..measurement.soundness.signal import written
 from ..model import Model
@@ -21,6 +22,9 @@ from .unit_slips import NEAR, POWERS, slips
 
 #: a gain or an inertia off by more than this factor is a unit, not a calibration or a poor guess
 FAR = 10.0
+#: logarithm by which ratios may differ and still be one scale, and the least factor that is told: a
+#: user's first values are commonly 20 % off
+ONE_SCALE, OFF_SCALE = 0.15, 2.0
 #: force left unexplained above which a shift is not all that is wrong
 UNEXPLAINED = 0.25
 #: force left unexplained above which nothing is said about signs, units and shifts
@@ -120,7 +124,10 @@ def _units(model: Model, balance: ForceBalance) -> Iterator[Finding]:
         if estimate.sure > 0 and stated > 0 and known:
             ratios[name] = estimate.value / stated
     inertia = ratios.get("inertia", 1.0)
-    if balance.left > NOTHING or 1 / FAR < inertia < FAR:
+    if balance.left > NOTHING:
+        return
+    if 1 / FAR < inertia < FAR:
+        yield from _force_scale(balance, ratios)
         return
     quantities = {n: body.parameter(n).quantity for n in ratios}
     causes = slips(body.axis, ratios, quantities)
@@ -138,6 +145,25 @@ def _units(model: Model, balance: ForceBalance) -> Iterator[Finding]:
     )
 
 
+def _force_scale(balance: ForceBalance, ratios: Mapping[str, float]) -> Iterator[Finding]:
+    """Strengths that are all the same number of times the model's: the forces' scale is off."""
+    if len(ratios) < 2:
+        return
+    factor = math.exp(sum(math.log(v) for v in ratios.values()) / len(ratios))
+    spread = max(abs(math.log(v / factor)) for v in ratios.values())
+    if spread > ONE_SCALE or abs(math.log(factor)) < math.log(OFF_SCALE):
+        return
+    yield Finding(
+        "units",
+        "note",
+        f"the motion asks for {factor:.3g} times the model's {', '.join(ratios)}, all alike: where "
+        f"these are known, the forces are {factor:.3g} times too large, as by a torque constant or "
+        f"a gear ratio; write scale = {1 / factor:.4g} at channels.actuator_force.",
+        {"factor": factor, "spread": spread},
+        balance.body,
+    )
+
+
 def _shifts(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     """Channels that are late or early by half a sample or more."""
     h = max(s.motion.sample_time for s in prepared.of("fit") if s.motion.body == balance.body)
@@ -150,11 +176,15 @@ def _shifts(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
         for n, t in late.items()
     ]
     concern: Literal["note", "warning"] = "warning"
-    remedy = "shift it or state the delay"
-    less = max(map(abs, late.values())) < h
-    if less or balance.left > UNEXPLAINED or len(late) > 1:
+    first, seconds = next(iter(late.items()))
+    where = _name(prepared, balance.body, first)
+    remedy = f'write delay = {{ value = {1e3 * seconds:.3g}, unit = "ms" }} at channels.{where}'
+    less = max(map(abs, late.values()))
+    if less < h or balance.left > UNEXPLAINED or len(late) > 1:
         # a shift by whole samples alone does not explain it: something between force and motion may
         concern, remedy = "note", "columns out of step, or something gives in between"
+    elif set(late) == {"actuator_force"} and less <= LARGEST * h:
+        concern, remedy = "note", "a diagnosis takes up to a row of it as the logger's"
     elif late.get("actuator_force", 0.0) < 0:
         # a cause before its effect: physics does that too
         concern, remedy = "note", "the actuator is late, or the position is logged late"

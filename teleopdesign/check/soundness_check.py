@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
 from ..diagnose.excerpt import excerpt
 from ..diagnose.prepare import prepare
+from ..errors import ExperimentError
 from ..finding import Finding
 from ..measurement.experiment import Experiment
 from ..measurement.soundness import check_signals
 from ..model import Model
 from .excitation import check_excitation
+from .mixed_columns import check_clock_unit, check_mixed_columns
 from .plausibility import check_plausibility
 
 #: topics whose warnings make it pointless to ask what a record can show
@@ -25,10 +29,14 @@ def check_experiment(
     model: what the user believes so far; default: the experiment's own
     seed: of the draws for the noise floor
     Signs, units, shifts and effects of a long experiment are judged on windows (`excerpt`).
-    raises ExperimentError: the model is incomplete, or the bandwidth does not suit the records
+    What stands in the way of an answer (no inertia, a bandwidth too high) is a finding, no error.
     """
-    model = Model.from_experiment(experiment) if model is None else model
-    findings = list(check_signals(experiment))
+    findings = [*_guesses(experiment), *check_clock_unit(experiment), *check_signals(experiment)]
+    if model is None:
+        try:
+            model = Model.from_experiment(experiment)
+        except ExperimentError as problem:
+            return (*findings, _not_asked(str(problem), "warning"))
     resting = _resting(experiment)
     if resting:
         names = " and ".join(resting)
@@ -37,7 +45,13 @@ def check_experiment(
     part = excerpt(experiment)
     if part is not experiment:
         findings.append(_windows(experiment, part))
-    prepared = prepare(part)
+    try:
+        prepared = prepare(part)
+    except ExperimentError as problem:
+        return (*findings, _not_asked(str(problem), "warning"))
+    mixed = list(check_mixed_columns(part))
+    if mixed:
+        return (*findings, *mixed, _not_asked("first make the columns agree", "note"))
     agreement = check_plausibility(model, prepared)
     findings += agreement
     against = [f for f in agreement if f.concern == "warning" and f.topic in _CONTRADICTIONS]
@@ -46,6 +60,25 @@ def check_experiment(
         return (*findings, Finding("what the record can show", "note", sentence))
     findings += check_excitation(model, prepared, np.random.default_rng(seed))
     return tuple(findings)
+
+
+def _not_asked(why: str, concern: Literal["note", "warning"]) -> Finding:
+    return Finding(
+        "what the record can show", concern, f"not asked what the record can show: {why}."
+    )
+
+
+def _guesses(experiment: Experiment) -> list[Finding]:
+    """What `teleopdesign new` guessed and nobody confirmed."""
+    return [
+        Finding(
+            "guesses",
+            "note",
+            f"{key} was guessed: {why}; correct it in experiment.toml, or take its line out of "
+            "[guessed].",
+        )
+        for key, why in experiment.guesses.items()
+    ]
 
 
 def _resting(experiment: Experiment) -> list[str]:

@@ -43,15 +43,18 @@ def slips(axis: str, ratios: Mapping[str, float], quantities: Mapping[str, str])
     position, force, inertia = (unit_of(q, axis) for q in ("position", "force", "inertia"))
     alternatives: dict[str, dict[str, float]] = {}
     for unit, factor in _POSITION_SLIPS[axis].items():
-        alternatives[f"the position is in {unit}, given as {position}"] = {
+        write = f'write unit = "{unit}" at channels.position'
+        alternatives[f"the position is in {unit}, given as {position} ({write})"] = {
             n: factor ** POWERS[q][1] for n, q in quantities.items()
         }
     for unit, factor in _FORCE_SLIPS[axis].items():
-        alternatives[f"the forces are in {unit}, given as {force}"] = {
+        write = f'write unit = "{unit}" at channels.actuator_force'
+        alternatives[f"the forces are in {unit}, given as {force} ({write})"] = {
             n: factor ** POWERS[q][0] for n, q in quantities.items()
         }
     for unit, factor in _INERTIA_SLIPS[axis].items():
-        alternatives[f"the model's inertia is meant in {unit}, given as {inertia}"] = {
+        write = f'write unit = "{unit}" at the inertia'
+        alternatives[f"the model's inertia is meant in {unit}, given as {inertia} ({write})"] = {
             n: factor if n == "inertia" else 1.0 for n in quantities
         }
     worst = {

@@ -95,7 +95,8 @@ def visibilities(
     """
     stretches = prepared.of("fit")
     residual = weighted(stretches, [r for r, _ in relative_residuals(base.model, stretches)])
-    columns = base.jacobian[:, np.linalg.norm(base.jacobian, axis=0) > 0]
+    columns = np.hstack([base.jacobian, base.by_shift])
+    columns = columns[:, np.linalg.norm(columns, axis=0) > 0]
     span = np.linalg.svd(columns / np.linalg.norm(columns, axis=0), full_matrices=False)
     kept = span[0][:, span[1] > 1e-8 * span[1].max(initial=0.0)]
     scene = _Scene(

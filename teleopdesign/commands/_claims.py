@@ -17,7 +17,7 @@ def claim_lines(claims: Sequence[TopicClaim]) -> list[str]:
     """Status and topic of each claim, with its statement and how it is known."""
     lines = []
     for one in claims:
-        lines += ["", f"{one.claim.status:<9} {one.topic}"]
+        lines += ["", f"{one.heading:<9} {one.topic}"]
         lines += _folded(one.claim.statement) + _folded(str(one.claim.verdict))
         if one.motion is not None:
             lines += _folded(f"replayed in simulation: gives out {one.replayed:.6g} J")
@@ -38,6 +38,7 @@ def plain(entry: TopicClaim) -> dict[str, Any]:
         "topic": entry.topic,
         "statement": claim.statement,
         "status": claim.status,
+        "time": entry.time,
         "holds": claim.holds,
         "verdict": str(claim.verdict),
         "certificates": [dict(c.content) for c in claim.certificates],

@@ -8,12 +8,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..errors import ExperimentError
 from ..plain_data import write_json
 from ._diagnosis import add_experiment, experiment_of, stated_model
 from ._options import check_output
 
 if TYPE_CHECKING:
     from ..finding import Finding
+    from ..measurement import Experiment
+    from ..model import Model
 
 #: columns of the terminal; what a line goes on with stands under its sentence
 WIDTH, INDENT = 100, 9
@@ -31,16 +34,69 @@ def run(options: argparse.Namespace) -> int:
         check_output(options.json, (".json",))
     from ..check.soundness_check import check_experiment
 
-    experiment = experiment_of(options.folder)
-    model = stated_model(experiment, options)
-    print(experiment)
-    print()
-    findings = check_experiment(experiment, model)
+    try:
+        experiment = experiment_of(options.folder)
+    except ExperimentError as problem:
+        findings = _unreadable(options.folder, problem)
+        if not findings:
+            raise
+    else:
+        print(experiment)
+        print()
+        findings = check_experiment(experiment, _model_of(experiment, options))
     print(text_of(findings))
     if options.json is not None:
         content = {"findings": [finding_data(f) for f in findings]}
         write_json(options.json, content)
     return 0
+
+
+def _model_of(experiment: Experiment, options: argparse.Namespace) -> Model | None:
+    """The stated model; None where it is incomplete, which the findings then say."""
+    try:
+        return stated_model(experiment, options)
+    except ExperimentError:
+        if any(body.inertia is None for body in experiment.bodies.values()):
+            return None
+        raise
+
+
+def _unreadable(folder: Path, problem: ExperimentError) -> tuple[Finding, ...]:
+    """What is wrong with records that do not read as they are described, from the logs themselves.
+
+    Empty where the mistake is in experiment.toml and no log is at fault.
+    """
+    from ..finding import Finding
+    from ..measurement.survey import Choices, survey_log
+    from ..measurement.tables import open_log
+    from ..measurement.toml_table import read_toml
+
+    place = folder if folder.is_dir() else folder.parent
+    try:
+        toml = read_toml(place / "experiment.toml", f"{place.name}/experiment.toml")
+        files = [t.text("file") for t in toml.tables("records")]
+        log = open_log(place / files[0], f"{place.name}/{files[0]}")
+        survey = survey_log(log, files[0], Choices())
+    except (ExperimentError, IndexError):
+        return ()
+    findings = [Finding("reading", "warning", f"{problem}.")]
+    channels = toml.table("channels").content
+    for key, entry in survey.channels.items():
+        stated = channels.get(key)
+        if not isinstance(stated, dict) or "column" not in entry or "column" not in stated:
+            continue
+        same = stated["column"] == entry["column"]
+        part = "unit" if same else "column"
+        if stated.get(part) == entry[part]:
+            continue
+        seems, written = entry[part], stated.get(part)
+        text = f'channels.{key}: the log looks like {part} = "{seems}", found "{written}".'
+        findings.append(Finding("reading", "note", text, where=files[0]))
+    if len(findings) == 1:
+        return ()
+    command = f"teleopdesign new {place / files[0]}"
+    findings.append(Finding("reading", "note", f"for a description made from the log: {command}."))
+    return tuple(findings)
 
 
 def text_of(findings: Sequence[Finding]) -> str:

@@ -57,18 +57,18 @@ def run(options: argparse.Namespace) -> int:
     arguments = _arguments(options)
     from ..studies import study
 
-    told = _Told()
+    reporter = _Reporter()
     try:
         result = study(
             **arguments,
             workers=options.workers,
             scheduler=options.scheduler,
             out=options.out,
-            progress=told,
+            progress=reporter,
         )
     except KeyboardInterrupt:
         say("")
-        print(f"teleopdesign: stopped{_kept(options.out, told.last)}", file=sys.stderr)
+        print(f"teleopdesign: stopped{_kept(options.out, reporter.last)}", file=sys.stderr)
         return 130
     say("")
     print(result)
@@ -115,24 +115,24 @@ def _run_file(path: Path) -> dict[str, Any]:
             f"{path}: sets no {_NAME}, expected {_NAME} = dict(model=..., axes=..., measures=...)"
             f"{did_you_mean(_NAME, names)}"
         )
-    given = names[_NAME]
-    if not isinstance(given, dict):
-        raise ExperimentError(f"{path}: {_NAME}: found {type(given).__name__}, expected a dict")
+    arguments = names[_NAME]
+    if not isinstance(arguments, dict):
+        raise ExperimentError(f"{path}: {_NAME}: found {type(arguments).__name__}, expected a dict")
     beside = {"workers", "scheduler", "out", "progress"}
     known = [n for n in inspect.signature(study).parameters if n not in beside]
-    for name in given:
+    for name in arguments:
         if name not in known:
             raise ExperimentError(
                 f"{path}: {_NAME}: unknown {name!r}, expected {', '.join(known)}"
                 f"{did_you_mean(name, known)}"
             )
     for name in ("model", "axes", "measures"):
-        if name not in given:
+        if name not in arguments:
             raise ExperimentError(f"{path}: {_NAME}: {name} is missing")
-    return given
+    return arguments
 
 
-class _Told:
+class _Reporter:
     """Progress: one line that changes on a terminal, else a line now and then."""
 
     def __init__(self) -> None:
@@ -160,11 +160,11 @@ def _kept(out: Path | None, last: Progress | None) -> str:
 
 
 def _print_failures(result: Study) -> None:
-    found = result.failures
-    for reason, count in list(found.items())[:_MOST_REASONS]:
+    reasons = result.failures
+    for reason, count in list(reasons.items())[:_MOST_REASONS]:
         print(f"  {count} failed: {reason}")
-    if len(found) > _MOST_REASONS:
-        print(f"  and {len(found) - _MOST_REASONS} other reasons")
+    if len(reasons) > _MOST_REASONS:
+        print(f"  and {len(reasons) - _MOST_REASONS} other reasons")
 
 
 def _count(text: str) -> int:

@@ -24,7 +24,9 @@ from ._controller import (
     Stage,
     parameter_symbol,
 )
+from ._exact import as_written, in_exact_numbers, resolvent
 from ._from_control import from_control, inverted
+from ._from_file import load_controller
 
 __all__ = [
     "CONTROLLERS",
@@ -33,13 +35,17 @@ __all__ = [
     "ControlLaw",
     "Controller",
     "ControllerEquation",
-    "Stage",
     "ControllerState",
+    "Stage",
+    "as_written",
     "controller",
     "from_control",
+    "in_exact_numbers",
     "inverted",
     "laws_that_declare",
+    "load_controller",
     "parameter_symbol",
+    "resolvent",
     "scheduled_force_feedback",
 ]
 
@@ -58,8 +64,13 @@ def _law(name: str) -> ControlLaw:
 CONTROLLERS: Mapping[str, ControlLaw] = _laws()
 
 
-def controller(name: str, values: Mapping[str, float]) -> Controller:
-    """The control law of that name with these parameter values (SI)."""
+def controller(name: str | ControlLaw, values: Mapping[str, float]) -> Controller:
+    """A control law with these parameter values (SI).
+
+    name: of a law of the catalogue, or a law of one's own (`load_controller`)
+    """
+    if isinstance(name, ControlLaw):
+        return Controller((Stage(name, values),))
     if name not in CONTROLLERS:
         raise ModelError(
             f'controller: no law "{name}", has {", ".join(CONTROLLERS)}'

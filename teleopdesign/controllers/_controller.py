@@ -23,6 +23,7 @@ from ..errors import ModelError, did_you_mean
 from ..frozen import Frozen
 from ..notebook import html_table
 from ..recipes import recipe
+from ._exact import as_written
 
 _MOST_SHOWN = 8  # parameters of a law that one line shows
 
@@ -66,6 +67,8 @@ class ControlLaw:
     taken, all others are carried from it to the next with their inputs held.
     takes: "force" where the input must not be the motion itself; "": anything
     transfer(values, s): transfer function from the input, where not to be found from the states
+    shift(values, z): transfer function in z of a law that exists in a computer only, stepped each
+        `period` (a parameter of it, s); its output is held in between
     sampled(values, period): the stage that takes the place of this one in a computer of that
     period (s); None: this one, its states stepped as they say
     system: a python-control system in place of a law: known as code only, it has no equation
@@ -83,6 +86,7 @@ class ControlLaw:
     linear: bool = False
     takes: Literal["", "force"] = ""
     transfer: Callable[[Mapping[str, float], sp.Symbol], sp.Expr] | None = None
+    shift: Callable[[Mapping[str, float], sp.Symbol], sp.Expr] | None = None
     sampled: Callable[[Mapping[str, float], float], Stage] | None = None
     system: Any = None
     bound: str = ""
@@ -266,16 +270,24 @@ class Controller:
             value = sp.sympify(law.law(now, p), strict=True)
         return ControllerEquation(value, Frozen(rates), Frozen(steps), frozenset(before))
 
-    def linear_form(self, prefix: str, s: sp.Symbol, speed: sp.Expr) -> sp.Expr | None:
-        """Transfer function at constant speed; None where a law declares no linear form."""
-        if not all(stage.law.linear for stage in self.stages):
+    def linear_form(
+        self, prefix: str, s: sp.Symbol, speed: sp.Expr, *, held: bool = False
+    ) -> sp.Expr | None:
+        """Transfer function at constant speed; None where a law declares no linear form.
+
+        held: also of laws in discrete time, as H(e^(s T)) (1 - e^(-s T))/(s T): from the samples to
+            the mean of the held output, copies at other multiples of the sampling rate left out
+        """
+        if not all(stage.law.linear or (held and _has_shift(stage)) for stage in self.stages):
             return None
+        if all(stage.law.transfer or stage.law.shift for stage in self.stages):
+            return sp.Mul(*(_by_numbers(stage, s) for stage in self.stages))
         drive = sp.Symbol("drive")
         moved = {"velocity": s * drive, "speed": speed, "travel_rate": s * drive}
         value: sp.Expr = drive
         for stage in self.stages:
-            if stage.law.transfer is not None:
-                value *= stage.law.transfer(stage.values, s)
+            if stage.law.transfer or stage.law.shift:
+                value *= _by_numbers(stage, s)
                 continue
             signals = {**moved, "input": value, "period": sp.S(0)}
             equation = Controller((stage,)).equation(prefix, signals)
@@ -299,6 +311,29 @@ class Controller:
             for n, v in g.values.items()
         ]
         return html_table("Controller", ("parameter", "value (SI)", "meaning"), rows)
+
+
+def _has_shift(stage: Stage) -> bool:
+    """Whether it has a transfer function in z, at a period of its own."""
+    return stage.law.shift is not None and stage.values["period"] > 0
+
+
+def _by_numbers(stage: Stage, s: sp.Symbol) -> sp.Expr:
+    """Transfer function of a law that states it, with its values in place."""
+    if stage.law.transfer is not None:
+        return stage.law.transfer(stage.values, s)
+    assert stage.law.shift is not None
+    period, z = as_written(stage.values["period"]), sp.Symbol("z")
+    late = sp.exp(-s * period)
+    above, below = (
+        sp.Poly(x, z) for x in sp.fraction(sp.together(stage.law.shift(stage.values, z)))
+    )
+    # in powers of e^(-s T): those of e^(s T) overflow far out in the right half plane
+    order = below.degree()
+    sides = (
+        sp.Add(*(c * late ** (order - k) for (k,), c in part.terms())) for part in (above, below)
+    )
+    return sp.Mul(next(sides), 1 / next(sides)) * (1 - late) / (s * period)
 
 
 def _placed(

@@ -1,10 +1,16 @@
-"""The law of a linear system: dx/dt = A x + B u, y = C x + D u, the entries its parameters."""
+"""The laws of linear systems from python-control, their numbers as they came the parameters.
+
+State space: dx/dt = A x + B u, y = C x + D u. Transfer function: numerator and denominator, as a
+system in the controllable form. States have units of their own, `scale`, on which no
+output depends.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
 from functools import lru_cache
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import sympy as sp
@@ -13,12 +19,16 @@ from ..effects import Parameter
 from ..errors import ModelError
 from ..recipes import remember
 from ._controller import ControlLaw, ControllerState, Stage, only_sampled
+from ._exact import as_written, resolvent
 
 Array = np.ndarray
+#: whether a system came as matrices or as numerator and denominator
+Form = Literal["matrices", "coefficients"]
+_Law = Callable[[Any, Any], sp.Expr]
 
 
 def stage(name: str, matrices: tuple[Array, Array, Array, float], period: float | None) -> Stage:
-    """The system as a stage of a controller.
+    """A system in state space as a stage of a controller.
 
     matrices: A (n, n), B (n,), C (n,), D;  period: None: continuous; s, of a discrete-time system
     """
@@ -27,32 +37,101 @@ def stage(name: str, matrices: tuple[Array, Array, Array, float], period: float 
     values = {f"a_{i}_{j}": float(a[i, j]) for i in range(n) for j in range(n)}
     values |= {f"b_{i}": float(b[i]) for i in range(n)}
     values |= {f"c_{i}": float(c[i]) for i in range(n)} | {"d": float(d)}
+    return _stage(name, "matrices", n, values, a, period)
+
+
+def rational_stage(
+    name: str, above: Sequence[float], below: Sequence[float], period: float | None
+) -> Stage:
+    """A transfer function as a stage of a controller, its coefficients kept as they came.
+
+    above, below: numerator and denominator from the highest power, the first of `below` not zero
+    """
+    n = len(below) - 1
+    values = {f"numerator_{k}": 0.0 for k in range(n + 1)}
+    values |= {f"numerator_{k}": float(x) for k, x in enumerate(reversed(above))}
+    values |= {f"denominator_{k}": float(x) for k, x in enumerate(reversed(below))}
+    return _stage(name, "coefficients", n, values, _companion(below), period)
+
+
+def _stage(
+    name: str,
+    form: Form,
+    n: int,
+    values: dict[str, float],
+    a: Array,
+    period: float | None,
+) -> Stage:
+    values |= {f"scale_{i}": x for i, x in enumerate(_balance(a))}
     if period is not None:
         values["period"] = period
-    return Stage(_law(name, n, period is not None), values)
+    return Stage(_law(name, form, n, period is not None), values)
+
+
+def _companion(below: Sequence[float]) -> Array:
+    """A of the controllable form; below: denominator from its highest power."""
+    n = len(below) - 1
+    a = np.eye(n, k=1)
+    if n:
+        a[-1] = -np.array(below[:0:-1], dtype=float) / below[0]
+    return a
+
+
+def _balance(a: Array) -> list[float]:
+    """Units of the states, powers of two: what a polynomial gives spans decades.
+
+    A Butterworth low-pass of order 8 at 100 Hz loses 1e-8 of its step without, 3e-15 with it.
+    """
+    from scipy.linalg import matrix_balance
+
+    if not len(a):
+        return []
+    _, (scale, _) = matrix_balance(a, permute=False, separate=True)
+    return [float(x) for x in scale]
 
 
 def matrices(values: Mapping[str, float], n: int) -> tuple[Array, Array, Array, float]:
-    """A, B, C, D from the values of a stage."""
-    a = np.array([[values[f"a_{i}_{j}"] for j in range(n)] for i in range(n)]).reshape(n, n)
-    b, c = (np.array([values[f"{x}_{i}"] for i in range(n)]) for x in "bc")
-    return a, b, c, values["d"]
+    """A, B, C, D from the values of a stage, its states in their units."""
+    scale = np.array([values[f"scale_{i}"] for i in range(n)])
+    if "denominator_0" in values:
+        below = [values[f"denominator_{k}"] for k in range(n, -1, -1)]
+        above = np.array([values[f"numerator_{k}"] for k in range(n + 1)]) / below[0]
+        a, d = _companion(below), float(above[n])
+        b = np.eye(n)[:, -1] if n else np.zeros(0)
+        c = above[:n] - d * np.array(below[:0:-1]) / below[0]
+    else:
+        a = np.array([[values[f"a_{i}_{j}"] for j in range(n)] for i in range(n)]).reshape(n, n)
+        b, c = (np.array([values[f"{x}_{i}"] for i in range(n)]) for x in "bc")
+        d = values["d"]
+    return a * scale / scale[:, None], b / scale, c * scale, d
+
+
+def _order(values: Mapping[str, float]) -> int:
+    return sum(k.startswith("scale_") for k in values)
 
 
 @lru_cache(maxsize=64)  # laws compare by identity: one order, one kernel
-def _law(name: str, n: int, discrete: bool) -> ControlLaw:
-    entries = [f"a_{i}_{j}" for i in range(n) for j in range(n)]
-    entries += [f"{x}_{i}" for x in "bc" for i in range(n)] + ["d"]
-    parameters = {e: Parameter("dimensionless", _meaning(e), lower=-float("inf")) for e in entries}
+def _law(name: str, form: Form, n: int, discrete: bool) -> ControlLaw:
+    if form == "matrices":
+        entries = [f"a_{i}_{j}" for i in range(n) for j in range(n)]
+        entries += [f"{x}_{i}" for x in "bc" for i in range(n)] + ["d"]
+        meanings = {e: _meaning(e) for e in entries}
+        output, change = _by_matrices(n)
+    else:
+        sides, variable = ("numerator", "denominator"), "z" if discrete else "s"
+        meanings = {
+            f"{side}_{k}": f"coefficient of {variable}^{k}" for side in sides for k in range(n + 1)
+        }
+        output, change = _by_coefficients(n)
+    parameters = {
+        e: Parameter("dimensionless", text, lower=-float("inf")) for e, text in meanings.items()
+    }
+    parameters |= {
+        f"scale_{i}": Parameter("dimensionless", "unit of a state: any gives the same output")
+        for i in range(n)
+    }
     if discrete:
         parameters["period"] = Parameter("time", "of a sample; 0: any")
-
-    def output(now: Any, p: Any) -> sp.Expr:
-        return _row(now, p, "c_{}", n) + p.d * now.input
-
-    def change(i: int) -> Callable[[Any, Any], sp.Expr]:
-        return lambda now, p: _row(now, p, f"a_{i}_{{}}", n) + getattr(p, f"b_{i}") * now.input
-
     states = {
         f"x_{i}": ControllerState(
             "dimensionless",
@@ -66,12 +145,64 @@ def _law(name: str, n: int, discrete: bool) -> ControlLaw:
         parameters=parameters,
         states=states,
         linear=not discrete,
-        transfer=None if discrete else lambda values, s: _transfer(matrices(values, n), s),
+        transfer=None if discrete else _transfer,
+        shift=_transfer if discrete else None,
         sampled=_same_period(name) if discrete else lambda v, period: _held(name, v, n, period),
         source="python-control",
     )
     made = made.named(name, f"A linear system of order {n} from python-control.")
-    return remember(made, _law, name, n, discrete)
+    return remember(made, _law, name, form, n, discrete)
+
+
+def _by_matrices(n: int) -> tuple[_Law, Callable[[int], _Law]]:
+    """Output, and change of each state."""
+
+    def output(now: Any, p: Any) -> sp.Expr:
+        terms = (_entry(p, f"c_{j}") * _state(now, p, j) for j in range(n))
+        return sp.Add(*terms) + p.d * now.input
+
+    def change(i: int) -> _Law:
+        def rate(now: Any, p: Any) -> sp.Expr:
+            terms = (_entry(p, f"a_{i}_{j}") * _state(now, p, j) for j in range(n))
+            return (sp.Add(*terms) + _entry(p, f"b_{i}") * now.input) / _entry(p, f"scale_{i}")
+
+        return rate
+
+    return output, change
+
+
+def _by_coefficients(n: int) -> tuple[_Law, Callable[[int], _Law]]:
+    """Output, and change of each state, in the controllable form."""
+
+    def output(now: Any, p: Any) -> sp.Expr:
+        lead, straight = _entry(p, f"denominator_{n}"), _entry(p, f"numerator_{n}")
+        shares = (
+            _entry(p, f"numerator_{k}") - straight * _entry(p, f"denominator_{k}") / lead
+            for k in range(n)
+        )
+        terms = (share * _state(now, p, k) for k, share in enumerate(shares))
+        return (sp.Add(*terms) + straight * now.input) / lead
+
+    def change(i: int) -> _Law:
+        def rate(now: Any, p: Any) -> sp.Expr:
+            if i < n - 1:
+                return _state(now, p, i + 1) / _entry(p, f"scale_{i}")
+            terms = (_entry(p, f"denominator_{k}") * _state(now, p, k) for k in range(n))
+            back = sp.Add(*terms) / _entry(p, f"denominator_{n}")
+            return (now.input - back) / _entry(p, f"scale_{i}")
+
+        return rate
+
+    return output, change
+
+
+def _entry(p: Any, name: str) -> sp.Expr:
+    return getattr(p, name)
+
+
+def _state(now: Any, p: Any, i: int) -> sp.Expr:
+    """A state in the unit that its equation is written in."""
+    return _entry(p, f"scale_{i}") * getattr(now, f"x_{i}")
 
 
 def _meaning(entry: str) -> str:
@@ -81,21 +212,29 @@ def _meaning(entry: str) -> str:
     return ", ".join([matrix.upper(), *indices])
 
 
-def _row(now: Any, p: Any, entry: str, n: int) -> sp.Expr:
-    terms = (getattr(p, entry.format(j)) * getattr(now, f"x_{j}") for j in range(n))
-    return sp.Add(*terms)
+def _transfer(values: Mapping[str, float], s: sp.Symbol) -> sp.Expr:
+    """The transfer function, exact in the numbers as they came: what is zero stays exactly zero."""
+    n = _order(values)
+    if "denominator_0" in values:
+        above, below = (
+            [as_written(values[f"{side}_{k}"]) for k in range(n, -1, -1)]
+            for side in ("numerator", "denominator")
+        )
+    else:
 
+        def entry(name: str) -> Fraction:
+            return Fraction(repr(float(values[name])))
 
-def _transfer(system: tuple[Array, Array, Array, float], s: sp.Symbol) -> sp.Expr:
-    """Numerator from the Markov parameters C A^k B: those that are zero stay exactly zero."""
-    a, b, c, d = system
-    below, markov, x = np.poly(a) if len(b) else np.ones(1), [d], b
-    for _ in b:
-        markov.append(float(c @ x))
-        x = a @ x
-    above = np.convolve(below, markov)[: len(below)]
-    polynomial = [sp.Poly([sp.Float(k) for k in row], s).as_expr() for row in (above, below)]
-    return polynomial[0] / polynomial[1]
+        a = [[entry(f"a_{i}_{j}") for j in range(n)] for i in range(n)]
+        b, c = ([entry(f"{x}_{i}") for i in range(n)] for x in "bc")
+        det, numerator = resolvent(a, b, c)
+        straight = entry("d")
+        through = zip([Fraction(0), *numerator], det, strict=True)
+        above = [sp.Rational(x + straight * y) for x, y in through]
+        below = [sp.Rational(x) for x in det]
+    p, q = (sp.Poly(row, s, domain="QQ") for row in (above, below))
+    common = sp.gcd(p, q)
+    return p.quo(common).as_expr() / q.quo(common).as_expr()
 
 
 def _held(name: str, values: Mapping[str, float], n: int, period: float) -> Stage:
@@ -117,7 +256,7 @@ def _same_period(name: str) -> Callable[[Mapping[str, float], float], Stage]:
                 f"{name}: is sampled every {stated * 1e3:g} ms, the computer every "
                 f"{period * 1e3:g} ms: give it in continuous time, or sample both alike"
             )
-        n = sum(k.startswith("b_") for k in values)
-        return Stage(_law(name, n, True), values)
+        form: Form = "coefficients" if "denominator_0" in values else "matrices"
+        return Stage(_law(name, form, _order(values), True), values)
 
     return sampled

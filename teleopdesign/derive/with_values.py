@@ -23,16 +23,18 @@ def with_values(
     input: str,
     given: str | tuple[str, ...] = "",
     speed: float = 0.0,
+    held: bool = False,
 ) -> tuple[sp.Expr, LinearBlocks]:
     """Transfer function in `realise.lti.S` with numbers, and the linear forms of its blocks.
 
     One degree of freedom. given: motions that are prescribed
     speed: m/s or rad/s, at which smoothed friction and schedules are frozen
+    held: whether controllers in discrete time take part, see `linear_blocks`
     """
     motions = given if isinstance(given, tuple) else (given,) if given else ()
     diagram, tips = linear_parted(diagram, motions)
     output, input = tips.get(output, output), tips.get(input, input)
-    linear = linear_blocks(diagram, speed=speed)
+    linear = linear_blocks(diagram, speed=speed, held=held)
     form = transfer(diagram, output, (input,), given=tuple(tips.values()))[input]
     values = {block_symbol(n): e for n, e in linear.blocks.items()}
     values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
@@ -50,7 +52,10 @@ def transfer_function(
 ) -> tuple[control.TransferFunction, tuple[str, ...]]:
     """The transfer function as a python-control system, and the names without linear form.
 
+    Its input and output are called as the signals are, so that `control.interconnect` joins it.
     Arguments as in `with_values`;  delay_order: of the Pade approximation of dead times
     """
     expression, linear = with_values(diagram, output=output, input=input, given=given, speed=speed)
-    return as_transfer_function(expression, delay_order=delay_order), linear.left_out
+    system = as_transfer_function(expression, delay_order=delay_order)
+    system.update_names(inputs=[input], outputs=[output])
+    return system, linear.left_out

@@ -12,6 +12,7 @@ from typing import Any, TextIO
 
 import numpy as np
 
+from ..measurement.reading import reading_data
 from ..model import Model
 from ..plain_data import harmless_cell, plain, replacing, write_json
 from ..realise.along_motion import residual_along
@@ -23,8 +24,9 @@ from .ladder_text import offset_rows
 from .one_moment import Moment
 from .open_questions import open_questions
 from .probability import CandidateEvidence, evidence_of
-from .ranking import REFUSALS
 from .record_offsets import along_with_offsets
+from .record_shift import shift_data
+from .rung import Rung
 
 
 def answer(diagnosis: Diagnosis) -> dict[str, Any]:
@@ -32,14 +34,16 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
     checked = bool(diagnosis.experiment.check_records)
     return {
         "verdict": diagnosis.verdict,
-        "missing": [_place(c.key) for c in diagnosis.missing],
+        "missing": [_missing_place(r) for r in diagnosis.rungs if r.added in diagnosis.missing],
         "ladder": [
             {
                 "added": None if r.added is None else _place(r.added.key),
+                "instead_of": None if r.instead_of is None else r.instead_of.effect.name,
                 "fit_error": r.fit.fit_error,
                 "check_error": r.fit.check_error,
                 "check_error_at_command": plain(r.fit.at_command.error),
                 "blind": r.fit.at_command.blind,
+                "could_be": None if r.could_be is None else [_place(c.key) for c in r.could_be],
             }
             for r in diagnosis.rungs
         ],
@@ -51,12 +55,14 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "candidates": _candidates(diagnosis),
         "indistinguishable": [[_place(c.key) for c in g] for g in diagnosis.groups],
         "own": offset_rows(diagnosis),
+        "record_shift": shift_data(diagnosis.model, diagnosis.prepared.stretches),
         "model_parameters": _parameters(diagnosis.after, _added(diagnosis)),
         "left_over_noise_floors": plain(diagnosis.left),
         "one_moment": _moment(diagnosis.moment),
         "at_bound": list(diagnosis.after.at_bound),
         "evidence": [_evidence(one) for one in evidence_of(diagnosis) if one.share > 0],
         "experiment": experiment_data(diagnosis.experiment),
+        "reading": reading_data(diagnosis.experiment.reading),
         "models": {
             "ladder": [model_data(r.fit.model) for r in diagnosis.rungs],
             "estimated": model_data(diagnosis.estimated.model),
@@ -94,6 +100,14 @@ def _moment(moment: Moment | None) -> dict[str, Any] | None:
 
 def _place(key: tuple[str, str]) -> dict[str, str]:
     return {"effect": key[0], "at": key[1]}
+
+
+def _missing_place(rung: Rung) -> dict[str, str]:
+    """What a rung added, with the effect of the user's model that it takes the place of."""
+    assert rung.added is not None
+    place = _place(rung.added.key)
+    instead = rung.instead_of
+    return place if instead is None else place | {"instead_of": instead.effect.name}
 
 
 def _added(diagnosis: Diagnosis) -> set[str]:
@@ -155,7 +169,7 @@ def _row(diagnosis: Diagnosis, one: CandidateEvidence) -> dict[str, Any]:
         "check_error": fit.check_error,
         "check_error_at_command": plain(fit.at_command.error),
         "blind": fit.at_command.blind,
-        "refused": REFUSALS.get(one.ranked.refused),
+        "refused": one.barred or None,
         "parameters": {
             n: _parameter(model, f"{at}.{effect}.{n}") for n in candidate.effect.parameters
         },

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
 from ..blocks.body import ONE_ONLY
-from ..effects import CONTACT_ROLES, SIGNALS, Effect
+from ..effects import CONTACT_ROLES, Effect, depends_on_position, period
 from ..measurement.motion import Motion
 from ..model import Model
 
@@ -30,37 +30,81 @@ class Candidate:
         return f"{self.effect.name} at {self.at}"
 
 
-#: path over travel from which a motion counts as one that comes back to where it was
-COMES_BACK = 1.5
+#: share of the spread of time that must be left among samples of one place, from which place and
+#: time are told apart. A sweep that comes back by a quarter of its travel leaves 0.06, by a third
+#: 0.13, a full return 1. Lower: a drift passes for a force of the place; higher: more is not tried
+TOLD_APART = 0.1
+#: places into which the travel is divided for that: each holds 1/50 of it, far less than returns
+PLACES = 50
 
 
-def candidates(model: Model, motions: Sequence[Motion] = ()) -> tuple[Candidate, ...]:
+def candidates(
+    model: Model, motions: Sequence[Motion] = (), *, own_zero: Collection[str] = ()
+) -> tuple[Candidate, ...]:
     """Effects that the model lacks and could take, at each of its places.
 
-    motions: those that decide; where a body only ever goes on, place and time are one, and no
-    effect of the place can be told from a drift: it is no candidate there
+    motions: all that the records hold; where a body never comes to a place at another time, no
+        effect of the place can be told from a drift: it is no candidate there; nor is one whose law
+        uses a channel that they have not. What repeats along the way comes back to the same place
+        of its period
+    own_zero: files whose positions cannot be compared with those of others
     """
     possible = []
     for place in model.places:
         body = model.body(place)
         roles = {e.role for e in body.effects} & set(ONE_ONLY)
+        own = [m for m in motions if m.body == model.holder(place)]
         for effect in model.known.values():
             if (place in model.bodies) == (effect.role in CONTACT_ROLES):
                 continue
             if body.has(effect.name) or effect.role in roles or body.axis in effect.elsewhere:
                 continue
-            if effect.expression().has(SIGNALS["position"]) and not _comes_back(place, motions):
+            if body.lacks(effect):
                 continue
-            if not body.lacks(effect):
+            if any(not effect.channels() <= set(m.further) for m in own):
+                continue
+            if _is_seen_in_place(effect, own, own_zero):
                 possible.append(Candidate(effect, place))
     return tuple(possible)
 
 
-def _comes_back(place: str, motions: Sequence[Motion]) -> bool:
-    positions = [m.position for m in motions if m.body == place]
-    return not positions or any(
-        float(np.sum(np.abs(np.diff(x)))) > COMES_BACK * float(np.ptp(x)) for x in positions
-    )
+def _is_seen_in_place(effect: Effect, motions: Sequence[Motion], own_zero: Collection[str]) -> bool:
+    """Whether these motions could tell the effect from a drift, if it depends on the position."""
+    if not motions or not depends_on_position(effect):
+        return True
+    repeats = period(effect)
+    if isinstance(repeats, str):  # of any length: whether it is seen to repeat, its fit decides
+        return True
+    return tells_place_from_time(motions, own_zero=own_zero, turn=repeats)
+
+
+def tells_place_from_time(
+    motions: Sequence[Motion], *, own_zero: Collection[str] = (), turn: float | None = None
+) -> bool:
+    """Whether a body comes to the same places at different times, over all of its motions together.
+
+    own_zero: files whose positions cannot be compared with those of others
+    turn: places one such period apart are the same
+    """
+    groups: dict[str, list[Motion]] = {}
+    for motion in motions:
+        groups.setdefault(motion.file if motion.file in own_zero else "", []).append(motion)
+    among = whole = 0.0
+    for own in groups.values():
+        position = np.concatenate([m.position for m in own])
+        time = np.concatenate([m.time for m in own])
+        # by the way covered: a body at rest shows one place, however long
+        way = np.concatenate([np.abs(np.gradient(m.position)) * (m.direction != 0) for m in own])
+        if not way.any():
+            continue
+        here = np.mod(position, turn) if turn is not None else position
+        size = float(np.ptp(here)) or 1.0
+        bins = np.minimum(((here - here.min()) / size * PLACES).astype(int), PLACES - 1)
+        weight = np.bincount(bins, way, PLACES)
+        mean = np.bincount(bins, way * time, PLACES) / np.where(weight > 0.0, weight, 1.0)
+        among += float(way @ (time - mean[bins]) ** 2)
+        whole += float(way @ (time - (way @ time) / way.sum()) ** 2)
+    return among > TOLD_APART * whole or whole == 0.0  # 0: no motion is told, nor its direction
 
 
 def started(model: Model, scale: dict[str, float]) -> list[Model]:

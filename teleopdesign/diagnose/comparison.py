@@ -17,6 +17,7 @@ from ..realise.along_motion import residual_along
 from .error import force_error
 from .noise_floor import NoiseFloor, noise_floor
 from .prepare import Prepared, prepare
+from .record_offsets import as_logged
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -90,7 +91,7 @@ def residual_data(model: Model, prepared: Prepared) -> Dataset:
     columns: dict[str, list[Any]] = {}
     for number, stretch in enumerate(prepared.stretches):
         motion = stretch.motion
-        along = residual_along(model.body(motion.body), motion)
+        along = residual_along(model.body(motion.body), as_logged(model, motion))
         measured = motion.lowpassed(motion.at_rows(motion.command) + motion.interaction)
         residual = motion.lowpassed(along.residual.value)
         n = len(motion.time)

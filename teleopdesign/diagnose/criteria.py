@@ -67,6 +67,12 @@ class Criteria:
     true_of_accepted: float = 0.97
     #: probability of a best candidate that was not accepted: of 31 none was true, 1/33
     true_of_others: float = 0.03
+    #: power of `outweighs` by which an accepted effect is believed though more than noise is left.
+    #: Two: it is named from 2.6 times as much explained as left (0.97 x 0.72^2 = 0.5). Of accepted
+    #: effects with half of an effect, or all of it, taken out of the catalogue, see `theory`.
+    #: Lower: what stands in for something unknown is named; higher: a machine with many small
+    #: remainders has no name at all
+    outweighing: float = 2.0
     #: probability from which an effect is said to be missing: less likely than not is not named
     named: float = 0.5
 

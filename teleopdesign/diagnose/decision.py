@@ -28,7 +28,7 @@ from .noise_floor import NoiseFloor
 from .one_moment import Moment, worst_moment
 from .outside_tone import Tone
 from .prepare import Prepared
-from .ranking import Ranked, Ranking
+from .ranking import REFUSALS, Ranked, Ranking
 from .rung import Rung
 
 
@@ -163,28 +163,52 @@ def _makes_adequate(base: Fit, other: Fit, floor: NoiseFloor, criteria: Criteria
 def is_supported(
     base: Fit, ranked: Ranked, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
 ) -> bool:
-    """Whether a candidate is identifiable, lowers the check error enough, and displaces no effect.
-
-    One that drives a parameter of the model to its bound takes the place of an effect that is
-    there: it describes the records, but is no missing physics beside the model's own. One that
-    needs a parameter of its own at its bound is itself another effect, unless it leaves noise only.
-    """
-    driven = set(ranked.fit.at_bound) - set(base.at_bound)
-    new = [n for n in driven if n not in base.model.parameters]
+    """Whether a candidate can be told, lowers the check error enough, and nothing bars it."""
     return (
         ranked.is_identifiable
-        and not displaced(base, ranked.fit)
-        and (
-            all(ranked.fit.model.declared(n).optional for n in new)
-            or _makes_adequate(base, ranked.fit, floor, criteria)
-        )
+        and not objection(base, ranked, floor, criteria=criteria)
         and is_better(base, ranked.fit, floor, criteria=criteria)
     )
 
 
-def displaced(base: Fit, fit: Fit) -> list[str]:
-    """Parameters driven to a bound although the base shows their effect clearly."""
-    driven = set(fit.at_bound) - set(base.at_bound)
+def objection(
+    base: Fit, ranked: Ranked, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
+) -> str:
+    """Which check bars a candidate however much it explains, in words; "" where none does.
+
+    One that drives a parameter of the model to its bound, and whose effect the model still has,
+    describes the records, but is no missing physics beside the model's own. One that needs a
+    parameter of its own at its bound is itself another effect, unless it leaves noise only.
+    """
+    if ranked.refused or ranked.implausible:
+        return REFUSALS.get(ranked.refused, ranked.implausible)
+    if gone := displaced(base, ranked.fit):
+        return f"drives {', '.join(gone)} to a bound, which the model needs without it"
+    driven = sorted(set(ranked.fit.at_bound) - set(base.at_bound))
+    own = [n for n in driven if n not in base.model.parameters]
+    needed = [n for n in own if not ranked.fit.model.declared(n).optional]
+    if needed and not _makes_adequate(base, ranked.fit, floor, criteria):
+        return f"needs {', '.join(needed)} at a bound: it is another effect"
+    return ""
+
+
+def helps_but_is_barred(
+    base: Fit, ranked: Ranked, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
+) -> str:
+    """Which check bars a candidate that lowers the check error by enough to matter; "" if none."""
+    least = 1.0 - criteria.relevant
+    helps = (
+        check_squares(ranked.fit) < least * check_squares(base)
+        or ranked.fit.check_error**2 < least * base.check_error**2
+    )
+    if not helps:
+        return ""
+    return objection(base, ranked, floor, criteria=criteria)
+
+
+def displaced(base: Fit, found: Fit) -> list[str]:
+    """Parameters driven to a bound whose effect the records tell from its absence in the base."""
+    driven = set(found.at_bound) - set(base.at_bound)
     return sorted(n for n in driven if n in base.model.parameters and _is_there(base, n))
 
 
@@ -193,6 +217,46 @@ def _is_there(base: Fit, name: str) -> bool:
     effect = name.rpartition(".")[0]
     values = {n: v for n, v in base.model.parameters.items() if n.rpartition(".")[0] == effect}
     return all(v.fixed or not v.stderr >= base.model.from_absence(n) for n, v in values.items())
+
+
+def superfluous_beside(
+    base: Fit, found: Fit, candidate: Candidate, *, criteria: Criteria = CRITERIA
+) -> Candidate | None:
+    """The one effect of the base that a candidate at its place makes superfluous; None or several.
+
+    It was told from its absence, and beside the candidate its strength ends where it is absent, or
+    it was surely there and is no longer told from its absence.
+    """
+    gone, given_up = set(displaced(base, found)), []
+    for effect in base.model.body(candidate.at).effects:
+        strengths = [f"{candidate.at}.{effect.name}.{n}" for n in effect.absent]
+        values = [base.model.parameters.get(n) for n in strengths]
+        if not values or any(v is None or v.fixed for v in values):
+            continue
+        at_absence = all(
+            n in gone and _near_absence(found, n, effect.absent[n.rpartition(".")[2]])
+            for n in strengths
+        )
+        surely = all(
+            criteria.surely * base.model.parameters[n].stderr < base.model.from_absence(n)
+            and found.model.parameters[n].stderr >= found.model.from_absence(n)
+            for n in strengths
+        )
+        if at_absence or surely:
+            given_up.append(effect)
+    if len(given_up) != 1:
+        return None
+    start = f"{candidate.at}.{given_up[0].name}."
+    left = [n for n in gone if not n.startswith(start)]
+    return None if left else Candidate(given_up[0], candidate.at)
+
+
+def _near_absence(found: Fit, name: str, absent: float) -> bool:
+    """Whether a parameter that was driven to a bound lies at the one where its effect is absent."""
+    declared = found.model.declared(name)
+    value = found.model.parameters[name].value
+    near_lower = abs(value - declared.lower) <= abs(value - declared.upper)
+    return absent == (declared.lower if near_lower else declared.upper)
 
 
 def worth_pursuing(base: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> float:
@@ -225,8 +289,13 @@ def _equal(one: Ranked, best: Ranked, criteria: Criteria) -> bool:
 
 
 def preferred(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> Ranked:
-    """Of the supported candidates, in order, the simplest that explains as well as the best."""
-    return min(alike(supported, criteria=criteria), key=simplicity)
+    """Of the supported candidates, in order, the simplest that explains as well as the best.
+
+    What the user's model has is believed: an effect in the place of another only where it is
+    better.
+    """
+    equal = alike(supported, criteria=criteria)
+    return min(equal, key=lambda r: (r.instead_of is not None, *simplicity(r)))
 
 
 def alternatives_of(
@@ -247,6 +316,18 @@ def alternatives_of(
         for r in alike(supported, criteria=criteria)
         if r is not best and simplicity(r)[0] == simplicity(best)[0]
     )
+
+
+def others_that_help(best: Ranked, ranking: Ranking) -> tuple[Candidate, ...]:
+    """What else takes away at least half of what the best does, whether or not by more than chance.
+
+    To be said where the model before left only noise: there a gain is small, and what brings it
+    about may be something else.
+    """
+    whole = check_squares(ranking.base)
+    least = 0.5 * (whole - check_squares(best.fit))
+    others = (r for r in ranking.ranked if r.counts and r.candidate != best.candidate)
+    return tuple(r.candidate for r in others if whole - check_squares(r.fit) >= least)
 
 
 def simplicity(ranked: Ranked) -> tuple[int, int]:

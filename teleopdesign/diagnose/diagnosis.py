@@ -111,7 +111,7 @@ class Diagnosis(ByValue):
     def _repr_html_(self) -> str:
         rows = [
             (
-                "(your model, re-estimated)" if r.added is None else f"+ {r.added}",
+                "(your model, re-estimated)" if r.added is None else f"+ {r.said}",
                 f"{100 * r.fit.fit_error:.2f} %",
                 f"{100 * r.fit.check_error:.2f} %",
             )

@@ -19,7 +19,7 @@ from .ladder_state import LadderSearch, LadderState
 from .moves import remove
 from .noise_floor import NoiseFloor
 from .ranking import Ranked, Ranking
-from .rung import Rung
+from .rung import Replaced, Rung
 from .rungs import estimate_without, falling, refitted
 
 
@@ -50,7 +50,8 @@ def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
         for r in state.rungs[1:-1]
         if r.added is not None and r.ranking is not None
     }
-    best = best_exchange(search, state.fit, rivals, floor, step=state.step)
+    replaced = {r.added: r.replaced for r in state.rungs if r.added is not None}
+    best = best_exchange(search, state.fit, rivals, floor, step=state.step, replaced=replaced)
     if best is None:
         return None
     replacement, without = best.replacement, best.without
@@ -88,24 +89,28 @@ def best_exchange(
     floor: NoiseFloor,
     *,
     step: int = 1,
+    replaced: Mapping[Candidate, Replaced | None] | None = None,
 ) -> Exchange | None:
     """The exchange with the smallest check error; None where none lowers it clearly.
 
     present: the fit with all that was accepted
     rivals: accepted effect -> what may take its place;  step: number of the rung that is sought
+    replaced: accepted effect -> what comes back to the model where the effect goes
     """
     criteria, exchanges = search.criteria, []
     for dropped, among in rivals.items():
         if not among:
             continue
-        without = estimate_without(present.model, dropped, search.prepared)
+        rung = Rung(dropped, present, replaced=(replaced or {}).get(dropped))
+        without = estimate_without(present.model, rung, search.prepared)
         if without is None:
             continue
         ranking = search.rank(without, step=step, among=among)
         better = [
             r
             for r in ranking.ranked
-            if is_supported(without, r, floor, criteria=criteria)
+            if r.instead_of is None
+            and is_supported(without, r, floor, criteria=criteria)
             and is_better(present, r.fit, floor, criteria=criteria)
         ]
         if better:

@@ -17,6 +17,7 @@ from .error import force_error
 from .error_at_command import AtCommand, at_command
 from .least_squares import minimise
 from .prepare import Prepared, Stretch, folds
+from .record_shift import LARGEST, RecordShifts, record_shifts
 from .residual import relative_residuals
 from .scales import scales
 
@@ -51,6 +52,7 @@ class Fit(ByValue):
     fit_blocks, check_blocks: number of the block of each of these rows
     jacobian: (rows, p) of fit_residual by `free`, in units of `scale`
     scale: (p,) SI value of the unit of each free parameter in `jacobian`
+    by_shift: (rows, k) of fit_residual by those shifts of the records that are at no bound
     """
 
     model: Model
@@ -65,6 +67,7 @@ class Fit(ByValue):
     check_blocks: NDArray[np.intp]
     jacobian: Array
     scale: Array
+    by_shift: Array
 
     def __repr__(self) -> str:
         return (
@@ -107,13 +110,21 @@ DECADES = 8.0
 
 @dataclass(frozen=True)
 class Solution:
-    """Free parameters at the optimum, with weighted residual and jacobian by value / scale."""
+    """Free parameters at the optimum, with weighted residual and jacobian by value / scale.
 
+    model: with these values, and the shifts of the records
+    by_shift: (rows, k) of the residual by `shifts`, in samples;  shift_at_bound: (k,) of them
+    """
+
+    model: Model
     values: Array
     scale: Array
     at_bound: NDArray[np.bool_]
     residual: Array
     jacobian: Array
+    shifts: RecordShifts
+    by_shift: Array
+    shift_at_bound: NDArray[np.bool_]
 
 
 def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine) -> Fit:
@@ -126,14 +137,7 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine)
     free = free_parameters(model)
     solution = solve(model, free, prepared, stretches, effort)
     blocks = block_numbers(stretches)
-    errors = standard_errors(solution.jacobian, solution.residual, blocks) * solution.scale
-    fitted = model.with_values(
-        {
-            n: Value(float(v), model.parameters[n].fixed, float(e))
-            for n, v, e in zip(free, solution.values, errors, strict=True)
-        }
-    )
-    fitted = fitted.canonical()
+    fitted = with_errors(solution, free, blocks).canonical()
     check = prepared.of("check")
     if check:
         parts = [v for v, _ in relative_residuals(fitted, check)]
@@ -154,7 +158,25 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine)
         check_blocks=block_numbers(check),
         jacobian=solution.jacobian,
         scale=solution.scale,
+        by_shift=solution.by_shift[:, ~solution.shift_at_bound],
     )
+
+
+def with_errors(solution: Solution, free: tuple[str, ...], blocks: NDArray[np.intp]) -> Model:
+    """The model of a solution with the standard errors of all that was estimated.
+
+    A shift at its bound is as sure as the bound is: others do not hold an error of it.
+    """
+    shifts, bound = solution.shifts, solution.shift_at_bound
+    whole = np.hstack([solution.jacobian, np.where(bound, 0.0, solution.by_shift)])
+    errors = standard_errors(*shifts.observed(solution.residual, whole, blocks))
+    own = errors[: len(free)] * solution.scale
+    values = {
+        n: Value(float(v), solution.model.parameters[n].fixed, float(e))
+        for n, v, e in zip(free, solution.values, own, strict=True)
+    }
+    model = solution.model.with_values(values)
+    return shifts.beside(model, shifts.start(model), errors[len(free) :])
 
 
 def command_error_of(model: Model, stretches: Sequence[Stretch]) -> CommandError:
@@ -179,7 +201,7 @@ def _held_out(
     squares = at_commands = 0.0
     for known, unseen in folds(prepared.of("fit")):
         solution = solve(fitted, free, prepared, known, EFFORTS.held_out)
-        model = fitted.with_values(dict(zip(free, solution.values, strict=True)))
+        model = solution.model
         held += unseen
         parts += [v for v, _ in relative_residuals(model, unseen)]
         command_errors.append(at_command(model, unseen))
@@ -204,7 +226,7 @@ def solve(
     stretches: Sequence[Stretch],
     effort: Effort,
 ) -> Solution:
-    """Bounded least squares on the relative residuals of these stretches."""
+    """Bounded least squares on the relative residuals of these stretches, by shifts as well."""
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     declared = [model.declared(n) for n in free]
     scale = np.array([unit[d.scale] for d in declared])
@@ -219,22 +241,35 @@ def solve(
     start[decades] = np.log(np.maximum(start[decades], 1e-300))
     # a law may divide by a parameter whose bound is zero: stay a trifle inside
     lower, upper = lower + 0.1 * AT_BOUND, upper - 0.1 * AT_BOUND
+    p, lasts = len(free), sum(s.weight * len(s.keep) * s.motion.sample_time for s in stretches)
+    shifts = record_shifts(stretches, round(lasts / BLOCK))
+    lower = np.append(lower, np.full(len(shifts.bodies), -LARGEST))
+    upper = np.append(upper, np.full(len(shifts.bodies), LARGEST))
+    start = np.append(start, shifts.start(model))
     roots = [np.sqrt(s.weight) for s in stretches]
 
     def values(x: Array) -> Array:
-        return scale * np.where(decades, np.exp(np.where(decades, x, 0.0)), x)
+        return scale * np.where(decades, np.exp(np.where(decades, x[:p], 0.0)), x[:p])
+
+    def there(x: Array) -> Model:
+        moved = model.with_values(dict(zip(free, values(x).tolist(), strict=True)))
+        return shifts.beside(moved, x[p:])
 
     def both(x: Array) -> tuple[Array, Array]:
-        there = model.with_values(dict(zip(free, values(x), strict=True)))
-        parts = relative_residuals(there, stretches, free)
+        parts = relative_residuals(there(x), stretches, (*free, *shifts.names))
         r = np.concatenate([w * v for w, (v, _) in zip(roots, parts, strict=True)])
         j = np.concatenate([w * t.T for w, (_, t) in zip(roots, parts, strict=True)])
-        return r, j * np.where(decades, values(x), scale)
+        return r, j * np.append(np.where(decades, values(x), scale), shifts.row)
+
+    def with_prior(x: Array) -> tuple[Array, Array]:
+        r, j = both(x)
+        known, slope = shifts.prior(x[p:], r, j)
+        return np.append(r, known), np.vstack([j, slope])
 
     best = start
-    if free:
+    if len(start):
         best = minimise(
-            both,
+            with_prior,
             start,
             lower,
             upper,
@@ -244,7 +279,17 @@ def solve(
     residual, jacobian = both(best)
     at_bound = (best - lower < AT_BOUND) | (upper - best < AT_BOUND)
     slope = np.where(decades, values(best), scale)
-    return Solution(values(best), slope, at_bound, residual, jacobian)
+    return Solution(
+        model=there(best),
+        values=values(best),
+        scale=slope,
+        at_bound=at_bound[:p],
+        residual=residual,
+        jacobian=jacobian[:, :p],
+        shifts=shifts,
+        by_shift=jacobian[:, p:],
+        shift_at_bound=at_bound[p:],
+    )
 
 
 def over_decades(model: Model, name: str) -> bool:

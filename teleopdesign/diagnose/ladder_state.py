@@ -83,6 +83,8 @@ class LadderState:
     ranking: all candidates beside the last rung;  tone: the best tone from outside there
     supported: candidates that the records support, in the order of the ranking
     exchanges: how many were made;  replaced: whether a pair took the place of all rungs once
+    came_back: effects (name, place) that were given up for another once, or came back beside it:
+        none of them gives way again, so that two effects cannot take turns
     """
 
     rungs: tuple[Rung, ...]
@@ -93,6 +95,7 @@ class LadderState:
     supported: tuple[Ranked, ...]
     exchanges: int = 0
     replaced: bool = False
+    came_back: frozenset[tuple[str, str]] = frozenset()
 
     @property
     def fit(self) -> Fit:

@@ -6,12 +6,14 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from ..quantity import unit_of
+from .decision import helps_but_is_barred
 from .fit import Fit
-from .ranking import REFUSALS
 from .record_offsets import offset_groups
+from .record_shift import shifts_of
 
 if TYPE_CHECKING:
     from .diagnosis import Diagnosis
+    from .rung import Rung
 
 
 def offset_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
@@ -58,22 +60,37 @@ def _percent(error: float) -> str:
     return f"{100 * error:.2f} %" if math.isfinite(error) else "not told"
 
 
+#: part of the last model's error by which a refused candidate must be lower to be told of: what a
+#: reader sees as less
+LESS = 0.02
+
+
 def refused_lines(diagnosis: Diagnosis) -> list[str]:
-    """Candidates with a smaller force error than the final model, and why they do not count."""
-    after = diagnosis.after
-    return [
-        f"refused: {r.candidate} ({_percent(r.fit.check_error)}; seen at the command "
-        f"{_percent(r.fit.at_command.error)}): {REFUSALS[r.refused]}"
-        for r in diagnosis.last.ranked
-        if r.refused and r.fit.check_error < after.check_error
-    ]
+    """What left less force than the model that the ladder ends with, and why it does not count."""
+    after, lines = diagnosis.after, []
+    for r in diagnosis.last.ranked:
+        why = helps_but_is_barred(diagnosis.last.base, r, diagnosis.floor)
+        if why and r.fit.check_error < (1.0 - LESS) * after.check_error:
+            lines.append(
+                f"refused: {r.candidate} ({_percent(r.fit.check_error)}; seen at the command "
+                f"{_percent(r.fit.at_command.error)}): {why}"
+            )
+    return lines
+
+
+def could_be_text(rung: Rung) -> str | None:
+    """What else a rung could be, where the model before it left only noise."""
+    if rung.could_be is None:
+        return None
+    others = ", ".join(map(str, rung.could_be)) or "nothing else that was tried"
+    return f"the model before it leaves only noise; it could also be: {others}"
 
 
 def ladder_text(diagnosis: Diagnosis) -> str:
     """The ladder as a table, with parameters, noise floor and verdict."""
     lines = [f"{'added':<42}{'fit error':>10}{'check error':>13}"]
     for rung in diagnosis.rungs:
-        name = "(your model, re-estimated)" if rung.added is None else f"+ {rung.added}"
+        name = "(your model, re-estimated)" if rung.added is None else f"+ {rung.said}"
         lines.append(
             f"{name:<42}{100 * rung.fit.fit_error:>9.2f}%{100 * rung.fit.check_error:>12.2f}%"
         )
@@ -92,10 +109,13 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         if rung.alternatives:
             others = ", ".join(map(str, rung.alternatives))
             lines.append(f"      no different on these records: {others}")
+        if (could_be := could_be_text(rung)) is not None:
+            lines.append(f"      {could_be}")
     lines += [
         f"own of {o['record']}: {o['of'].replace('_', ' ')} {o['value']:.4g} {o['unit']}"
         for o in offset_rows(diagnosis)
     ]
+    lines += [str(shift) for shift in shifts_of(diagnosis.model, diagnosis.prepared.stretches)]
     lines.append(
         f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
         f"  ({diagnosis.floor.source})"
@@ -120,19 +140,23 @@ def sentence(diagnosis: Diagnosis) -> str:
         noise = f" What is left is noise ({left:.2f} noise floors)."
         return f"verdict: model_adequate.{rest or noise}"
     if diagnosis.verdict == "effects_missing":
-        equals = {r.added: r.alternatives for r in diagnosis.rungs if r.added is not None}
-        names = ", ".join(" or ".join(map(str, (c, *equals[c]))) for c in diagnosis.missing)
-        less = [str(c) for c in equals if c not in diagnosis.missing]
+        added = [r for r in diagnosis.rungs if r.added is not None]
+        names = ", ".join(
+            " or ".join((r.said, *map(str, r.alternatives)))
+            for r in added
+            if r.added in diagnosis.missing
+        )
+        less = [r.said for r in added if r.added not in diagnosis.missing]
         others = f" {', '.join(less)}: less likely than not." if less else ""
         return f"verdict: effects_missing: {names}.{others}{rest}"
     if diagnosis.unlikely:
-        names = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)
+        names = ", ".join(r.said for r in diagnosis.rungs if r.added is not None)
         return (
-            f"verdict: undecided. What helps most ({names}) is less likely than not what is "
-            f"missing: {left:.1f} noise floors are left."
+            f"verdict: undecided, leading candidate {names}: less likely than not what is "
+            f"missing, for {left:.1f} noise floors are left."
         )
     if len(diagnosis.rungs) > 1 and any(r.added and not r.alternatives for r in diagnosis.rungs):
-        names = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)
+        names = ", ".join(r.said for r in diagnosis.rungs if r.added is not None)
         return (
             f"verdict: undecided. {names} help, but explain less than half of what is missing: "
             f"{left:.1f} noise floors are left."

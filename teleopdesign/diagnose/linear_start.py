@@ -50,7 +50,7 @@ def linear_starts(
     """Each model with its best strength (and phase) to first order; smallest error first.
 
     models: the same model with the effect's other parameters at different values
-    base: the fit without the effect; its parameters take part in the step
+    base: the fit without the effect; its parameters and shifts of records take part in the step
     raises ValueError: the effect has no strength that its law is linear in
     """
     if effect.strength is None:
@@ -62,10 +62,13 @@ def linear_starts(
         for model in models
         for phase in phases
     ]
-    absent = models[0].with_values(
-        {f"{at}.{effect.name}.{effect.strength}": 0.0, **dict(base.model.parameters)}
+    absent = (
+        models[0]
+        .with_values({f"{at}.{effect.name}.{effect.strength}": 0.0, **dict(base.model.parameters)})
+        .with_record_shift(base.model.record_shift)
     )
-    basis, _ = np.linalg.qr(base.jacobian / _size(base.jacobian))
+    known = np.hstack([base.jacobian, base.by_shift])
+    basis, _ = np.linalg.qr(known / _size(known))
     left = base.fit_residual - basis @ (basis.T @ base.fit_residual)
     starts = []
     edges = list(range(0, len(probes), AT_ONCE)) + [len(probes)]

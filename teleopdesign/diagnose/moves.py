@@ -6,30 +6,72 @@ supported. It is judged by the noise floor that the state holds.
 
 from __future__ import annotations
 
-from .decision import alternatives_of, is_better, preferred
+from dataclasses import replace
+
+from .decision import alternatives_of, is_adequate, is_better, others_that_help, preferred
 from .ladder_state import LadderSearch, LadderState
-from .rung import Rung
+from .ranking import Ranked
+from .rung import Rung, replaced_by
 from .rungs import estimate_without, falling, refitted
 
 
 def add(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """Add the simplest effect that explains the records as well as the best supported one."""
-    if not state.supported:
-        return None
+    """The simplest effect that explains the records as well as the best that they support.
+
+    It may take the place of an effect of the user's model, or of one that was added before.
+    """
     criteria = search.criteria
-    best = preferred(state.supported, criteria=criteria)
+    supported = [r for r in state.supported if not _takes_back(r, state)]
+    while supported:
+        best = preferred(supported, criteria=criteria)
+        moved = _added(search, state, best)
+        if moved is not None:
+            return moved
+        supported.remove(best)
+    return None
+
+
+def _takes_back(ranked: Ranked, state: LadderState) -> bool:
+    """Whether a candidate would take the place of an effect that came back once already."""
+    return ranked.instead_of is not None and ranked.instead_of.key in state.came_back
+
+
+def _added(search: LadderSearch, state: LadderState, best: Ranked) -> LadderState | None:
+    criteria, prepared = search.criteria, search.prepared
     alternatives = alternatives_of(best, state.ranking, state.fit, state.floor, criteria=criteria)
-    return state.with_rungs(
-        (*state.rungs, Rung(best.candidate, best.fit, state.ranking, alternatives))
+    noise = is_adequate(state.fit, state.floor, criteria=criteria)
+    rung = Rung(
+        best.candidate,
+        best.fit,
+        state.ranking,
+        alternatives,
+        replaced=replaced_by(best, state.fit.model),
+        could_be=others_that_help(best, state.ranking) if noise else None,
     )
+    for earlier in state.rungs[1:]:
+        assert earlier.added is not None
+        if earlier.instead_of == best.candidate:  # both are there: nothing was replaced
+            rungs = [replace(r, replaced=None) if r is earlier else r for r in state.rungs]
+            order = falling(refitted(rungs, best.fit, prepared), prepared)
+            if order is None:
+                return None
+            back = state.came_back | {best.candidate.key}
+            return replace(state.with_rungs(order), came_back=back)
+        if best.instead_of == earlier.added:  # that one only stood in for this
+            kept = [r for r in state.rungs if r is not earlier]
+            rung = replace(rung, replaced=earlier.replaced)
+            order = falling(refitted([*kept, rung], best.fit, prepared), prepared)
+            if order is None:
+                return None
+            return replace(state.with_rungs(order), came_back=state.came_back | {earlier.added.key})
+    return state.with_rungs((*state.rungs, rung))
 
 
 def remove(search: LadderSearch, state: LadderState) -> LadderState | None:
     """Remove an effect that later effects made superfluous, and fit the others again."""
     last = state.fit
     for rung in state.rungs[1:-1]:
-        assert rung.added is not None
-        without = estimate_without(last.model, rung.added, search.prepared)
+        without = estimate_without(last.model, rung, search.prepared)
         if without is None or is_better(without, last, state.floor, criteria=search.criteria):
             continue
         fewer = [r for r in state.rungs if r is not rung]

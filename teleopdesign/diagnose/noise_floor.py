@@ -101,7 +101,7 @@ def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Genera
         sensor = sensor_of(prepared.experiment, name, signals[name][motion.rows])
         return sensor.read(signal, generator)
 
-    return motion_of(
+    drawn = motion_of(
         body=motion.body,
         file=motion.file,
         time=motion.time,
@@ -113,3 +113,4 @@ def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Genera
         bandwidth=prepared.bandwidth,
         resolution=channels[f"{motion.body}.position"].resolution,
     )
+    return replace(drawn, further=motion.further)

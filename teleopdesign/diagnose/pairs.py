@@ -13,7 +13,7 @@ from .ladder_state import LadderSearch, LadderState
 from .noise_floor import NoiseFloor
 from .outside_tone import best_tone
 from .ranking import Ranking
-from .rung import Rung
+from .rung import Rung, replaced_by
 from .rungs import estimate_without, falling
 
 
@@ -69,13 +69,19 @@ def _best_pair(
         supported = (
             r for r in beside.ranked if is_supported(first.fit, r, floor, criteria=criteria)
         )
-        second = next(supported, None)
+        second = next((r for r in supported if r.instead_of != first.candidate), None)
         if second is None:
             continue
         alternatives = alternatives_of(second, beside, first.fit, floor, criteria=criteria)
         rungs = (
-            Rung(first.candidate, first.fit, ranking),
-            Rung(second.candidate, second.fit, beside, alternatives),
+            Rung(first.candidate, first.fit, ranking, replaced=replaced_by(first, here.model)),
+            Rung(
+                second.candidate,
+                second.fit,
+                beside,
+                alternatives,
+                replaced=replaced_by(second, first.fit.model),
+            ),
         )
         if _needs_both(search, here, rungs, floor):
             order = falling((base, *rungs), search.prepared)
@@ -87,8 +93,7 @@ def _needs_both(
     search: LadderSearch, base: Fit, rungs: tuple[Rung, ...], floor: NoiseFloor
 ) -> bool:
     """Whether two effects together explain most of what is missing and both are needed."""
-    both, first, criteria = rungs[-1].fit, rungs[0].added, search.criteria
-    assert first is not None
+    both, first, criteria = rungs[-1].fit, rungs[0], search.criteria
     if not is_better(base, both, floor, criteria=criteria):
         return False
     if explained(base, both, floor) < criteria.mostly:

@@ -3,7 +3,9 @@
 Calibrated on diagnoses of an independent simulator's cases, not by a formula that supposes white
 noise. What an accepted effect's truth depends on there is what is left in the end: where that is
 noise, nearly all accepted effects are true; where much more is left, a wrong one may well have
-stood in for what the catalogue does not have.
+stood in for what the catalogue does not have. On a real machine more than noise is nearly always
+left. There an effect is believed by how far what it explains outweighs what is left: a stand-in
+leaves a part of the order of what it explains, or a better one would not be worth looking for.
 """
 
 from __future__ import annotations
@@ -15,9 +17,10 @@ import numpy as np
 
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
-from .decision import displaced
+from .decision import displaced, helps_but_is_barred
 from .diagnosis import Diagnosis
 from .evidence import chance
+from .fit import Fit
 from .ranking import Ranked, Ranking
 from .rung import Rung
 
@@ -30,6 +33,9 @@ class CandidateEvidence:
     share: its part among the candidates that this step cannot tell apart; they sum to one
     explained: part of the squares above the noise floor that it takes away on this step
     left: error after the last step, in noise floors
+    barred: which check it failed on this step, whatever it explains; "" where none
+    outweighs: squares that it takes away on this step over these and what the last step leaves
+        above the noise floor, 0 to 1; of the force or seen at the command, the smaller
     """
 
     ranked: Ranked
@@ -38,6 +44,8 @@ class CandidateEvidence:
     share: float
     explained: float
     left: float
+    barred: str = ""
+    outweighs: float = 0.0
 
     def probability(self, *, criteria: Criteria = CRITERIA) -> float:
         """Probability that the effect is missing, 0 to 1."""
@@ -47,6 +55,7 @@ class CandidateEvidence:
         # none of 4 accepted effects was true that left 3.9 to 29 floors; squares: of what is left
         # unexplained, as much as noise is sure to be no effect
         trusted = 1.0 if self.left <= criteria.adequate else (criteria.adequate / self.left) ** 2
+        trusted = max(trusted, self.outweighs**criteria.outweighing)
         return float(np.clip(criteria.true_of_accepted * real * trusted, 0.0, 1.0))
 
 
@@ -61,14 +70,18 @@ def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
         share = shares(ranking, rung)
         for ranked in ranking.ranked:
             key = ranked.candidate.key
+            accepted = rung is not None and rung.added is not None and rung.added.key == key
+            barred = "" if accepted else helps_but_is_barred(ranking.base, ranked, diagnosis.floor)
             evidence.append(
                 CandidateEvidence(
                     ranked=ranked,
-                    accepted=rung is not None and rung.added is not None and rung.added.key == key,
+                    accepted=accepted,
                     as_good=rung is not None and key in {c.key for c in rung.alternatives},
                     share=share[key],
                     explained=_explained(diagnosis, ranking, ranked),
                     left=diagnosis.left,
+                    barred=barred,
+                    outweighs=_outweighs(diagnosis, ranking.base, ranked.fit),
                 )
             )
     return evidence
@@ -110,6 +123,20 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
         )
     total = sum(weights.values()) or 1.0
     return {k: w / total for k, w in weights.items()}
+
+
+def _outweighs(diagnosis: Diagnosis, base: Fit, fit: Fit) -> float:
+    """What a candidate takes away on its step, over that and what the last step leaves."""
+    last, floor = diagnosis.after, diagnosis.floor
+    of_force = _over_both(base.check_error, fit.check_error, last.check_error, floor.value)
+    before, after, rest = (f.at_command.error for f in (base, fit, last))
+    return min(of_force, _over_both(before, after, rest, floor.value_at_command))
+
+
+def _over_both(before: float, after: float, last: float, floor: float) -> float:
+    gain = before**2 - after**2
+    left = max(last**2 - floor**2, 0.0)  # NaN seen at the command (blind everywhere): no belief
+    return gain / (gain + left) if gain > 0.0 and np.isfinite(left) else 0.0
 
 
 def _explained(diagnosis: Diagnosis, ranking: Ranking, ranked: Ranked) -> float:

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from dataclasses import replace
 
+from ..errors import ModelError
 from ..model import Model
 from .candidates import Candidate, candidates
 from .criteria import CRITERIA, Criteria
-from .decision import rank_key, refusal
+from .decision import rank_key, refusal, superfluous_beside
 from .effort import EFFORTS
-from .evidence import check_score, whole_score
+from .evidence import check_score, check_squares, whole_score
 from .fit import Fit, estimate, fit_squares
 from .identifiability import is_identifiable
+from .plausibility import implausible_effects
 from .prepare import Prepared
 from .ranking import Ranked, Ranking
 from .search import at_stated, estimate_from_starts
@@ -102,7 +104,11 @@ def rank_candidates(
         added = base.model.with_effect(candidate.effect, at=candidate.at)
         return candidate, estimate_from_starts(added, prepared, base, stated, worth=worth)
 
-    possible = candidates(base.model, [s.motion for s in prepared.of("fit")])
+    possible = candidates(
+        base.model,
+        [s.motion for s in prepared.stretches],
+        own_zero={s.motion.file for s in prepared.stretches if s.has_zero_offset},
+    )
     if among is not None:
         wanted = {c.key for c in among}
         possible = tuple(c for c in possible if c.key in wanted)
@@ -117,7 +123,8 @@ def rank_candidates(
     leading = (1.0 + PLAN.contending) * min((fit_squares(f) for f in counted), default=0.0)
     worthless = (1.0 - worth) * fit_squares(base)
     fits = in_threads(lambda cf: _refined(cf, leading, worthless, prepared, stated), fits)
-    ordered = sorted((ranked(base, c, f, criteria=criteria) for c, f in fits), key=rank_key)
+    results = in_threads(lambda cf: _ranked_best(base, cf, prepared, criteria), fits)
+    ordered = sorted(results, key=rank_key)
     entries = [
         replace(r, behind=whole_score(r.fit, ordered[0].fit) if i else 0.0)
         for i, r in enumerate(ordered)
@@ -125,8 +132,19 @@ def rank_candidates(
     return Ranking(base, tuple(entries))
 
 
-def ranked(base: Fit, candidate: Candidate, fit: Fit, *, criteria: Criteria = CRITERIA) -> Ranked:
-    """A candidate that was fitted on top of a base, as the first of a ranking."""
+def ranked(
+    base: Fit,
+    candidate: Candidate,
+    fit: Fit,
+    *,
+    prepared: Prepared,
+    instead_of: Candidate | None = None,
+    criteria: Criteria = CRITERIA,
+) -> Ranked:
+    """A candidate that was fitted on top of a base, as the first of a ranking.
+
+    instead_of: effect of the base that the fitted model lacks
+    """
     return Ranked(
         candidate=candidate,
         fit=fit,
@@ -134,4 +152,46 @@ def ranked(base: Fit, candidate: Candidate, fit: Fit, *, criteria: Criteria = CR
         behind=0.0,
         is_identifiable=is_identifiable(fit, base, criteria=criteria),
         refused=refusal(base, fit, criteria=criteria),
+        implausible=_implausible(base, candidate, fit, prepared),
+        instead_of=instead_of,
+    )
+
+
+def _implausible(base: Fit, candidate: Candidate, found: Fit, prepared: Prepared) -> str:
+    """What the candidate stands for instead of its name, or an effect that fitted its name before.
+
+    An effect of the base that did not deserve its name before is no fault of the candidate's.
+    """
+    stands_for = implausible_effects(found.model, prepared)
+    if not stands_for:
+        return ""
+    if candidate.key in stands_for:
+        return stands_for[candidate.key]
+    before = implausible_effects(base.model, prepared)
+    new = [f"{key[0]}: {said}" for key, said in stands_for.items() if key not in before]
+    return f"beside it {new[0]}" if new else ""
+
+
+def _ranked_best(
+    base: Fit, tried: tuple[Candidate, Fit], prepared: Prepared, criteria: Criteria
+) -> Ranked:
+    """The candidate beside the base, or in the place of an effect that it makes superfluous."""
+    candidate, found = tried
+    beside = ranked(base, candidate, found, prepared=prepared, criteria=criteria)
+    gains = check_squares(found) < (1.0 - criteria.relevant) * check_squares(base)
+    if candidate.key in found.model.absent or beside.refused or not gains:
+        return beside
+    superfluous = superfluous_beside(base, found, candidate, criteria=criteria)
+    if superfluous is None:
+        return beside
+    name, at = superfluous.key
+    try:
+        less = found.model.without_effect(name, at=at)
+    except ModelError:  # another effect needs it
+        return beside
+    alone = estimate(less, prepared)
+    if check_squares(alone) > (1.0 + criteria.relevant) * check_squares(found):
+        return beside
+    return ranked(
+        base, candidate, alone, prepared=prepared, instead_of=superfluous, criteria=criteria
     )

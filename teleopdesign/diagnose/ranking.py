@@ -17,6 +17,11 @@ REFUSALS = {
 }
 
 
+def named_instead(candidate: Candidate, instead_of: Candidate | None) -> str:
+    """A candidate in words, with the effect that it takes the place of, if any."""
+    return str(candidate) + ("" if instead_of is None else f" instead of {instead_of.effect.name}")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Ranked(ByValue):
     """A candidate with the model fitted with it.
@@ -25,6 +30,9 @@ class Ranked(ByValue):
     behind: how surely the best candidate has the smaller error on all records; 0 for the best
     is_identifiable: its parameters are determined, and told from those of the model it was added to
     refused: why it does not count though it may leave less force (a key of `REFUSALS`), or ""
+    implausible: what its own file, or that of an effect beside it, says that its parameters stand
+        for instead of what its name says; ""
+    instead_of: effect of the base that it makes superfluous, and that its model lacks; None
     """
 
     candidate: Candidate
@@ -33,21 +41,30 @@ class Ranked(ByValue):
     behind: float
     is_identifiable: bool
     refused: str = ""
+    implausible: str = ""
+    instead_of: Candidate | None = None
 
     @property
     def counts(self) -> bool:
-        """Whether the candidate is identifiable and not refused."""
-        return self.is_identifiable and not self.refused
+        """Whether the records can speak for it: told, not refused, and what its name says."""
+        return self.is_identifiable and not self.refused and not self.implausible
+
+    @property
+    def said(self) -> str:
+        """The candidate, with what it takes the place of: "... at device instead of viscous"."""
+        return named_instead(self.candidate, self.instead_of)
 
     @property
     def note(self) -> str:
         """A remark beside the numbers; "" for none."""
         if self.candidate.key in self.fit.model.absent:
             return "gains nothing"
-        return REFUSALS.get(self.refused, "" if self.is_identifiable else "not determined")
+        if self.refused or self.implausible:
+            return REFUSALS.get(self.refused, self.implausible)
+        return "" if self.is_identifiable else "not determined"
 
     def __repr__(self) -> str:
-        return f"Ranked {self.candidate}: score {self.score:.1f}, behind {self.behind:.1f}"
+        return f"Ranked {self.said}: score {self.score:.1f}, behind {self.behind:.1f}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +84,7 @@ class Ranking(ByValue):
         rows: list[tuple[str, ...]] = [("(the model)", *base, "", "", "")]
         for r in self.ranked:
             errors = (f"{r.fit.fit_error:.4f}", f"{r.fit.check_error:.4f}")
-            rows.append((str(r.candidate), *errors, f"{r.score:.1f}", f"{r.behind:.1f}", r.note))
+            rows.append((r.said, *errors, f"{r.score:.1f}", f"{r.behind:.1f}", r.note))
         head = ("candidate", "fit error", "check error", "score", "behind", "")
         return html_table("Candidates, best first", head, rows)
 
@@ -79,6 +96,6 @@ class Ranking(ByValue):
         for r in self.ranked:
             note = f"  {r.note}" if r.note else ""
             lines.append(
-                f"{r.candidate!s:<40}{r.fit.fit_error:>10.4f}{r.fit.check_error:>13.4f}{r.score:>8.1f}{r.behind:>8.1f}{note}"
+                f"{r.said:<40}{r.fit.fit_error:>10.4f}{r.fit.check_error:>13.4f}{r.score:>8.1f}{r.behind:>8.1f}{note}"
             )
         return "\n".join(lines)

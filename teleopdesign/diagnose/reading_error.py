@@ -71,7 +71,8 @@ def reading_error(
 
     None: the model's motion cannot be simulated
     """
-    truth = _with_whole_dead_times(fit.model, prepared)
+    # what is simulated is logged in time
+    truth = _with_whole_dead_times(fit.model.with_record_shift({}), prepared)
     true = coordinates(truth, fit.free)
     made = [_simulated(truth, prepared, g, d) for g, d in product(GIVES, DAMPED)]
     exact = [stretches for stretches in made if stretches is not None]
@@ -82,8 +83,7 @@ def reading_error(
         drawn = [as_read(s, prepared, noise) for s in stretches]
         again = replace(prepared, stretches=tuple(drawn))
         solution = solve(truth, fit.free, again, drawn, EFFORTS.again)
-        there = truth.with_values(dict(zip(fit.free, solution.values, strict=True)))
-        by = coordinates(there, fit.free) - true
+        by = coordinates(solution.model, fit.free) - true
         for i, name in enumerate(fit.free):
             if truth.declared(name).quantity == "angle":
                 by[i] = (by[i] + np.pi) % (2.0 * np.pi) - np.pi

@@ -135,10 +135,16 @@ def offset_groups(
             left = motion.lowpassed(residual_along(body, motion).residual.value)
             return np.asarray(left[rows[k]])
 
-        motions = [stretches[i].motion for i in group]
+        motions = [as_logged(model, stretches[i].motion) for i in group]
         names = stretches[group[0]].offset_names
         offsets.append((group, find_offsets(model.body(place), motions, names, residual)))
     return offsets
+
+
+def as_logged(model: Model, motion: Motion) -> Motion:
+    """A motion with the model's shift of its record."""
+    late = model.command_late(motion.body)
+    return motion if late == motion.command_late else replace(motion, command_late=late)
 
 
 def along_with_offsets(model: Model, stretches: Sequence[Stretch]) -> list[tuple[Body, Motion]]:
@@ -150,7 +156,7 @@ def along_offsets(
     model: Model, stretches: Sequence[Stretch], groups: Sequence[tuple[list[int], RecordOffsets]]
 ) -> list[tuple[Body, Motion]]:
     """Body and motion of each stretch, with the offsets of these groups (`offset_groups`)."""
-    located = [(model.body(s.motion.body), s.motion) for s in stretches]
+    located = [(model.body(s.motion.body), as_logged(model, s.motion)) for s in stretches]
     for group, offsets in groups:
         for i, motion in zip(group, offsets.motions, strict=True):
             located[i] = (offsets.body, motion)

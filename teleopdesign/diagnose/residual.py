@@ -25,7 +25,7 @@ def residuals(
 ) -> list[tuple[Array, Array]]:
     """Low-passed residual force and its tangents (p, rows) on the rows that count, per stretch.
 
-    wrt: full parameter names ("device.coulomb.level"), or probes
+    wrt: full parameter names ("device.coulomb.level"), "device.record_shift", or probes
     """
     return [(r, d) for r, d, _, _ in _with_acting(model, stretches, wrt)]
 

@@ -4,10 +4,40 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..blocks import Value
 from ..by_value import ByValue
+from ..model import Model
 from .candidates import Candidate
 from .fit import Fit
-from .ranking import Ranking
+from .ranking import Ranked, Ranking, named_instead
+
+
+@dataclass(frozen=True)
+class Replaced:
+    """An effect of the user's model that gave way to another, with its parameters.
+
+    values: (full name, value) of each, where it was still in the model
+    """
+
+    effect: Candidate
+    values: tuple[tuple[str, Value], ...]
+
+    def back_in(self, model: Model) -> Model:
+        """The model with the effect as it was."""
+        found = model.with_effect(self.effect.effect, at=self.effect.at)
+        return found.with_values(dict(self.values))
+
+
+def replaced_by(ranked: Ranked, before: Model) -> Replaced | None:
+    """What a candidate takes the place of; before: the model that still has it."""
+    return None if ranked.instead_of is None else replaced_from(ranked.instead_of, before)
+
+
+def replaced_from(effect: Candidate, before: Model) -> Replaced:
+    """An effect that gives way, as it was in the model before."""
+    start = f"{effect.at}.{effect.effect.name}."
+    own = tuple((n, v) for n, v in before.parameters.items() if n.startswith(start))
+    return Replaced(effect, own)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -16,12 +46,35 @@ class Rung(ByValue):
 
     ranking: the candidates that were compared on this step
     alternatives: those that explain the records as well as the added one
+    replaced: the effect of the user's model in whose place it was added
+    could_be: where the model before left only noise: all else that explains a part of that
     """
 
     added: Candidate | None
     fit: Fit
     ranking: Ranking | None = None
     alternatives: tuple[Candidate, ...] = ()
+    replaced: Replaced | None = None
+    could_be: tuple[Candidate, ...] | None = None
+
+    @property
+    def instead_of(self) -> Candidate | None:
+        """The effect of the user's model that it takes the place of."""
+        return None if self.replaced is None else self.replaced.effect
+
+    @property
+    def said(self) -> str:
+        """What was added, in words, with what it takes the place of."""
+        return "" if self.added is None else named_instead(self.added, self.instead_of)
+
+    def taken_from(self, model: Model) -> Model:
+        """A model that has what this rung added, as it was without: what it replaced is back.
+
+        raises ModelError: another effect of the model needs what was added
+        """
+        assert self.added is not None
+        less = model.without_effect(self.added.effect.name, at=self.added.at)
+        return less if self.replaced is None else self.replaced.back_in(less)
 
     def __repr__(self) -> str:
-        return f"Rung {self.added or 'of the model'}: {self.fit!r}"
+        return f"Rung {self.said or 'of the model'}: {self.fit!r}"

@@ -8,7 +8,6 @@ from itertools import pairwise
 
 from ..errors import ModelError
 from ..model import Model
-from .candidates import Candidate
 from .fit import Fit, estimate
 from .prepare import Prepared
 from .rank import ranked
@@ -27,11 +26,10 @@ def without_rise(rungs: Sequence[Rung]) -> tuple[Rung, ...]:
     return tuple(rungs[: first_rise(rungs)])
 
 
-def estimate_without(model: Model, candidate: Candidate, prepared: Prepared) -> Fit | None:
-    """The fit of a model without one of its effects; None: another effect needs it."""
-    name, at = candidate.key
+def estimate_without(model: Model, rung: Rung, prepared: Prepared) -> Fit | None:
+    """The fit of a model without what a rung added to it; None: another effect needs that."""
     try:
-        return estimate(model.without_effect(name, at=at), prepared)
+        return estimate(rung.taken_from(model), prepared)
     except ModelError:
         return None
 
@@ -52,18 +50,30 @@ def falling(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, ...] | Non
         masked, masking = order[rise], order[rise + 1]
         assert masked.added is not None and masking.added is not None
         before = order[rise - 1].fit
-        alone = estimate_without(masking.fit.model, masked.added, prepared)
+        alone = estimate_without(masking.fit.model, masked, prepared)
         if alone is None:
             return None
-        first = Rung(masking.added, alone, _ranked_alone(before, masking.added, alone))
-        second = Rung(masked.added, masking.fit, _ranked_alone(alone, masked.added, masking.fit))
+        first = Rung(
+            masking.added,
+            alone,
+            _ranked_alone(before, masking, alone, prepared),
+            replaced=masking.replaced,
+        )
+        second = Rung(
+            masked.added,
+            masking.fit,
+            _ranked_alone(alone, masked, masking.fit, prepared),
+            replaced=masked.replaced,
+        )
         order = (*order[:rise], first, second, *order[rise + 2 :])
     return None
 
 
-def _ranked_alone(base: Fit, candidate: Candidate, fit: Fit) -> Ranking:
+def _ranked_alone(base: Fit, rung: Rung, fit: Fit, prepared: Prepared) -> Ranking:
     """The ranking of one candidate that was fitted already."""
-    return Ranking(base, (ranked(base, candidate, fit),))
+    assert rung.added is not None
+    alone = ranked(base, rung.added, fit, prepared=prepared, instead_of=rung.instead_of)
+    return Ranking(base, (alone,))
 
 
 def refitted(rungs: Sequence[Rung], last: Fit, prepared: Prepared) -> tuple[Rung, ...]:
@@ -71,7 +81,6 @@ def refitted(rungs: Sequence[Rung], last: Fit, prepared: Prepared) -> tuple[Rung
     backwards = [replace(rungs[-1], fit=last)]
     model = last.model
     for later, rung in zip(rungs[:0:-1], rungs[-2:0:-1], strict=False):
-        assert later.added is not None
-        model = model.without_effect(later.added.effect.name, at=later.added.at)
+        model = later.taken_from(model)
         backwards.append(replace(rung, fit=estimate(model, prepared)))
     return (rungs[0], *reversed(backwards))

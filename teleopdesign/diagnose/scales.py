@@ -41,4 +41,6 @@ def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
         "frequency": bandwidth,
         "angle": 1.0,
         "dimensionless": 1.0,
+        "temperature": 1.0,
+        "temperature_coefficient": 1.0,
     }

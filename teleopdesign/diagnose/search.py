@@ -71,12 +71,14 @@ def at_stated(model: Model, stated: Model) -> Model:
     """The model with its user's values: without an effect that is missing, others may have gone
     where no step leads back from.
     """
-    return model.with_values({n: v.value for n, v in stated.parameters.items()})
+    there = model.parameters  # an effect of the user's may have given way to another
+    return model.with_values({n: v.value for n, v in stated.parameters.items() if n in there})
 
 
 def unchanged(model: Model, base: Fit) -> Fit:
     """The fit of a model whose new effects stay absent: the residual of the base."""
-    return replace(base, model=model.with_values(dict(base.model.parameters)))
+    there = model.with_values(dict(base.model.parameters))
+    return replace(base, model=there.with_record_shift(base.model.record_shift))
 
 
 def _promising(
@@ -167,7 +169,7 @@ def _promise(model: Model, prepared: Prepared, base: Fit, unit: dict[str, float]
     residual = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
     columns = np.concatenate([w * d.T for w, (_, d) in zip(roots, parts, strict=True)])
     columns = columns * np.array([unit[model.declared(n).quantity] for n in wanted])
-    whole = np.hstack([base.jacobian, columns]) if same else columns
+    whole = np.hstack([base.jacobian, base.by_shift, columns]) if same else columns
     return _left(whole, residual) if np.isfinite(whole).all() else math.inf
 
 
@@ -193,10 +195,10 @@ def _best_stepped(
         free = free_parameters(model)
         solution = solve(model, free, prepared, stretches, EFFORTS.first_steps)
         squares = float(solution.residual @ solution.residual)
-        solutions.append((squares, i, dict(zip(free, solution.values.tolist(), strict=True))))
+        solutions.append((squares, i, solution.model))
     solutions.sort(key=lambda f: f[:2])
     best = solutions[:kept] + [f for f in solutions[kept:] if promised and f[1] == 0]
-    return [models[i].with_values(values) for _, i, values in best]
+    return [there for _, _, there in best]
 
 
 def _jolted(fit: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> Fit:
@@ -214,9 +216,7 @@ def _jolted(fit: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> Fit
             solution = solve(jolted, free, prepared, stretches, EFFORTS.first_steps)
             squares = float(solution.residual @ solution.residual)
             if squares < least:
-                least = squares
-                values = dict(zip(free, solution.values.tolist(), strict=True))
-                model = model.with_values(values)
+                least, model = squares, solution.model
         if least > (1.0 - PLAN.onward) * before:
             break
     return fit if model is fit.model else estimate(model, prepared, effort=EFFORTS.rough)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..measurement.encoder import reading_noise, reading_step
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
-from ..measurement.motion import reading_noise, reading_step
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from ..arguments import check_arguments
 from .arms import Arm, by_jacobian, joint, teleoperator_of_arms
+from .control_parts import controller_parts, plant_parts
 from .felt_friction import FeltFriction, felt_friction
 from .haptic_interface import four_cases, haptic_interface
 from .parallel_rods import parallel_rods
@@ -43,11 +44,13 @@ __all__ = [
     "Part",
     "Reading",
     "by_jacobian",
+    "controller_parts",
     "felt_friction",
     "four_cases",
     "haptic_interface",
     "joint",
     "parallel_rods",
+    "plant_parts",
     "position_symbol",
     "read_diagram",
     "reading",

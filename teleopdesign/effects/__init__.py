@@ -26,6 +26,7 @@ from ..names import check_name
 from ..recipes import remember
 from ._effect import (
     CONTACT_ROLES,
+    FURTHER,
     INERTIA,
     SIGNALS,
     UNEXPLAINED,
@@ -38,27 +39,34 @@ from ._effect import (
     ordered,
     parameter_symbol,
 )
+from ._facts import RecordFacts, repeats_within_travel
+from ._position import depends_on_position, period
 from ._structure import make_structure, rubbing, touching
 
 __all__ = [
     "BLOCK_EFFECTS",
     "CONTACT_ROLES",
     "EFFECTS",
+    "FURTHER",
     "INERTIA",
     "SIGNALS",
     "UNEXPLAINED",
     "Effect",
     "FitSearch",
     "Parameter",
+    "RecordFacts",
     "Role",
     "State",
     "catalogue",
     "delayed",
+    "depends_on_position",
     "find_effect",
     "load_effect",
     "make_structure",
     "ordered",
     "parameter_symbol",
+    "period",
+    "repeats_within_travel",
     "rubbing",
     "touching",
     "with_block_effects",
@@ -194,12 +202,44 @@ def catalogue(extra: Iterable[str | Path | Effect] = ()) -> Mapping[str, Effect]
     return Catalogue({**EFFECTS, **{e.name: e for e in users}}, "effect")
 
 
+#: words of other texts -> effect that is meant
+OTHER_NAMES: Mapping[str, str] = {
+    "stiction": "stribeck",
+    "static_friction": "stribeck",
+    "breakaway": "stribeck",
+    "dry_friction": "coulomb",
+    "kinetic_friction": "coulomb",
+    "damping": "viscous",
+    "damper": "viscous",
+    "lugre": "presliding",
+    "dahl": "presliding",
+    "hysteresis": "presliding",
+    "drag": "quadratic_drag",
+    "delay": "actuation_delay",
+    "dead_time": "actuation_delay",
+    "latency": "actuation_delay",
+    "lag": "actuator_lag",
+    "saturation": "actuator_saturation",
+    "play": "backlash",
+    "flexibility": "transmission_compliance",
+    "elasticity": "transmission_compliance",
+    "compliance": "transmission_compliance",
+    "counterweight": "bias",
+    "offset": "bias",
+    "mass": "added_inertia",
+    "payload": "added_inertia",
+    "warm_up": "friction_drift",
+    "temperature": "friction_drift",
+    "detent": "cogging",
+}
+
+
 def find_effect(name: str, known: Mapping[str, Effect] = EFFECTS, where: str = "effect") -> Effect:
     """The effect of that name; raises ModelError with the nearest known name."""
     if name not in known:
-        raise ModelError(
-            f'{where}: no effect "{name}"{did_you_mean(name, known)} (see `teleopdesign effects`)'
-        )
+        meant = OTHER_NAMES.get(name.lower().replace(" ", "_"))
+        hint = f'; did you mean "{meant}"?' if meant in known else did_you_mean(name, known)
+        raise ModelError(f'{where}: no effect "{name}"{hint} (see `teleopdesign effects`)')
     return known[name]
 
 

@@ -33,6 +33,7 @@ from ..errors import ModelError, did_you_mean
 from ..notebook import html_table
 from ..quantity import QUANTITIES, unit_of
 from ..recipes import recipe, remember
+from ._facts import RecordFacts
 
 Role = Literal[
     "actuation",
@@ -84,8 +85,15 @@ SIGNALS = {
     name: sp.Symbol(name, real=True)
     for name in (
         "time position velocity acceleration direction command acting_force interaction_force "
-        "level penetration".split()
+        "level penetration temperature other_position other_velocity other_acceleration".split()
     )
+}
+#: signal -> the further channel of a record that it is made from; without the channel it is unknown
+FURTHER = {
+    "temperature": "temperature",
+    "other_position": "other_position",
+    "other_velocity": "other_position",
+    "other_acceleration": "other_position",
 }
 #: what corrections may use besides: the inertia of the effect's body, and the force that is left
 #: unexplained along a measured motion
@@ -156,6 +164,10 @@ PERIOD = Parameter(
 )
 
 
+#: of a stop: a state that it holds rests up to here, or it would chatter between two rates
+HELD = 1.001
+
+
 @checked
 @dataclass(frozen=True)
 class State:
@@ -166,6 +178,7 @@ class State:
         `now`, leads the state back along a measured motion; None: it runs free
     dry: dry(now, p), the largest rate by which dry friction slows the state down; at zero it holds
         it where no more is needed. None: no such friction
+    stop: stop(now, p), the size that the state is held at, as by a spring that slips
     """
 
     quantity: str
@@ -173,6 +186,18 @@ class State:
     start: str = ""
     correction: Callable[[Any, Any], sp.Expr] | None = None
     dry: Callable[[Any, Any], sp.Expr] | None = None
+    stop: Callable[[Any, Any], sp.Expr] | None = None
+
+    def rate_with_stop(self, now: Any, p: Any, name: str) -> sp.Expr:
+        """The rate, none at the stop; where the stop itself has moved in, back to it."""
+        rate = sp.sympify(self.rate(now, p), strict=True)
+        if self.stop is None or rate == 0:
+            return rate
+        z, stop = sp.Abs(getattr(now, name)), self.stop(now, p)
+        at_stop = sp.And(z >= stop, getattr(now, name) * rate > 0)
+        return sp.Piecewise(
+            (rate * sp.Min((HELD * stop - z) / (stop + z), 0), at_stop), (rate, True)
+        )
 
 
 @checked
@@ -204,6 +229,9 @@ class Effect:
         says the same there
     coupling: of a structure, coupling(now, p), which its law and states are made from
         (`make_structure`)
+    plausible: plausible(p, facts), what its parameters must obey to deserve the effect's name: None
+        where they do, else one sentence that says what they stand for instead. A diagnosis names no
+        effect that its own file does not believe
     led: inertia(p) of a body among the hidden states whose position is corrected: the force that it
         would take to lead it so is left unexplained as well
     """
@@ -222,6 +250,7 @@ class Effect:
     canonical: Callable[[Mapping[str, float]], dict[str, float]] = dict
     led: Callable[[Any], sp.Expr] | None = None
     coupling: Callable[[Any, Any], sp.Expr] | None = None
+    plausible: Callable[[Any, RecordFacts], str | None] | None = None
     source: str = ""
     name: str = ""
     text: str = ""
@@ -265,6 +294,10 @@ class Effect:
     def phase(self) -> str | None:
         """Name of the angle phi in a law strength * sin(... + phi); None for other laws."""
         return _phase(self)
+
+    def channels(self) -> frozenset[str]:
+        """Further channels of a record that its laws need: "temperature", "other_position"."""
+        return _channels(self)
 
     @property
     def title(self) -> str:
@@ -311,8 +344,17 @@ class Effect:
         if signals is None and values is None:
             return dict(_rates(self))
         now, p = self._now(signals), self._parameters(values)
-        rates = {name: state.rate(now, p) for name, state in self.states.items()}
+        rates = {name: s.rate_with_stop(now, p, name) for name, s in self.states.items()}
         return {name: sp.sympify(rate, strict=True) for name, rate in rates.items()}
+
+    def stops(self) -> dict[str, tuple[sp.Expr, sp.Expr]]:
+        """Hidden state -> its rate within its stop, and the stop, on symbols; {}: none has one."""
+        now, p = self._now(None), self._parameters(None)
+        return {
+            name: (sp.sympify(s.rate(now, p), strict=True), sp.sympify(s.stop(now, p), strict=True))
+            for name, s in self.states.items()
+            if s.stop is not None
+        }
 
     def corrections(self) -> dict[str, sp.Expr]:
         """Hidden state -> rate of its correction, on symbols; {} where no state is corrected."""
@@ -378,6 +420,13 @@ def _corrections(effect: Effect) -> dict[str, sp.Expr]:
 
 
 @lru_cache(maxsize=256)
+def _channels(effect: Effect) -> frozenset[str]:
+    laws = (effect.expression(), *effect.rates().values())
+    used = {n for n in FURTHER if any(law.has(SIGNALS[n]) for law in laws)}
+    return frozenset(FURTHER[n] for n in used)
+
+
+@lru_cache(maxsize=256)
 def _dry_bounds(effect: Effect) -> dict[str, sp.Expr]:
     now, p = effect._now(None), effect._parameters(None)
     return {
@@ -419,7 +468,13 @@ def _without(effect: Effect, parameter: str) -> Effect:
         law=at_zero(effect.law),
         coupling=if_any(effect.coupling),
         states={
-            n: replace(s, rate=at_zero(s.rate), correction=if_any(s.correction), dry=if_any(s.dry))
+            n: replace(
+                s,
+                rate=at_zero(s.rate),
+                correction=if_any(s.correction),
+                dry=if_any(s.dry),
+                stop=if_any(s.stop),
+            )
             for n, s in effect.states.items()
         },
         parameters={n: p for n, p in effect.parameters.items() if n != parameter},

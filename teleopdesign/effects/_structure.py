@@ -25,6 +25,7 @@ from ..arguments import checked
 from ..errors import ModelError
 from ..recipes import remember
 from ._effect import SIGNALS, Effect, Energy, Parameter, State
+from ._facts import RecordFacts
 
 Coupling = Callable[[Any, Any], Any]
 
@@ -38,6 +39,7 @@ def make_structure(
     energy: Energy = "supplies",
     linear: bool = False,
     source: str = "",
+    plausible: Callable[[Any, RecordFacts], str | None] | None = None,
 ) -> Effect:
     """The effect of a coupling between the actuator's side and a tip; absent: a tip of no inertia.
 
@@ -46,6 +48,7 @@ def make_structure(
         its course, by the velocity -rate r / K. This is the rate over the tip's natural frequency
         in contact and its part of the body's inertia: a lighter tip, whose force shows less, is led
         by less. What it takes to lead it, m_t rate / K dr/dt, is left unexplained too. 0: runs free
+    plausible: as `Effect` has it; default: the tip's inertia is a part of the body's
     raises ModelError: a parameter is missing
     """
     for name in ("tip_inertia", "stiffness") if following else ("tip_inertia",):
@@ -73,7 +76,20 @@ def make_structure(
         absent={"tip_inertia": 0.0},
         energy=energy,
         linear=linear,
+        plausible=plausible or _tip_is_part,
         source=source,
+    )
+
+
+def _tip_is_part(p: Any, facts: RecordFacts) -> str | None:
+    """Whether the tip is a part of the body, whose inertia counts both sides."""
+    whole = facts.body["inertia"]
+    if p.tip_inertia < whole:
+        return None
+    return (
+        f"a tip of {facts.text(p.tip_inertia, 'inertia')} is no part of a body of "
+        f"{facts.text(whole, 'inertia')}: nothing is left for the actuator's side; it stands for "
+        "something else that follows the motion late"
     )
 
 

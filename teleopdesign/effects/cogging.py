@@ -9,6 +9,7 @@ Magnets against iron teeth, ball screws, gear meshing. It does not depend on the
 from sympy import pi, sin
 
 from ._effect import PERIOD, Effect, FitSearch, Parameter, positive_amplitude
+from ._facts import repeats_within_travel
 
 
 def law(now, p):
@@ -30,5 +31,6 @@ EFFECT = Effect(
     },
     absent={"amplitude": 0.0},
     canonical=positive_amplitude,
+    plausible=repeats_within_travel,
     source="periodic detent force of a slotted machine, first harmonic",
 )

@@ -13,6 +13,17 @@ def law(now, p):
     return p.half_difference * now.direction
 
 
+def plausible(p, facts):
+    level = facts.body["coulomb.level"]
+    if abs(p.half_difference) <= level:
+        return None
+    return (
+        f"half of the difference, {facts.text(abs(p.half_difference), 'force')}, is more than the "
+        f"level of {facts.text(level, 'force')}: one way it would drive the motion; it stands for "
+        "a constant force, such as gravity"
+    )
+
+
 EFFECT = Effect(
     role="friction_level",
     energy="stores",
@@ -23,6 +34,7 @@ EFFECT = Effect(
         )
     },
     absent={"half_difference": 0.0},
+    plausible=plausible,
     needs=frozenset({"coulomb"}),
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
 )

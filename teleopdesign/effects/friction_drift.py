@@ -15,6 +15,17 @@ def law(now, p):
     return 1 - p.fraction * (1 - exp(-now.time / p.time_constant))
 
 
+def plausible(p, facts):
+    cycle = 2 * facts.stroke
+    if cycle == float("inf") or p.time_constant >= cycle:
+        return None
+    return (
+        f"a time constant of {p.time_constant:.3g} s is shorter than one cycle of the motion, "
+        f"{cycle:.3g} s: no warming up is told from the motion so fast; it stands for how the "
+        "records begin"
+    )
+
+
 EFFECT = Effect(
     role="friction_factor",
     energy="dissipates",
@@ -28,6 +39,7 @@ EFFECT = Effect(
         ),
     },
     absent={"fraction": 0.0},
+    plausible=plausible,
     needs=frozenset({"coulomb"}),
     always=frozenset({"even in velocity", "non-negative"}),
     source="first-order warm-up of a lubricant",

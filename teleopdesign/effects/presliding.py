@@ -20,6 +20,19 @@ def bristle(now, p):
     return now.velocity - p.stiffness / now.level * abs(now.velocity) * now.bristle
 
 
+def plausible(p, facts):
+    level = facts.body["coulomb.level"]
+    said = f"a bristle of {facts.text(p.stiffness, 'stiffness')} at {facts.text(level, 'force')}"
+    if level > p.stiffness * facts.travel:
+        travel = facts.text(facts.travel, "position")
+        return f"{said} never slides within the travel of {travel}: it stands for a spring"
+    # what gives by less than half a step is never read
+    if level < p.stiffness * 0.5 * facts.step:
+        step = facts.text(facts.step, "position")
+        return f"{said} gives by less than steps of {step} show: it stands for sgn friction"
+    return None
+
+
 EFFECT = Effect(
     role="friction_shape",
     energy="dissipates",
@@ -39,6 +52,7 @@ EFFECT = Effect(
         ),
     },
     absent={"stiffness": float("inf")},
+    plausible=plausible,
     needs=frozenset({"coulomb"}),
     source="Mahvash, Okamura, ICRA 2006, eq (2); Dahl, AIAA J. 14 (1976) 1675; Canudas de Wit, "
     "Olsson, Astrom, Lischinsky, IEEE TAC 40 (1995) 419",

@@ -9,6 +9,7 @@ that tells it from `cogging`.
 from sympy import pi, sin
 
 from ._effect import PERIOD, Effect, FitSearch, Parameter, positive_amplitude
+from ._facts import repeats_within_travel
 
 
 def law(now, p):
@@ -34,5 +35,6 @@ EFFECT = Effect(
     },
     absent={"amplitude": 0.0},
     canonical=positive_amplitude,
+    plausible=repeats_within_travel,
     source="torque constant of a commutated motor, first harmonic",
 )

@@ -12,6 +12,17 @@ def law(now, p):
     return p.half_difference * abs(now.velocity)
 
 
+def plausible(p, facts):
+    damping = facts.body["viscous.damping"]
+    if abs(p.half_difference) <= damping:
+        return None
+    return (
+        f"half of the difference, {facts.text(abs(p.half_difference), 'damping')}, is more than "
+        f"the damping of {facts.text(damping, 'damping')}: one way it would drive the motion; it "
+        "stands for another force that depends on the direction"
+    )
+
+
 EFFECT = Effect(
     role="force",
     energy="supplies",
@@ -22,6 +33,7 @@ EFFECT = Effect(
         )
     },
     absent={"half_difference": 0.0},
+    plausible=plausible,
     needs=frozenset({"viscous"}),
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
 )

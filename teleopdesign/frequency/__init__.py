@@ -5,7 +5,7 @@ from ..derive import transfer_function
 from .describing_function import describing_function
 from .grid import falling
 from .impedance_map import ImpedanceMap
-from .loop import delay_margin, loop_gain
+from .loop import LoopGain, delay_margin, loop_gain
 from .matrix_response import MatrixResponse, matrix_response
 from .measured_impedance import measured_impedance
 from .measured_response import measured_response, simulated_response
@@ -15,6 +15,7 @@ from .response import FrequencyResponse, bode
 __all__ = [
     "FrequencyResponse",
     "ImpedanceMap",
+    "LoopGain",
     "MatrixResponse",
     "bode",
     "delay_margin",

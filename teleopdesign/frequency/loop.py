@@ -2,52 +2,142 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import sympy as sp
 
+from ..controllers import Controller
 from ..derive import block_symbol, transfer
-from ..diagrams import Diagram
+from ..diagrams import Control, Diagram
 from ..errors import ModelError
-from ..realise.lti import as_transfer_function, linear_blocks
+from ..realise.lti import as_transfer_function, linear_blocks, numerical
 from ..realise.tips import linear_tips
 
 if TYPE_CHECKING:
     import control
 
+#: order of the Pade approximation by which the loop without further delay is found stable
+_PADE = 8
+#: rad/s; crossings are sought between these on a grid of so many points, then refined
+_SLOWEST, _FASTEST, _POINTS = 1e-4, 1e7, 20001
 
-def loop_gain(
-    diagram: Diagram, *, controller: str = "H", speed: float = 0.0
-) -> control.TransferFunction:
+
+@dataclass(frozen=True)
+class LoopGain:
+    """Gain once round the loop of a controller; stable feedback is > 0. Dead times are exact.
+
+    expression: in `realise.lti.S`, with exact numbers
+    left_out: what has no linear form, and takes no part: "block.effect", a controller as "block"
+    held: controllers in discrete time, taken as H(e^(j w T)) and the hold of a sample
+    fastest: rad/s, half the sampling rate of what is held; inf where nothing is
+    """
+
+    expression: sp.Expr
+    controller: str
+    left_out: tuple[str, ...]
+    held: tuple[str, ...]
+    fastest: float
+
+    def __call__(self, s: Any) -> Any:
+        """Value at complex s (1/s), a number or an array of any shape."""
+        points = np.atleast_1d(np.asarray(s, dtype=complex))
+        values = numerical(self.expression)(points.ravel()).reshape(points.shape)
+        return complex(values[0]) if np.ndim(s) == 0 else values
+
+    @property
+    def has_delay(self) -> bool:
+        """Whether a dead time or a hold is in it, so that it is no rational function."""
+        return bool(self.expression.has(sp.exp))
+
+    def transfer_function(self, *, delay_order: int = 4) -> control.TransferFunction:
+        """As python-control system; dead times and holds by Pade approximation of that order."""
+        return as_transfer_function(self.expression, delay_order=delay_order)
+
+    def __repr__(self) -> str:
+        held = f"; sampled and held: {', '.join(self.held)}" if self.held else ""
+        gone = ", ".join(self.left_out) or "nothing"
+        return f"Gain round the loop of {self.controller}; left out: {gone}{held}"
+
+
+def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) -> LoopGain:
     """Gain once round the loop of a controller, opened at its output; stable feedback is > 0.
 
     All other blocks at work, linear forms with smoothed friction and schedules frozen at `speed`.
-    raises ModelError: no such controller
+    A controller in discrete time counts as it samples and holds.
+    raises ModelError: no such controller, or one without linear form
     """
     part = next((c for c in diagram.controls if c.name == controller), None)
     if part is None:
         diagram.block(controller)
         raise ModelError(f"{diagram.name}: {controller} is a body, expected a controller")
     diagram = linear_tips(diagram)
-    linear = linear_blocks(diagram, speed=speed)
+    linear = linear_blocks(diagram, speed=speed, held=True)
+    if controller in linear.left_out:
+        laws = ", ".join(stage.name for stage in _stages(part))
+        raise ModelError(
+            f"{diagram.name}: {controller} ({laws}) has no linear form, so that its loop has no "
+            "gain: see `describing_function`; a system with dt=True needs its period"
+        )
     opened = diagram.opened(controller)
     path = sp.sympify(transfer(opened, part.input, (part.output,))[part.output])
     values = {block_symbol(n): e for n, e in linear.blocks.items()}
     values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
-    return as_transfer_function(-(path * block_symbol(controller)).subs(values))
+    gain = -(path * block_symbol(controller)).subs(values)
+    kept = {c.name: c for c in diagram.controls if c.name in linear.held}
+    periods = [g.values["period"] for c in kept.values() for g in _stages(c) if g.law.shift]
+    fastest = np.pi / max(periods) if periods else float("inf")
+    return LoopGain(gain, controller, linear.left_out, linear.held, fastest)
 
 
-def delay_margin(loop: control.TransferFunction) -> float:
+def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
     """Dead time (s) in the loop at which it begins to oscillate; inf where its gain stays below 1.
 
-    raises ModelError: the loop is unstable without any delay
+    raises ModelError: the loop is unstable without any delay; a controller was left out of it; its
+        gain is above 1 where its samples no longer tell a frequency from others
     """
     import control
 
-    if (np.real(control.feedback(loop, 1).poles()) >= 0).any():
+    if isinstance(loop, LoopGain):
+        if gone := [name for name in loop.left_out if "." not in name]:
+            raise ModelError(
+                f"delay margin: {', '.join(gone)} has no linear form and is not in the gain: "
+                f'judge the rest with `diagram.without("{gone[0]}")`, or simulate'
+            )
+        whole = loop.transfer_function(delay_order=_PADE)
+    else:
+        whole = loop
+    if (np.real(control.feedback(whole, 1).poles()) >= 0).any():
         raise ModelError("delay margin: the loop is unstable without delay")
-    _, phase, _, _, crossing, _ = control.stability_margins(loop, returnall=True)
+    if isinstance(loop, LoopGain) and loop.has_delay:
+        phase, crossing = _crossings(loop)
+    else:
+        _, phase, _, _, crossing, _ = control.stability_margins(whole, returnall=True)
     # a crossing is reached by turning back as far as its phase lies ahead of -180 degrees
     delays = np.radians(np.asarray(phase) % 360) / np.asarray(crossing)
     return float(delays.min()) if len(delays) else float("inf")
+
+
+def _crossings(loop: LoopGain) -> tuple[np.ndarray, np.ndarray]:
+    """Phase ahead of -180 degrees, and frequency (rad/s), where the gain is 1."""
+    from scipy.optimize import brentq
+
+    call = numerical(loop.expression)
+
+    def above(w: float) -> float:
+        return float(np.log(np.abs(call(np.array([1j * w]))[0])))
+
+    grid = np.geomspace(_SLOWEST, min(loop.fastest, _FASTEST), _POINTS)
+    size = np.abs(call(1j * grid))
+    if np.isfinite(loop.fastest) and size[-1] >= 1:
+        raise ModelError(
+            f"delay margin: the loop's gain is still {size[-1]:.3g} at half the sampling rate"
+        )
+    turns = np.flatnonzero((size[:-1] > 1) != (size[1:] > 1))
+    crossings = np.array([brentq(above, grid[k], grid[k + 1], rtol=1e-12) for k in turns])
+    return np.degrees(np.angle(call(1j * crossings))) + 180, crossings
+
+
+def _stages(part: Control) -> tuple[Any, ...]:
+    return part.controller.stages if isinstance(part.controller, Controller) else ()

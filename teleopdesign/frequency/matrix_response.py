@@ -18,7 +18,7 @@ from ..derive.elimination import rows
 from ..derive.printing import block_symbol
 from ..diagrams import Diagram, Moving
 from ..errors import ModelError
-from ..realise.lti import S, linear_blocks
+from ..realise.lti import linear_blocks, numerical
 from ..realise.parted import linear_parted
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def matrix_response(
     if bound := [name for name in inputs if name not in free]:
         raise ModelError(f'{diagram.name}: signal "{bound[0]}" is not from outside')
     unknown = [s for s in diagram.signals if s not in free]
-    form = linear_blocks(diagram, speed=speed)
+    form = linear_blocks(diagram, speed=speed, held=True)
     values = {block_symbol(n): z for n, z in form.blocks.items()}
     values |= {block_symbol(f"A_{n}"): z for n, z in form.actuation.items()}
     s = 2j * np.pi * np.asarray(frequency, dtype=float)
@@ -91,7 +91,7 @@ def matrix_response(
         for name, coefficient in row.items():
             target, names, sign = (right, inputs, -1) if name in inputs else (matrix, unknown, 1)
             if name in names:
-                over = sp.lambdify(S, sp.sympify(coefficient).xreplace(values), "numpy")
+                over = numerical(sp.sympify(coefficient).xreplace(values))
                 target[:, i, names.index(name)] = sign * over(s)
     try:
         solved = np.linalg.solve(matrix, right)

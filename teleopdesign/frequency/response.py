@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import sympy as sp
 
 from ..by_value import ByValue
 from ..derive import with_values
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
-from ..realise.lti import S
+from ..realise.lti import numerical
 from ..realise.tips import linear_tips
 from .cases import cases_of
 
@@ -110,6 +109,7 @@ def bode(
 ) -> FrequencyResponse:
     """Frequency response from one signal to another, for one diagram or several cases.
 
+    A controller in discrete time counts as it samples and holds, up to half its sampling rate.
     given: motions that are prescribed; output "E", input and given "L" is the apparent mechanism
         impedance Zhat_M. Of a body with a compliant transmission it is the tip's that is given
     frequency: Hz, default 0.1 to 1000;  speed: where smoothed friction and schedules are frozen
@@ -119,10 +119,9 @@ def bode(
     rows, left_out = [], {}
     for name, diagram in cases.items():
         expression, linear = with_values(
-            diagram, output=output, input=input, given=given, speed=speed
+            diagram, output=output, input=input, given=given, speed=speed, held=True
         )
-        call = sp.lambdify(S, expression, "numpy")
-        rows.append(np.broadcast_to(np.asarray(call(2j * np.pi * f), dtype=complex), f.shape))
+        rows.append(numerical(expression)(2j * np.pi * f))
         left_out[name] = linear.left_out
     data = labelled(
         np.array(rows), list(cases), f, unit=ratio_unit(linear_tips(diagram), output, input)

@@ -6,6 +6,7 @@ from typing import Any
 
 from ..errors import ExperimentError, did_you_mean, quoted
 from ..quantity import si_factor, to_si
+from .conversion import KEYS, Conversion, conversion_of
 from .description import ONE_BODY, BodyDescription
 from .toml_table import Table
 
@@ -15,6 +16,9 @@ BODY_QUANTITIES = {
     "velocity": "velocity",
     "actuator_force": "force",
     "interaction_force": "force",
+    # what laws of effects may use besides
+    "temperature": "temperature",
+    "other_position": "position",
 }
 _REQUIRED = ("position", "actuator_force")
 _OF_THE_RECORD = ("time", "segment")
@@ -26,9 +30,11 @@ class Channel:
 
     quantity: "position", "velocity", "actuator_force", "interaction_force", "time" or "segment"
     body: None for time and segment
-    column: header, variable or dataset name in the record files; `unit`: the unit it is written in
+    column: header, variable or dataset name in the record files ("i_1 + i_2" of a sum)
+    unit: the unit it is written in
     resolution: step of the encoder or converter, SI; None: not stated
     noise: rms, SI; None: not stated
+    conversion: how the columns become the signal; None: one column times the unit's factor
     """
 
     quantity: str
@@ -37,6 +43,17 @@ class Channel:
     unit: str
     resolution: float | None
     noise: float | None
+    conversion: Conversion | None = None
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The columns that the signal is made of."""
+        return (self.column,) if self.conversion is None else self.conversion.columns
+
+    @property
+    def delay(self) -> float:
+        """By how much the log has the signal late, s."""
+        return 0.0 if self.conversion is None else self.conversion.delay
 
 
 def channels_from(table: Table, bodies: Mapping[str, BodyDescription]) -> dict[str, Channel]:
@@ -73,6 +90,15 @@ def factor_of(channel: Channel, bodies: Mapping[str, BodyDescription], where: st
     axis = bodies[channel.body].axis
     quantity = BODY_QUANTITIES[channel.quantity]
     return si_factor(channel.unit, quantity=quantity, axis=axis, where=where)
+
+
+def conversion_to_si(
+    channel: Channel, bodies: Mapping[str, BodyDescription], where: str
+) -> Conversion:
+    """How the channel's columns become its signal in SI; errors of `factor_of`."""
+    if channel.conversion is not None:
+        return channel.conversion
+    return Conversion((channel.column,), (1.0,), factor=factor_of(channel, bodies, where))
 
 
 def sample_rate_from(experiment: Table, channels: Table) -> float | None:
@@ -133,20 +159,31 @@ def _channel(table: Table, name: str, bodies: Mapping[str, BodyDescription]) -> 
     body, _, quantity = name.rpartition(".")
     if quantity in _OF_THE_RECORD:
         table.allow(("column", "unit"))
-    else:
-        table.allow(("column", "unit", "resolution", "noise"))
-    unit = table.text("unit", "1" if quantity == "segment" else None)
-    written = Channel(quantity, body or None, table.text("column"), unit, None, None)
-    factor = factor_of(written, bodies, table.where("unit"))
+        unit = table.text("unit", "1" if quantity == "segment" else None)
+        written = Channel(quantity, None, table.text("column"), unit, None, None)
+        factor_of(written, bodies, table.where("unit"))
+        return written
+    table.allow(("column", "unit", "resolution", "noise", *KEYS))
+    unit = table.text("unit")
+    conversion, count = conversion_of(
+        table,
+        quantity=quantity,
+        kind=BODY_QUANTITIES[quantity],
+        axis=bodies[body].axis,
+        unit=unit,
+    )
     resolution = table.number_or_none("resolution", above=0)
     noise = table.number_or_none("noise", above=0)
+    factor = abs(conversion.factor)
+    plain = conversion.is_plain and not any(key in table.content for key in KEYS)
     return Channel(
         quantity,
-        written.body,
-        written.column,
+        body,
+        " + ".join(conversion.columns),
         unit,
-        None if resolution is None else resolution * factor,
+        count if resolution is None else resolution * factor,
         None if noise is None else noise * factor,
+        None if plain else conversion,
     )
 
 
@@ -164,8 +201,9 @@ def _refuse_missing(
 def _refuse_shared_columns(table: Table, channels: Mapping[str, Channel]) -> None:
     first_use: dict[str, str] = {}
     for name, channel in channels.items():
-        other = first_use.setdefault(channel.column, name)
-        if other != name:
-            raise ExperimentError(
-                f"{table.where(name)}: found column {quoted(channel.column)}, which {other} uses"
-            )
+        for column in channel.columns:
+            other = first_use.setdefault(column, name)
+            if other != name:
+                raise ExperimentError(
+                    f"{table.where(name)}: found column {quoted(column)}, which {other} uses"
+                )

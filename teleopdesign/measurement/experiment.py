@@ -1,7 +1,7 @@
 """An experiment: a folder with one experiment.toml and the record files that it names."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import final
 
@@ -11,8 +11,10 @@ from ..notebook import html_table
 from ..quantity import unit_of
 from .channel import BODY_QUANTITIES, Channel, channels_from, frequency_from, sample_rate_from
 from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from
+from .doors.bag import is_bag
+from .reading import ReadingStep, reading_table
 from .record import OWN, Record, read_record
-from .toml_table import Table, read_toml
+from .toml_table import Table, described, read_toml
 
 _FILE = "experiment.toml"
 
@@ -25,6 +27,7 @@ class Experiment(ByValue):
     bodies: "device", or "master" and "slave"
     channels: "device.position" and the like, "time", "segment"
     bandwidth: Hz; model and measurement are compared below it; None: to be chosen from the record
+    guesses: what `teleopdesign new` guessed and nobody confirmed: key -> why
     """
 
     folder: Path
@@ -34,6 +37,7 @@ class Experiment(ByValue):
     channels: Mapping[str, Channel]
     bandwidth: float | None
     records: tuple[Record, ...]
+    guesses: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def fit_records(self) -> tuple[Record, ...]:
@@ -44,6 +48,20 @@ class Experiment(ByValue):
     def check_records(self) -> tuple[Record, ...]:
         """Records that errors are reported on, never fitted; may be empty."""
         return tuple(record for record in self.records if record.use == "check")
+
+    @property
+    def reading(self) -> tuple[ReadingStep, ...]:
+        """What was done to the logs to make even records of them; empty: used as they are."""
+        return tuple(step for record in self.records for step in record.reading)
+
+    def save(self, folder: str | Path) -> Path:
+        """Write the experiment as a folder with experiment.toml and its records in SI.
+
+        raises ExperimentError: the folder holds an experiment already, or cannot be written
+        """
+        from .saving import write_experiment
+
+        return write_experiment(self, folder)
 
     def axis(self, body: str) -> str:
         """Axis of a body: "prismatic" or "revolute"; raises ExperimentError: no such body."""
@@ -77,6 +95,7 @@ class Experiment(ByValue):
                     unit = unit_of(BODY_QUANTITIES[quantity], body.axis)
                     lines.append(f"    {quantity} in {unit}{_exactness(channel, unit)}")
         lines += [f"  {record!r}" for record in self.records]
+        lines += reading_table(self.reading)
         return "\n".join(lines)
 
 
@@ -88,7 +107,9 @@ def load_experiment(folder: str | Path) -> Experiment:
     """
     folder = _found_folder(Path(folder))
     experiment = read_toml(folder / _FILE, f"{folder.name}/{_FILE}")
-    experiment.allow(("title", "model", "channels", "comparison", "records", "sample_rate"))
+    experiment.allow(
+        ("title", "model", "channels", "comparison", "records", "sample_rate", "guessed")
+    )
     title = experiment.text("title", folder.name)
     model = experiment.table("model")
     bodies = bodies_from(model)
@@ -107,17 +128,25 @@ def load_experiment(folder: str | Path) -> Experiment:
             channels=channels,
             bodies=bodies,
             sample_rate=sample_rate,
+            span=span,
         )
-        for file, use, offset_names in _record_entries(experiment, folder)
+        for file, use, offset_names, span in _record_entries(experiment, folder)
     )
     _check_bandwidth(bandwidth, records, comparison)
-    return Experiment(folder, title, bodies, environment, channels, bandwidth, records)
+    guessed = experiment.table("guessed")
+    guesses = {key: guessed.text(key) for key in guessed.content}
+    return Experiment(folder, title, bodies, environment, channels, bandwidth, records, guesses)
 
 
 def _found_folder(path: Path) -> Path:
     try:
-        if path.name == _FILE and path.is_file():
+        if path.is_file() and (path.parent / _FILE).is_file():
             path = path.parent
+        elif path.is_file() and path.suffix not in (".toml", ".json"):
+            raise ExperimentError(
+                f"{path.name}: a log with no {_FILE} beside it; to make one: "
+                f"teleopdesign new {path.name}"
+            )
         path = path.resolve()
         if path.is_dir():
             names = sorted(entry.name for entry in path.iterdir())
@@ -137,26 +166,52 @@ def _found_folder(path: Path) -> Path:
     return path
 
 
-def _record_entries(experiment: Table, folder: Path) -> list[tuple[str, str, frozenset[str]]]:
-    """(file, use, what is its own) of each [[records]], checked before any file is read."""
-    entries: list[tuple[str, str, frozenset[str]]] = []
+def _record_entries(
+    experiment: Table, folder: Path
+) -> list[tuple[str, str, frozenset[str], tuple[float, ...] | None]]:
+    """(file, use, what is its own, span) of each [[records]], checked before any file is read."""
+    entries: list[tuple[str, str, frozenset[str], tuple[float, ...] | None]] = []
     for table in experiment.tables("records"):
-        table.allow(("file", "use", *OWN))
-        file = table.text("file")
+        table.allow(("file", "use", "span", *OWN))
+        file, span = table.text("file"), _span(table)
         _check_path(table, folder, file)
-        if any(file == other for other, _, _ in entries):
-            raise ExperimentError(f"{table.where('file')}: {quoted(file)} is listed twice")
+        for other, _, _, other_span in entries:
+            if file == other and (span is None or other_span is None or _overlap(span, other_span)):
+                what = (
+                    "is listed twice" if span == other_span else "is listed with spans that overlap"
+                )
+                raise ExperimentError(f"{table.where('file')}: {quoted(file)} {what}")
         use = _choice(table, "use", ("fit", "check"))
         separate = {
             name for name in OWN if _choice(table, name, ("common", "own"), "common") == "own"
         }
-        entries.append((file, use, frozenset(separate)))
-    if not any(use == "fit" for _, use, _ in entries):
+        entries.append((file, use, frozenset(separate), span))
+    if not any(use == "fit" for _, use, _, _ in entries):
         raise ExperimentError(
             f'{experiment.where("records")}: found {len(entries)} records, none with use = "fit", '
             "expected at least one"
         )
     return entries
+
+
+def _span(table: Table) -> tuple[float, ...] | None:
+    """[begin, end] in s from the log's first row; None: the whole file."""
+    if "span" not in table.content:
+        return None
+    span = table.content["span"]
+    numbers = isinstance(span, list) and all(
+        isinstance(v, int | float) and not isinstance(v, bool) for v in span
+    )
+    if not numbers or len(span) != 2 or not 0 <= span[0] < span[1] < 1e9:
+        raise ExperimentError(
+            f"{table.where('span')}: found {described(span)}, expected [begin, end] in s, from the "
+            "log's first row"
+        )
+    return (float(span[0]), float(span[1]))
+
+
+def _overlap(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
+    return max(one[0], other[0]) < min(one[1], other[1])
 
 
 def _choice(table: Table, key: str, choices: tuple[str, ...], default: str | None = None) -> str:
@@ -175,7 +230,7 @@ def _check_path(table: Table, folder: Path, file: str) -> None:
     try:
         path = (folder / file).resolve()
         inside = path.is_relative_to(folder)
-        exists = path.is_file()
+        exists = path.is_file() or is_bag(path)
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", None) or str(problem)
         raise ExperimentError(f"{where}: {quoted(file)} cannot be read: {reason}") from None

@@ -69,6 +69,10 @@ class Spectrum:
         """(j omega)^order."""
         return np.asarray((2j * np.pi * self.frequency) ** order, dtype=np.complex128)
 
+    def ahead(self, time: float) -> NDArray[np.complex128] | float:
+        """A signal read so much later (s): what is to come moves forward; 1 for none."""
+        return np.exp(2j * np.pi * self.frequency * time) if time else 1.0
+
     def hold(self, parts: int = 1, which: int = 0) -> NDArray[np.complex128]:
         """Zero-order hold: from row values to the staircase, seen at the rows' times.
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..by_value import ByValue
+from .encoder import reading_noise, reading_step
 from .filtering import Array, Spectrum, spectrum
 from .record import Record
 
@@ -33,6 +35,8 @@ class Motion(ByValue):
     direction: +1, -1, or 0 where the reading cannot tell a motion
     step: what one reading leaves open of the position (encoder step, or twice its noise)
     rows: the samples' place in the record;  bandwidth: of the comparison, Hz
+    further: of channels besides: "temperature", "other_position" and its rates, smoothed alike
+    command_late: s by which the log of the command is later than that of the position
     """
 
     body: str
@@ -49,6 +53,8 @@ class Motion(ByValue):
     spectrum: Spectrum
     smoothing: Array
     bandwidth: float
+    command_late: float = 0.0
+    further: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def sample_time(self) -> float:
@@ -58,12 +64,14 @@ class Motion(ByValue):
     def at_rows(self, staircase: Array) -> Array:
         """A held signal, value of each row until the next, as a smooth one at the rows (..., n).
 
+        It is read `command_late` later than logged: so it was then.
         staircase: (..., n), or (..., k n) with k values in turn for equal parts of each row
         """
         parts = staircase.shape[-1] // len(self.time)
+        smoothing = self.smoothing * self.spectrum.ahead(self.command_late)
         held = (
             self.spectrum.multiply(
-                staircase[..., k::parts], self.spectrum.hold(parts, k) * self.smoothing
+                staircase[..., k::parts], self.spectrum.hold(parts, k) * smoothing
             )
             for k in range(parts)
         )
@@ -74,31 +82,6 @@ class Motion(ByValue):
         from .zero_phase import zero_phase  # numba: only where something is filtered
 
         return zero_phase(y, self.bandwidth, self.sample_time)
-
-
-def reading_noise(position: Array) -> float:
-    """Rms noise of one position reading, from its content near the Nyquist frequency."""
-    fourth = np.diff(position, 4)
-    # white noise passes a fourth difference with gain sqrt(70); the median ignores sharp motion
-    return float(np.median(np.abs(fourth)) / 0.6745 / np.sqrt(70.0))
-
-
-def reading_step(position: Array) -> float:
-    """Smallest step between neighbouring values that the readings take: the encoder's, if any.
-
-    In a motion that never comes back to a place, values lie apart by the travel of a sample: then
-    the step is the one whose rounding looks like the noise that is seen.
-    """
-    values = np.unique(position)
-    if len(values) < 2:
-        return 0.0
-    gaps = np.diff(values)
-    step = float(np.quantile(gaps[gaps > 1e-9 * np.ptp(values)], 0.002))
-    rounding = float(np.sqrt(12.0)) * reading_noise(position)
-    moving = float(np.mean(np.diff(position) != 0)) > 0.5
-    # readings that are all alike in their fourth difference show no noise at all
-    is_noisy = rounding > 1e-9 * float(np.ptp(position))
-    return min(step, rounding) if is_noisy and moving and step > 3.0 * rounding else step
 
 
 def direction_of(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:
@@ -157,10 +140,12 @@ def motion_of(
     rows: slice,
     bandwidth: float,
     resolution: float | None,
+    further: Mapping[str, Array] | None = None,
 ) -> Motion:
     """Smooth and differentiate one uninterrupted stretch of readings (n samples each, SI).
 
     bandwidth: Hz, of the comparison;  resolution: encoder step, None where not stated
+    further: readings of channels besides, "temperature" and "other_position"
     """
     n = len(position)
     s = spectrum(n, sample_time)
@@ -178,6 +163,13 @@ def motion_of(
     velocity = s.back(transformed * s.derivative(1))
     noise_left = step / np.sqrt(12.0) * float(np.sqrt(np.mean(np.abs(differentiated) ** 2)))
     direction = direction_of(reading, change, step, patience)
+    more = {}
+    for name, signal in (further or {}).items():
+        smooth = s.transform(signal) * smoothing
+        more[name] = s.back(smooth)
+        if name == "other_position":
+            more["other_velocity"] = s.back(smooth * s.derivative(1))
+            more["other_acceleration"] = s.back(smooth * s.derivative(2))
     direction[beside(np.abs(velocity) < SLOW * noise_left)] = 0
     return Motion(
         body=body,
@@ -194,7 +186,12 @@ def motion_of(
         spectrum=s,
         smoothing=smoothing,
         bandwidth=bandwidth,
+        further=more,
     )
+
+
+#: channels of a body that a law may use besides those of its own motion
+FURTHER = ("temperature", "other_position")
 
 
 def motions(
@@ -205,6 +202,7 @@ def motions(
     bandwidth: Hz, of the comparison;  resolution: encoder step (SI), None where not stated
     """
     interaction = record.signals.get(f"{body}.interaction_force")
+    names = {n: f"{body}.{n}" for n in FURTHER if f"{body}.{n}" in record.signals}
     return tuple(
         motion_of(
             body=body,
@@ -217,6 +215,7 @@ def motions(
             rows=rows,
             bandwidth=bandwidth,
             resolution=resolution,
+            further={n: record.signals[name][rows] for n, name in names.items()},
         )
         for rows in record.segments
         if (rows.stop - rows.start) * record.sample_time >= SHORTEST

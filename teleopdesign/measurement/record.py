@@ -1,4 +1,4 @@
-"""One recording: signals in SI units on a uniform time."""
+"""One recording: signals in SI units on a uniform time, and what was done to the log for that."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,11 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..by_value import ByValue
-from ..errors import ExperimentError
-from .channel import Channel, factor_of
+from .channel import Channel, conversion_to_si, factor_of
 from .description import BodyDescription
-from .tables import read_columns
-from .time_grid import counted_time, segments_of, uniform_time
+from .log_clock import clock_of_log
+from .reading import ReadingStep
+from .signals_of_log import signals_of_log
+from .spans import cut_to
+from .tables import LogColumns, read_columns
 
 #: what a record may have of its own: "own" at these keys of [[records]]
 OWN = ("position_zero", "bias", "friction_level")
@@ -29,6 +31,7 @@ class Record(ByValue):
     time: s, shape (n,), uniform within each segment with step `sample_time` (s)
     segments: stretches without interruption; hidden states start anew at each
     signals: "device.position", "master.actuator_force" ... -> shape (n,), SI, signs of the format
+    reading: what was done to the log on the way, each step with its effect; empty: used as it is
     """
 
     file: str
@@ -38,6 +41,7 @@ class Record(ByValue):
     sample_time: float
     segments: tuple[slice, ...]
     signals: Mapping[str, NDArray[np.float64]]
+    reading: tuple[ReadingStep, ...] = ()
 
     @property
     def duration(self) -> float:
@@ -61,52 +65,80 @@ def read_record(
     channels: Mapping[str, Channel],
     bodies: Mapping[str, BodyDescription],
     sample_rate: float | None,
+    span: tuple[float, ...] | None = None,
 ) -> Record:
     """Read one record file of an experiment's folder.
 
     sample_rate: Hz; None: the channel "time" says
-    raises ExperimentError: see `read_columns` and `uniform_time`
+    span: (begin, end) in s from the log's first row; None: all of it
+    raises ExperimentError: see `read_columns` and `clock_of`
     """
     name = f"{folder.name}/{file}"
-    columns = read_columns(
-        folder / file,
+    columns = read_columns(folder / file, name, wanted_columns(channels))
+    if span is not None:
+        columns = cut_to(columns, span, channels, bodies, sample_rate, name)
+        file = f"{file} {span[0]:g}-{span[1]:g} s"
+    return record_of(
+        columns,
         name,
-        {channel.column: f"channels.{_short(key)}" for key, channel in channels.items()},
+        file=file,
+        use=use,
+        offset_names=offset_names,
+        channels=channels,
+        bodies=bodies,
+        sample_rate=sample_rate,
     )
-    signals = {
-        key: columns[channel.column] * factor_of(channel, bodies, f"channels.{key}.unit")
+
+
+def wanted_columns(channels: Mapping[str, Channel]) -> dict[str, str]:
+    """Column -> the channel that wants it, as messages name it."""
+    return {
+        column: f"channels.{short_name(key)}"
+        for key, channel in channels.items()
+        for column in channel.columns
+    }
+
+
+def record_of(
+    columns: LogColumns,
+    name: str,
+    *,
+    file: str,
+    use: str,
+    offset_names: frozenset[str],
+    channels: Mapping[str, Channel],
+    bodies: Mapping[str, BodyDescription],
+    sample_rate: float | None,
+) -> Record:
+    """The record that the columns of one log make.
+
+    name: of the log in messages;  file: the record's;  sample_rate: Hz; None: there is a time
+    raises ExperimentError: too short, time that does not increase, too many cells without a number
+    """
+    conversions = {
+        key: conversion_to_si(channel, bodies, f"channels.{key}.unit")
         for key, channel in channels.items()
         if channel.body is not None
     }
-    count = len(next(iter(signals.values())))
-    segments = segments_of(_labels(columns, channels, name), count)
-    if sample_rate is not None:
-        time, sample_time = counted_time(count, sample_rate, name)
-    else:
-        stamps = columns[channels["time"].column] * factor_of(
-            channels["time"], bodies, "channels.time"
-        )
-        time, sample_time = uniform_time(
-            stamps, segments, f"{name}: channels.time", labelled="segment" in channels
-        )
-    return Record(file, use, offset_names, time, sample_time, segments, signals)
+    to_seconds = None
+    if sample_rate is None:
+        to_seconds = factor_of(channels["time"], bodies, "channels.time")
+    clock, steps = clock_of_log(
+        columns, channels, name, file=file, sample_rate=sample_rate, to_seconds=to_seconds
+    )
+    signals, more = signals_of_log(columns, channels, conversions, clock, file)
+    return Record(
+        file,
+        use,
+        offset_names,
+        clock.clock.time,
+        clock.clock.sample_time,
+        clock.clock.segments,
+        signals,
+        (*columns.steps(file), *steps, *more),
+    )
 
 
-def _short(key: str) -> str:
+def short_name(key: str) -> str:
     """A channel's name as a user of one body writes it."""
     return key.removeprefix("device.")
-
-
-def _labels(
-    columns: Mapping[str, NDArray[np.float64]], channels: Mapping[str, Channel], name: str
-) -> NDArray[np.float64] | None:
-    if "segment" not in channels:
-        return None
-    labels = columns[channels["segment"].column]
-    fractional = np.flatnonzero(labels != np.round(labels))
-    if fractional.size:
-        raise ExperimentError(
-            f"{name}: channels.segment: row {fractional[0] + 1}: found {labels[fractional[0]]:g}, "
-            "expected a whole number"
-        )
-    return labels

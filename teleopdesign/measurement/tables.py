@@ -1,48 +1,124 @@
-"""Columns of a record file: .csv, .csv.gz, .parquet, .mat, .h5. Nothing is converted here."""
+"""Columns of a log: which door opens it, and what it holds as numbers. Nothing is converted
+here.
+"""
+
+from __future__ import annotations
 
 import zlib
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from types import ModuleType
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ExperimentError, did_you_mean, quoted
-from .csv_table import read_csv
+from .doors._log import Log, listed
+from .doors.arrays import open_arrays
+from .doors.bag import is_bag, open_bag
+from .doors.hdf5 import open_hdf5
+from .doors.matlab import open_matlab
+from .doors.parquet import open_parquet
+from .doors.text import open_text
+from .doors.workbook import open_workbook
+from .reading import ReadingStep
 
-Columns = dict[str, NDArray[np.float64]]
+Array = NDArray[np.float64]
+Result = TypeVar("Result")
 Wanted = Mapping[str, str]
 """Column -> the channel that wants it (for messages, "channels.position")."""
 
+DOORS: Mapping[str, Callable[[Path, str], Log]] = {
+    ".csv": open_text,
+    ".csv.gz": open_text,
+    ".txt": open_text,
+    ".tsv": open_text,
+    ".dat": open_text,
+    ".parquet": open_parquet,
+    ".xlsx": open_workbook,
+    ".mat": open_matlab,
+    ".npz": open_arrays,
+    ".h5": open_hdf5,
+    ".hdf5": open_hdf5,
+    ".bag": open_bag,
+    ".mcap": open_bag,
+    ".db3": open_bag,
+}
+#: whole numbers above are stamps in nanoseconds: 2^53, beyond which float64 skips some
+_LONG = 2**53
 
-def read_columns(path: Path, file: str, wanted: Wanted) -> Columns:
+
+@dataclass(frozen=True)
+class LogColumns:
+    """Columns of one log as numbers, NaN where a cell holds none.
+
+    values: column -> (n,);  stamps: of columns with a clock of their own, s, shape as the column
+    notes: what was found about the file
+    """
+
+    values: Mapping[str, Array]
+    stamps: Mapping[str, Array] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    def steps(self, file: str) -> tuple[ReadingStep, ...]:
+        """What was found about the file, as steps of reading it."""
+        return tuple(ReadingStep(file, note, "read so", "none") for note in self.notes)
+
+
+def open_log(path: Path, file: str) -> Log:
+    """Open a log by its door.
+
+    file: its name in messages ("rod/fit.csv.gz")
+    raises ExperimentError: unknown kind of file, or one that cannot be read
+    """
+    opened: Callable[[Path, str], Log] | None = open_bag if is_bag(path) else None
+    if opened is None:
+        name = path.name.lower()
+        opened = next((door for ending, door in DOORS.items() if name.endswith(ending)), None)
+    if opened is None:
+        raise ExperimentError(
+            f"{file}: found a file of kind {quoted(path.suffix)}, expected {', '.join(DOORS)}"
+        )
+    door = opened
+    return _reading(lambda: door(path, file), file)
+
+
+def _reading(read: Callable[[], Result], file: str) -> Result:
+    try:
+        return read()
+    except (OSError, EOFError, zlib.error, MemoryError) as problem:
+        reason = getattr(problem, "strerror", None) or str(problem) or type(problem).__name__
+        raise ExperimentError(f"{file}: cannot be read: {reason}") from None
+
+
+def read_columns(path: Path, file: str, wanted: Wanted) -> LogColumns:
     """The wanted columns of one file, each of shape (n,), as written.
 
     file: the file's name in messages ("rod/fit.csv.gz")
-    raises ExperimentError: unknown kind of file, unreadable, column missing, not numbers, NaN or
-    infinite (with column and row, counted from 1 without the header), columns of different length
+    raises ExperimentError: unknown kind of file, unreadable, column missing, not numbers, columns
+    of different length
     """
-    readers = (read for ending, read in _READERS.items() if path.name.lower().endswith(ending))
-    read = next(readers, None)
-    if read is None:
-        raise ExperimentError(
-            f"{file}: found a file of kind {quoted(path.suffix)}, expected {', '.join(_READERS)}"
-        )
+    return columns_of(open_log(path, file), file, wanted)
+
+
+def columns_of(log: Log, file: str, wanted: Wanted) -> LogColumns:
+    """The wanted columns of an open log; errors of `read_columns`."""
+    require_columns(log.names, file, wanted)
+    names = list(wanted)
+    base = next((c for c, channel in wanted.items() if channel == "channels.time"), None)
+    clocks = {n: log.clocks[n] for n in names if n in log.clocks and log.clocks[n] != base}
+    if base is not None and base in log.clocks and log.clocks[base] != base:
+        clocks = {n: clock for n, clock in clocks.items() if clock != log.clocks[base]}
+    channel_of = {**wanted, **dict.fromkeys(clocks.values(), "channels.time")}
+    read = _reading(lambda: log.read(channel_of), file)
     try:
-        columns = read(path, file, wanted)
-    except (OSError, EOFError, zlib.error) as problem:
-        reason = getattr(problem, "strerror", None) or str(problem) or type(problem).__name__
-        raise ExperimentError(f"{file}: cannot be read: {reason}") from None
+        values = {n: numbers_of(read[n], n, file, wanted.get(n, "")) for n in read}
+    except MemoryError:
+        raise ExperimentError(f"{file}: too large for this machine's memory") from None
+    stamps = {n: values[clock] for n, clock in clocks.items()}
+    columns = LogColumns({n: values[n] for n in names}, stamps, log.notes)
     _refuse_different_lengths(columns, file, wanted)
-    for column, values in columns.items():
-        bad = np.flatnonzero(~np.isfinite(values))
-        if bad.size:
-            raise ExperimentError(
-                f"{file}: {wanted[column]}: column {quoted(column)}, row {bad[0] + 1}: "
-                f"found {values[bad[0]]:g}, expected a finite number"
-            )
     return columns
 
 
@@ -51,88 +127,62 @@ def require_columns(columns: Iterable[str], file: str, wanted: Wanted) -> None:
     columns = list(columns)
     for column, channel in wanted.items():
         if column not in columns:
-            listed = ", ".join(columns[:20]) + (", ..." if len(columns) > 20 else "")
             raise ExperimentError(
-                f"{file}: {channel}: no column {quoted(column)}, found {listed or 'no column'}"
-                f"{did_you_mean(column, columns)}"
+                f"{file}: {channel}: no column {quoted(column)}, "
+                f"found {listed(columns) or 'no column'}{did_you_mean(column, columns)}"
+            )
+        if columns.count(column) > 1:
+            raise ExperimentError(
+                f"{file}: {channel}: found {columns.count(column)} columns {quoted(column)}, "
+                "expected one"
             )
 
 
-def _read_csv(path: Path, file: str, wanted: Wanted) -> Columns:
-    return read_csv(path, file, wanted, require_columns)
-
-
-def _read_parquet(path: Path, file: str, wanted: Wanted) -> Columns:
-    parquet = _optional("pyarrow.parquet", file)
-    arrow = _optional("pyarrow", file)
-    try:
-        require_columns(parquet.read_schema(path).names, file, wanted)
-        table = parquet.read_table(path, columns=list(wanted))
-        arrays = {name: table.column(name).to_numpy() for name in wanted}
-    except arrow.lib.ArrowException as problem:
-        raise ExperimentError(f"{file}: not a readable parquet file: {problem}") from None
-    return {name: _numbers(values, name, file, wanted) for name, values in arrays.items()}
-
-
-def _read_mat(path: Path, file: str, wanted: Wanted) -> Columns:
-    from scipy.io import loadmat, matlab, whosmat
-
-    try:
-        require_columns([name for name, _, _ in whosmat(path)], file, wanted)
-        content = loadmat(path, variable_names=list(wanted))
-    except NotImplementedError:  # version 7.3 is an HDF5 file
-        return _read_h5(path, file, wanted)
-    except (matlab.MatReadError, ValueError, TypeError, KeyError, IndexError) as problem:
-        raise ExperimentError(f"{file}: not a readable MAT file: {problem}") from None
-    return {name: _numbers(content[name], name, file, wanted) for name in wanted}
-
-
-def _read_h5(path: Path, file: str, wanted: Wanted) -> Columns:
-    h5py = _optional("h5py", file)
-    with h5py.File(path, "r") as content:
-        names: list[str] = []
-        content.visititems(
-            lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None
-        )
-        require_columns(names, file, wanted)
-        return {name: _numbers(content[name][()], name, file, wanted) for name in wanted}
-
-
-_READERS: dict[str, Callable[[Path, str, Wanted], Columns]] = {
-    ".csv": _read_csv,
-    ".csv.gz": _read_csv,
-    ".parquet": _read_parquet,
-    ".mat": _read_mat,
-    ".h5": _read_h5,
-}
-
-
-def _optional(module: str, file: str) -> ModuleType:
-    from importlib import import_module
-
-    try:
-        return import_module(module)
-    except ImportError:
-        raise ExperimentError(
-            f'{file}: reading it needs {module.split(".")[0]}: pip install "teleopdesign[io]"'
-        ) from None
-
-
-def _numbers(values: Any, column: str, file: str, wanted: Wanted) -> NDArray[np.float64]:
-    """A vector of float64 out of what a file holds: (n,), (n, 1) or (1, n) numbers."""
+def numbers_of(values: Any, column: str, file: str, channel: str = "") -> Array:
+    """A vector of float64 out of what a file holds: (n,), (n, 1) or (1, n) numbers or dates."""
     values = np.asarray(values)
-    begin = f"{file}: {wanted[column]}: column {quoted(column)}"
+    begin = (
+        f"{file}: {channel}: column {quoted(column)}" if channel else f"{file}: {quoted(column)}"
+    )
     if values.ndim == 2 and 1 in values.shape:
         values = values.reshape(-1)
     if values.ndim != 1:
         raise ExperimentError(
             f"{begin}: found an array of shape {values.shape}, expected one column"
         )
+    if values.dtype.kind in "mM":
+        return _seconds(values)
+    if values.dtype.kind in "iu" and len(values) and np.abs(values[0]) > _LONG:
+        return np.asarray(values - values[0], dtype=np.float64)
+    if values.dtype.kind == "O":
+        values = _plain_objects(values)
     if values.dtype.kind not in "fiub":
         row, text = _first_non_number(values)
         raise ExperimentError(f"{begin}, row {row}: found {text}, expected a number")
-    numbers: NDArray[np.float64] = values.astype(np.float64)
+    numbers: Array = values.astype(np.float64)
     return numbers
+
+
+def _seconds(values: NDArray[Any]) -> Array:
+    """Dates and durations as seconds from the first one; NaN where there is none."""
+    empty = np.isnat(values)
+    filled = values[~empty]
+    out = np.full(len(values), np.nan)
+    if len(filled):
+        out[~empty] = (filled - filled[0]) / np.timedelta64(1, "ns") * 1e-9
+    return out
+
+
+def _plain_objects(values: NDArray[Any]) -> NDArray[Any]:
+    """Objects as numbers where all are: None is an empty cell."""
+    if all(v is None or isinstance(v, int | float | np.number) for v in values):
+        return np.array([np.nan if v is None else v for v in values], dtype=np.float64)
+    if len(values) and hasattr(values[0], "isoformat"):
+        try:
+            return _seconds(values.astype("datetime64[ns]"))
+        except (TypeError, ValueError):
+            return values
+    return values
 
 
 def _first_non_number(values: NDArray[Any]) -> tuple[int, str]:
@@ -142,13 +192,15 @@ def _first_non_number(values: NDArray[Any]) -> tuple[int, str]:
     return 1, f"values of type {values.dtype}"
 
 
-def _refuse_different_lengths(columns: Columns, file: str, wanted: Wanted) -> None:
-    if not columns:
+def _refuse_different_lengths(columns: LogColumns, file: str, wanted: Wanted) -> None:
+    names = [n for n in columns.values if n not in columns.stamps]
+    if not names:
         return
-    first, *others = columns
+    first, *others = names
     for other in others:
-        if len(columns[other]) != len(columns[first]):
+        if len(columns.values[other]) != len(columns.values[first]):
             raise ExperimentError(
-                f"{file}: {wanted[other]}: column {quoted(other)} has {len(columns[other])} rows, "
-                f"expected {len(columns[first])} as {quoted(first)}"
+                f"{file}: {wanted[other]}: column {quoted(other)} has "
+                f"{len(columns.values[other])} rows, "
+                f"expected {len(columns.values[first])} as {quoted(first)}"
             )

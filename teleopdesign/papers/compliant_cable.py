@@ -116,8 +116,8 @@ def clamped_link() -> ProofSteps:
     55,
     paper=DERIVED,
     place="extends P53",
-    formula="no cycle between -A and A gives energy out iff f_D <= f_1 + f_2 and "
-    "f_D (1 - tanh(u_2)/u_2) <= f_1, u_2 = sigma_D f_2/(k f_D); for these enough: "
+    formula="no plain slow cycle between -A and A gives energy out, whatever A, iff f_D <= f_1 + "
+    "f_2 and f_D (1 - tanh(u_2)/u_2) <= f_1, u_2 = sigma_D f_2/(k f_D); for these enough: "
     "sigma_D <= k sqrt(3 f_1 f_D)/f_2",
 )
 def free_link() -> ProofSteps:
@@ -129,6 +129,11 @@ def free_link() -> ProofSteps:
     u_2 = sigma * f_2 / (k * f_D)
     return proof(
         rising_gain(),
+        Equal(
+            "a stroke of 2 A stretches the cable by 2 f_2/k, then drags the link: two a cycle",
+            CLAMPED - 2 * f_2 * (2 * A - 2 * f_2 / k),
+            FREE,
+        ),
         Equal("sliding joins stuck at A = f_2/k", FREE.subs(A, f_2 / k), CLAMPED.subs(A, f_2 / k)),
         Equal("there u is u_2", U.subs(A, f_2 / k), u_2),
         NotNegative(
@@ -138,7 +143,7 @@ def free_link() -> ProofSteps:
             {spare: f_1 + f_2 - f_D},
         ),
         Limit(
-            "necessary: large cycles give out 4 A (f_D - f_1 - f_2)",
+            "necessary: large cycles give out 4 A (f_D - f_1 - f_2), units with f_D = sigma_D = 2",
             FREE.subs({f_D: 2, sigma: 2}) / A,
             A,
             sp.oo,
@@ -167,12 +172,13 @@ def free_link() -> ProofSteps:
     57,
     paper=DERIVED,
     place="consequence of P54, P55",
-    formula="f_1 < f_D <= f_1 + f_2: P55 can hold with sigma_D = k sqrt(3 f_1 f_D)/f_2, a "
-    "clamped link breaks it",
+    formula="f_1 < f_D <= f_1 + f_2: P55 holds with sigma_D = k sqrt(3 f_1 f_D)/f_2 and fails for "
+    "sigma_D large enough; a clamped link breaks it at any sigma_D",
 )
 def relieving_the_far_contact() -> ProofSteps:
-    """Over-compensating the motor's contact to relieve the far one works only with a soft
-    compensator, and only against environments that do not clamp the link.
+    """Over-compensating the motor's contact to relieve the far one leaves plain slow cycles without
+    gain only with a soft compensator, and only against environments that do not clamp the link.
+    Other motions may give out all the same, see P56.
     """
     excess = sp.Symbol("excess", positive=True)
     soft = k * sp.sqrt(3 * f_1 * f_D) / f_2
@@ -183,6 +189,13 @@ def relieving_the_far_contact() -> ProofSteps:
             "its u_2",
             f_D * (soft * f_2 / (k * f_D)) ** 2 / 3,
             f_1,
+        ),
+        Limit(
+            "stiffer without end, f_D (1 - tanh(u_2)/u_2) tends to f_D, which is above f_1",
+            SHARE,
+            u,
+            sp.oo,
+            sp.S(1),
         ),
         Limit(
             "clamped, f_D = f_1 + excess: long strokes give out 4 A excess",

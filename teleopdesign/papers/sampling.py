@@ -60,14 +60,16 @@ def needed(block: sp.Expr) -> sp.Expr:
     50,
     paper=COLGATE,
     place="passivity condition",
-    formula="b > T/(2 (1 - cos wT)) Re[(1 - e^(-jwT)) H];  K: b > K T/2;  K + B: b > K T/2 + "
-    "abs(B);  "
-    "-sigma_D: b > -sigma_D T/2, one sample late b > sigma_D T/2, two: b > (5/8) sigma_D T;  "
-    "-B: b > B",
+    formula="b >= T/(2 (1 - cos wT)) Re[(1 - e^(-jwT)) H] and b >= 0;  enough at every w: K: b "
+    ">= K T/2;  K + B: b >= K T/2 + abs(B);  -sigma_D: any b >= 0, one sample late b >= sigma_D "
+    "T/2, two: b >= (5/8) sigma_D T;  -B: b >= B",
+    assumes="that steady oscillations are the worst motions (the theorem of Colgate and Schenkel), "
+    "for blocks whose pole at z = 1, if any, a spring of the body covers",
 )
 def held_blocks() -> ProofSteps:
-    """Damping that a sampled block with zero-order hold needs; a Dahl compensator near rest needs
-    none, but delay of its computer does.
+    """Damping with which no steady oscillation at any frequency takes energy out of a sampled
+    block with zero-order hold: a Dahl compensator near rest, a negative spring beside a stiffer
+    one, needs none, but delay of its computer does.
     """
     jump = UNIT - 1
     h, g = sp.symbols("h_re h_im", real=True)
@@ -212,8 +214,8 @@ def controlled_port() -> Numbers:
     numbers=controlled_port,
 )
 def observer() -> ProofSteps:
-    """A damper for one sample that restores an energy deficit exactly; friction may be counted
-    into the budget only if it is underestimated.
+    """At a sample with v != 0 a damper makes up a deficit of the sampled energy exactly; friction
+    counted below its level leaves the budget on the safe side, counted above it does not.
     """
     energy, v = sp.symbols("E v", real=True, nonzero=True)
     deficit, w, counted = sp.symbols("deficit w f_counted", positive=True)

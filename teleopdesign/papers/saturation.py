@@ -76,12 +76,14 @@ def saturated_compensator() -> ProofSteps:
     38,
     paper=MAHVASH,
     place="section IV-B",
-    formula="only abs(f_comp) <= f_C is used",
-    printed="proved for the Dahl compensator; not for its forward Euler step with q > 1",
+    formula="only abs(f_comp) <= f_D <= f_C is used, at every instant",
+    printed="proved for the Dahl compensator; its forward Euler step leaves the level, here at "
+    "q = 3/2",
 )
 def only_saturation_counts() -> ProofSteps:
-    """The theorem holds for any stiffness, sampling, delay, quantisation, noise, for smoothed
-    Coulomb friction and even for a wrong sign; it fails for forward Euler with q > 1.
+    """From a force within its level, eq (9) stays within it whatever positions come next: late,
+    held, rounded or noisy ones. So do smoothed Coulomb friction and a force of the wrong sign, and
+    P37 covers them all. A step of forward Euler with q = 3/2 leaves the level, and gives out.
     """
     above, below, rest = sp.symbols("above below rest", nonnegative=True)
     q = sp.Symbol("q", positive=True)

@@ -106,7 +106,8 @@ def energy_of_cycle(turning: tuple[float, ...]) -> float:
     how="refuted",
     formula="cycles with a small step back and forth at each reversal give out energy at the "
     "limit of P55 for every "
-    "u_2; with the link stuck f_1 >= f_D (1 - e^(-2 u_2))^2 is enough for any motion",
+    "u_2; with the link stuck f_1 >= f_D (1 - e^(-2 u_2))^2 is enough for every closed path from a "
+    "bristle at rest, and any motion then gives out at most f_D^2 (1 - e^(-2 u_2))^2/(2 sigma_D)",
     printed="not in the papers; an earlier random search (60 sets, up to 10 strokes) found no "
     "motion that gives out energy where P55 holds",
     numbers=stepping_motor,
@@ -147,7 +148,7 @@ def steps_at_reversals() -> Correction:
 
 
 def _force_within_a_bound() -> ProofSteps:
-    """With the link stuck: f_1 >= f_D (1 - e^(-2 u_2))^2 is enough for any motion."""
+    """With the link stuck f_1 >= f_D (1 - e^(-2 u_2))^2 is enough for every closed path."""
     f, edge = sp.Symbol("f", real=True), sp.Symbol("edge", positive=True)
     x = sp.Symbol("x", positive=True)  # above the lower end of the range of the motion
     most = sp.Symbol("most", positive=True)  # the bound at the upper end
@@ -161,7 +162,7 @@ def _force_within_a_bound() -> ProofSteps:
             -decay * (bound - f),
         ),
         Equal(
-            "moving down it grows while abs(f) is within it: periodic motions stay within",
+            "moving down it grows while abs(f) is within it: from f = 0 it stays within",
             -sp.diff(bound, x) - dahl_rate(f, sp.S(-1), f_D, sigma),
             decay * (bound + f),
         ),
@@ -181,6 +182,13 @@ def _force_within_a_bound() -> ProofSteps:
             f_1 - f**2 / f_D,
             enough + inside / f_D,
             {enough: f_1 - most**2 / f_D, inside: most**2 - f**2},
+        ),
+        NotNegative(
+            "so any motion from f = 0 gives out at most most^2/(2 sigma_D), a closed path that "
+            "repeats none",
+            most**2 / (2 * sigma) - f**2 / (2 * sigma),
+            inside / (2 * sigma),
+            {inside: most**2 - f**2},
         ),
         assuming=[f_1 - most**2 / f_D, most**2 - f**2],
     )

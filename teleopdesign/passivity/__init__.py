@@ -50,6 +50,7 @@ from .theorems.bounded_compensation import bounded_compensation
 from .theorems.compliant_transmission import any_environment, free_motion, free_motion_margin
 from .theorems.dahl_compensation import (
     dahl_compensation,
+    largest_one_off_energy,
     largest_passive_level,
     largest_ratio,
     onset_amplitude,
@@ -126,6 +127,7 @@ __all__ = [
     "impedance",
     "inertia_given_out",
     "kyp",
+    "largest_one_off_energy",
     "largest_passive_inertia",
     "largest_passive_level",
     "largest_ratio",

@@ -17,10 +17,11 @@ from ..arguments import checked
 from ..diagrams import Diagram
 from ..errors import ModelError
 from ..notebook import html_table
+from .claims.axis_units import in_units_of
 from .claims.claim import Claim, Proof, Refutation, Unknown
 from .device_claims import device_claims
 from .friction_pairs import FrictionPair, friction_pairs, pair_claims
-from .linear.positive_real import positive_real
+from .linear.positive_real import NEARBY, positive_real
 from .ports import (
     Port,
     impedance_matrix,
@@ -64,11 +65,11 @@ class DiagramClaims:
     claims: tuple[TopicClaim, ...]
 
     def __repr__(self) -> str:
-        lines = [f"{s.claim.status:<9} {s.topic}: {s.claim.statement}" for s in self.claims]
+        lines = [f"{s.heading:<9} {s.topic}: {s.claim.statement}" for s in self.claims]
         return "\n".join([f"Claims on the {self.diagram.name}", *lines])
 
     def _repr_html_(self) -> str:
-        rows = [(s.claim.status, s.topic, s.claim.statement, s.claim.verdict) for s in self.claims]
+        rows = [(s.heading, s.topic, s.claim.statement, s.claim.verdict) for s in self.claims]
         head = ("status", "on", "statement", "by")
         return html_table(f"Claims on the {self.diagram.name}", head, rows)
 
@@ -98,13 +99,51 @@ def diagram_claims(
             claims += pair_claims(pair)
         if (composed := _composed(alone, all_ports, pairs)) is not None:
             claims.append(composed)
+    if not any(not c.analog for c in alone.controls):  # nothing that a computer could sample
+        claims = [replace(one, time="any") for one in claims]
     if sampled or not any(s.topic in WHOLE and s.claim.status != "unknown" for s in claims):
         claims += [_searched(whole, port, rng, search) for port in all_ports]
     return DiagramClaims(diagram, all_ports, bent, tuple(claims))
 
 
 def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
-    """Passivity of a linear diagram at its ports, and absolute stability where there are two."""
+    """Passivity of a linear diagram at its ports, and absolute stability where there are two.
+
+    What is refuted is so for all values nearby, too: none rests on the rounding of a number.
+    """
+    claims = _linear_claims(diagram, all_ports)
+    if not any(one.claim.status == "refuted" for one in claims):
+        return claims
+    nearby = [_linear_claims(other, all_ports) for other in _nearby(diagram)]
+    return [
+        one if all(other[k].claim.status == "refuted" for other in nearby) else _on_rounding(one)
+        for k, one in enumerate(claims)
+    ]
+
+
+def _nearby(diagram: Diagram) -> list[Diagram]:
+    """The diagram with its values a few last digits of a float away, in turn to either side."""
+    values = diagram.values
+    return [
+        diagram.with_values(
+            {
+                name: value * (1 + side * (-1) ** (k >> bit) * NEARBY)
+                for k, (name, value) in enumerate(values.items())
+            }
+        )
+        for bit in range(2)
+        for side in (1, -1)
+    ]
+
+
+def _on_rounding(one: TopicClaim) -> TopicClaim:
+    if one.claim.status != "refuted":
+        return one
+    why = f"it fails by less than a change of {NEARBY:.1g} of its values decides: rounding"
+    return replace(one, claim=Claim(one.claim.statement, Unknown(why)))
+
+
+def _linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
     if len(all_ports) > 2:
         statement = f"{diagram.name}: its {len(all_ports)} ports are passive together"
         why = "the exact tests are for one port or two"
@@ -112,15 +151,27 @@ def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClai
     try:
         z = impedance_matrix(diagram, all_ports)
         if len(all_ports) == 1:
-            return [TopicClaim(WHOLE[1], positive_real(z[0, 0]))]
+            claim = in_units_of(_axis(diagram, all_ports), positive_real(z[0, 0]))
+            return [TopicClaim(WHOLE[1], claim)]
     except ModelError as problem:
         claim = Claim(f"{diagram.name}: its ports are passive", Unknown(str(problem)))
         return [TopicClaim(WHOLE[0], claim)]
     system = two_port(z.tolist())
+    axis = _axis(diagram, all_ports)
     return [
-        TopicClaim(WHOLE[2], passive(system)),
-        TopicClaim("both ports, whatever passive holds them", absolutely_stable(system)),
+        TopicClaim(WHOLE[2], in_units_of(axis, passive(system))),
+        TopicClaim(
+            "both ports, whatever passive holds them",
+            in_units_of(axis, absolutely_stable(system)),
+        ),
     ]
+
+
+def _axis(diagram: Diagram, all_ports: Sequence[Port]) -> str:
+    """The axis that all bodies at the ports share; "prismatic" where they differ."""
+    motions = {motion.removesuffix("_tip") for port in all_ports for motion in port.weights}
+    axes = {getattr(b.body, "axis", "") for b in diagram.bodies if b.motion in motions}
+    return axes.pop() if len(axes) == 1 else "prismatic"
 
 
 def _composed(
@@ -133,14 +184,17 @@ def _composed(
     """
     rest, proofs = diagram, []
     for pair in pairs:
-        claims = [one.claim for one in pair_claims(pair, simulated=False)]
+        # damping that a theorem has used is still in the linear rest, and cannot be used twice
+        answers = pair_claims(pair, simulated=False)
+        claims = [one.claim for one in answers if not one.spends_damping]
         if pair.device.set_aside or not pair.is_constant:
             return None
         if not spanned(pair.body.motion, all_ports):
             return None
         if pair.cancellation is None and pair.device.presliding is not None:
             return None  # no theorem about friction alone is called here
-        if claims and not any(isinstance(c.verdict, Proof) for c in claims):
+        proved = any(isinstance(c.verdict, Proof) for c in claims)
+        if not proved and (claims or pair.cancellation is not None):
             return None
         proofs += [c for c in claims if isinstance(c.verdict, Proof)][:1]
         gone = [pair.cancellation.name] if pair.cancellation else []
@@ -185,7 +239,7 @@ def _searched(whole: Diagram, port: Port, rng: np.random.Generator, search: Sear
         )
     except ModelError as problem:  # what this simulation does not take
         return TopicClaim(topic, Claim(statement, Unknown(str(problem))))
-    record = claim.verdict.record if isinstance(claim.verdict, Refutation) else None
-    if not isinstance(record, SimulatedMotion):
-        return TopicClaim(topic, claim)
-    return TopicClaim(topic, claim, record.replay(), record)
+    verdict = claim.verdict
+    if isinstance(verdict, Refutation) and isinstance(verdict.record, SimulatedMotion):
+        return TopicClaim(topic, claim, verdict.replayed, verdict.record)
+    return TopicClaim(topic, claim)

@@ -24,6 +24,7 @@ from ..realise.friction_interval import (
 )
 from ..realise.reach import ANY_MOTION, Reach
 from ..realise.simulated import without_absent
+from .claims.axis_units import in_units_of
 from .claims.claim import Claim, Unknown
 
 _PRESLIDING = EFFECTS["presliding"]
@@ -163,11 +164,12 @@ def of_whole_device(claim: Claim, *, over: str, left: Sequence[str]) -> Claim:
 
 
 def about_device(device: IdentifiedDevice, claim: Claim, *, besides: Sequence[str] = ()) -> Claim:
-    """A claim about friction as one about the device.
+    """A claim about friction as one about the device, in the units of its axis.
 
     besides: effects that its theorem is about, though no claim about friction alone is
     """
     left = [name for name in device.set_aside if name not in besides]
+    claim = in_units_of(device.body.axis, claim)
     return of_whole_device(claim, over=device.friction.over, left=left)
 
 

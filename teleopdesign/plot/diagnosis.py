@@ -162,7 +162,7 @@ def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None
 
 def _ladder(ax: Axes, diagnosis: Diagnosis) -> None:
     names = [
-        "your model, re-estimated" if r.added is None else f"+ {r.added}" for r in diagnosis.rungs
+        "your model, re-estimated" if r.added is None else f"+ {r.said}" for r in diagnosis.rungs
     ]
     errors = [100 * r.fit.check_error for r in diagnosis.rungs]
     rows = np.arange(len(names))

@@ -24,13 +24,15 @@ def plot_largest_compensation(data: xarray.Dataset) -> matplotlib.figure.Figure:
     with plt.style.context(STYLE):
         figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.7))
         low, high = 0.95, 8.0
-        axis.fill_between(u, low, data["any_motion"].values, color=PROVED, alpha=0.18, linewidth=0)
+        axis.fill_between(
+            u, low, data["closed_paths"].values, color=PROVED, alpha=0.18, linewidth=0
+        )
         axis.plot(
             u,
-            data["any_motion"].values,
+            data["closed_paths"].values,
             color=PROVED,
             linestyle="--",
-            label=r"any motion within $\pm A$: $1/(1-e^{-2u})^2$, proved",
+            label=r"closed paths within $\pm A$: $1/(1-e^{-2u})^2$, proved",
         )
         axis.plot(
             u, data["cycles"].values, color=THEORY, label=r"cycles: $1/(1-\tanh(u)/u)$, proved"

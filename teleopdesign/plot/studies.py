@@ -22,6 +22,17 @@ if TYPE_CHECKING:
     #: upper limit of y as a function of x
     Proved = str | xarray.DataArray | Callable[[np.ndarray], np.ndarray]
 
+
+@dataclass(frozen=True)
+class _Overlay:
+    """What is drawn over a map: see `StudyPlots.map`."""
+
+    proved: Any
+    proved_label: str
+    onset: float | None
+    onset_label: str
+
+
 FIRST, TOTAL = "#0072B2", "#9CC7E4"
 _MOST_LINES, _MOST_PANELS = 8, 9
 #: ratios of neighbours that differ by less than this are those of a logarithmic axis
@@ -101,10 +112,11 @@ class StudyPlots:
 
         values = self._at(self._measure(measure), at)
         across, up = self._pair(values, x, y)
+        over = _Overlay(proved, proved_label, onset, onset_label)
         with plt.style.context(STYLE):
             figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.9))
             mesh = self._mesh(axis, values, across, up, _limits(values, onset))
-            self._marks(axis, values, across, up, proved, proved_label, onset, onset_label, at)
+            self._marks(axis, values, (across, up), over, at)
             figure.colorbar(mesh, ax=axis, label=_label(values))
             self._legend(figure, axis)
         return figure
@@ -133,6 +145,7 @@ class StudyPlots:
         self._known(third, [str(d) for d in whole.dims])
         values = self._at(whole, at)
         shown = _spread(values.sizes[third], _MOST_PANELS)
+        over = _Overlay(proved, proved_label, onset, onset_label)
         across, up = self._pair(values.isel({third: 0}), x, y)
         columns = min(len(shown), 3)
         rows = -(-len(shown) // columns)
@@ -150,9 +163,11 @@ class StudyPlots:
                 one = values.isel({third: k})
                 mesh = self._mesh(axis, one, across, up, limits)
                 where = {**(at or {}), third: self.data[third].values[k]}
-                self._marks(axis, one, across, up, proved, proved_label, onset, onset_label, where)
+                self._marks(axis, one, (across, up), over, where)
                 unit = unit_text(self.data[third].attrs.get("units", ""))
-                title = f"({letter}) {third} = {_number(self.data[third].values[k])} {unit}"
+                title = (
+                    f"({letter}) {self._name(third)} = {_number(self.data[third].values[k])} {unit}"
+                )
                 axis.set_title(title, loc="left", pad=3)
                 axis.label_outer()
             for axis in axes.flat[len(shown) :]:
@@ -210,27 +225,28 @@ class StudyPlots:
                     0.9 + 0.34 * len(self._axes),
                 ),
             )
-            for axis, name, found in zip(axes[0], chosen, indices, strict=True):
-                found = found.isel(parameter=np.argsort(found["total"].values, kind="stable"))
-                place = np.arange(found.sizes["parameter"])
+            for axis, name, ranked in zip(axes[0], chosen, indices, strict=True):
+                ranked = ranked.isel(parameter=np.argsort(ranked["total"].values, kind="stable"))
+                place = np.arange(ranked.sizes["parameter"])
                 for kind, shift, colour, label in (
                     ("total", -0.19, TOTAL, "with others"),
                     ("first", 0.19, FIRST, "alone"),
                 ):
                     axis.barh(
                         place + shift,
-                        found[kind].values,
+                        ranked[kind].values,
                         0.36,
-                        xerr=found[f"{kind}_interval"].values,
+                        xerr=ranked[f"{kind}_interval"].values,
                         color=colour,
                         label=label,
                         error_kw={"linewidth": 0.7},
                     )
-                axis.set_yticks(place, [str(p) for p in found["parameter"].values])
+                shown = [self._name(str(p)) for p in ranked["parameter"].values]
+                axis.set_yticks(place, shown)
                 axis.tick_params(axis="y", length=0)
                 axis.set_xlim(min(0.0, axis.get_xlim()[0]), None)
                 axis.axvline(0.0, color="black", linewidth=0.6)
-                axis.set_xlabel(f"share of the variance of {_words(name)} (1)")
+                axis.set_xlabel(f"share of the variance of {self._name(name)} (1)")
             axes[0, 0].legend(loc="lower right")
         return figure
 
@@ -239,6 +255,9 @@ class StudyPlots:
     @property
     def _axes(self) -> list[str]:
         return list(json.loads(self.data.attrs["axes"]))
+
+    def _name(self, name: str) -> str:
+        return _words(self.data[name].attrs.get("long_name") or name)
 
     def _is_number(self, *names: str) -> bool:
         return all(self.data[n].dtype.kind in "biuf" for n in names)
@@ -309,20 +328,17 @@ class StudyPlots:
         self,
         axis: Axes,
         values: xarray.DataArray,
-        across: str,
-        up: str,
-        proved: Proved | None,
-        proved_label: str,
-        onset: float | None,
-        onset_label: str,
+        along: tuple[str, str],
+        over: _Overlay,
         at: Mapping[str, float] | None,
     ) -> None:
         """Hatched region and line of onset over a map."""
+        (across, up), proved, onset = along, over.proved, over.onset
         x, y = self.data[across].values, self.data[up].values
         box = axis.get_xlim(), axis.get_ylim()
         if callable(proved):
             limit = np.minimum(np.broadcast_to(proved(x), x.shape), box[1][1])
-            hatch_region(axis, _edges(x, box[0]), box[1][0], _edges(limit), proved_label)
+            hatch_region(axis, _edges(x, box[0]), box[1][0], _edges(limit), over.proved_label)
             axis.collections[-1].set_facecolor("none")
             axis.collections[-1].set_edgecolor("black")
         elif proved is not None:
@@ -331,14 +347,14 @@ class StudyPlots:
             shown = np.ma.masked_where(~inside.transpose(up, across).values.astype(bool), inside.T)
             axis.pcolor(x, y, shown, shading="nearest", hatch="///", alpha=0.0)
             axis.fill_between(
-                [], [], facecolor="none", edgecolor="black", hatch="///", label=proved_label
+                [], [], facecolor="none", edgecolor="black", hatch="///", label=over.proved_label
             )
         if onset is not None:
             field = values.transpose(up, across).values
             if np.nanmin(field) < onset < np.nanmax(field):
                 field = np.where(np.isinf(field), np.nanmax(field[np.isfinite(field)]), field)
                 axis.contour(x, y, field, [onset], colors="black", linewidths=1.2)
-                axis.plot([], [], color="black", linewidth=1.2, label=onset_label)
+                axis.plot([], [], color="black", linewidth=1.2, label=over.onset_label)
         axis.set(xlim=box[0], ylim=box[1])
 
     def _axis(self, axis: Axes, which: str, name: str) -> None:
@@ -377,7 +393,7 @@ def _edges(values: np.ndarray, ends: tuple[float, float] | None = None) -> np.nd
 
 def _label(array: xarray.DataArray) -> str:
     unit = array.attrs.get("units", "")
-    name = _words(array.attrs.get("text") or str(array.name))
+    name = _words(array.attrs.get("long_name") or str(array.name))
     return f"{name} ({unit_text(unit)})" if unit else name
 
 

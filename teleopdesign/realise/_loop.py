@@ -20,6 +20,10 @@ inlined = dict(forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 jitted = njit(nogil=True, error_model="numpy", **inlined)
 entry = njit(nogil=True, error_model="numpy", cache=True)
 """
+# a call of the library's exp would keep the compiler from working on several lanes at once
+_LANES = """from teleopdesign.realise.lane_exp import exp
+
+"""
 _PLAIN = """
 
 def jitted(function):
@@ -40,7 +44,17 @@ def _laws_part(laws: str, *, jit: bool, lanes: int) -> list[str]:
     # numba takes as long for a product of constants as for any other
     laws = re.sub(r"(\d+) \* LANES", lambda found: str(int(found[1]) * lanes), laws)
     decorators = _COMPILED if jit else _PLAIN
-    return [text, _HEAD, decorators, f"LANES = {lanes}\n", PHI, WEIGHTS, "", laws]
+    return [
+        text,
+        _HEAD,
+        _LANES if lanes > 1 else "",
+        decorators,
+        f"LANES = {lanes}\n",
+        PHI,
+        WEIGHTS,
+        "",
+        laws,
+    ]
 
 
 @cache

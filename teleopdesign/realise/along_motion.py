@@ -20,10 +20,11 @@ import numpy as np
 
 from ..blocks import Body
 from ..effects import SIGNALS, UNEXPLAINED, Effect, rubbing, touching
+from ..errors import ModelError
 from ..measurement.motion import Motion
 from .friction_along import balance_friction, bound_friction, friction_of_acting_force, level_along
 from .ode_scan import ode_scan
-from .stages_along import acting_along
+from .stages_along import COMMAND_LATE, RECORD_SHIFT, acting_along
 from .traced import Along, Probe, Traced, through
 
 #: signals of a law -> what a motion calls them, where they are known from the records alone
@@ -56,7 +57,7 @@ class Residual:
 def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) -> Residual:
     """Residual force of the body's model along the motion.
 
-    wrt: parameters ("coulomb.level") or probes whose tangents are carried along
+    wrt: parameters ("coulomb.level"), `RECORD_SHIFT` or probes whose tangents are carried along
     returns: n samples smoothed as the motion is, not yet through the comparison's low-pass
     """
     along = measured_along(body, motion, wrt)
@@ -92,12 +93,18 @@ def measured_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
 
     wrt: as in `residual_along`
     """
-    symbols = body.symbols()
+    symbols = {**body.symbols(), RECORD_SHIFT: COMMAND_LATE}
     columns = tuple(name if isinstance(name, Probe) else symbols[name] for name in wrt)
     along = Along({}, body.numbers(), columns, motion.sample_time)
     readings = {
         SIGNALS[n]: np.asarray(getattr(motion, column), float) for n, column in _MEASURED.items()
     }
+    readings |= {SIGNALS[n]: signal for n, signal in motion.further.items()}
+    for effect in body.effects:
+        if missing := [n for n in sorted(effect.channels()) if n not in motion.further]:
+            raise ModelError(
+                f'{effect.name}: needs the channel "{missing[0]}", which {motion.file} has not'
+            )
     return along.with_signals({s: along.constant(reading) for s, reading in readings.items()})
 
 

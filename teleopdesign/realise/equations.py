@@ -293,6 +293,11 @@ class _Builder:
                 f"{self.diagram.name}: {part.name}: {parted[0]} has no simulated form: what holds "
                 "the body would have to be wired to its tip (transmission_compliance has one)"
             )
+        if unknown := [e.name for e in part.body.effects if e.channels()]:
+            raise ModelError(
+                f"{self.diagram.name}: {part.name}: {unknown[0]} has no simulated form: its law "
+                "uses a channel of a record"
+            )
         equation = part.body.equation()
         position, speed, change = motion_of(self.diagram, part.motion)
         names = {s: parameter_symbol(part.name, n) for n, s in part.body.symbols().items()}

@@ -229,8 +229,9 @@ def delay(j, time, inputs, column, late_steps, history, slots, parameters, memor
 def keep(row, width, kept, out, kinds, columns, others, results, memory, lane):
     """Rows of `kept` into the result, and the reductions brought up to this row.
 
-    kinds: 0 last value, 1 largest, 2 least, 3 integral, 4 integral of a product with `others`
-    width: that the row stands for in an integral, in rows; < 0: none is reduced
+    kinds: 0 last value, 1 largest, 2 least, 3 largest size, 4 sum, 5 sum of a product with
+    `others`, 6 its integral by trapezia, in rows
+    width: of the row in this integral; < 0: the row is not reduced
     """
     for k in range(len(kept)):
         out[(row * len(kept) + k) * LANES + lane] = memory[kept[k] + lane]
@@ -245,8 +246,12 @@ def keep(row, width, kept, out, kinds, columns, others, results, memory, lane):
         elif kinds[i] == 2:
             value = min(value, before)
         elif kinds[i] == 3:
-            value = before + width * value
+            value = max(abs(value), before)
         elif kinds[i] == 4:
+            value = before + value
+        elif kinds[i] == 5:
+            value = before + value * memory[others[i] + lane]
+        elif kinds[i] == 6:
             value = before + width * value * memory[others[i] + lane]
         results[at] = value
 

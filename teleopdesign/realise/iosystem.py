@@ -8,7 +8,7 @@ sampled and continuous blocks.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +30,14 @@ if TYPE_CHECKING:
 MECHANICS = "mechanics"
 
 
+@dataclass(frozen=True)
+class Numbers:
+    """Values of symbols in the equations: parameters, with the user's names, and what is fixed."""
+
+    parameters: dict[sp.Symbol, tuple[str, float]]
+    fixed: dict[sp.Symbol, float]
+
+
 @checked
 def to_iosystem(
     diagram: Diagram, *, prescribed: tuple[str, ...] = (), give: float = 1e-5
@@ -39,6 +47,8 @@ def to_iosystem(
     prescribed: motions that are inputs ("L", "L_velocity", "L_acceleration") instead of results
     give: m or rad, as in `simulate`
     Inputs are the signals from outside, outputs all others; states are those of `simulate`.
+    Parameters are its `params`, by their names in `Diagram.values`: with other values it need not
+    be built anew, `input_output_response(..., params={"Z_M.inertia": 0.2})`.
     raises ModelError: a block without laws, or a dead time, which python-control cannot hold
     """
     diagram = simulated(diagram, give, prescribed)
@@ -61,12 +71,14 @@ def _joined(names: PrivateNames, prescribed: tuple[str, ...]) -> control.Interco
             f"{diagram.name}: actuation_delay has no python-control form: use `simulate` instead"
         )
     values = diagram.values
-    numbers = {s: values[n] for s, n in parts.parameters.items()}
+    numbers = Numbers(
+        {s: (names.public_name(n), values[n]) for s, n in parts.parameters.items()}, {}
+    )
     every: tuple[Junction | Kinematics, ...] = (*diagram.kinematics, *diagram.junctions)
     static = [p for p in every if p.output in parts.computer.signals]
     # python-control has no system without inputs: what never changes is an output of the mechanics
     idle = {signal(p.output): float(summed(p, signal)) for p in static if not p.inputs}
-    numbers |= idle
+    numbers.fixed.update(idle)
     systems = [_mechanics(parts, numbers, idle, names)]
     for part in diagram.controls:
         systems.append(_controller(part, numbers, names))
@@ -83,12 +95,13 @@ def _joined(names: PrivateNames, prescribed: tuple[str, ...]) -> control.Interco
         inputs=[s for s in outside_names if s in read],
         outputs=made,
         name=names.public_name(diagram.name).replace(" ", "_"),
+        params=dict(numbers.parameters.values()),
     )
 
 
 def _mechanics(
     parts: Equations,
-    numbers: dict[sp.Symbol, float],
+    numbers: Numbers,
     idle: Mapping[sp.Symbol, float],
     names: PrivateNames,
 ) -> Any:
@@ -119,7 +132,7 @@ def _code(part: Control) -> Any:
     return stages[0].law.system if len(stages) == 1 else None
 
 
-def _controller(part: Control, numbers: dict[sp.Symbol, float], names: PrivateNames) -> Any:
+def _controller(part: Control, numbers: Numbers, names: PrivateNames) -> Any:
     if (system := _code(part)) is not None:
         return _renamed(system, part, names)
     assert isinstance(part.controller, Controller)
@@ -130,7 +143,9 @@ def _controller(part: Control, numbers: dict[sp.Symbol, float], names: PrivateNa
     states = sorted(equation.rates, key=str)
     rates = [equation.rates[s] for s in states]
     used = set().union(*(e.free_symbols for e in (equation.output, *rates)))
-    inputs = sorted(used - set(states) - set(numbers) - {TIME}, key=str)
+    inputs = sorted(
+        used - set(states) - set(numbers.parameters) - set(numbers.fixed) - {TIME}, key=str
+    )
     outputs = {part.output: equation.output}
     return _nlsys(
         names.public_name(part.name), states, inputs, rates, outputs, names, numbers=numbers
@@ -142,7 +157,7 @@ def _static(part: Junction | Kinematics, names: PrivateNames) -> Any:
     inputs = [signal(s) for s in part.inputs]
     value = summed(part, signal)
     name = f"sum_{names.public_name(part.output)}"
-    return _nlsys(name, [], inputs, [], {part.output: value}, names, numbers={})
+    return _nlsys(name, [], inputs, [], {part.output: value}, names, numbers=Numbers({}, {}))
 
 
 def _renamed(system: Any, part: Control, names: PrivateNames) -> Any:
@@ -167,23 +182,30 @@ def _nlsys(
     outputs: dict[str, sp.Expr],
     names: PrivateNames,
     *,
-    numbers: dict[sp.Symbol, float],
+    numbers: Numbers,
     joined: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
 ) -> Any:
     import control
 
     def function(expressions: Sequence[sp.Expr]) -> Callable[..., Any]:
-        printed = [sp.sympify(e, strict=True).subs(numbers) for e in expressions]
-        steps = [(s, e.subs(numbers)) for s, e in needed_steps(expressions, joined).items()]
+        printed = [sp.sympify(e, strict=True).subs(numbers.fixed) for e in expressions]
+        needed = needed_steps(expressions, joined)
+        steps = [(s, e.subs(numbers.fixed)) for s, e in needed.items()]
 
         def shared(results: list[sp.Expr]) -> tuple[list[Any], list[sp.Expr]]:
             common, out = sp.cse(results)
             return [*steps, *common], out
 
-        call = sp.lambdify([TIME, list(states), list(inputs)], printed, "math", cse=shared)
+        used = set().union(*(e.free_symbols for e in (*printed, *(e for _, e in steps))))
+        symbols = [s for s in numbers.parameters if s in used]
+        given = [numbers.parameters[s] for s in symbols]
+        arguments = [TIME, list(states), list(inputs), symbols]
+        call = sp.lambdify(arguments, printed, "math", cse=shared)
 
-        def values(t: float, x: np.ndarray, u: np.ndarray, params: object) -> np.ndarray:
-            return np.array(call(t, x, u), dtype=float)
+        def values(
+            t: float, x: np.ndarray, u: np.ndarray, params: Mapping[str, float]
+        ) -> np.ndarray:
+            return np.array(call(t, x, u, [params.get(n, v) for n, v in given]), dtype=float)
 
         # a contact's law is evaluated where nothing touches too
         one_sided = any(e.has(sp.Piecewise) for e in (*printed, *(e for _, e in steps)))
@@ -195,5 +217,6 @@ def _nlsys(
         inputs=[names.public_name(str(s)) for s in inputs],
         outputs=[names.public_name(s) for s in outputs],
         states=[names.public_name(str(s)) for s in states] or None,
+        params=dict(numbers.parameters.values()),
         name=name,
     )

@@ -23,7 +23,7 @@ import sympy as sp
 
 from ..blocks import Body, MatrixImpedance
 from ..controllers import SIGNALS, ControlLaw, Controller, laws_that_declare
-from ..diagrams import Control, Diagram, Kinematics
+from ..diagrams import Attached, Control, Diagram, Kinematics, Moving
 from ..effects import Effect
 from ..errors import ModelError
 from ._codegen import Generator, Layout
@@ -94,6 +94,9 @@ class Timing:
 
 
 _programs: dict[Any, Program] = {}
+#: the same by structure under the user's names, each with the diagram that it was made for
+_named: dict[Any, tuple[Diagram, Program]] = {}
+_MOST_NAMED = 256
 
 
 def program(
@@ -109,6 +112,18 @@ def program(
     observer: its order, where the computer observes velocities in place of filtering differences
     jit: False runs the same generated source in plain Python, some hundred times slower
     """
+    named = (_named_structure(diagram), prescribed, sampled, observer, jit)
+    if named not in _named:
+        made = _program(diagram, prescribed, sampled, observer, jit)
+        if len(_named) >= _MOST_NAMED:
+            _named.clear()
+        _named[named] = diagram, made
+    return _named[named][1]
+
+
+def _program(
+    diagram: Diagram, prescribed: tuple[str, ...], sampled: bool, observer: int, jit: bool
+) -> Program:
     names = private_names(diagram)
     motions = tuple(names.private.get(motion, motion) for motion in prescribed)
     key = (_structure(names.diagram), motions, sampled, observer, jit)
@@ -152,6 +167,36 @@ def _executed(source: str) -> Mapping[str, Any]:
     module: dict[str, Any] = {"__name__": "teleopdesign_plain_kernel"}
     exec(compile(source, "<generated>", "exec"), module)
     return module
+
+
+def _named_structure(diagram: Diagram) -> tuple[Any, ...]:
+    """As `_structure`, names included, of what diagrams with other values share.
+
+    Wiring and laws count by identity: the diagram that is kept beside the program keeps them alive.
+    """
+    out: list[Any] = [tuple(diagram.outside.items()), diagram.measured]
+    out.append((diagram.name, *map(id, diagram.junctions), *map(id, diagram.kinematics)))
+    out += diagram.pose.items()
+    for part in diagram.blocks:
+        if isinstance(part, Control):
+            block: Any = part.controller
+            wires: tuple[Any, ...] = (part.input, part.output, part.motion, part.analog)
+        elif isinstance(part, Moving):
+            block = part.body
+            wires = (part.motion, part.command, part.driver, *part.loads.items())
+        elif isinstance(part, Attached):
+            block, wires = part.body, (part.motion, part.force, part.sign)
+        else:
+            block, wires = part.body, (part.motions, part.forces, part.sign)
+        laws: tuple[Any, ...]
+        if isinstance(block, Controller):
+            laws = tuple((stage.name, id(stage.law)) for stage in block.stages)
+        elif isinstance(block, Body):
+            laws = tuple(map(id, block.effects))
+        else:
+            laws = tuple(block.parameters)
+        out.append((type(part), part.name, wires, laws))
+    return tuple(out)
 
 
 def _structure(diagram: Diagram) -> tuple[Any, ...]:

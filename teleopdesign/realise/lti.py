@@ -1,19 +1,21 @@
 """Linear form of each block of a diagram, for one degree of freedom.
 
 Bodies give the impedance that their effects declare; controllers their law at a frozen speed. What
-has no linear form is left out, and named.
+has no linear form is left out, and named. Numbers are exact, as they were written: what cancels on
+paper does so here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
 import sympy as sp
 
 from ..blocks import Body
-from ..controllers import Controller, parameter_symbol
+from ..controllers import Controller, as_written, in_exact_numbers, parameter_symbol
 from ..diagrams import Control, Diagram, Linked, Moving
 from ..errors import ModelError
 
@@ -29,48 +31,64 @@ class LinearBlocks:
 
     actuation: name of a body -> transfer function from its command to its acting force
     left_out: "block.effect" or "block" for what has no linear form;  speed: frozen, m/s or rad/s
+    held: controllers in discrete time, which are there as their samples are held
     """
 
     blocks: Mapping[str, sp.Expr]
     actuation: Mapping[str, sp.Expr]
     left_out: tuple[str, ...]
     speed: float
+    held: tuple[str, ...] = ()
 
 
-def linear_blocks(diagram: Diagram, *, speed: float = 0.0) -> LinearBlocks:
-    """Linear forms of all blocks with their values in place.
+def linear_blocks(diagram: Diagram, *, speed: float = 0.0, held: bool = False) -> LinearBlocks:
+    """Linear forms of all blocks with their values in place, which are exact numbers.
 
     speed: at which smoothed friction and schedules are frozen
+    held: whether controllers in discrete time take part, as H(e^(s T)) (1 - e^(-s T))/(s T); that
+        is a frequency response below half the sampling rate, and no ground for a proof
     raises ModelError: a block is known by its name only
     """
     blocks: dict[str, sp.Expr] = {}
     actuation: dict[str, sp.Expr] = {}
     left_out: list[str] = []
+    sampled: list[str] = []
     for part in diagram.blocks:
         if isinstance(part, Control):
             if not isinstance(part.controller, Controller):
                 raise ModelError(
                     f"{diagram.name}: {part.name} is known by its name only, no values"
                 )
-            form = part.controller.linear_form(part.name, S, sp.Float(abs(speed)))
+            form = part.controller.linear_form(part.name, S, as_written(abs(speed)), held=held)
             values = part.controller.names().items()
             numbers = {parameter_symbol(part.name, n): v for n, v in values}
-            blocks[part.name] = sp.S(0) if form is None else form.subs(numbers)
+            blocks[part.name] = sp.S(0) if form is None else _numbered(form, numbers)
             left_out += [part.name] if form is None else []
+            if any(stage.law.shift is not None for stage in part.controller.stages):
+                sampled += [part.name] if form is not None else []
             continue
         if isinstance(part, Linked):
-            blocks |= {part.entry_name(i, j): part.body.entry(i, j, S) for i, j in part.entries}
+            blocks |= {
+                part.entry_name(i, j): in_exact_numbers(part.body.entry(i, j, S))
+                for i, j in part.entries
+            }
             continue
         if not isinstance(part.body, Body):
             raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no values")
         impedance, gone = part.body.impedance(S)
-        blocks[part.name] = impedance.subs(part.body.numbers())
+        blocks[part.name] = _numbered(impedance, part.body.numbers())
         left_out += [f"{part.name}.{name}" for name in gone]
         if isinstance(part, Moving):
             stage, gone = part.body.actuation(S)
-            actuation[part.name] = stage.subs(part.body.numbers())
+            actuation[part.name] = _numbered(stage, part.body.numbers())
             left_out += [f"{part.name}.{name}" for name in gone]
-    return LinearBlocks(blocks, actuation, tuple(left_out), abs(speed))
+    return LinearBlocks(blocks, actuation, tuple(left_out), abs(speed), tuple(sampled))
+
+
+def _numbered(form: sp.Expr, numbers: Mapping[sp.Symbol, float]) -> sp.Expr:
+    """The form with values in place, as they were written."""
+    exact = {symbol: as_written(value) for symbol, value in numbers.items()}
+    return in_exact_numbers(sp.sympify(form).subs(exact))
 
 
 def as_transfer_function(expression: sp.Expr, *, delay_order: int = 4) -> control.TransferFunction:
@@ -79,11 +97,24 @@ def as_transfer_function(expression: sp.Expr, *, delay_order: int = 4) -> contro
 
     def rational(power: sp.Expr) -> sp.Expr:
         tau = float(-sp.diff(power, S))
-        above, below = control.pade(tau, delay_order)
+        above, below = ([as_written(c) for c in side] for side in control.pade(tau, delay_order))
         return sp.Poly(above, S).as_expr() / sp.Poly(below, S).as_expr()
 
-    expression = sp.sympify(expression, strict=True).replace(sp.exp, rational)
-    above, below = sp.fraction(sp.cancel(sp.together(sp.nsimplify(expression, rational=True))))
-    coefficients = [[float(c) for c in sp.Poly(p, S).all_coeffs()] for p in (above, below)]
-    lead = coefficients[1][0]
-    return control.tf(*[[c / lead for c in p] for p in coefficients])
+    exact = in_exact_numbers(expression).replace(sp.exp, lambda power: rational(power))
+    above, below = (sp.Poly(p, S) for p in sp.fraction(sp.cancel(sp.together(exact))))
+    lead = below.LC()
+    return control.tf(*[[float(c / lead) for c in p.all_coeffs()] for p in (above, below)])
+
+
+def numerical(expression: sp.Expr) -> Callable[[np.ndarray], np.ndarray]:
+    """The expression in `S` as a function of complex s, (n,); exact numbers become floats."""
+    inexact = {x: sp.Float(x) for x in expression.atoms(sp.Rational) if not x.is_Integer}
+    # an integer may be longer than what numpy takes
+    inexact |= {x: sp.Float(x) for x in expression.atoms(sp.Integer) if abs(x) >= 2**31}
+    call = sp.lambdify(S, expression.xreplace(inexact), "numpy")
+
+    def values(s: np.ndarray) -> np.ndarray:
+        s = np.asarray(s, dtype=complex)
+        return np.broadcast_to(np.asarray(call(s), dtype=complex), s.shape)
+
+    return values

@@ -77,6 +77,7 @@ def words_of(reach: Reach | None, law: sp.Expr, *, speed: bool, axis: str) -> st
     for symbol, (low, high) in signal_ranges(reach).items():
         if law.has(symbol):
             quantity = "force" if symbol.name.endswith(("force", "command")) else symbol.name
+            quantity = quantity.removeprefix("other_")
             unit = unit_of("position" if quantity == "penetration" else quantity, axis)
             parts.append(_range(symbol.name.replace("_", " "), low, high, unit))
     return ", ".join(parts) or ANY_MOTION

@@ -209,16 +209,92 @@ def shape(h, half_step, columns, position, velocity, direction, {", ".join(argum
 """
 
 
+@lru_cache(maxsize=64)
+def _stopped_source(effect: Effect) -> str:
+    """Of a shape whose states follow the motion alone, each up to its stop: exact in each step."""
+    stops, states = effect.stops(), list(effect.state_symbols().values())
+    if len(stops) < len(states) or any(r.has(*states) or s.has(*states) for r, s in stops.values()):
+        raise ModelError(f"{effect.name}: states with a stop beside others, or that need others")
+    law, m = effect.expression(), len(states)
+    used = _used_by_shape(effect)
+    names = {**_names(effect), **{z: f"z_{i}" for i, z in enumerate(states)}}
+    by = _slopes_by(effect, "level")
+    laws = {f"r{i}": rate for i, (rate, _) in enumerate(stops.values())}
+    laws |= {f"s{i}": stop for i, (_, stop) in enumerate(stops.values())}
+    velocity = SIGNALS["velocity"]
+    give = sp.Add(
+        *(sp.diff(law, z) * sp.diff(laws[f"r{i}"], velocity) for i, z in enumerate(states))
+    )
+    parameters = [names[s] for s in effect.symbols().values()]
+    arguments = [*parameters, *(f"{n}_" for n in used)]
+    advance: list[str] = []
+    for i in range(m):
+        advance += [
+            f"stop_{i} = max(s{i}, 0.0)",
+            f"z_{i} += h * r{i}",
+            f"held_{i} = abs(z_{i}) > stop_{i}",
+            f"z_{i} = copysign(stop_{i}, z_{i}) if held_{i} else z_{i}",
+        ]
+    turn: list[str] = []
+    for i in range(m):
+        by_stop = f"s{i}_level * dlevel + {_by_parameter(effect, f's{i}')}"
+        by_rate = f"r{i}_level * dlevel + {_by_parameter(effect, f'r{i}')}"
+        turn += [
+            f"if held_{i}:",
+            f"    dz[{i}, j] = copysign(1.0, z_{i}) * ({by_stop})",
+            "else:",
+            f"    dz[{i}, j] += h * ({by_rate})",
+        ]
+    moved = " + ".join(f"w{i} * dz[{i}, j]" for i in range(m))
+    slopes = [line for name, one in laws.items() for line in _lines(name, one, by, names)]
+    return f"""{_HEAD}
+
+@jitted
+def shape(h, half_step, columns, position, velocity, direction, {", ".join(arguments)},
+          forward, dforward, backward, dbackward, low, dlow, high, dhigh):
+    p, n = dforward.shape
+    dz = np.zeros(({m}, p))
+{indented([f"z_{i} = 0.0" for i in range(m)], 4)}
+    for k in range(n):
+        u_velocity = (position[k] - position[max(k - 1, 0)]) / h
+        ahead = u_velocity >= 0.0
+        u_level = max(forward[k] if ahead else backward[k], 1e-12)
+{indented([f"u_{n} = {n}_[k]" for n in used], 8)}
+{indented(assignments(laws, names), 8)}
+{indented(slopes, 8)}
+{indented(advance, 8)}
+        u_velocity = velocity[k]
+{indented(assignments({"force": law, "slope": give}, names), 8)}
+{indented(assignments({f"w{i}": sp.diff(law, z) for i, z in enumerate(states)}, names), 8)}
+{indented(_lines("f", law, by, names) + _lines("g", give, by, names), 8)}
+        free = half_step if direction[k] == 0 else 0.0
+        below = force - free * abs(slope)
+        above = force + free * abs(slope)
+        low[k] = below if direction[k] != 0 else max(below, -backward[k])
+        high[k] = above if direction[k] != 0 else min(above, forward[k])
+        for j in range(p):
+            dlevel = dforward[j, k] if ahead else dbackward[j, k]
+{indented(turn, 12)}
+            df = {moved} + f_level * dlevel + {_by_parameter(effect, "f")}
+            dg = free * copysign(1.0, slope) * (g_level * dlevel + {_by_parameter(effect, "g")})
+            dlow[j, k] = df - dg if low[k] == below else -dbackward[j, k]
+            dhigh[j, k] = df + dg if high[k] == above else dforward[j, k]
+"""
+
+
 def shape_bounds(
     effect: Effect, motion: Motion, along: Along, *, forward: Traced, backward: Traced
 ) -> tuple[Traced, Traced]:
-    """Bounds of the friction of a shape with one hidden state, driven by the measured motion.
+    """Bounds of the friction of a shape, driven by the measured motion.
+
+    It has one hidden state, or several that each follow the motion up to a stop of their own.
 
     forward, backward: friction level that way
     They coincide where the motion is told; where it is not, they lie apart by what half a step of
     the position means to the bristle, and no further than the level.
     """
-    scan = compiled(_shape_source(effect), "shape")
+    source = _stopped_source(effect) if effect.stops() else _shape_source(effect)
+    scan = compiled(source, "shape")
     used = _used_by_shape(effect)
     low, high = np.empty_like(forward.value), np.empty_like(forward.value)
     dlow, dhigh = np.empty_like(forward.tangent), np.empty_like(forward.tangent)

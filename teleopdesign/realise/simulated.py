@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
-from ..diagrams import Control, Diagram
+from ..diagrams import Attached, Block, Control, Diagram, Moving
 from ..effects import EFFECTS, SIGNALS, Effect
 from ..errors import ModelError
 from .tips import with_tips
@@ -40,9 +40,13 @@ def without_absent(body: Body, *, surely: bool = False) -> Body:
     if any(e.role == "structure" for e in body.effects if e.name in gone):
         gone |= {e.name for e in body.effects if e.role == "tip_level"}
     needed = {n for e in body.effects if e.name not in gone for n in e.needs}
-    needing = {e.name for e in body.effects if e.needs}
-    for name in sorted(gone - needed, key=lambda n: n not in needing):
-        body = body.without_effect(name)
+    gone -= needed
+    # what needs others goes before them
+    while gone:
+        held = {n for e in body.effects for n in e.needs}
+        for name in sorted(gone - held):
+            body = body.without_effect(name)
+        gone &= held
     for effect in body.effects:
         for name, parameter in effect.parameters.items():
             if parameter.optional and equals(f"{effect.name}.{name}", 0.0):
@@ -77,10 +81,30 @@ def with_give(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> B
 
 def in_computer(diagram: Diagram, period: float) -> Diagram:
     """The diagram with controllers as a computer of that period (s) realises them."""
-    for part in diagram.controls:
-        if isinstance(part.controller, Controller) and not part.analog:
-            diagram = diagram.with_block(part.name, part.controller.sampled(period))
-    return diagram
+    sampled = {
+        part.name: part.controller.sampled(period)
+        for part in diagram.controls
+        if isinstance(part.controller, Controller) and not part.analog
+    }
+    return _with_blocks(diagram, sampled)
+
+
+def _with_blocks(diagram: Diagram, contents: Mapping[str, Body | Controller]) -> Diagram:
+    """The diagram with these in the places of their names; itself where nothing is another."""
+
+    def placed(part: Block) -> Block:
+        if part.name not in contents:
+            return part
+        new = contents[part.name]
+        if isinstance(new, Controller) and isinstance(part, Control):
+            same = new is part.controller or new.stages == part.controller.stages  # type: ignore[union-attr]
+            return part if same else replace(part, controller=new)
+        assert isinstance(new, Body) and isinstance(part, Moving | Attached)
+        return part if new is part.body else replace(part, body=new)
+
+    blocks = tuple(map(placed, diagram.blocks))
+    changed = any(new is not old for new, old in zip(blocks, diagram.blocks, strict=True))
+    return replace(diagram, blocks=blocks) if changed else diagram
 
 
 def simulated(diagram: Diagram, deflection: float, prescribed: Iterable[str] = ()) -> Diagram:
@@ -88,14 +112,14 @@ def simulated(diagram: Diagram, deflection: float, prescribed: Iterable[str] = (
 
     prescribed: motions that are given
     """
+    bodies: dict[str, Body | Controller] = {}
     for part in diagram.blocks:
         content = part.controller if isinstance(part, Control) else part.body
         if not isinstance(content, Body | MatrixImpedance | Controller):
             raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no equations")
         if isinstance(content, Body):
-            diagram = diagram.with_block(part.name, with_give(without_absent(content), deflection))
-    apart = with_tips(diagram, prescribed=prescribed)
-    for part in apart.bodies:
-        if isinstance(part.body, Body):  # of a tip that dry friction holds
-            apart = apart.with_block(part.name, with_give(part.body, deflection))
-    return apart
+            bodies[part.name] = with_give(without_absent(content), deflection)
+    apart = with_tips(_with_blocks(diagram, bodies), prescribed=prescribed)
+    # tips that dry friction holds
+    tips = {p.name: with_give(p.body, deflection) for p in apart.bodies if isinstance(p.body, Body)}
+    return _with_blocks(apart, tips)

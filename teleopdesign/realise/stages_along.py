@@ -23,6 +23,10 @@ _MOTION = ("time", "position", "velocity", "acceleration")
 _COMMAND = SIGNALS["command"]
 #: parts of a row over which a command that acts late is averaged
 PARTS = 4
+#: name, beside a body's parameters, of the time by which the log of its command is late
+RECORD_SHIFT = "record_shift"
+#: stands for it among the columns of tangents; no law holds it
+COMMAND_LATE = sp.Symbol(RECORD_SHIFT, real=True)
 
 
 @dataclass(frozen=True)
@@ -44,7 +48,11 @@ class ActuationStage:
 def acting_along(body: Body, motion: Motion, along: Along) -> Traced:
     """Acting force at the rows; along: at the rows, the command among its signals."""
     stages = stages_along(body, motion, along)
-    return through(motion.at_rows, stages[-1].output if stages else along.signals[_COMMAND])
+    acting = through(motion.at_rows, stages[-1].output if stages else along.signals[_COMMAND])
+    if COMMAND_LATE in along.columns:
+        slope = motion.spectrum.multiply(acting.value, motion.spectrum.derivative(1))
+        acting.tangent[along.columns.index(COMMAND_LATE)] += slope
+    return acting
 
 
 def stages_along(body: Body, motion: Motion, along: Along) -> list[ActuationStage]:

@@ -102,6 +102,8 @@ def _outcome(rung: Rung | None, ranking: Ranking, ranked: Ranked) -> str:
         return "no gain"
     if ranked.refused:
         return ranked.refused
+    if ranked.implausible:
+        return "implausible"
     if not ranked.is_identifiable:
         return "open"
     return "displaces" if set(ranked.fit.at_bound) - set(ranking.base.at_bound) else ""

@@ -11,6 +11,7 @@ from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.evidence import whole_score
 from ..diagnose.fit import Fit
 from ..diagnose.ranking import Ranked
+from ..diagnose.record_shift import shifts_of
 from ..diagnose.rung import Rung
 from ..effects import CONTACT_ROLES
 from ..finding import Finding
@@ -28,6 +29,7 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
     groups = [_group(r) for r in diagnosis.rungs if r.added is not None and r.alternatives]
     rest = [
         *_at_bound(diagnosis),
+        *_clock(diagnosis),
         *_open_parameters(diagnosis),
         *_together(diagnosis.after),
         *_open_candidates(diagnosis),
@@ -35,6 +37,20 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
         *_unchecked(diagnosis),
     ]
     return (*groups, *rest)
+
+
+def _clock(diagnosis: Diagnosis) -> list[Finding]:
+    """Shifts between force and position of the records, where a delay would look the same."""
+    return [
+        Finding(
+            topic="clock of the logger",
+            concern="note",
+            sentence=f"{shift}.",
+            numbers={"late": shift.late, "stderr": shift.stderr, "row": shift.row},
+        )
+        for shift in shifts_of(diagnosis.model, diagnosis.prepared.stretches)
+        if shift.at_bound or shift.is_like_a_delay
+    ]
 
 
 def _group(rung: Rung) -> Finding:

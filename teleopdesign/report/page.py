@@ -11,6 +11,7 @@ from typing import Any
 from ..diagnose import Diagnosis
 from ..diagnose.answer import answer
 from ..finding import Finding, Graph
+from ..measurement.reading import ReadingStep
 from ..plain_data import plain
 from ..plot.graph import thin_series
 from .candidate_table import CandidateRow, LadderRow, candidate_rows, ladder_rows
@@ -50,6 +51,7 @@ class Page:
     unexplained: tuple[Finding, ...]
     next_steps: tuple[Finding, ...]
     records: tuple[RecordRow, ...]
+    reading: tuple[ReadingStep, ...]
     channels: tuple[ChannelRow, ...]
     bandwidth: float
     bandwidth_stated: bool
@@ -91,6 +93,7 @@ def page_of(
         unexplained=_bounded(unexplained),
         next_steps=_bounded(next_steps),
         records=record_rows(experiment),
+        reading=experiment.reading,
         channels=channel_rows(experiment),
         bandwidth=diagnosis.prepared.bandwidth,
         bandwidth_stated=experiment.bandwidth is not None,

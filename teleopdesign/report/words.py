@@ -70,7 +70,7 @@ def step_name(rung: Rung) -> str:
     """What a rung adds, with those that do as well: "stribeck at device"."""
     if rung.added is None:
         return "your model, re-estimated"
-    return " or ".join(map(str, (rung.added, *rung.alternatives)))
+    return " or ".join((rung.said, *map(str, rung.alternatives)))
 
 
 def judged_on(diagnosis: Diagnosis) -> str:

@@ -3,6 +3,7 @@
 from ..arguments import check_arguments
 from .force_displacement import ForceDisplacement, Loop, force_displacement, loop_of
 from .force_velocity import ForceVelocity, force_velocity
+from .many import simulate_many
 from .sampling import Sampling
 from .setup import Setup, prepare
 from .simulation import Simulation, simulate
@@ -22,6 +23,7 @@ __all__ = [
     "prepare",
     "sampled_motion",
     "simulate",
+    "simulate_many",
     "sine",
 ]
 

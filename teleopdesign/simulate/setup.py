@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -36,8 +37,6 @@ def prepare(
     jit: bool = True,
 ) -> Setup:
     """Everything that `simulate` does before it runs; arguments as there."""
-    from ..realise.kernel import program
-
     motion, inputs, initial = dict(motion or {}), dict(inputs or {}), dict(initial or {})
     for name in inputs:
         if name not in diagram.outside:
@@ -49,18 +48,8 @@ def prepare(
     for name, value in positive.items():
         if not 0 < value < float("inf"):
             raise ModelError(f"simulate: {name}: found {value:g}, expected more than 0")
-    body = simulated(diagram, give, motion)
-    sampled = not isinstance(computer, str)
     setting = Sampling() if isinstance(computer, str) else computer
-    if sampled:
-        body = in_computer(body, setting.period)
-    made = program(
-        body,
-        prescribed=tuple(motion),
-        sampled=sampled,
-        observer=setting.observer if sampled else 0,
-        jit=jit,
-    )
+    body, made = _form_and_program(_Same(diagram), tuple(motion), computer, give, jit)
     states = (*made.layout.states, *made.layout.computer_states)
     for name in initial:
         if name not in states:
@@ -68,6 +57,49 @@ def prepare(
                 f'initial: no state "{name}", has {", ".join(states)}{did_you_mean(name, states)}'
             )
     return Setup(body, made, setting, duration, step, inputs, motion, initial)
+
+
+@dataclass(frozen=True, eq=False)
+class _Same:
+    """A diagram that counts by identity: it is frozen, so what was made of it stays right."""
+
+    diagram: Diagram
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and self.diagram is other.diagram
+
+    def __hash__(self) -> int:
+        return id(self.diagram)
+
+
+@lru_cache(maxsize=64)
+def _form_and_program(
+    same: _Same,
+    motion: tuple[str, ...],
+    computer: Sampling | Literal["continuous"],
+    give: float,
+    jit: bool,
+) -> tuple[Diagram, Program]:
+    """What is simulated of a diagram, and the loop for its structure."""
+    from ..realise.kernel import program
+
+    body = simulated_form(same.diagram, motion=motion, computer=computer, give=give)
+    sampled, observer = False, 0
+    if not isinstance(computer, str):
+        sampled, observer = True, computer.observer
+    return body, program(body, prescribed=motion, sampled=sampled, observer=observer, jit=jit)
+
+
+def simulated_form(
+    diagram: Diagram,
+    *,
+    motion: Iterable[str],
+    computer: Sampling | Literal["continuous"],
+    give: float,
+) -> Diagram:
+    """The diagram as it is simulated; arguments as in `simulate`."""
+    body = simulated(diagram, give, motion)
+    return body if isinstance(computer, str) else in_computer(body, computer.period)
 
 
 @dataclass(frozen=True)
@@ -83,17 +115,25 @@ class Setup:
     motion: Mapping[str, Trajectory]
     initial: Mapping[str, float]
 
-    def timing(self, inner: int) -> Timing:
-        """The grid with that many inner steps a sample."""
+    @property
+    def delays(self) -> list[float]:
+        """Delay of each late signal, s."""
+        values, parameters = self.diagram.values, self.program.equations.parameters
+        late = self.program.equations.late.values()
+        return [float(d.subs({x: values[n] for x, n in parameters.items()})) for _, d in late]
+
+    @property
+    def inner(self) -> int:
+        """Steps a sample, as asked for."""
+        return max(-int(-self.sampling.period * (1 - 1e-9) // self.step), 1)
+
+    def timing(self, inner: int, delays: Sequence[float] | None = None) -> Timing:
+        """The grid with that many inner steps a sample;  delays: default `delays`, s."""
         from ..realise.kernel import Timing, velocity_smoothing
 
         s = self.sampling
         step = s.period / inner
-        values = self.diagram.values
-        delays = [
-            float(delay.subs({x: values[n] for x, n in self.program.equations.parameters.items()}))
-            for _, delay in self.program.equations.late.values()
-        ]
+        delays = self.delays if delays is None else delays
         late = [_steps(d, step, "an actuation delay") for d in delays]
         if min(late, default=1) < 1:
             raise ModelError(
@@ -102,7 +142,7 @@ class Setup:
         return Timing(
             step,
             inner,
-            max(round(self.duration / s.period), 1),
+            samples_of(self.duration, s.period),
             _steps(s.delay, step, "the computer's delay"),
             tuple(late),
             s.encoder_step,
@@ -129,13 +169,7 @@ class Setup:
         """Rows of the program's columns and the measure of how well bristles are resolved."""
         from ..realise.kernel import execute
 
-        layout = self.program.layout
-        numbers = timing.steps * (2 * len(layout.inputs) + len(layout.columns) * every_step)
-        if numbers > MOST_NUMBERS:
-            raise ModelError(
-                f"simulate: {timing.steps:.2g} steps of {timing.step:.2g} s need "
-                f"{8e-9 * numbers:.2g} GB: use a longer step, a shorter time or more give"
-            )
+        self.check_size(timing, every_step=every_step)
         return execute(
             self.program,
             self.diagram.values,
@@ -144,44 +178,93 @@ class Setup:
             **self.arguments(timing),
         )
 
+    def check_size(self, timing: Timing, *, every_step: bool = False) -> None:
+        """ModelError where the tables of one run hold more than `MOST_NUMBERS`."""
+        layout = self.program.layout
+        numbers = timing.steps * (2 * len(layout.inputs) + len(layout.columns) * every_step)
+        if numbers > MOST_NUMBERS:
+            raise ModelError(
+                f"simulate: {timing.steps:.2g} steps of {timing.step:.2g} s need "
+                f"{8e-9 * numbers:.2g} GB: use a longer step, a shorter time or more give"
+            )
+
     def checked(
         self, *, long_step: Literal["refine", "refuse"], every_step: bool = False
     ) -> tuple[np.ndarray, Timing]:
         """Run with a step that resolves oscillations and bristles, or refuse the one given."""
-        from ..realise.kernel import FASTEST, JUMP, RELOAD, fastest_rate, refine_factor, too_long
+        from ..realise.kernel import fastest_rate
 
-        inner = max(-int(-self.sampling.period * (1 - 1e-9) // self.step), 1)
-        most = inner * _MOST_REFINED
-        rate, state = fastest_rate(self.program, self.diagram.values)
+        inner = self.first_inner(*fastest_rate(self.program, self.diagram.values), long_step)
+        while True:
+            timing = self.timing(inner)
+            rows, worst = self.run(timing, every_step=every_step)
+            finer = self.next_inner(timing, worst, bool(np.isfinite(rows).all()), long_step)
+            if finer == inner:
+                return rows, timing
+            inner = finer
+
+    def first_inner(
+        self, rate: float, state: str, long_step: Literal["refine", "refuse"] = "refine"
+    ) -> int:
+        """Steps a sample that resolve this rate, 1/s, in which the state takes part most.
+
+        raises ModelError: the step is refused, or none would do
+        """
+        from ..realise.kernel import FASTEST, JUMP, refine_factor, too_long
+
         if rate > JUMP:
             raise ModelError(
                 f"simulate: a force on {state} jumps with the sign of a velocity: no step resolves "
                 "that in continuous time; sample the controller, or take a law that is rounded off"
             )
-        timing = self.timing(inner)
-        if rate * timing.step > FASTEST:
+        inner = self.inner
+        step = self.sampling.period / inner
+        if rate * step > FASTEST:
             if long_step == "refuse":
-                turns = 2 * np.pi / (rate * timing.step)
-                why = f"is {turns:.2g} steps per period of {state}"
-                raise too_long(timing.step, FASTEST / rate, why)
-            inner *= refine_factor(rate * timing.step, FASTEST, 1)
-        while inner <= most:
-            timing = self.timing(inner)
-            rows, worst = self.run(timing, every_step=every_step)
-            if not np.isfinite(rows).all():
-                raise GrowsWithoutBound(
-                    f"simulate: signals grow beyond all bounds at a step of {timing.step:g} s: the "
-                    "loop is unstable or a parameter makes no sense"
-                )
-            if worst <= RELOAD:
-                return rows, timing
-            factor = refine_factor(worst, RELOAD, 2)
-            if long_step == "refuse":
-                steps = np.sqrt(2 / worst)
-                why = f"is {steps:.2g} steps for the bristle's reload after a reversal"
-                raise too_long(timing.step, timing.step / factor, why)
-            inner *= factor
-        raise too_long(self.step, self.sampling.period / inner, "is far too long")
+                why = f"is {2 * np.pi / (rate * step):.2g} steps per period of {state}"
+                raise too_long(step, FASTEST / rate, why)
+            inner *= refine_factor(rate * step, FASTEST, 1)
+        self._check_refined(inner)
+        return inner
+
+    def next_inner(
+        self,
+        timing: Timing,
+        worst: float,
+        is_finite: bool,
+        long_step: Literal["refine", "refuse"] = "refine",
+    ) -> int:
+        """Steps a sample for the next run; as they were, where this run resolved its bristles.
+
+        worst: measure of their reload, see `realise.kernel`
+        raises ModelError: signals are not finite, the step is refused, or none would do
+        """
+        from ..realise.kernel import RELOAD, refine_factor, too_long
+
+        if not is_finite:
+            raise GrowsWithoutBound(
+                f"simulate: signals grow beyond all bounds at a step of {timing.step:g} s: the "
+                "loop is unstable or a parameter makes no sense"
+            )
+        if worst <= RELOAD:
+            return timing.inner
+        factor = refine_factor(worst, RELOAD, 2)
+        if long_step == "refuse":
+            why = f"is {np.sqrt(2 / worst):.2g} steps for the bristle's reload after a reversal"
+            raise too_long(timing.step, timing.step / factor, why)
+        self._check_refined(timing.inner * factor)
+        return timing.inner * factor
+
+    def _check_refined(self, inner: int) -> None:
+        from ..realise.kernel import too_long
+
+        if inner > self.inner * _MOST_REFINED:
+            raise too_long(self.step, self.sampling.period / inner, "is far too long")
+
+
+def samples_of(duration: float, period: float) -> int:
+    """Samples of a run, at least one; both in s."""
+    return max(round(duration / period), 1) if 0 < duration < float("inf") else 1
 
 
 def _steps(delay: float, step: float, what: str) -> int:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -35,6 +36,19 @@ class Simulation(ByValue):
 
     diagram: Diagram
     data: xarray.Dataset
+
+    def __getattr__(self, name: str) -> Any:
+        # the Dataset is made when it is first asked for: that takes longer than a short simulation
+        make = self.__dict__.get("_make")
+        if name != "data" or make is None:
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+        data = make()
+        self.__dict__["data"] = data
+        self.__dict__.pop("_make", None)
+        return data
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"diagram": self.diagram, "data": self.data}
 
     def __getitem__(self, name: str) -> xarray.DataArray:
         if name not in self.data:
@@ -131,7 +145,14 @@ def simulate(
 
 
 def _labelled(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -> Simulation:
-    """Rows as labelled arrays with units."""
+    """Rows as labelled arrays with units, labelled when they are asked for."""
+    result = object.__new__(Simulation)
+    make = partial(_dataset, setup, rows, timing, every_step)
+    result.__dict__.update(diagram=setup.diagram, _make=make)
+    return result
+
+
+def _dataset(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -> xarray.Dataset:
     import xarray
 
     step = timing.step if every_step else timing.period
@@ -148,4 +169,4 @@ def _labelled(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) 
     scheme = f"exponential Runge-Kutta of order 4, step {timing.step * 1e3:.4g} ms"
     attrs = {"diagram": setup.diagram.name, "step_s": timing.step, "scheme": scheme}
     attrs |= {f"parameter {n}": v for n, v in setup.diagram.values.items()}
-    return Simulation(setup.diagram, xarray.Dataset(data, {"time": time}, attrs))
+    return xarray.Dataset(data, {"time": time}, attrs)

@@ -43,15 +43,40 @@ def _states(diagram: Diagram) -> dict[str, tuple[str, str]]:
 
 
 def _quantities(diagram: Diagram) -> dict[str, str]:
-    found = dict(diagram.outside)
+    """Quantity of each signal: of bodies, and carried on by sums; of a controller by what takes it.
+
+    What a controller gives to a sum is what the sum is of: a position, where it is compared with
+    one. What goes to controllers alone is what came in: a filter.
+    """
+    by_signal = dict(diagram.outside)
     for block in diagram.blocks:
         if isinstance(block, Moving):
-            found[block.motion] = "position"
-    found |= {k.output: "position" for k in diagram.kinematics}
-    for junction in diagram.junctions:
-        if any(found.get(s) == "position" for s in junction.terms):
-            found[junction.output] = "position"
-    return found
+            by_signal[block.motion] = "position"
+            by_signal |= dict.fromkeys(block.inputs, "force")
+        elif isinstance(block, Attached):
+            by_signal[block.force] = "force"
+        elif isinstance(block, Linked):
+            by_signal |= dict.fromkeys(block.forces, "force")
+    by_signal |= {k.output: "position" for k in diagram.kinematics}
+    filters = [c for c in diagram.controls if _feeds_controllers_alone(diagram, c.output)]
+    sums = [(j.output, *j.terms) for j in diagram.junctions if _is_sum(j.terms)]
+    changed = True
+    while changed:
+        before = len(by_signal)
+        for junction in diagram.junctions:
+            if any(by_signal.get(s) == "position" for s in junction.terms):
+                by_signal.setdefault(junction.output, "position")
+        for group in (*sums, *((c.input, c.output) for c in filters)):
+            known = next((by_signal[s] for s in group if s in by_signal), None)
+            if known is not None:
+                by_signal |= {s: known for s in group if s not in by_signal}
+        changed = len(by_signal) > before
+    return by_signal
+
+
+def _feeds_controllers_alone(diagram: Diagram, signal: str) -> bool:
+    takers = [part for part in diagram.parts if signal in part.inputs]
+    return bool(takers) and all(isinstance(part, Control) for part in takers)
 
 
 def _axes(diagram: Diagram) -> dict[str, str]:

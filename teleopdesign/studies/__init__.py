@@ -14,7 +14,7 @@ result.plot.map("force_error")
 """
 
 from ..arguments import check_arguments
-from .case import Case
+from .case import SimulatedCase
 from .diagnosed import diagnosed
 from .from_toml import read_study_file
 from .journal import Outcome
@@ -29,7 +29,7 @@ from .sensitivity import sensitivity
 __all__ = [
     "MEASURES",
     "Amount",
-    "Case",
+    "SimulatedCase",
     "Measure",
     "Outcome",
     "Point",

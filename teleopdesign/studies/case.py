@@ -35,7 +35,7 @@ _OWN = {"duration": "s", "step": "s", "give": ""}
 
 @checked
 @dataclass(frozen=True, eq=False)
-class Case(ByValue):
+class SimulatedCase(ByValue):
     """A diagram and how it is simulated; arguments as of `simulate`.
 
     duration: s; 0: nothing is simulated, measures that need a motion are refused
@@ -91,10 +91,10 @@ class Case(ByValue):
                 f'study: no parameter "{name}", has {_listed(known)}{did_you_mean(name, known)}'
             )
 
-    def with_values(self, values: Mapping[str, Any]) -> Case:
+    def with_values(self, values: Mapping[str, Any]) -> SimulatedCase:
         """The case with other values, by the names in `names`."""
         self.check_names(values)
-        own: dict[str, Any] = {n: values[n] for n in _OWN if n in values}
+        changes: dict[str, Any] = {n: values[n] for n in _OWN if n in values}
         computer: dict[str, float] = {}
         inputs, motion, initial = dict(self.inputs), dict(self.motion), dict(self.initial)
         within: dict[str, float] = {}
@@ -113,9 +113,11 @@ class Case(ByValue):
                 signal, _, part = rest.rpartition(".")
                 motion[signal] = _sine_with(motion[signal], part, value)
         if computer:
-            own["computer"] = replace(self.computer, **computer)  # type: ignore[type-var]
+            changes["computer"] = replace(self.computer, **computer)  # type: ignore[type-var]
         diagram = self.diagram.with_values(within) if within else self.diagram
-        return replace(self, diagram=diagram, inputs=inputs, motion=motion, initial=initial, **own)
+        return replace(
+            self, diagram=diagram, inputs=inputs, motion=motion, initial=initial, **changes
+        )
 
     def unit(self, name: str) -> str:
         """SI unit of a parameter; "1" where it has none."""
@@ -145,8 +147,8 @@ class Case(ByValue):
         if stem == "motion":
             signal, _, part = rest.rpartition(".")
             return _sine_parts(self.motion[signal])[part]
-        found = (self.inputs if stem == "inputs" else self.initial).get(rest, 0.0)
-        return float(found) if np.ndim(found) == 0 and not callable(found) else None
+        start = (self.inputs if stem == "inputs" else self.initial).get(rest, 0.0)
+        return float(start) if np.ndim(start) == 0 and not callable(start) else None
 
     @property
     def _axis(self) -> str:

@@ -10,9 +10,10 @@ from functools import lru_cache
 from typing import Any
 
 from ..errors import ExperimentError, ModelError
-from .evaluate import Task, evaluate_all
+from .evaluate import Task
 from .journal import Outcome
-from .processes import Sink, packed
+from .processes import Sink, one_thread, packed
+from .side_by_side import Unit, evaluate_unit
 from .versions import versions
 
 #: s that a task of the cluster takes: long against the scheduler's ms for each
@@ -22,7 +23,7 @@ _MOST_IN_TASK = 1000
 _AHEAD = 3
 
 
-def run_on_cluster(task: Task, todo: list[int], sink: Sink, address: str) -> None:
+def run_on_cluster(task: Task, units: list[Unit], sink: Sink, address: str) -> None:
     """Points in the workers of the scheduler at that address, such as "tcp://10.0.0.1:8786".
 
     raises ExperimentError: no scheduler there, no worker, dask is not installed
@@ -42,9 +43,9 @@ def run_on_cluster(task: Task, todo: list[int], sink: Sink, address: str) -> Non
     try:
         _check_versions(client, address)
         payload = packed(task)
-        waiting, seconds_each = deque(todo), 0.0
-        deaths: dict[int, int] = {}
-        known: dict[Any, list[int]] = {}
+        waiting, seconds_each = deque(units), 0.0
+        deaths: dict[Unit, int] = {}
+        known: dict[Any, list[Unit]] = {}
         every = as_completed([], loop=client.loop)
 
         def fill() -> None:
@@ -70,11 +71,15 @@ def run_on_cluster(task: Task, todo: list[int], sink: Sink, address: str) -> Non
                 for outcome in outcomes:
                     sink(outcome)
             else:
-                for index in batch:
-                    deaths[index] = deaths.get(index, 0) + 1
-                if len(batch) == 1:
+                for unit in batch:
+                    deaths[unit] = deaths.get(unit, 0) + 1
+                if len(batch) == 1 and len(batch[0]) == 1:
                     ended = type(future.exception()).__name__
-                    sink(Outcome(batch[0], reason=f"{ended} on the cluster"))
+                    sink(Outcome(batch[0][0], reason=f"{ended} on the cluster"))
+                elif len(batch) == 1:  # its points one by one
+                    alone = [(index,) for index in batch[0]]
+                    deaths |= dict.fromkeys(alone, 1)
+                    waiting.extendleft(reversed(alone))
                 else:
                     waiting.extendleft(reversed(batch))
             fill()
@@ -83,26 +88,25 @@ def run_on_cluster(task: Task, todo: list[int], sink: Sink, address: str) -> Non
 
 
 def _check_versions(client: Any, address: str) -> None:
-    found = client.run(versions)
-    if not found:
+    by_worker = client.run(versions)
+    if not by_worker:
         raise ExperimentError(f"study: the scheduler at {address} has no worker")
     here = versions()
-    for worker, there in found.items():
-        for name, own in here.items():
-            if there.get(name) != own:
+    for worker, there in by_worker.items():
+        for name, version_here in here.items():
+            if there.get(name) != version_here:
                 raise ModelError(
-                    f"study: worker {worker} has {name} {there.get(name)}, here is {own}: results "
-                    "could differ"
+                    f"study: worker {worker} has {name} {there.get(name)}, here is "
+                    f"{version_here}: results could differ"
                 )
 
 
-def _evaluated(payload: bytes, batch: Sequence[int]) -> tuple[list[Outcome], float]:
+def _evaluated(payload: bytes, batch: Sequence[Unit]) -> tuple[list[Outcome], float]:
     """In a worker: the outcomes, and the time that they took, s."""
-    from threadpoolctl import threadpool_limits
-
     task, start = _task(payload), time.monotonic()
-    with threadpool_limits(1):
-        return evaluate_all(task, batch), time.monotonic() - start
+    with one_thread():
+        outcomes = [outcome for unit in batch for outcome in evaluate_unit(task, unit)]
+    return outcomes, time.monotonic() - start
 
 
 @lru_cache(maxsize=4)

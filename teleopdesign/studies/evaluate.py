@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from ..diagrams import Diagram
 from ..errors import ModelError, TeleopDesignError, did_you_mean
-from .case import Case
+from .case import SimulatedCase
 from .journal import Outcome
 from .measures import Amount, Measure, Point
 from .points import Points
@@ -25,7 +25,7 @@ class Task:
     case: how a diagram that the function returns is simulated
     """
 
-    model: Case | Callable[..., Any]
+    model: SimulatedCase | Callable[..., Any]
     case: Mapping[str, Any]
     points: Points
     measures: tuple[Measure, ...]
@@ -33,13 +33,22 @@ class Task:
 
 
 def evaluate(task: Task, index: int) -> Outcome:
-    """What becomes of a point: its values, or the reason why it failed.
+    """What becomes of a point: its values, or the reason why it failed."""
 
-    Whatever a model or a measure raises is such a reason: one point never ends a study.
+    def point() -> Point:
+        values = task.points.at(index)
+        return Point(_content(task, values), values, (task.seed, index))
+
+    return outcome_of(task, index, point)
+
+
+def outcome_of(task: Task, index: int, made: Callable[[], Point]) -> Outcome:
+    """What the measures make of a point.
+
+    Whatever a model or a measure raises is the reason of a failure: one point never ends a study.
     """
     try:
-        values = task.points.at(index)
-        point = Point(_given(task, values), values, (task.seed, index))
+        point = made()
         amounts: dict[str, Amount] = {}
         for measure in task.measures:
             for name, amount in measure(point).items():
@@ -51,28 +60,17 @@ def evaluate(task: Task, index: int) -> Outcome:
     except Exception as error:
         return Outcome(index, reason=_shortened(f"{type(error).__name__}: {error}"))
     form = tuple(
-        (
-            name,
-            "text" if isinstance(a.value, str) else "number",
-            a.unit,
-            a.text,
-            *((a.over[0], a.over[1], a.over[2]) if a.over else ()),
-        )
+        (name, "text" if isinstance(a.value, str) else "number", a.unit, a.text, *(a.over or ()))
         for name, a in amounts.items()
     )
     return Outcome(index, form, tuple(_whole(a.value) for a in amounts.values()))
 
 
-def evaluate_all(task: Task, indices: Iterable[int]) -> list[Outcome]:
-    """Several points, one after the other."""
-    return [evaluate(task, i) for i in indices]
-
-
-def _given(task: Task, values: Mapping[str, Any]) -> Any:
-    if isinstance(task.model, Case):
+def _content(task: Task, values: Mapping[str, Any]) -> Any:
+    if isinstance(task.model, SimulatedCase):
         return task.model.with_values(values)
-    found = task.model(**values)
-    return Case(found, **task.case) if isinstance(found, Diagram) else found
+    result = task.model(**values)
+    return SimulatedCase(result, **task.case) if isinstance(result, Diagram) else result
 
 
 def check_parameters(model: Callable[..., Any], points: Points) -> None:

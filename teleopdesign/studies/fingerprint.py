@@ -30,65 +30,65 @@ def fingerprint(*things: Any) -> str:
     return whole.hexdigest()[:_DIGITS]
 
 
-def _parts(thing: Any, seen: set[int]) -> Iterator[str]:
+def _parts(thing: Any, above: set[int]) -> Iterator[str]:
     if thing is None or isinstance(thing, bool | int | str | bytes | PurePath):
         yield f"{type(thing).__name__} {thing!s}"
     elif isinstance(thing, float | complex):
         yield repr(thing)
     elif isinstance(thing, np.generic):
-        yield from _parts(thing.item(), seen)
+        yield from _parts(thing.item(), above)
     elif isinstance(thing, np.ndarray):
         if thing.dtype == object:
-            yield from _parts(thing.tolist(), seen)
+            yield from _parts(thing.tolist(), above)
         else:
             data = hashlib.sha256(np.ascontiguousarray(thing).tobytes()).hexdigest()
             yield f"array {thing.dtype.str} {thing.shape} {data}"
-    elif id(thing) in seen:
+    elif id(thing) in above:
         yield "as before"
     else:
         # what is being described is kept alive by the one who asked: its id stays its own
-        yield from _of_object(thing, seen | {id(thing)})
+        yield from _of_object(thing, above | {id(thing)})
 
 
-def _of_object(thing: Any, seen: set[int]) -> Iterator[str]:
+def _of_object(thing: Any, above: set[int]) -> Iterator[str]:
     if isinstance(thing, Mapping):
         yield f"mapping {len(thing)}"
         for key, value in thing.items():
-            yield from _parts(key, seen)
-            yield from _parts(value, seen)
+            yield from _parts(key, above)
+            yield from _parts(value, above)
     elif isinstance(thing, list | tuple):
         yield f"{len(thing)} of"
         for value in thing:
-            yield from _parts(value, seen)
+            yield from _parts(value, above)
     elif isinstance(thing, Set):
-        yield from sorted(" ".join(_parts(v, seen)) for v in thing)
+        yield from sorted(" ".join(_parts(v, above)) for v in thing)
     elif isinstance(thing, types.FunctionType):
-        yield from _of_function(thing, seen)
+        yield from _of_function(thing, above)
     elif isinstance(thing, types.MethodType):
-        yield from _parts((thing.__func__, thing.__self__), seen)
+        yield from _parts((thing.__func__, thing.__self__), above)
     elif isinstance(thing, type | types.BuiltinFunctionType | types.ModuleType):
         yield f"{getattr(thing, '__module__', '')}.{getattr(thing, '__qualname__', thing)}"
     elif is_dataclass(thing):
         yield type(thing).__qualname__
         for one in fields(thing):
             yield one.name
-            yield from _parts(getattr(thing, one.name), seen)
+            yield from _parts(getattr(thing, one.name), above)
     elif hasattr(thing, "free_symbols"):  # of sympy
         from sympy import srepr
 
         yield srepr(thing)
     else:
         yield f"{type(thing).__module__}.{type(thing).__qualname__}"
-        own = getattr(thing, "__dict__", None)
+        attributes = getattr(thing, "__dict__", None)
         # a generator of random numbers that a distribution carries is no part of it
-        kept = {k: v for k, v in (own or {}).items() if "random_state" not in k}
+        kept = {k: v for k, v in (attributes or {}).items() if "random_state" not in k}
         if kept:
-            yield from _parts(kept, seen)
+            yield from _parts(kept, above)
         elif " at 0x" not in (text := repr(thing)):
             yield text
 
 
-def _of_function(function: types.FunctionType, seen: set[int]) -> Iterator[str]:
+def _of_function(function: types.FunctionType, above: set[int]) -> Iterator[str]:
     name = f"function {function.__qualname__}"
     yield name
     if _is_installed(function.__module__):
@@ -98,18 +98,18 @@ def _of_function(function: types.FunctionType, seen: set[int]) -> Iterator[str]:
         yield inspect.getsource(function)
     except (OSError, TypeError):  # written at a prompt: the code itself
         yield function.__code__.co_code.hex()
-        yield from _parts([c for c in function.__code__.co_consts if _is_plain(c)], seen)
-    yield from _parts(function.__defaults__ or (), seen)
-    yield from _parts(function.__kwdefaults__ or {}, seen)
+        yield from _parts([c for c in function.__code__.co_consts if _is_plain(c)], above)
+    yield from _parts(function.__defaults__ or (), above)
+    yield from _parts(function.__kwdefaults__ or {}, above)
     for cell in function.__closure__ or ():
         try:
-            yield from _parts(cell.cell_contents, seen)
+            yield from _parts(cell.cell_contents, above)
         except ValueError:  # a name that has no value yet
             continue
     for used in sorted(_names(function.__code__)):
         if used in function.__globals__:
             yield used
-            yield from _parts(function.__globals__[used], seen)
+            yield from _parts(function.__globals__[used], above)
 
 
 def _names(code: types.CodeType) -> set[str]:

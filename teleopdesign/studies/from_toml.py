@@ -74,19 +74,19 @@ def read_study_file(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS
     head = root.table("study")
     head.allow(("model", "experiments", "seed"))
     try:
-        found = _model(head, path.parent, effects)
-        found["axes"] = [*found.pop("axes", []), *_axes(root)]
-        found["measures"] = _measures(root.table("measures")) or found.get("measures", {})
-        found |= _simulation(root.table("simulation"))
+        arguments = _model(head, path.parent, effects)
+        arguments["axes"] = [*arguments.pop("axes", []), *_axes(root)]
+        arguments["measures"] = _measures(root.table("measures")) or arguments.get("measures", {})
+        arguments |= _simulation(root.table("simulation"))
     except ModelError as error:
         raise ExperimentError(f"{path.name}: {error}") from error
     if "seed" in head.content:
-        found["seed"] = _whole(head, "seed")
-    if not found["measures"]:
+        arguments["seed"] = _whole(head, "seed")
+    if not arguments["measures"]:
         raise ExperimentError(
             f"{path.name}: measures: found none, expected one of {', '.join(MEASURES)}"
         )
-    return found
+    return arguments
 
 
 def _model(head: Table, folder: Path, effects: Mapping[str, Effect]) -> dict[str, Any]:
@@ -96,26 +96,26 @@ def _model(head: Table, folder: Path, effects: Mapping[str, Effect]) -> dict[str
         )
     if "model" in head.content:
         return {"model": _diagram(head, folder, effects)}
-    given = head.content["experiments"]
-    if not isinstance(given, list) or not all(isinstance(g, str) for g in given):
+    content = head.content["experiments"]
+    if not isinstance(content, list) or not all(isinstance(g, str) for g in content):
         raise ExperimentError(
-            f"{head.where('experiments')}: found {described(given)}, expected a list of folders, "
+            f"{head.where('experiments')}: found {described(content)}, expected a list of folders, "
             'such as ["rod", "runs/*"]'
         )
-    folders = _folders(given, folder, head.where("experiments"))
+    folders = _folders(content, folder, head.where("experiments"))
     return {"model": diagnosed, "axes": [{"experiment": folders}], "measures": ["verdict"]}
 
 
-def _folders(given: Iterable[str], home: Path, where: str) -> list[str]:
+def _folders(patterns: Iterable[str], home: Path, where: str) -> list[str]:
     """Folders of experiments, patterns with * resolved."""
-    found: list[str] = []
-    for text in given:
+    folders: list[str] = []
+    for text in patterns:
         matches = sorted(home.glob(text)) if "*" in text and text[0] != "/" else [home / text]
         chosen = [m for m in matches if (m / "experiment.toml").is_file()]
         if not chosen:
             raise ExperimentError(f"{where}: {quoted(text)}: no folder with an experiment.toml")
-        found += [str(m) for m in chosen]
-    return list(dict.fromkeys(found))
+        folders += [str(m) for m in chosen]
+    return list(dict.fromkeys(folders))
 
 
 def _diagram(head: Table, folder: Path, effects: Mapping[str, Effect]) -> Diagram:
@@ -144,8 +144,8 @@ def _axes(root: Table) -> list[Any]:
 
 def _axis(table: Table, name: str) -> Any:
     """A list, one value, or { from, to, points, scale }."""
-    given = table.content[name]
-    if isinstance(given, dict):
+    content = table.content[name]
+    if isinstance(content, dict):
         grid = table.table(name)
         grid.allow(("from", "to", "points", "scale"))
         low, high, count = grid.number("from"), grid.number("to"), _whole(grid, "points")
@@ -159,14 +159,16 @@ def _axis(table: Table, name: str) -> Any:
                 raise ExperimentError(f"{grid.where()}: a log scale needs from and to above 0")
             return np.geomspace(low, high, count)
         return np.linspace(low, high, count)
-    if isinstance(given, list):
-        if not given or not (all(map(_is_number, given)) or all(isinstance(x, str) for x in given)):
+    if isinstance(content, list):
+        if not content or not (
+            all(map(_is_number, content)) or all(isinstance(x, str) for x in content)
+        ):
             raise ExperimentError(
-                f"{table.where(name)}: found {described(given)}, expected numbers or texts, at "
+                f"{table.where(name)}: found {described(content)}, expected numbers or texts, at "
                 "least one"
             )
-        return given if isinstance(given[0], str) else [float(x) for x in given]
-    return given if isinstance(given, str) else table.number(name)
+        return content if isinstance(content[0], str) else [float(x) for x in content]
+    return content if isinstance(content, str) else table.number(name)
 
 
 def _samples(table: Table) -> Samples:
@@ -181,8 +183,8 @@ def _samples(table: Table) -> Samples:
     if not ranges.content:
         raise ExperimentError(f"{table.where('ranges')}: found none, expected at least one")
     seed = _whole(table, "seed") if "seed" in table.content else 0
-    given = {name: _range(ranges.table(name)) for name in ranges.content}
-    return _METHODS[method](given, _whole(table, "points"), seed=seed)
+    extents = {name: _range(ranges.table(name)) for name in ranges.content}
+    return _METHODS[method](extents, _whole(table, "points"), seed=seed)
 
 
 def _range(table: Table) -> Any:
@@ -207,29 +209,31 @@ def _range(table: Table) -> Any:
 
 def _simulation(table: Table) -> dict[str, Any]:
     table.allow(("duration", "inputs", "motion", "initial", "computer", "every_step", *_NUMBERS))
-    found: dict[str, Any] = {n: table.number(n, above=0.0) for n in _NUMBERS if n in table.content}
+    arguments: dict[str, Any] = {
+        n: table.number(n, above=0.0) for n in _NUMBERS if n in table.content
+    }
     if "duration" in table.content:
-        found["duration"] = table.number("duration", above=0.0)
-    found["every_step"] = table.flag("every_step", False)
+        arguments["duration"] = table.number("duration", above=0.0)
+    arguments["every_step"] = table.flag("every_step", False)
     initial = table.table("initial")
-    found["initial"] = {name: initial.number(name) for name in initial.content}
+    arguments["initial"] = {name: initial.number(name) for name in initial.content}
     inputs, motions = table.table("inputs"), table.table("motion")
-    found["inputs"] = {name: _input(inputs, name) for name in inputs.content}
-    found["motion"] = {name: sine(**_sine(motions.table(name))) for name in motions.content}
+    arguments["inputs"] = {name: _input(inputs, name) for name in inputs.content}
+    arguments["motion"] = {name: sine(**_sine(motions.table(name))) for name in motions.content}
     if "computer" in table.content:
-        found["computer"] = _computer(table)
-    return found
+        arguments["computer"] = _computer(table)
+    return arguments
 
 
 def _computer(table: Table) -> Any:
-    given = table.content["computer"]
-    if isinstance(given, str):
-        if given != "continuous":
+    content = table.content["computer"]
+    if isinstance(content, str):
+        if content != "continuous":
             raise ExperimentError(
-                f"{table.where('computer')}: found {quoted(given)}, expected a table or "
-                f'"continuous"{did_you_mean(given, ["continuous"])}'
+                f"{table.where('computer')}: found {quoted(content)}, expected a table or "
+                f'"continuous"{did_you_mean(content, ["continuous"])}'
             )
-        return given
+        return content
     computer = table.table("computer")
     known = {f.name: f for f in fields(Sampling)}
     computer.allow(known)
@@ -247,9 +251,9 @@ def _computer(table: Table) -> Any:
 def _input(table: Table, name: str) -> Any:
     if not isinstance(table.content[name], dict):
         return table.number(name)
-    own = table.table(name)
-    offset = own.number("offset") if "offset" in own.content else 0.0
-    return SineInput(**_sine(own, "offset"), offset=offset)
+    entry = table.table(name)
+    offset = entry.number("offset") if "offset" in entry.content else 0.0
+    return SineInput(**_sine(entry, "offset"), offset=offset)
 
 
 def _sine(table: Table, *more: str) -> dict[str, float]:
@@ -261,34 +265,35 @@ def _sine(table: Table, *more: str) -> dict[str, float]:
 
 def _measures(table: Table) -> dict[str, Measure]:
     """Name -> measure; its name is that of a measure, or its table says which."""
-    found: dict[str, Measure] = {}
+    measures: dict[str, Measure] = {}
     for name in table.content:
-        own = table.table(name)
-        kind = own.text("measure", default=name)
+        entry = table.table(name)
+        kind = entry.text("measure", default=name)
         if kind not in MEASURES:
             raise ExperimentError(
-                f"{own.where()}: no measure {quoted(kind)}, has {', '.join(MEASURES)}"
+                f"{entry.where()}: no measure {quoted(kind)}, has {', '.join(MEASURES)}"
                 f"{did_you_mean(kind, MEASURES)}"
             )
-        options = {k: v for k, v in own.content.items() if k != "measure"}
-        own.allow(("measure", *MEASURES[kind].options))
+        options = {k: v for k, v in entry.content.items() if k != "measure"}
+        entry.allow(("measure", *MEASURES[kind].options))
         for option in options:
-            given, default = options[option], MEASURES[kind].options[option]
+            content, default = options[option], MEASURES[kind].options[option]
             if isinstance(default, float | int):
-                options[option] = own.number(option)
+                options[option] = entry.number(option)
                 if isinstance(default, int):
-                    options[option] = _whole(own, option)
+                    options[option] = _whole(entry, option)
             elif isinstance(default, str):
-                options[option] = own.text(option)
-            elif not isinstance(given, str | int | float | list) or isinstance(given, bool):
+                options[option] = entry.text(option)
+            elif not isinstance(content, str | int | float | list) or isinstance(content, bool):
                 raise ExperimentError(
-                    f"{own.where(option)}: found {described(given)}, expected a number or a text"
+                    f"{entry.where(option)}: found {described(content)}, expected a number or a "
+                    "text"
                 )
         try:
-            found[name] = measure(kind, **options)
+            measures[name] = measure(kind, **options)
         except ModelError as error:
-            raise ExperimentError(f"{own.where()}: {error}") from error
-    return found
+            raise ExperimentError(f"{entry.where()}: {error}") from error
+    return measures
 
 
 def _scale(table: Table) -> str:

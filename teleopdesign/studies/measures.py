@@ -23,7 +23,7 @@ from ..errors import ModelError, did_you_mean
 from ..expectations import described
 from ..frozen import Catalogue
 from ..simulate import Simulation
-from .case import Case
+from .case import SimulatedCase
 
 
 @dataclass(frozen=True)
@@ -44,32 +44,36 @@ class Amount:
 class Point:
     """One point as measures see it.
 
-    given: what the model gave there: a `Case`, or anything that its function returned
+    content: what the model gave there: a `SimulatedCase`, or anything that its function returned
     values: parameter -> value;  seed: of this point, the same wherever it is computed
+    simulated: gives the simulation, where it was computed with those of other points
     """
 
-    given: Any
+    content: Any
     values: Mapping[str, Any]
     seed: tuple[int, ...] = (0, 0)
+    simulated: Callable[[], Simulation] | None = None
 
     @property
-    def case(self) -> Case:
+    def case(self) -> SimulatedCase:
         """The case; ModelError where the model gave something else."""
-        if not isinstance(self.given, Case):
-            raise ModelError(f"study: found {described(self.given)}, expected a diagram")
-        return self.given
+        if not isinstance(self.content, SimulatedCase):
+            raise ModelError(f"study: found {described(self.content)}, expected a diagram")
+        return self.content
 
     @cached_property
     def simulation(self) -> Simulation:
         """The simulation, computed once for all measures."""
-        return self.given if isinstance(self.given, Simulation) else self.case.simulate()
+        if self.simulated is not None:
+            return self.simulated()
+        return self.content if isinstance(self.content, Simulation) else self.case.simulate()
 
     @property
     def result(self) -> Any:
         """What a user's own measure is given."""
-        if not isinstance(self.given, Case):
-            return self.given
-        return self.simulation if self.given.duration else self.given.diagram
+        if not isinstance(self.content, SimulatedCase):
+            return self.content
+        return self.simulation if self.content.duration else self.content.diagram
 
     def rng(self) -> np.random.Generator:
         """Randomness of this point."""
@@ -84,11 +88,13 @@ class Kind(ByValue):
     """A measure that the package has: function(point, **options) -> Amount, or several by name.
 
     options: name -> default; `...` where it must be given
+    signals: all that it needs of a simulation: signals, or options that name them
     """
 
     name: str
     function: Function
     options: Mapping[str, Any] = field(default_factory=dict)
+    signals: tuple[str, ...] = ()
 
     @property
     def text(self) -> str:
@@ -100,19 +106,21 @@ class Measure(ByValue):
     """A measure with its options, under the name that its values get.
 
     function: takes a `Point` (of the package's own), or what the point gave
+    signals: all that it needs of a simulation; none: it may need anything
     """
 
     name: str
     function: Function
     options: Mapping[str, Any] = field(default_factory=dict)
     of_package: bool = False
+    signals: tuple[str, ...] = ()
 
     def __call__(self, point: Point) -> dict[str, Amount]:
         """The values of a point, by name."""
-        found = self.function(point if self.of_package else point.result, **self.options)
-        if isinstance(found, Mapping):
-            return {str(k): _amount(v, f"{self.name}: {k}") for k, v in found.items()}
-        return {self.name: _amount(found, self.name)}
+        value = self.function(point if self.of_package else point.result, **self.options)
+        if isinstance(value, Mapping):
+            return {str(k): _amount(v, f"{self.name}: {k}") for k, v in value.items()}
+        return {self.name: _amount(value, self.name)}
 
 
 def measure(name: str, **options: Any) -> Measure:
@@ -131,23 +139,24 @@ def measure(name: str, **options: Any) -> Measure:
     for option, default in kind.options.items():
         if default is ... and option not in options:
             raise ModelError(f'measure {name}: option "{option}" has no value')
-    given = {**{k: v for k, v in kind.options.items() if v is not ...}, **options}
-    signal = given.get("signal") if kind.options.get("signal", "") is ... else None
+    values = {**{k: v for k, v in kind.options.items() if v is not ...}, **options}
+    signal = values.get("signal") if kind.options.get("signal", "") is ... else None
     label = f"{name}_{signal}" if signal else name
-    return Measure(label, kind.function, given, of_package=True)
+    signals = tuple(str(values.get(s, s)) for s in kind.signals)
+    return Measure(label, kind.function, values, of_package=True, signals=signals)
 
 
-def measures_of(given: Any) -> tuple[Measure, ...]:
+def measures_of(content: Any) -> tuple[Measure, ...]:
     """One measure or several, by name where a mapping gives names.
 
     raises ModelError: a name twice, something that is no measure, none at all
     """
-    if isinstance(given, Mapping):
-        listed = [_measure_of(m, str(name)) for name, m in given.items()]
-    elif isinstance(given, str | Measure) or callable(given):
-        listed = [_measure_of(given)]
+    if isinstance(content, Mapping):
+        listed = [_measure_of(m, str(name)) for name, m in content.items()]
+    elif isinstance(content, str | Measure) or callable(content):
+        listed = [_measure_of(content)]
     else:
-        listed = [_measure_of(m) for m in given]
+        listed = [_measure_of(m) for m in content]
     names = [m.name for m in listed]
     if doubled := {n for n in names if names.count(n) > 1}:
         raise ModelError(
@@ -158,18 +167,18 @@ def measures_of(given: Any) -> tuple[Measure, ...]:
     return tuple(listed)
 
 
-def _measure_of(given: Any, name: str = "") -> Measure:
-    if isinstance(given, str):
-        given = measure(given)
-    if isinstance(given, Measure):
-        return replace(given, name=name) if name else given
-    if not callable(given):
+def _measure_of(content: Any, name: str = "") -> Measure:
+    if isinstance(content, str):
+        content = measure(content)
+    if isinstance(content, Measure):
+        return replace(content, name=name) if name else content
+    if not callable(content):
         raise ModelError(
-            f"study: measures: found {described(given)}, expected a function or a name of "
+            f"study: measures: found {described(content)}, expected a function or a name of "
             f"{', '.join(MEASURES)}"
         )
-    own = getattr(given, "__name__", type(given).__name__)
-    return Measure(name or ("measure" if own == "<lambda>" else own), given)
+    label = getattr(content, "__name__", type(content).__name__)
+    return Measure(name or ("measure" if label == "<lambda>" else label), content)
 
 
 def _amount(value: Any, where: str) -> Amount:
@@ -240,17 +249,17 @@ def _force_error(point: Point, *, after: float) -> Amount:
 
 def _tracking_error(point: Point, *, after: float) -> Amount:
     """rms of the position error X_m - X_s of a teleoperator"""
-    found = _rms(point, signal="X_e", after=after)
-    return replace(found, text="rms of the position error X_m - X_s")
+    amount = _rms(point, signal="X_e", after=after)
+    return replace(amount, text="rms of the position error X_m - X_s")
 
 
 def _transparency_error(point: Point, *, after: float) -> Amount:
     """rms of the user's force less that of the tip on the environment, at the same time"""
     from ..simulate import force_displacement
 
-    found = force_displacement({"": point.simulation}, after=after)
+    curves = force_displacement({"": point.simulation}, after=after)
     text = "rms of the user's force less that of the tip"
-    return Amount(found.rms[""], found.data["force"].attrs["units"], text)
+    return Amount(curves.rms[""], curves.data["force"].attrs["units"], text)
 
 
 def _impedance(point: Point, *, frequency: Any, amplitude: float, motion: str, force: str) -> Any:
@@ -259,7 +268,7 @@ def _impedance(point: Point, *, frequency: Any, amplitude: float, motion: str, f
 
     frequencies = np.atleast_1d(np.asarray(frequency, dtype=float))
     case = point.case
-    found = measured_impedance(
+    measured = measured_impedance(
         case.diagram,
         amplitude=amplitude,
         frequency=frequencies,
@@ -267,9 +276,9 @@ def _impedance(point: Point, *, frequency: Any, amplitude: float, motion: str, f
         force=force,
         computer=case.computer,
     )
-    z = found.data["impedance"].values.reshape(-1)
+    z = measured.data["impedance"].values.reshape(-1)
     over = ("frequency", tuple(float(f) for f in frequencies), "Hz")
-    unit = str(found.data["impedance"].attrs["units"])
+    unit = str(measured.data["impedance"].attrs["units"])
     phase = np.degrees(np.angle(z)) % 360
     return {
         "impedance_size": Amount([float(x) for x in np.abs(z)], unit, "size of impedance", over),
@@ -296,13 +305,13 @@ def _limit_cycle_amplitude(point: Point, *, signal: str, last: float) -> Amount:
 
 
 def _growth(point: Point, *, signal: str) -> Amount:
-    """growth of a swing: rms in the last third of the simulation over the middle third, less 1
+    """growth of a swing: range in the last third of the simulation over the middle third, less 1
 
-    infinite where signals grow beyond all bounds
+    -1 where the swing has died out, infinite where signals grow beyond all bounds
     """
     from .onset import growth
 
-    text = f"rms of {signal} in the last third over the middle third, less 1"
+    text = f"range of {signal} in the last third over the middle third, less 1"
     return Amount(growth(lambda: point.simulation, signal), "1", text)
 
 
@@ -323,19 +332,19 @@ def _onset(
     def grows(value: float) -> bool:
         return growth(case.with_values({parameter: value}).simulate, signal) > 0
 
-    found = least_that_grows(grows, within=(low, high), steps=steps)
-    return Amount(found, case.unit(parameter), f"least {parameter} at which {signal} grows")
+    least = least_that_grows(grows, within=(low, high), steps=steps)
+    return Amount(least, case.unit(parameter), f"least {parameter} at which {signal} grows")
 
 
 def _claim(point: Point) -> Any:
     """status ("proved" ...) and margin of the claim that the model's function returns"""
     from ..passivity import Claim
 
-    if not isinstance(point.given, Claim):
+    if not isinstance(point.content, Claim):
         raise ModelError(
-            f"measure claim: found {described(point.given)}, expected a model that returns a Claim"
+            f"measure claim: found {described(point.content)}, expected a model that gives a Claim"
         )
-    return _of_claim(point.given, "claim")
+    return _of_claim(point.content, "claim")
 
 
 def _of_claim(claim: Any, name: str) -> dict[str, Amount]:
@@ -358,10 +367,10 @@ def _passivity(point: Point, *, stroke: float, speed: float, tries: int) -> Any:
 
     case = point.case
     search = Search(stroke, speed, tries, case.computer)
-    topics = diagram_claims(case.diagram, rng=point.rng(), search=search).claims
-    whole = [s.claim for s in topics if s.topic in WHOLE] or [s.claim for s in topics]
+    claims = diagram_claims(case.diagram, rng=point.rng(), search=search).claims
+    whole = [s.claim for s in claims if s.topic in WHOLE] or [s.claim for s in claims]
     order = ("refuted", "unknown", "evidence", "proved")
-    against = [s.claim for s in topics if s.topic.startswith("search") and s.claim.holds is False]
+    against = [s.claim for s in claims if s.topic.startswith("search") and s.claim.holds is False]
     chosen = min(against or whole, key=lambda claim: order.index(claim.status))
     return _of_claim(chosen, "passivity")
 
@@ -374,16 +383,17 @@ def _verdict(point: Point) -> Any:
     from ..diagnose import Diagnosis, find_missing
     from ..measurement import Experiment, load_experiment
 
-    found = point.given
-    if not isinstance(found, Diagnosis):
-        if not isinstance(found, Experiment):
-            found = load_experiment(found)
-        found = find_missing(found)
+    diagnosis = point.content
+    if not isinstance(diagnosis, Diagnosis):
+        experiment = diagnosis
+        if not isinstance(experiment, Experiment):
+            experiment = load_experiment(experiment)
+        diagnosis = find_missing(experiment)
     return {
-        "verdict": Amount(found.verdict, text="what the diagnosis ends with"),
-        "missing": Amount(", ".join(map(str, found.missing)), text="effects that are named"),
-        "check_error_before": Amount(found.before.check_error, text="of the model as given"),
-        "check_error_after": Amount(found.after.check_error, text="with the effects added"),
+        "verdict": Amount(diagnosis.verdict, text="what the diagnosis ends with"),
+        "missing": Amount(", ".join(map(str, diagnosis.missing)), text="effects that are named"),
+        "check_error_before": Amount(diagnosis.before.check_error, text="of the model as given"),
+        "check_error_after": Amount(diagnosis.after.check_error, text="with the effects added"),
     }
 
 
@@ -394,19 +404,29 @@ MEASURES: Catalogue[Kind] = Catalogue(
     {
         k.name: k
         for k in (
-            Kind("rms", _rms, {"signal": ..., **_AFTER}),
-            Kind("peak", _peak, {"signal": ..., **_AFTER}),
-            Kind("force_error", _force_error, _AFTER),
-            Kind("tracking_error", _tracking_error, _AFTER),
-            Kind("transparency_error", _transparency_error, _AFTER),
+            Kind("rms", _rms, {"signal": ..., **_AFTER}, ("signal",)),
+            Kind("peak", _peak, {"signal": ..., **_AFTER}, ("signal",)),
+            Kind("force_error", _force_error, _AFTER, ("E",)),
+            Kind("tracking_error", _tracking_error, _AFTER, ("X_e",)),
+            Kind(
+                "transparency_error",
+                _transparency_error,
+                _AFTER,
+                ("X_m", "F_m", "X_s", "F_s"),
+            ),
             Kind(
                 "impedance",
                 _impedance,
                 {"frequency": ..., "amplitude": ..., "motion": "L", "force": "E"},
             ),
-            Kind("energy_drawn", _energy_drawn, _PORT),
-            Kind("limit_cycle_amplitude", _limit_cycle_amplitude, {"signal": ..., "last": 0.25}),
-            Kind("growth", _growth, {"signal": ...}),
+            Kind("energy_drawn", _energy_drawn, _PORT, ("motion", "force")),
+            Kind(
+                "limit_cycle_amplitude",
+                _limit_cycle_amplitude,
+                {"signal": ..., "last": 0.25},
+                ("signal",),
+            ),
+            Kind("growth", _growth, {"signal": ...}, ("signal",)),
             Kind(
                 "onset",
                 _onset,

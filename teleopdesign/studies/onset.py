@@ -10,20 +10,24 @@ import numpy as np
 from ..errors import GrowsWithoutBound
 from ..simulate import Simulation
 
+#: share of the largest swing below which a swing has died out: what is left there is creep of
+#: bristles and rounding, whose ratios mean nothing
+DIED_OUT = 1e-3
+
 
 def growth(simulated: Callable[[], Simulation], signal: str) -> float:
-    """rms in the last third of the simulation over that in the middle third, less 1.
+    """Range of the signal in the last third of the simulation over the middle third, less 1.
 
-    0 where the signal is zero in both; infinite where signals grow beyond all bounds
+    -1 where the swing has died out;  infinite where signals grow beyond all bounds
     """
     try:
         values = simulated()[signal].values
     except GrowsWithoutBound:
         return math.inf
-    _, middle, last = (float(np.square(part).mean()) for part in np.array_split(values, 3))
-    if middle == 0:
-        return math.inf if last > 0 else 0.0
-    return math.sqrt(last / middle) - 1
+    middle, last = (float(np.ptp(part)) for part in np.array_split(values, 3)[1:])
+    if last <= DIED_OUT * np.ptp(values):
+        return -1.0
+    return last / middle - 1 if middle > 0 else math.inf
 
 
 def least_that_grows(

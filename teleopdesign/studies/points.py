@@ -96,10 +96,10 @@ def points_of(axes: Axes) -> Points:
             sizes[SAMPLE] = len(part)
             columns |= {n: Column(SAMPLE, part.values[:, i]) for i, n in enumerate(names)}
             continue
-        for name, given in part.items():
-            values = _values(name, given)
+        for name, content in part.items():
+            values = _values(name, content)
             if values is None:
-                fixed[name] = _plain(given)
+                fixed[name] = _plain(content)
             else:
                 sizes[name] = len(values)
                 columns[name] = Column(name, values)
@@ -109,19 +109,19 @@ def points_of(axes: Axes) -> Points:
     return points
 
 
-def _values(name: str, given: Any) -> np.ndarray | None:
+def _values(name: str, content: Any) -> np.ndarray | None:
     """Values of an axis, (n,) of numbers or texts; None where it is one value."""
-    if hasattr(given, "ppf"):
+    if hasattr(content, "ppf"):
         raise ModelError(
-            f"study: {name}: found the distribution {distribution_text(given)}, expected values; "
+            f"study: {name}: found the distribution {distribution_text(content)}, expected values; "
             'draw points with latin_hypercube({"' + name + '": ...}, 100, seed=1)'
         )
-    is_one = not hasattr(given, "__len__") or getattr(given, "shape", None) == ()
-    if is_one or isinstance(given, str):
-        if not isinstance(given, str | bool | int | float | np.number | np.bool_):
-            raise ModelError(f"study: {name}: found {described(given)}, expected values")
+    is_one = not hasattr(content, "__len__") or getattr(content, "shape", None) == ()
+    if is_one or isinstance(content, str):
+        if not isinstance(content, str | bool | int | float | np.number | np.bool_):
+            raise ModelError(f"study: {name}: found {described(content)}, expected values")
         return None
-    listed = list(given) if not isinstance(given, np.ndarray) else given
+    listed = list(content) if not isinstance(content, np.ndarray) else content
     if len(listed) and all(isinstance(x, str) for x in listed):
         values = np.array(listed, dtype=object)
     else:
@@ -131,7 +131,7 @@ def _values(name: str, given: Any) -> np.ndarray | None:
             values = np.empty((0, 0))
         if values.dtype.kind not in "biuf" or values.ndim != 1:
             raise ModelError(
-                f"study: {name}: found {described(given)}, expected numbers or texts in one row"
+                f"study: {name}: found {described(content)}, expected numbers or texts in one row"
             )
         if values.dtype.kind == "f" and not np.isfinite(values).all():
             raise ModelError(f"study: {name}: found values that are not finite")

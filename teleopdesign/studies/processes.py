@@ -15,14 +15,16 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, BinaryIO, cast
 
 from ..errors import ModelError, TeleopDesignError
-from .evaluate import Task, evaluate
+from .evaluate import Task
 from .frames import receive, send
 from .journal import Outcome
+from .side_by_side import Unit, evaluate_unit
 
 Sink = Callable[[Outcome], None]
 
@@ -32,6 +34,8 @@ _BATCH_TIME = 0.2
 _MOST_IN_BATCH = 1000
 #: s, of processor time: what a process needs before its first point
 _START_TIME = 4.0
+#: s of this process alone, from which the time of the whole study is estimated
+_TRIAL_TIME = 1.0
 #: times that a point may end the process that computes it
 _MOST_DEATHS = 2
 #: threads that libraries start by themselves would compete with the other processes, and could add
@@ -73,50 +77,63 @@ def packed(task: Task) -> bytes:
         ) from error
 
 
-def run_here(task: Task, todo: Iterable[int], sink: Sink, *, until: float = float("inf")) -> None:
-    """Points in this process, for at most `until` s."""
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """No threads of libraries, and none that simulate side by side."""
     from threadpoolctl import threadpool_limits
 
-    start = time.monotonic()
-    with threadpool_limits(1):
-        for index in todo:
-            sink(evaluate(task, index))
+    before = {name: os.environ.get(name) for name in _ONE_THREAD}
+    os.environ.update(_ONE_THREAD)
+    try:
+        with threadpool_limits(1):
+            yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+def run_here(task: Task, units: Iterable[Unit], sink: Sink, *, until: float = float("inf")) -> int:
+    """Points in this process, for at most `until` s; returns how many units were done."""
+    start, count = time.monotonic(), 0
+    with one_thread():
+        for unit in units:
+            for outcome in evaluate_unit(task, unit):
+                sink(outcome)
+            count += 1
             if time.monotonic() - start > until:
-                return
+                break
+    return count
 
 
-def run_in_processes(task: Task, todo: list[int], sink: Sink, workers: int) -> None:
+def run_in_processes(task: Task, units: list[Unit], sink: Sink, workers: int) -> None:
     """Points in that many processes beside this one."""
-    pool = _Pool(packed(task), todo, sink)
+    pool = _Pool(packed(task), units, sink)
     try:
         pool.run(workers)
     finally:
         pool.close()
 
 
-def run_on_this_machine(task: Task, todo: list[int], sink: Sink, workers: int | None) -> None:
+def run_on_this_machine(task: Task, units: list[Unit], sink: Sink, workers: int | None) -> None:
     """Points in as many processes as there are cores; in this one where that is as fast."""
     if workers is None:
-        count, start, done = cores(), time.monotonic(), set[int]()
-
-        def noted(outcome: Outcome) -> None:
-            done.add(outcome.point)
-            sink(outcome)
-
-        # the first point alone compiles what the others find in the cache
-        run_here(task, todo[:1], noted)
+        count = cores()
+        # the first unit alone compiles what the others find in the cache
+        units = units[run_here(task, units[:1], sink) :]
         start = time.monotonic()
-        run_here(task, todo[1:], noted, until=1.0)
-        each = (time.monotonic() - start) / max(len(done) - 1, 1)
-        todo = [i for i in todo if i not in done]
-        pays = each * len(todo) * (1 - 1 / count) > _START_TIME
+        done = run_here(task, units, sink, until=_TRIAL_TIME)
+        each, units = (time.monotonic() - start) / max(done, 1), units[done:]
+        pays = each * len(units) * (1 - 1 / count) > _START_TIME
         workers = count if pays else 1
-    if not todo:
+    if not units:
         return
     if workers == 1:
-        run_here(task, todo, sink)
+        run_here(task, units, sink)
     else:
-        run_in_processes(task, todo, sink, min(workers, len(todo)))
+        run_in_processes(task, units, sink, min(workers, len(units)))
 
 
 @dataclass
@@ -124,44 +141,43 @@ class _Worker:
     """A process with what it was asked and has not answered yet."""
 
     process: subprocess.Popen[bytes]
-    batch: deque[int] = field(default_factory=deque)
-    seconds: float = 0.0
-    points: int = 0
-    asked: float = 0.0
+    batch: deque[Unit] = field(default_factory=deque)
+    done: int = 0
+    start_of_batch: float = 0.0
 
 
 class _Pool:
-    def __init__(self, payload: bytes, todo: list[int], sink: Sink) -> None:
+    def __init__(self, payload: bytes, units: list[Unit], sink: Sink) -> None:
         self.payload, self.sink = payload, sink
-        self.todo = deque(todo)
-        self.left = len(todo)
+        self.todo = deque(units)
+        self.left = len(units)
         self.answers: queue.Queue[tuple[_Worker, str, Any]] = queue.Queue()
         self.workers: list[_Worker] = []
-        self.deaths: dict[int, int] = {}
-        self.each = 0.0  # s a point, from the latest batch
+        self.deaths: dict[Unit, int] = {}
+        self.each = 0.0  # s a unit, from the latest batch
 
     def run(self, count: int) -> None:
         """Until every point is done: one process first, which fills the cache for the others."""
         self._start()
         while self.left:
             worker, what, content = self.answers.get()
-            if what == "outcome":
-                if worker.batch and worker.batch[0] == content.point:
-                    worker.batch.popleft()
-                worker.points += 1
-                self._settle(content)
+            if what == "outcomes":
+                worker.batch.popleft()
+                worker.done += 1
+                self._take(content)
                 while len(self.workers) < min(count, self.left):
                     self._start()
             elif what == "ready":
-                if worker.points:
-                    self.each = (time.monotonic() - worker.asked) / worker.points
+                if worker.done:
+                    self.each = (time.monotonic() - worker.start_of_batch) / worker.done
                 self._ask(worker)
             else:
                 self._bury(worker)
 
-    def _settle(self, outcome: Outcome) -> None:
+    def _take(self, outcomes: list[Outcome]) -> None:
         self.left -= 1
-        self.sink(outcome)
+        for outcome in outcomes:
+            self.sink(outcome)
 
     def _start(self) -> None:
         code = (
@@ -189,7 +205,7 @@ class _Pool:
         try:
             while True:
                 message = receive(pipe)
-                self.answers.put((worker, "ready" if message is None else "outcome", message))
+                self.answers.put((worker, "ready" if message is None else "outcomes", message))
         except (EOFError, OSError, ValueError, pickle.UnpicklingError):
             self.answers.put((worker, "died", None))
 
@@ -202,7 +218,7 @@ class _Pool:
         ]
         if not batch:
             return
-        worker.batch, worker.points, worker.asked = deque(batch), 0, time.monotonic()
+        worker.batch, worker.done, worker.start_of_batch = deque(batch), 0, time.monotonic()
         try:
             send(cast(BinaryIO, worker.process.stdin), batch)
         except OSError:
@@ -215,16 +231,20 @@ class _Pool:
         _close(worker.process)
         lost = worker.batch
         if not lost:
-            if not worker.points and not self.each:
+            if not worker.done and not self.each:
                 raise ModelError(f"study: a process ended before its first point, {_how(status)}")
             return
         first = lost.popleft()
         self.todo.extendleft(reversed(lost))
         self.deaths[first] = self.deaths.get(first, 0) + 1
-        if self.deaths[first] >= _MOST_DEATHS:
-            self._settle(Outcome(first, reason=f"its process ended twice, {_how(status)}"))
-        else:
+        if self.deaths[first] < _MOST_DEATHS:
             self.todo.appendleft(first)
+        elif len(first) == 1:
+            reason = f"its process ended twice, {_how(status)}"
+            self._take([Outcome(first[0], reason=reason)])
+        else:  # its points one by one
+            self.todo.extendleft((index,) for index in reversed(first))
+            self.left += len(first) - 1
         if self.left:
             self._start()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -10,6 +11,8 @@ from .journal import Outcome
 
 #: s between two reports: as often as one can read
 _BETWEEN = 0.5
+#: reports from which the rate is taken: 10 s
+_REMEMBERED = 20
 
 
 @dataclass(frozen=True)
@@ -43,7 +46,10 @@ class Clock:
     def __init__(self, total: int, kept: int, tell: Callable[[Progress], object] | None) -> None:
         self.total, self.kept, self.tell = total, kept, tell
         self.done, self.failed = kept, 0
-        self.start = self.last = time.monotonic()
+        self.last = time.monotonic()
+        #: (time, points done) now and then: the rate is that of the last seconds, so that what was
+        #: compiled for the first point does not count to the end
+        self._recent: deque[tuple[float, int]] = deque([(self.last, kept)], maxlen=_REMEMBERED)
 
     def count(self, outcome: Outcome) -> None:
         """One more outcome."""
@@ -52,11 +58,13 @@ class Clock:
         now = time.monotonic()
         if self.tell is not None and (now - self.last > _BETWEEN or self.done == self.total):
             self.last = now
+            self._recent.append((now, self.done))
             self.tell(self.now())
 
     def now(self) -> Progress:
         """How far it is."""
-        passed, fresh = time.monotonic() - self.start, self.done - self.kept
+        start, before = self._recent[0]
+        passed, fresh = time.monotonic() - start, self.done - before
         rate = fresh / passed if passed > 0 else 0.0
         left = (self.total - self.done) / rate if rate > 0 else float("nan")
         return Progress(self.done, self.total, self.failed, self.kept, rate, left)

@@ -63,8 +63,8 @@ class Study(ByValue):
     def failures(self) -> dict[str, int]:
         """Reason -> at how many points, most frequent first."""
         reasons, counts = np.unique(self.data[REASON].values.astype(str), return_counts=True)
-        found = {str(r): int(n) for r, n in zip(reasons, counts, strict=True) if r}
-        return dict(sorted(found.items(), key=lambda one: -one[1]))
+        counted = {str(r): int(n) for r, n in zip(reasons, counts, strict=True) if r}
+        return dict(sorted(counted.items(), key=lambda one: -one[1]))
 
     def sensitivity(self, measure: str = "") -> xarray.Dataset:
         """Sobol indices of the parameters for a measure: see `sensitivity`."""
@@ -103,11 +103,11 @@ class Study(ByValue):
 
     @property
     def _failed(self) -> str:
-        found = self.failures
-        if not found:
+        counted = self.failures
+        if not counted:
             return ""
-        first = next(iter(found))
-        return f"{sum(found.values())} of {self.data[REASON].size} points failed, most: {first}"
+        first = next(iter(counted))
+        return f"{sum(counted.values())} of {self.data[REASON].size} points failed, most: {first}"
 
     def __repr__(self) -> str:
         lines = [self._title]
@@ -217,8 +217,8 @@ _DTYPES: Mapping[str, Any] = {"text": object, "number": float}
 def _range(array: Any) -> str:
     values = array.values
     if values.dtype.kind not in "biuf":
-        found, counts = np.unique(values.astype(str), return_counts=True)
-        return ", ".join(f"{n} {t}" for t, n in zip(found, counts, strict=True) if t)[:60]
+        counted, counts = np.unique(values.astype(str), return_counts=True)
+        return ", ".join(f"{n} {t}" for t, n in zip(counted, counts, strict=True) if t)[:60]
     finite = values[np.isfinite(values)]
     if not finite.size:
         return "no number"

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
 from ..diagrams import Diagram
-from ..errors import ExperimentError, ModelError
+from ..errors import ExperimentError, ModelError, did_you_mean
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
-from .case import Case
+from .case import SimulatedCase
 from .evaluate import Task, check_parameters
 from .fingerprint import fingerprint
 from .journal import Journal, Outcome
@@ -20,11 +22,12 @@ from .points import points_of
 from .processes import run_on_this_machine
 from .progress import Clock, Progress
 from .result import Study, check_netcdf, labelled, read_study
+from .side_by_side import units_of
 from .versions import versions
 
 
 def study(
-    model: Diagram | Case | Callable[..., Any],
+    model: Diagram | SimulatedCase | Callable[..., Any],
     axes: Mapping[str, Any] | Any,
     *,
     measures: Any,
@@ -37,6 +40,7 @@ def study(
     give: float = 1e-5,
     every_step: bool = False,
     units: Mapping[str, str] | None = None,
+    labels: Mapping[str, str] | None = None,
     seed: int = 0,
     workers: int | None = None,
     scheduler: str = "",
@@ -45,13 +49,14 @@ def study(
 ) -> Study:
     """Measure a model at every point of its parameters' axes.
 
-    model: a diagram, whose parameters are varied by the names of `Diagram.values` and of `Case`; or
-        a function of the parameters that returns a diagram, a `Case`, or what the measures take
+    model: a diagram, whose parameters are varied by the names of `Diagram.values` and of
+        `SimulatedCase`; or a function of the parameters that returns a diagram, a `SimulatedCase`,
+        or what the measures take
     axes: parameter -> values (several parameters: their product) or one value; points drawn
         together (`latin_hypercube`, `sobol`, ...); or a sequence of such, whose product is taken
     measures: names of `MEASURES`, `measure(...)`, functions; several in a list, or by name
     duration ... every_step: how a diagram is simulated, as in `simulate`; no duration: not at all
-    units: of a function's parameters and of measures, by name
+    units: of a function's parameters and of measures, by name;  labels: names in figures
     seed: of measures that need randomness
     workers: processes of this machine; None: as many as it has cores, none where that is as fast
     scheduler: address of a Dask cluster, "tcp://..."; the points are computed there
@@ -63,7 +68,6 @@ def study(
     A point that fails is NaN, and `failure` says why. The data do not depend on where the points
     were computed.
     """
-    points, chosen = points_of(axes), measures_of(measures)
     settings: dict[str, Any] = {
         "duration": duration,
         "inputs": dict(inputs or {}),
@@ -74,33 +78,60 @@ def study(
         "give": give,
         "every_step": every_step,
     }
+    _check_places(workers, scheduler)
+    task = _task(model, settings, axes, measures, seed)
+    by_name = _Words(dict(units or {}), dict(labels or {}))
+    target = None if out is None else Path(out)
+    run = partial(_run, task, workers=workers, scheduler=scheduler, progress=progress)
+    return _with_file(task, by_name, target, run)
+
+
+@dataclass(frozen=True)
+class _Words:
+    """Units and labels that a user gives, by parameter or measure."""
+
+    units: Mapping[str, str]
+    labels: Mapping[str, str]
+
+
+def _check_places(workers: int | None, scheduler: str) -> None:
     if workers is not None and workers < 1:
         raise ModelError(f"study: workers: found {workers}, expected 1 or more")
     if scheduler and workers is not None:
         raise ModelError("study: workers and scheduler: a cluster brings its own workers")
+
+
+def _task(model: Any, settings: Mapping[str, Any], axes: Any, measures: Any, seed: int) -> Task:
+    """What every process gets, held against the parameters that the model has."""
+    points, chosen = points_of(axes), measures_of(measures)
     if isinstance(model, Diagram):
-        model = Case(model, **settings)
-    if isinstance(model, Case):
+        model = SimulatedCase(model, **settings)
+    if isinstance(model, SimulatedCase):
         model.check_names(points.names)
     else:
         check_parameters(model, points)
-    task = Task(model, settings, points, chosen, seed)
-    attributes = _attributes(task)
-    target = None if out is None else Path(out)
+    return Task(model, settings, points, chosen, seed)
+
+
+def _with_file(
+    task: Task, words: _Words, target: Path | None, run: Callable[[Journal], None]
+) -> Study:
+    """Run what the file and the journal beside it do not hold yet, and label it all."""
+    attributes = _attributes(task, words)
+    key, part = str(attributes["study"]), None
     if target is not None:
         check_netcdf()
         if target.exists():
-            return _finished(target, str(attributes["study"]))
+            return _stored(target, key)
         if not target.parent.is_dir():
             raise ExperimentError(f"{target}: there is no folder {str(target.parent)!r}")
-    part = None if target is None else target.with_name(f"{target.name}.part")
-    journal = Journal(part, str(attributes["study"]), len(points))
+        part = target.with_name(f"{target.name}.part")
+    journal = Journal(part, key, len(task.points))
     try:
-        _run(task, journal, workers=workers, scheduler=scheduler, progress=progress)
-        result = labelled(
-            points, journal.outcomes, units=_units(task, units or {}), attributes=attributes
-        )
-        _with_units(result, units or {})
+        run(journal)
+        by_axis = _units(task, words.units)
+        result = labelled(task.points, journal.outcomes, units=by_axis, attributes=attributes)
+        _write_words(result, words)
         if target is not None:
             result.to_netcdf(target)
             journal.remove()
@@ -121,50 +152,64 @@ def _run(
     clock = Clock(len(task.points), len(journal.outcomes), progress)
 
     def sink(outcome: Outcome) -> None:
-        journal.add(outcome)
-        clock.count(outcome)
+        if outcome.point not in journal.outcomes:  # of a block that was done in part
+            journal.add(outcome)
+            clock.count(outcome)
 
     if not todo:
         return
+    units = units_of(task, todo)
     if scheduler:
         from .cluster import run_on_cluster
 
-        run_on_cluster(task, todo, sink, scheduler)
+        run_on_cluster(task, units, sink, scheduler)
     else:
-        run_on_this_machine(task, todo, sink, workers)
+        run_on_this_machine(task, units, sink, workers)
 
 
-def _finished(target: Path, key: str) -> Study:
+def _stored(target: Path, key: str) -> Study:
     """The study that a file holds already, where it is this one."""
-    found = read_study(target)
-    if found.data.attrs["study"] != key:
+    stored = read_study(target)
+    if stored.data.attrs["study"] != key:
         raise ExperimentError(
             f"{target}: holds another study (other model, axes, measures or version): choose "
             "another file, or remove it"
         )
-    return found
+    return stored
 
 
-def _units(task: Task, given: Mapping[str, str]) -> dict[str, str]:
+def _units(task: Task, units: Mapping[str, str]) -> dict[str, str]:
     """Units of the parameters."""
-    if isinstance(task.model, Case):
+    if isinstance(task.model, SimulatedCase):
         case = task.model
-        return {n: given.get(n) or case.unit(n) for n in task.points.names}
-    return {n: given.get(n, "1") for n in task.points.names}
+        return {n: units.get(n) or case.unit(n) for n in task.points.names}
+    return {n: units.get(n, "1") for n in task.points.names}
 
 
-def _with_units(result: Study, given: Mapping[str, str]) -> None:
-    """Units of measures that a user's functions cannot say themselves."""
-    for name in result.measures:
-        if name in given:
-            result.data[name].attrs["units"] = given[name]
+def _write_words(result: Study, words: _Words) -> None:
+    """Units of measures that a user's functions cannot say themselves, and labels.
+
+    raises ModelError: a label or unit of something that is not there
+    """
+    names = [*map(str, result.data.variables), *json.loads(result.data.attrs["fixed"])]
+    for name in {**words.units, **words.labels}:
+        if name not in names and result.measures:
+            raise ModelError(
+                f'study: units, labels: no measure or parameter "{name}", has {", ".join(names)}'
+                f"{did_you_mean(name, names)}"
+            )
+    for name in map(str, result.data.variables):
+        if name in words.units:
+            result.data[name].attrs["units"] = words.units[name]
+        if name in words.labels:
+            result.data[name].attrs["long_name"] = words.labels[name]
 
 
-def _attributes(task: Task) -> dict[str, Any]:
+def _attributes(task: Task, words: _Words) -> dict[str, Any]:
     """What stands beside the numbers: enough to compute them again."""
     points, model = task.points, task.model
     values: dict[str, Any] = dict(points.fixed)
-    if isinstance(model, Case):
+    if isinstance(model, SimulatedCase):
         name, values = model.diagram.name, {**model.diagram.values, **values}
         settings = model.settings()
         values = {n: v for n, v in values.items() if n not in points.columns}
@@ -183,6 +228,7 @@ def _attributes(task: Task) -> dict[str, Any]:
             points.fixed,
             task.measures,
             task.seed,
+            words,
             made_with,
         ),
         "axes": json.dumps(list(points.columns)),

@@ -111,12 +111,12 @@ def _placed(
 ) -> Samples:
     """Points of the unit cube, brought into the ranges."""
     columns, words = [], []
-    for (name, given), column in zip(ranges.items(), unit.T, strict=True):
-        if hasattr(given, "ppf"):
-            columns.append(np.asarray(given.ppf(column), dtype=float))
-            words.append(distribution_text(given))
+    for (name, extent), column in zip(ranges.items(), unit.T, strict=True):
+        if hasattr(extent, "ppf"):
+            columns.append(np.asarray(extent.ppf(column), dtype=float))
+            words.append(distribution_text(extent))
         else:
-            low, high, step = _ends(name, given)
+            low, high, step = _ends(name, extent)
             if step:
                 count = round((high - low) / step) + 1
                 columns.append(low + step * np.minimum(np.floor(count * column), count - 1))
@@ -128,11 +128,11 @@ def _placed(
     return Samples(tuple(ranges), np.column_stack(columns), tuple(words), method, seed, base)
 
 
-def distribution_text(given: Any) -> str:
+def distribution_text(extent: Any) -> str:
     """A frozen distribution of scipy in words: "lognorm(0.3, scale=2.0)"."""
-    name = getattr(getattr(given, "dist", None), "name", type(given).__name__)
-    parts = [f"{float(a):g}" for a in getattr(given, "args", ())]
-    parts += [f"{k}={float(v):g}" for k, v in getattr(given, "kwds", {}).items()]
+    name = getattr(getattr(extent, "dist", None), "name", type(extent).__name__)
+    parts = [f"{float(a):g}" for a in getattr(extent, "args", ())]
+    parts += [f"{k}={float(v):g}" for k, v in getattr(extent, "kwds", {}).items()]
     return f"{name}({', '.join(parts)})"
 
 
@@ -142,14 +142,14 @@ def _of(ranges: Mapping[str, Any]) -> Mapping[str, Any]:
     return ranges
 
 
-def _ends(name: str, given: Any) -> tuple[float, float, float]:
+def _ends(name: str, extent: Any) -> tuple[float, float, float]:
     """low, high and step; 0 where there is no step."""
     try:
-        low, high, *more = (float(x) for x in given)
+        low, high, *more = (float(x) for x in extent)
         (step,) = more or [0.0]
     except (TypeError, ValueError):
         raise ModelError(
-            f"samples: {name}: found {described(given)}, expected (low, high), (low, high, "
+            f"samples: {name}: found {described(extent)}, expected (low, high), (low, high, "
             "step) or a distribution of scipy.stats"
         ) from None
     if not (np.isfinite([low, high]).all() and low < high):

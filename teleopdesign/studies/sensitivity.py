@@ -58,7 +58,7 @@ def sensitivity(study: Study, measure: str = "") -> xarray.Dataset:
     problem = {"num_vars": len(names), "names": names, "bounds": [[0.0, 1.0]] * len(names)}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FutureWarning)  # of pandas, inside SALib
-        found = sobol.analyze(
+        indices = sobol.analyze(
             problem,
             numbers,
             calc_second_order=False,
@@ -68,10 +68,10 @@ def sensitivity(study: Study, measure: str = "") -> xarray.Dataset:
     text = {"units": "1"}
     return xarray.Dataset(
         {
-            "first": ("parameter", np.asarray(found["S1"]), text),
-            "first_interval": ("parameter", np.asarray(found["S1_conf"]), text),
-            "total": ("parameter", np.asarray(found["ST"]), text),
-            "total_interval": ("parameter", np.asarray(found["ST_conf"]), text),
+            "first": ("parameter", np.asarray(indices["S1"]), text),
+            "first_interval": ("parameter", np.asarray(indices["S1_conf"]), text),
+            "total": ("parameter", np.asarray(indices["ST"]), text),
+            "total_interval": ("parameter", np.asarray(indices["ST_conf"]), text),
         },
         {"parameter": names},
         {"measure": name, "method": "Saltelli et al. (2010), by SALib"},

@@ -10,10 +10,10 @@ _COUNTED = ("teleopdesign", "numpy", "scipy", "sympy", "numba", "xarray")
 
 def versions() -> dict[str, str]:
     """Package -> version, "" where it is used without an installation; Python among them."""
-    found = {"python": platform.python_version()}
+    by_name = {"python": platform.python_version()}
     for name in _COUNTED:
         try:
-            found[name] = version(name)
+            by_name[name] = version(name)
         except PackageNotFoundError:
-            found[name] = ""
-    return found
+            by_name[name] = ""
+    return by_name

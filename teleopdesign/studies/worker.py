@@ -6,24 +6,25 @@ import os
 import pickle
 import signal
 
-from .evaluate import Task, evaluate
+from .evaluate import Task
 from .frames import receive, send
+from .side_by_side import evaluate_unit
 
 
 def main() -> None:
-    """Take a task and then numbers of points, give back what becomes of each at once."""
+    """Take a task and then units of points, give back what becomes of each unit at once."""
     # Ctrl-C goes to all processes of a terminal: the one that asked decides what happens
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    asked = os.fdopen(os.dup(0), "rb")
+    questions = os.fdopen(os.dup(0), "rb")
     answers = os.fdopen(os.dup(1), "wb")
     # what a user's function prints must not come between answers
     os.dup2(2, 1)
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     try:
-        task: Task = pickle.loads(receive(asked))
+        task: Task = pickle.loads(receive(questions))
         while True:
-            for index in receive(asked):
-                send(answers, evaluate(task, index))
+            for unit in receive(questions):
+                send(answers, evaluate_unit(task, unit))
             send(answers, None)
     except (EOFError, OSError):
         os._exit(0)  # the one that asked is gone, or needs no more

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..diagnose.fit import block_numbers, free_parameters
 from ..diagnose.prepare import Prepared, Stretch, folds
+from ..diagnose.record_offsets import as_logged
 from ..diagnose.residual import residuals
 from ..effects import Effect, Parameter
 from ..measurement.filtering import Array
@@ -148,7 +149,7 @@ def _splits(
 
 
 def _along(model: Model, stretch: Stretch) -> StretchSignals:
-    motion = stretch.motion
+    motion = as_logged(model, stretch.motion)
     body = model.body(motion.body).with_effect(PUSH, {"size": 0.0}).with_effect(GRIP, {"size": 0.0})
     along = residual_along(body, motion, [f"{PUSH.name}.size", f"{GRIP.name}.size"])
     acting = along.acting.value

@@ -219,7 +219,7 @@ def test_a_motion_one_way_cannot_show_what_needs_both_and_says_so(rod, few):
     assert math.isinf(summary.numbers["bias"]), "one way, friction is a constant force"
     assert "the same as coulomb.level" in summary.sentence
     assert "it only ever moves one way" in summary.sentence
-    assert "spring (it never comes back to where it was)" in summary.sentence
+    assert "spring (it never comes to a place at another time)" in summary.sentence
     motion = found["motion"]
     assert motion.numbers["forth"] > 0.99 and motion.numbers["reversals"] == 0
     assert "no interaction force is measured" in motion.sentence

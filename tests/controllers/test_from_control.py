@@ -98,7 +98,8 @@ def test_systems_of_one_order_share_one_kernel():
         prepare(haptic_interface(body(0.1), cancellation=from_control(g)), duration=0.1, jit=False)
         for g in (NOTCH, 1 / NOTCH)
     ]
-    assert made[0].program.run is made[1].program.run
+    assert made[0].program.loop is made[1].program.loop
+    assert made[0].program.laws == made[1].program.laws
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,10 @@
 import math
 
 PLACE = ("effect", "at")
-LADDER = {"added", "fit_error", "check_error", "check_error_at_command", "blind"}
+LADDER = {
+    "added", "instead_of", "fit_error", "check_error", "check_error_at_command", "blind",
+    "could_be",
+}  # fmt: skip
 CANDIDATE = {
     "effect", "at", "probability", "check_error", "check_error_at_command", "blind", "refused",
     "parameters",
@@ -13,6 +16,11 @@ VERDICTS = ("effects_missing", "model_adequate", "undecided")
 
 def is_number(x, low=-math.inf, high=math.inf):
     return isinstance(x, int | float) and not isinstance(x, bool) and low <= x <= high
+
+
+def place_of(entry):
+    """An entry of `missing` as effect and place alone."""
+    return {k: entry.get(k) for k in PLACE}
 
 
 def violations(answer, places=("device",)):
@@ -37,7 +45,9 @@ def violations(answer, places=("device",)):
 
     verdict, missing, ladder = answer["verdict"], answer["missing"], answer["ladder"]
     need(verdict in VERDICTS, f"verdict {verdict!r}")
-    need(all(map(is_place, missing)), "missing: an entry is no effect at a place")
+    need(all(is_place(place_of(d)) for d in missing), "missing: an entry is no effect at a place")
+    need(all(set(d) <= {*PLACE, "instead_of"} for d in missing), "missing: keys of an entry")
+    taken = {(d["effect"], d["at"]): d.get("instead_of") for d in missing}
     need(bool(missing) == (verdict == "effects_missing"), "verdict and missing disagree")
     keys = [(d["effect"], d["at"]) for d in missing]
     need(len(set(keys)) == len(keys), "missing: the same effect twice")
@@ -45,6 +55,13 @@ def violations(answer, places=("device",)):
     for row in ladder:
         need(set(row) == LADDER, "ladder: keys of a row")
         need(row["added"] is None or is_place(row["added"]), "ladder: added")
+        instead = row["instead_of"]
+        need(instead is None or isinstance(instead, str), "ladder: instead_of")
+        if row["added"] is not None:
+            key = row["added"]["effect"], row["added"]["at"]
+            need(taken.get(key, instead) == instead, "missing: instead_of")
+        others = row["could_be"]
+        need(others is None or all(map(is_place, others)), "ladder: could_be")
         need(is_number(row["fit_error"], 0, 1e6), "ladder: fit_error")
         need(is_number(row["check_error"], 0, 1e6), "ladder: check_error")
         seen = row["check_error_at_command"]
@@ -54,11 +71,12 @@ def violations(answer, places=("device",)):
     need(errors == sorted(errors, reverse=True), "ladder: a rung leaves more than the one before")
     need(answer["blind"] == ladder[-1]["blind"], "blind")
     added = [row["added"] for row in ladder[1:]]
-    need(all(d in added for d in missing), "missing: what the ladder has not added")
+    named = [place_of(d) for d in missing]
+    need(all(d in added for d in named), "missing: what the ladder has not added")
     said = {(c["effect"], c["at"]): c["probability"] for c in answer["candidates"]}
     need(all(said[key] >= 0.5 for key in keys), "missing: less likely than not")
     likely = [d for d in added if said[d["effect"], d["at"]] >= 0.5]
-    need(missing == likely or verdict == "undecided", "missing: a likely one is left out")
+    need(named == likely or verdict == "undecided", "missing: a likely one is left out")
     for row in ladder[1:]:
         same = [c for c in answer["candidates"] if row["added"] == {k: c[k] for k in PLACE}]
         need(

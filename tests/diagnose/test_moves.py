@@ -42,7 +42,7 @@ def with_effects(search, state, *names):
         candidate = Candidate(EFFECTS[name], "device")
         model = state.fit.model.with_effect(candidate.effect, at=candidate.at)
         fit = estimate_from_starts(model, search.prepared, state.fit)
-        ranking = Ranking(state.fit, (ranked(state.fit, candidate, fit),))
+        ranking = Ranking(state.fit, (ranked(state.fit, candidate, fit, prepared=search.prepared),))
         state = state.with_rungs((*state.rungs, Rung(candidate, fit, ranking)))
     return state
 

@@ -41,6 +41,15 @@ def test_it_falls_as_more_is_left_and_never_rises():
     assert said[4] < 0.01
 
 
+def test_what_outweighs_what_is_left_is_believed_though_more_than_noise_is_left():
+    left = replace(EVIDENCE, left=8.0)
+    said = [replace(left, outweighs=x).probability() for x in (0.0, 0.5, 0.7, 0.8, 0.95, 1.0)]
+    assert said == sorted(said)
+    assert said[1] < 0.3 and said[2] < 0.5 < said[3] and said[4] > 0.85
+    # what is accepted with noise left alone is believed no less
+    assert replace(EVIDENCE, outweighs=0.1).probability() == EVIDENCE.probability()
+
+
 def test_what_was_not_accepted_is_improbable():
     assert replace(EVIDENCE, accepted=False).probability() < 0.05
 

@@ -23,6 +23,8 @@ TYPICAL = {
     "cubic_stiffness": 1e5,
     "angle": 0.3,
     "frequency": 10.0,
+    "temperature": 300.0,
+    "temperature_coefficient": 0.02,
 }
 LEVEL = 0.5  # N; above every effect that lowers it
 #: where another size shows the effect
@@ -33,6 +35,13 @@ OTHER = {
     "backlash.gap": 1e-3,  # m; part of the travel
     "contact_hardening.power": 1.5,
     "shear_thinning.exponent": 0.5,
+    # N, N/m: of elements that slip in turn, together less than `LEVEL`
+    "maxwell_slip.level_2": 0.1,
+    "maxwell_slip.level_3": 0.06,
+    "maxwell_slip.level_4": 0.04,
+    "maxwell_slip.stiffness_2": 500.0,
+    "maxwell_slip.stiffness_3": 100.0,
+    "maxwell_slip.stiffness_4": 40.0,
     "environment.damping": 0.0,
     "environment.contact_position": 2e-3,  # m; part of the travel
 }
@@ -94,7 +103,9 @@ def unled(body):
 def motion_along(
     position, command, interaction=None, *, sample_time=1e-3, bandwidth=60.0, resolution=None
 ):
-    """The Motion of these readings."""
+    """The Motion of these readings, with channels besides that follow one another."""
+    time = np.arange(len(position)) * sample_time
+    other = 0.02 * np.ptp(position) * np.sin(40.0 * bandwidth / 60.0 * time)
     return motion_of(
         body="device",
         file="made",
@@ -106,6 +117,7 @@ def motion_along(
         rows=slice(0, len(position)),
         bandwidth=bandwidth,
         resolution=resolution,
+        further={"temperature": 300.0 + 0 * time, "other_position": other},
     )
 
 

@@ -139,7 +139,8 @@ def test_symbols_carry_the_effects_name_and_every_parameter_is_used(name):
         *(r.free_symbols for r in effect.rates().values())
     )
     assert set(symbols.values()) <= used
-    assert used <= {*SIGNALS.values(), *symbols.values(), *effect.state_symbols().values()}
+    needed = {s for need in effect.needs for s in KNOWN[need].symbols().values()}
+    assert used <= {*SIGNALS.values(), *symbols.values(), *effect.state_symbols().values()} | needed
 
 
 def test_no_two_effects_share_a_symbol():
@@ -357,6 +358,8 @@ def factors(force, position, time):
         "frequency": 1.0 / time,
         "angle": 1.0,
         "dimensionless": 1.0,
+        "temperature": 1.0,
+        "temperature_coefficient": 1.0,
     }
 
 

@@ -13,6 +13,7 @@ from teleopdesign.effects import EFFECTS
 #: effect -> those that it is mistaken for
 MISTAKEN_FOR = {
     "shear_thinning": ("quadratic_drag", "stribeck", "actuator_saturation", "actuator_gain"),
+    "maxwell_slip": ("presliding", "stribeck", "actuation_delay", "spring"),
     "gravity": ("bias", "spring", "cogging", "coulomb_asymmetry"),
 }
 

@@ -42,7 +42,8 @@ def everywhere(effect):
     """Every signal, and every value of the parameters within their bounds."""
     ranges = {s: (-inf, inf) for s in SIGNALS.values()} | {SPEED: (0.0, inf)}
     ranges[SIGNALS["time"]] = (0.0, inf)
-    own = {s: effect.parameters[n] for n, s in effect.symbols().items()}
+    effects = [effect, *(KNOWN[n] for n in effect.needs)]
+    own = {s: e.parameters[n] for e in effects for n, s in e.symbols().items()}
     return ranges | {s: (p.lower, p.upper) for s, p in own.items()}
 
 

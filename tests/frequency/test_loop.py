@@ -1,13 +1,21 @@
 """The force feedback loop: gain, delay margin."""
 
+import control
 import numpy as np
 import pytest
 from devices import CANCELLATION, FEEDBACK, body
 
+from teleopdesign.controllers import CONTROLLERS, Controller, Stage, controller, from_control
 from teleopdesign.diagrams import haptic_interface
+from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ModelError
-from teleopdesign.frequency import delay_margin, loop_gain
+from teleopdesign.frequency import bode, delay_margin, loop_gain
 from teleopdesign.simulate import Sampling, simulate
+
+
+def probe_values(law):
+    """A value of 2, or the nearest within its bounds, for every parameter."""
+    return {n: min(max(2.0, p.lower), p.upper) for n, p in law.parameters.items()}
 
 
 def interface(**arguments):
@@ -67,3 +75,71 @@ def test_only_a_controller_has_a_loop():
         loop_gain(interface(), controller="Z_M")
     with pytest.raises(ModelError, match='no block "G"'):
         loop_gain(interface(), controller="G")
+
+
+def test_a_controller_in_discrete_time_is_in_the_loop_as_it_samples_and_holds():
+    """python-control's value at e^(j w T), times the hold; before, the loop had gain 0."""
+    period = 1e-3
+    system = control.sample_system(control.tf([40.0, 900.0], [1.0, 300.0]), period)
+    diagram = haptic_interface(body(0.15), hand=body(0.5), force_feedback=from_control(system))
+    loop = loop_gain(diagram)
+    for f in (0.1, 3.0, 80.0, 400.0):
+        s = 2j * np.pi * f
+        hold = (1 - np.exp(-s * period)) / (s * period)
+        expected = complex(system(np.exp(s * period))) * hold * 0.5 / 0.65
+        assert loop(s) == pytest.approx(expected, rel=1e-9)
+    assert loop.held == ("H",) and "sampled and held: H" in repr(loop)
+    response = bode(diagram, output="R_FF", input="R_D", frequency=np.array([3.0, 80.0]))
+    assert np.abs(response.values()).min() > 0 and response.left_out == {"haptic interface": ()}
+
+
+def test_the_delay_margin_of_a_sampled_loop_is_that_of_the_continuous_one_less_its_samples():
+    """A low-pass stepped for a held input lags half a sample, its own hold another half."""
+    period, tau = 1e-4, 1 / (2 * np.pi * 20.0)
+    plain = control.tf([5.0], [tau, 1.0])
+    diagrams = [
+        haptic_interface(body(0.15), hand=body(0.5), force_feedback=from_control(system))
+        for system in (plain, control.sample_system(plain, period))
+    ]
+    continuous, sampled = (delay_margin(loop_gain(d)) for d in diagrams)
+    # 1e-3: both lags are those of a delay to second order in w T = 0.05
+    assert sampled == pytest.approx(continuous - period, rel=1e-3)
+
+
+@pytest.mark.parametrize("law", ["dahl", "coulomb"])
+def test_a_law_without_linear_form_has_no_loop_gain_of_zero(law):
+    values = {"level": 0.4} | ({"stiffness": 1e4} if law == "dahl" else {})
+    diagram = interface(cancellation=controller(law, values))
+    with pytest.raises(ModelError, match=f"C \\({law}\\) has no linear form"):
+        loop_gain(diagram, controller="C")
+    loop = loop_gain(diagram)
+    assert loop.left_out == ("C",) and "left out: C" in repr(loop)
+    with pytest.raises(ModelError, match="C has no linear form and is not in the gain"):
+        delay_margin(loop)
+    assert delay_margin(loop_gain(diagram.without("C"))) > 0
+
+
+def test_a_discrete_system_of_unknown_period_has_no_loop_gain():
+    system = control.tf([0.1], [1.0, -0.9], True)
+    with pytest.raises(ModelError, match="dt=True needs its period"):
+        loop_gain(haptic_interface(body(0.15), force_feedback=from_control(system)))
+
+
+@pytest.mark.parametrize("name", sorted(CONTROLLERS))
+def test_no_law_of_the_catalogue_vanishes_from_a_loop_without_a_word(name):
+    """Its own loop is refused or has a gain; in another's it is named or changes the gain."""
+    made = Controller((Stage(CONTROLLERS[name], probe_values(CONTROLLERS[name])),))
+    diagram = haptic_interface(body(0.15), hand=body(0.5), force_feedback=made)
+    try:
+        assert loop_gain(diagram)(3j) != 0
+    except ModelError as refused:
+        assert "H (" in str(refused) and "no linear form" in str(refused)
+
+
+def test_a_dead_time_in_the_loop_is_exact():
+    """Of the actuator: the margin falls by that time, whatever its size."""
+    late = 2e-3
+    device = body(0.15).with_effect(EFFECTS["actuation_delay"], {"delay": late})
+    with_delay = haptic_interface(device, hand=body(0.5), force_feedback=FEEDBACK)
+    found = delay_margin(loop_gain(with_delay))
+    assert found == pytest.approx(delay_margin(loop_gain(interface())) - late, rel=1e-9)

@@ -34,7 +34,7 @@ OTHERS = (
     "quadratic_drag", "viscous_asymmetry", "position_dependent_friction", "load_dependent_friction",
     "friction_drift", "friction_memory", "hardening_spring", "cogging", "transmission_compliance",
     "backlash", "actuator_saturation", "actuator_gain", "torque_ripple",
-    "gravity", "shear_thinning",
+    "gravity", "shear_thinning", "maxwell_slip",
 )  # fmt: skip
 CONTACT = ("contact_damping", "contact_hardening")
 OUTSIDE = ("outside_hum", "outside_position_dependent_damping", "outside_slow_force")
@@ -99,6 +99,15 @@ PUBLIC: dict[str, dict[str, tuple[str, str]]] = {
         "drag": ("thinning", "thinning"),
         "exponent": ("thinning_power", "ratio"),
     },
+    "maxwell_slip": {
+        "stiffness_1": ("slip_k1", "stiffness"),
+        "stiffness_2": ("slip_k2", "stiffness"),
+        "level_2": ("slip_w2", "force"),
+        "stiffness_3": ("slip_k3", "stiffness"),
+        "level_3": ("slip_w3", "force"),
+        "stiffness_4": ("slip_k4", "stiffness"),
+        "level_4": ("slip_w4", "force"),
+    },
     # beside `transmission_compliance` or `backlash`, which the reference does not re-estimate
     "tip_friction": {"level": ("tip_level", "force")},
     "contact_damping": {"damping": ("contact_damping", "damping")},
@@ -110,12 +119,14 @@ PUBLIC: dict[str, dict[str, tuple[str, str]]] = {
         "frequency": ("slow_frequency", "frequency"),
     },
 }
-NO_INVERSE = {"transmission_compliance", "backlash", "friction_memory", *OUTSIDE}
+NO_INVERSE = {
+    "transmission_compliance", "backlash", "friction_memory", "maxwell_slip", *OUTSIDE,
+}  # fmt: skip
 #: effects of a revolute axis alone
 REVOLUTE = {"gravity"}
 NEEDS_LEVEL = {
     "coulomb_asymmetry", "stribeck", "presliding", "position_dependent_friction",
-    "load_dependent_friction", "friction_drift", "friction_memory",
+    "load_dependent_friction", "friction_drift", "friction_memory", "maxwell_slip",
 }  # fmt: skip
 
 
@@ -205,6 +216,16 @@ def draw(effect: str, base: Values, scale: Scale, strength: float, q: Values) ->
         return {"ripple": 0.6 * s, "ripple_period": d * (0.5 + 2 * a), "ripple_phase": turn}
     if effect == "gravity":
         return {"gravity": 2.0 * s * f, "gravity_phase": turn}
+    if effect == "maxwell_slip":
+        # two or three elements: a stiff one, and softer ones that slip after a longer way
+        give, third = max(0.15 * s * d, 1.5 * scale.resolution), 0.25 if b > 0.5 else 0.0
+        second = 0.3 + 0.2 * a
+        return {
+            "slip_k1": (1 - second - third) * level / give,
+            "slip_k2": second * level / (4.0 * give), "slip_w2": second * level,
+            "slip_k3": third * level / (14.0 * give), "slip_w3": third * level,
+            "slip_k4": 0.0, "slip_w4": 0.0,
+        }  # fmt: skip
     if effect == "shear_thinning":
         power = 0.25 + 0.4 * a
         return {"thinning": 1.2 * s * f / v**power, "thinning_power": power}

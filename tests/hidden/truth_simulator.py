@@ -32,7 +32,8 @@ NAMES = (
     "hum", "hum_frequency", "hum_phase", "place_damping", "slow_force", "slow_frequency",
     "resolution", "grid_offset", "kp", "kd", "derivative_weight", "command_step",
     "gravity", "gravity_phase", "thinning", "thinning_power",
-    "tip_level", "tip_bristle",
+    "tip_level", "tip_bristle", "slip_k1", "slip_k2", "slip_k3", "slip_k4", "slip_w2", "slip_w3",
+    "slip_w4",
 )  # fmt: skip
 INDEX = {n: i for i, n in enumerate(NAMES)}
 DEFAULTS = dict(
@@ -52,7 +53,7 @@ DEFAULTS = dict(
     M, B, BD, D, FC, HD, FS, VS, SIG, SIG1, MU, DRF, DRT, MEM, EW, EP, EF, BIAS, K, K3, CA, CP, CF,
     TIP, TM, TK, TB, GAP, DEL, LAG, LIM, GAIN, RA, RP, RF, HAND, HM, GK, GB, AK, AB,
     ENV, EK, EX, EB, EN, HUM, HUF, HUP, PD, SLO, SLF, RES, OFF, KP, KD, DW, UQ,
-    GR, GRP, TH, THN, TFC, TSIG,
+    GR, GRP, TH, THN, TFC, TSIG, SK1, SK2, SK3, SK4, SW2, SW3, SW4,
 ) = range(len(NAMES))  # fmt: skip
 TWO_PI = 2.0 * math.pi
 COLUMNS = ("x", "v", "friction", "acting", "interaction", "x_tip", "v_tip", "z", "contact")
@@ -97,6 +98,15 @@ def _friction(p, level, v, z):
 
 
 @njit(cache=True)
+def _slipping(p, s, level, dx):
+    """Springs in parallel, each held at its own slip force: stretched by dx, then let slip."""
+    room = max(level - p[SW2] - p[SW3] - p[SW4], 0.0)
+    for i in range(4):
+        most = room if i == 0 else p[SW2 + i - 1]
+        s[10 + i] = min(max(s[10 + i] + p[SK1 + i] * dx, -most), most)
+
+
+@njit(cache=True)
 def _contact(p, x, v):
     depth = x - p[EX]
     if p[ENV] == 0.0 or depth <= 0.0:
@@ -122,7 +132,8 @@ def _coupling(p, dx, dv):
 def _forces(p, s, level, acting, place, hand_x, hand_v, direct, out):
     """Accelerations of body, tip and hand; s: x v z lag w x_tip v_tip x_hand v_hand."""
     v = s[1]
-    total = acting - place - _friction(p, level, v, s[2])
+    rubs = s[10] + s[11] + s[12] + s[13] if p[SK1] > 0.0 else _friction(p, level, v, s[2])
+    total = acting - place - rubs
     total -= v * (p[B] + p[D] * abs(v) + p[PD] * s[0] * s[0]) + p[BD] * abs(v)
     if p[TH] != 0.0:
         total -= math.copysign(p[TH] * abs(v) ** p[THN], v)
@@ -212,6 +223,8 @@ def _drift(p, s, t, dt, u):
         if level > 0.0:
             give = sign * level / p[SIG]
             s[2] = give + (s[2] - give) * math.exp(-p[SIG] * abs(dx) / level)
+            if p[SK1] > 0.0:
+                _slipping(p, s, level, dx)
         else:
             s[2] = 0.0
     s[0] += dx
@@ -350,7 +363,7 @@ def simulate(
         inner = sub * max(1, math.ceil(5e4 / rate / sub))
     if inner % sub:
         raise ValueError(f"inner ({inner}) must be a multiple of sub ({sub})")
-    s = np.zeros((len(p), 10)) if start is None else np.array(start, float)
+    s = np.zeros((len(p), 14)) if start is None else np.array(start, float)
     u, enc, out = _run(
         p, s, 1.0 / rate, inner, sub, open_loop, len(p) == 2, drive.reference,
         drive.reference_velocity, drive.feedforward, drive.hand, drive.hand_velocity, drive.direct,

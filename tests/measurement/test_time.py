@@ -4,7 +4,6 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from measurement.rod_example import rod_columns, rows
 
-from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement import load_experiment
 
 
@@ -35,11 +34,13 @@ def test_time_may_start_anew_in_each_segment(rod):
     np.testing.assert_allclose(record.time, stamps, atol=1e-12)
 
 
-def test_a_gap_within_a_segment_is_an_error_all_the_same(rod):
+def test_a_pause_within_a_segment_parts_it(rod):
     stamps = np.arange(150) / 100
     stamps[30:] += 0.3
-    with pytest.raises(ExperimentError, match="row 31: .*a new value of `segment`"):
-        with_segments(rod, np.repeat([0, 1], 75), stamps)
+    record = with_segments(rod, np.repeat([0, 1], 75), stamps)
+    assert record.segments == (slice(0, 30), slice(30, 75), slice(75, 150))
+    np.testing.assert_allclose(record.time, stamps, atol=1e-9)
+    assert "1 pause, the longest 0.31 s" in record.reading[0].observed
 
 
 def with_stamps(folder, stamps, digits=9):

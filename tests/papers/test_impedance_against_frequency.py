@@ -57,6 +57,18 @@ def test_the_profile_puts_the_corner_at_20_hz(sweep):
     assert float(sweep.phase.sel(case="none", frequency=20.0)) == pytest.approx(135, abs=0.5)
 
 
+def test_the_papers_two_claims_on_figure_7_conflict_whatever_its_amplitude_reads():
+    """A corner at 20 Hz, and cancellation mass-like (180 degrees) down to 4 Hz."""
+    phases = impedance_against_frequency.phases_of_cancellation()
+    small, large = sorted(phases)
+    assert (1e3 * small, 1e3 * large) == pytest.approx((2.95, 10.0), rel=1e-3)
+    # half a degree: the digits that are stated
+    assert phases[small] == pytest.approx(107, abs=0.5)
+    assert phases[large] == pytest.approx(157, abs=0.5)
+    corners = [impedance_against_frequency.corner_of(x) for x in (small, large)]
+    assert corners == pytest.approx([20.0, 7.2], rel=0.01)
+
+
 @pytest.fixture(scope="module")
 def grid():
     return amplitude_dependence.run(quick=True)[0]

@@ -163,5 +163,5 @@ def test_no_motion_takes_energy_out_of_the_limiting_spring(steps, start):
 
 
 def test_nothing_negative_is_accepted():
-    with pytest.raises(ModelError, match="nothing negative"):
+    with pytest.raises(ModelError, match="stiffness: expected a number >= 0"):
         spring(-1)

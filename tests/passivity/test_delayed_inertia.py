@@ -88,7 +88,7 @@ def test_the_bound_is_exact_without_delay(order):
 
 
 def test_wrong_input_is_named():
-    with pytest.raises(ModelError, match="negative"):
+    with pytest.raises(ModelError, match="cancelled: expected a number >= 0"):
         cancelled_inertia(**DEVICE, cancelled=-0.1, delay=0)
     with pytest.raises(ModelError, match="1 or 2, found 3"):
         cancelled_inertia(**DEVICE, cancelled=0.1, delay=0, time_constant=0.01, order=3)

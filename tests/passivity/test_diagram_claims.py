@@ -130,9 +130,9 @@ def test_parts_that_are_proved_add_up_on_several_ports():
         assert claim.status == "proved" and len(claim.certificates) == 3
 
 
-def test_a_law_without_theorem_is_left_to_the_search():
+def test_a_law_of_velocity_on_friction_that_gives_is_refuted_by_theorem_and_by_search():
     claims = settled(haptic_interface(giving(), cancellation=CANCELLATION))
-    assert claims["friction of Z_M with C"].status == "unknown"
+    assert claims["friction of Z_M with C"].status == "refuted"
     assert claims["port (R_V, L), search by simulation"].status == "refuted"
 
 
@@ -171,7 +171,7 @@ def test_the_command_settles_a_diagram_from_a_file(tmp_path, capsys):
     assert main(["passivity", str(file), "--json", str(out)]) == 0
     text = capsys.readouterr().out
     assert "not linear: Z_M.coulomb, C" in text
-    assert "proved    all ports, any motion" in text
+    assert "proved (in continuous time) all ports, any motion" in text
     content = json.loads(out.read_text())
     assert content["ports"] == ["(R_V, L)"] and len(content["claims"]) == 3
     assert main(["passivity", "--check", str(out)]) == 0

@@ -15,7 +15,9 @@ from teleopdesign.errors import ModelError
 from teleopdesign.passivity import (
     bounded_compensation,
     dahl_compensation,
+    largest_one_off_energy,
     largest_passive_level,
+    largest_ratio,
     lugre_passivity,
     onset_amplitude,
     read_record,
@@ -357,3 +359,26 @@ def test_without_bristle_damping_lugre_is_always_passive():
         stribeck_velocity=0.01,
     )
     assert claim.status == "proved"
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    u=st.floats(0.05, 4.0),
+    points=st.lists(st.floats(-1.0, 1.0), min_size=2, max_size=12),
+)
+def test_closed_paths_give_out_nothing_and_one_off_motions_no_more_than_the_bristle_holds(
+    u, points
+):
+    """At the ratio for closed paths, within u bristle lengths; 1e-12: rounding of the energies."""
+    f_c, stiffness = 0.5, 1e4
+    f_d = f_c * largest_ratio(u, motion="closed paths")
+    path = tuple(x * u * f_d / stiffness for x in points)
+    cycle = Cycle(Dahl(f_d, stiffness), (Coulomb(f_c),), path, rounds=400)
+    size = f_d * sum(abs(b - a) for a, b in zip(path, path[1:], strict=False)) + 1e-30
+    assert cycle.energy <= 1e-12 * size
+    helps, force, here, out = Dahl(f_d, stiffness), 0.0, 0.0, 0.0
+    for point in path:
+        force, work = helps.leg(force, point - here)
+        out, here = out + work - f_c * abs(point - here), point
+    most = largest_one_off_energy(level=f_d, stiffness=stiffness, u=u)
+    assert out <= most + 1e-12 * size

@@ -115,5 +115,5 @@ def test_the_motion_is_written_and_replayed(tmp_path):
 
 
 def test_numbers_that_make_no_sense_are_refused():
-    with pytest.raises(ModelError, match="sample time > 0"):
+    with pytest.raises(ModelError, match="sample_time: expected a number > 0"):
         sampled_compensation(**JOINT, **INSIDE, sample_time=0)

@@ -67,9 +67,9 @@ def test_the_question_alone_decides_which_theorems_speak():
 
     ideal = ["any law within the level", "the same, damping counted"]
     assert topics(Question(IDEAL)) == []
-    assert topics(Question(IDEAL, SMOOTHED)) == ideal
+    assert topics(Question(IDEAL, SMOOTHED)) == [*ideal, "law of velocity, damping counted"]
     assert topics(Question(IDEAL, DAHL)) == [*ideal, "estimate", "95 % interval"]
-    assert topics(Question(GIVING, SMOOTHED)) == []
+    assert topics(Question(GIVING, SMOOTHED)) == ["law of velocity, damping counted"]
     assert topics(Question(GIVING, DAHL, computer=COMPUTER)) == [
         "estimate, continuous time",
         "95 % interval, continuous time",
@@ -86,9 +86,12 @@ def test_the_question_alone_decides_which_theorems_speak():
 def test_another_theorem_is_asked_and_its_refutation_simulated():
     """Given as an object with the same fields as a file of the folder states."""
     motion = SimpleNamespace(energy=0.25)
-    refuted = Claim("it is passive", Refutation("a motion", SimpleNamespace(energy=0.2)))
+    refuted = Claim(
+        "it is passive", Refutation("a motion", SimpleNamespace(energy=0.2, replay=lambda: 0.2))
+    )
     holds = Claim("it is lucky", Evidence(True, "nothing", float("nan")))
     another = Theorem(
+        mathematics=(),
         applies=lambda question: question.wall is not None,
         claims=lambda question: [TopicClaim("one", refuted), TopicClaim("two", holds)],
         order=1,

@@ -95,7 +95,7 @@ def test_the_energy_of_small_strokes_is_that_of_a_negative_damper():
 
 
 def test_values_that_make_no_sense_are_refused():
-    with pytest.raises(ModelError, match="velocity_compensation: expected levels"):
+    with pytest.raises(ModelError, match="viscous_damping: expected a number >= 0"):
         velocity_compensation(coulomb_level=0.5, compensator_level=0.4, viscous_damping=-1)
 
 

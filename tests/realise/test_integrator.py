@@ -77,10 +77,11 @@ def test_a_command_acts_after_its_delay():
 
 
 def test_reductions_are_those_of_the_rows():
-    """last, largest, least, trapezoidal integral of a signal and of a product."""
-    which = [(0, 0, 0), (1, 1, 0), (2, 1, 0), (3, 1, 0), (4, 0, 1)]
+    """Last, largest, least, largest size, sum, sum of a product, its integral by trapezia."""
+    which = [(0, 0, 0), (1, 1, 0), (2, 1, 0), (3, 1, 0), (4, 1, 0), (5, 0, 1), (6, 0, 1)]
     columns, found = advance(lambda t: np.cos(500.0 * t), 0.0, reductions=which)
     x, v = columns[:2]
     # accumulators begin at zero here: what is larger or less than the start counts
-    expected = [x[-1], max(v.max(), 0.0), min(v.min(), 0.0), np.trapezoid(v), np.trapezoid(x * v)]
+    expected = [x[-1], max(v.max(), 0.0), min(v.min(), 0.0), np.abs(v).max()]
+    expected += [v.sum(), np.sum(x * v), np.trapezoid(x * v)]
     np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-20)

@@ -32,7 +32,11 @@ TYPICAL = {
 }
 LEVEL = 0.5  # N; above every effect that lowers it
 #: those of one body: of two, `test_tips`
-NAMES = sorted(n for n, e in EFFECTS.items() if e.role not in ("structure", "tip_level"))
+NAMES = sorted(
+    n
+    for n, e in EFFECTS.items()
+    if e.role not in ("structure", "tip_level") and not e.channels()  # only records have those
+)
 LINEAR = [n for n in NAMES if EFFECTS[n].linear]
 
 
@@ -46,6 +50,8 @@ def device(*names, absent=False):
         effect = KNOWN[name]
         for parameter, declared in effect.parameters.items():
             value = LEVEL if name == "coulomb" else TYPICAL[declared.quantity]
+            if name == "maxwell_slip" and declared.quantity == "force":
+                value = 0.2 * LEVEL  # four elements together
             value = max(value, declared.lower)
             if absent and name in names:
                 value = effect.absent.get(parameter, value)
@@ -91,6 +97,8 @@ def test_kernel_and_python_control_move_alike(name):
     # within a step of the kernel, 1e-4 s: half a step of the damper's first force, 2 N s/m at
     # 0.3 m/s on 0.15 kg, moves 1e-5 m of 0.015 m in the time left
     most = 5e-4 if EFFECTS[name].role in CONTACT_ROLES else 1e-5
+    if name == "maxwell_slip":  # an element begins to slip within a step: late by K v h = 0.06 N
+        most = 2e-3
     assert np.abs(x - kernel["L"].values).max() < most * np.abs(x).max()
 
 

@@ -66,7 +66,7 @@ def test_the_verdict_names_the_effect_and_both_errors(diagnosis):
     assert text.startswith(
         "Your model lacks stribeck at device. With it, the force error on records"
     )
-    assert re.search(r"from 7\.05.% to 0\.97.%", text)
+    assert re.search(r"from 7\.02.% to 0\.98.%", text)
 
 
 def test_look_alikes_are_named_together(diagnosis):
@@ -84,7 +84,7 @@ def test_an_adequate_model_and_an_unexplained_rest_are_said_as_such(diagnosis):
     assert "Your model is adequate" in verdict(replace(only, verdict="model_adequate"))
     undecided = verdict(replace(only, verdict="undecided"))
     assert "no effect that was tried explains it" in undecided
-    assert "7.8 times what sensor noise" in undecided
+    assert "7.7 times what sensor noise" in undecided
 
 
 def test_effects_that_help_too_little_are_said_to(diagnosis):

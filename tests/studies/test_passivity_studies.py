@@ -19,7 +19,7 @@ def test_simulated_oscillations_stop_growing_on_the_curve():
     for u, ratio in zip(found["u"].values, found["simulated"].values, strict=True):
         # 0.1 %: the bisection's last interval is 0.05 %, the contact gives by 0.01 % of the stroke
         assert ratio == pytest.approx(largest_ratio(float(u)), rel=1e-3)
-        assert ratio > largest_ratio(float(u), motion="any")
+        assert ratio > largest_ratio(float(u), motion="closed paths")
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ import xarray
 import teleopdesign as td
 from teleopdesign.errors import ExperimentError, ModelError
 from teleopdesign.passivity import dahl_compensation, observe_simulation
-from teleopdesign.studies import Case, read_study
+from teleopdesign.studies import SimulatedCase, read_study
 
 
 @pytest.fixture(scope="module")
@@ -199,14 +199,16 @@ def test_parameters_of_a_function_are_held_against_its_arguments():
 
 def test_a_motion_that_is_no_sine_has_no_amplitude():
     time = np.linspace(0, 1, 20)
-    case = Case(models.interface(), motion={"L": td.simulate.sampled_motion(time, 0.01 * time**2)})
+    case = SimulatedCase(
+        models.interface(), motion={"L": td.simulate.sampled_motion(time, 0.01 * time**2)}
+    )
     with pytest.raises(ModelError, match="is none of `sine`"):
         case.with_values({"motion.L.amplitude": 0.1})
 
 
 def test_a_case_that_every_name_is_changed_in_has_these_values():
     """Whatever `names` lists can be set and is then what `value` says."""
-    case = Case(models.interface(), duration=0.2, motion=models.SIMULATED["motion"])
+    case = SimulatedCase(models.interface(), duration=0.2, motion=models.SIMULATED["motion"])
     for name in case.names():
         before = case.value(name)
         changed = 0.5 * before if before and np.isfinite(before) else 1e-3

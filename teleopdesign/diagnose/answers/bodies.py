@@ -6,18 +6,25 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ...blocks import Body, with_block_effects
+from ...blocks import Body, Value, with_block_effects
 from ...blocks.described import body_of
 from ...effects import Effect
 from ...errors import ExperimentError, did_you_mean, quoted
 from ...measurement.description import bodies_from
 from ...measurement.toml_table import Table
 from ...model import Model
+from ...realise.stages_along import RECORD_SHIFT
 
 
 def model_data(model: Model) -> dict[str, Any]:
-    """The bodies by their places; SI, with units."""
-    return {place: body_data(body) for place, body in model.bodies.items()}
+    """The bodies by their places, and the shifts of their records; SI, with units."""
+    data: dict[str, Any] = {place: body_data(body) for place, body in model.bodies.items()}
+    if model.record_shift:
+        data[RECORD_SHIFT] = {
+            place: {"value": late.value, "unit": "s"} | _error(late)
+            for place, late in model.record_shift.items()
+        }
+    return data
 
 
 def body_data(body: Body) -> dict[str, Any]:
@@ -42,7 +49,11 @@ def body_data(body: Body) -> dict[str, Any]:
 def _value(body: Body, name: str) -> dict[str, Any]:
     value = body.parameters[name]
     data = {"value": value.value, "unit": body.unit(name), "fixed": value.fixed}
-    return data | ({"stderr": value.stderr} if math.isfinite(value.stderr) else {})
+    return data | _error(value)
+
+
+def _error(value: Value) -> dict[str, float]:
+    return {"stderr": value.stderr} if math.isfinite(value.stderr) else {}
 
 
 def model_from(
@@ -55,11 +66,22 @@ def model_from(
     """
     bodies = {}
     effects = with_block_effects(known)
+    shifts = Table(content, file, key).table(RECORD_SHIFT) if RECORD_SHIFT in content else None
+    content = {place: body for place, body in content.items() if place != RECORD_SHIFT}
     for place, described in bodies_from(Table(content, file, key)).items():
         for name in described.effects:
             known_effect(name, effects, where=f"{described.where}.effects")
         bodies[place] = body_of(described, effects)
-    return Model(bodies, known)
+    return Model(bodies, known, _shifts_from(shifts) if shifts is not None else {})
+
+
+def _shifts_from(shifts: Table) -> dict[str, Value]:
+    """The shifts of the records, by body."""
+    tables = {place: shifts.table(place) for place in shifts.content}
+    return {
+        place: Value(table.number("value"), False, table.content.get("stderr", math.nan))
+        for place, table in tables.items()
+    }
 
 
 def known_effect(name: str, known: Mapping[str, Effect], *, where: str) -> Effect:

@@ -20,7 +20,7 @@ from ..noise_floor import NoiseFloor
 from ..one_moment import Moment
 from ..prepare import Prepared, prepare
 from ..ranking import Ranking
-from ..rung import Rung
+from ..rung import Replaced, Rung, replaced_from
 from .bodies import known_effect, model_from
 from .saved import SavedAnswer
 
@@ -33,13 +33,16 @@ class _Steps:
     """The content of an answer as objects, before any residual is computed.
 
     models: of each rung;  estimated: the last before what its readings do was taken off
-    added, equals: of each rung;  open: candidates with the models that they were compared by
+    added, replaced, equals, could_be: of each rung
+    open: candidates with the models that they were compared by
     """
 
     models: tuple[Model, ...]
     estimated: Model
     added: tuple[Candidate | None, ...]
+    replaced: tuple[Replaced | None, ...]
     equals: tuple[tuple[Candidate, ...], ...]
+    could_be: tuple[tuple[Candidate, ...] | None, ...]
     open: tuple[tuple[Candidate | None, tuple[tuple[Candidate, Model], ...]], ...]
 
 
@@ -69,8 +72,10 @@ def restored(
     ]
     fits[-1] = replace(fits[-1], at_bound=tuple(content.get("at_bound", ())))
     rungs = tuple(
-        Rung(added, fit, None, equals)
-        for added, fit, equals in zip(steps.added, fits, steps.equals, strict=True)
+        Rung(added, fit, None, equals, replaced, could_be)
+        for added, fit, equals, replaced, could_be in zip(
+            steps.added, fits, steps.equals, steps.replaced, steps.could_be, strict=True
+        )
     )
     return Diagnosis(
         experiment=experiment,
@@ -81,7 +86,7 @@ def restored(
         estimated=evaluated(steps.estimated, prepared),
         floor=_floor(content),
         moment=_moment(content.get("one_moment")),
-        named=tuple(c for c in steps.added if c is not None and _place(c) in content["missing"]),
+        named=tuple(c for c in steps.added if c is not None and c.key in _named(content)),
         open=tuple(
             OpenQuestion(added, tuple((c, evaluated(m, prepared)) for c, m in others))
             for added, others in steps.open
@@ -147,7 +152,19 @@ def steps_of(saved: SavedAnswer, known: Mapping[str, Effect]) -> _Steps:
         instead = None if first is None else candidate(first, "open", *last)
         questions.append((instead, tuple(others)))
     equals = tuple(() if one is None else alike.get(one.key, ()) for one in added)
-    return _Steps(ladder, estimated, added, equals, tuple(questions))
+    replaced = []
+    for row in rows:
+        instead = row.get("instead_of")
+        place = None if instead is None else {"effect": instead, "at": row["added"]["at"]}
+        gone = None if place is None else candidate(place, "ladder", ladder[0])
+        replaced.append(None if gone is None else replaced_from(gone, ladder[0]))
+    could_be = tuple(
+        None
+        if row.get("could_be") is None
+        else tuple(candidate(place, "ladder") for place in row["could_be"])
+        for row in rows
+    )
+    return _Steps(ladder, estimated, added, tuple(replaced), equals, could_be, tuple(questions))
 
 
 def _in_model(
@@ -163,9 +180,8 @@ def _in_model(
     return candidate
 
 
-def _place(candidate: Candidate) -> dict[str, str]:
-    effect, at = candidate.key
-    return {"effect": effect, "at": at}
+def _named(content: Mapping[str, Any]) -> set[tuple[str, str]]:
+    return {(place["effect"], place["at"]) for place in content["missing"]}
 
 
 def _error(number: float | None) -> float:

@@ -154,6 +154,7 @@ def _table(required: Mapping[str, Check], optional: Mapping[str, Check] | None =
 
 
 _PLACE = _table({"effect": _text, "at": _text})
+_MISSING = _table({"effect": _text, "at": _text}, {"instead_of": _text})
 _SIZE = _number(low=0.0)
 #: null where there is no such record
 _ERROR = _number(low=0.0, null=True)
@@ -166,9 +167,13 @@ _BODIES = _table_of(_table({}))
 
 _REQUIRED: dict[str, Check] = {
     "verdict": _one_of(*VERDICTS),
-    "missing": _list_of(_PLACE),
+    "missing": _list_of(_MISSING),
     "ladder": _list_of(
-        _table({"added": _or_null(_PLACE), "fit_error": _ERROR, "check_error": _ERROR}), least=1
+        _table(
+            {"added": _or_null(_PLACE), "fit_error": _ERROR, "check_error": _ERROR},
+            {"instead_of": _or_null(_text), "could_be": _or_null(_list_of(_PLACE))},
+        ),
+        least=1,
     ),
     "noise_floor": _SIZE,
     "candidates": _list_of(

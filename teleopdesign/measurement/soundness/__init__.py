@@ -5,7 +5,7 @@
         print(finding)
 
 Needs no model: what forces and motion say about each other is in `teleopdesign.diagnose`. What
-reading an experiment refuses already (gaps, missing numbers, unknown units) is not looked for.
+reading an experiment refuses already (columns without numbers, unknown units) is not looked for.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from .clipping import check_clipped
 from .clock import check_clock, clock_in_order
 from .encoder_steps import check_steps
 from .held_samples import check_constant, check_repeats, check_stuck, check_update
+from .log_reading import check_reading
 from .noise import check_noise
 from .outliers import check_jumps, check_outliers
 from .segments import check_segments
@@ -33,6 +34,7 @@ def check_signals(experiment: Experiment) -> tuple[Finding, ...]:
         record_signals = [s for s in read if s.record is record]
         findings += check_clock(experiment, record, record_signals)
         findings += check_segments(record)
+        findings += check_reading(record)
         for signal in record_signals:
             findings += _of_a_channel(signal, [s for s in record_signals if s is not signal])
         for position, velocity in _pairs(record_signals):

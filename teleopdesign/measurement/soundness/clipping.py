@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...finding import Finding
+from ..encoder import reading_noise
 from ..filtering import Array
-from ..motion import reading_noise
 from .held_samples import STEPS, runs_of
 from .signal import Signal
 

@@ -36,8 +36,8 @@ def stamps_of(experiment: Experiment, record: Record) -> Array | None:
         columns = read_columns(path, record.file, {channel.column: "channels.time"})
     except ExperimentError:
         return None
-    stamps = columns[channel.column] * factor_of(channel, experiment.bodies, "channels.time")
-    return stamps if len(stamps) == len(record.time) else None
+    stamps = columns.values[channel.column] * factor_of(channel, experiment.bodies, "channels.time")
+    return stamps if len(stamps) == len(record.time) and np.isfinite(stamps).all() else None
 
 
 def check_clock(experiment: Experiment, record: Record, read: list[Signal]) -> list[Finding]:
@@ -47,7 +47,8 @@ def check_clock(experiment: Experiment, record: Record, read: list[Signal]) -> l
     """
     h = record.sample_time
     findings = []
-    stamps = stamps_of(experiment, record)
+    # what was done about stamps that are not even is said by the steps of reading
+    stamps = None if record.reading else stamps_of(experiment, record)
     off = np.zeros(1) if stamps is None else stamps - record.time
     rms = float(np.sqrt(np.mean(off**2)))
     numbers = {"rate": 1 / h, "jitter": rms, "worst": float(np.abs(off).max())}

@@ -8,8 +8,10 @@ from typing import Literal
 import numpy as np
 
 from ...finding import Finding
+from ...quantity import si_factor
+from ..channel import BODY_QUANTITIES
+from ..encoder import reading_step
 from ..filtering import Array
-from ..motion import reading_step
 from .signal import Signal
 
 #: how close the readings lie to a grid: mean of exp(2 pi i x/step), 1 on it, 0 anywhere
@@ -36,6 +38,15 @@ def true_step(x: Array, stated: float) -> float | None:
     return stated * max(on, default=1)
 
 
+def _as_written(signal: Signal, step: float) -> float:
+    """A step in the unit that the channel's resolution is written in."""
+    stated, channel = signal.channel.resolution, signal.channel
+    if channel.conversion is not None:
+        return step / abs(channel.conversion.factor)
+    factor = si_factor(channel.unit, quantity=BODY_QUANTITIES[channel.quantity], axis=signal.axis)
+    return step / factor if stated else step
+
+
 def check_steps(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
     """Stated resolution of a channel against its readings.
 
@@ -51,7 +62,8 @@ def check_steps(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
     if step is not None:
         text = (
             f"moves in steps of {step:.4g} {signal.unit}, {step / stated:.0f} times the stated "
-            f"{stated:.4g}: the encoder leaves more open than is stated."
+            f"{stated:.4g}: the encoder leaves more open than is stated; write resolution = "
+            f"{_as_written(signal, step):.4g} at channels.{signal.name}."
         )
     else:
         swapped = [o.name for o in others if _on_these(o, stated)]

@@ -141,6 +141,8 @@ def stuck_stretches(x: Array, step: float, quantity: str) -> list[tuple[int, int
             continue
         ends = b == len(change)
         leaps = not ends and abs(change[b]) > LEAP * max(usual, step)
+        # a reading that was stuck leaps once; a body that rested at a reversal goes on as it began
+        leaps = leaps and (b + 1 >= len(change) or abs(change[b + 1]) < 0.5 * abs(change[b]))
         if quantity == "position":
             slowing = abs(change[a - 1] - change[a - 3]) / 2
             dead = abs(change[a - 1]) > max(STEPS * step, LEAP * slowing)
@@ -171,8 +173,8 @@ def check_stuck(signal: Signal) -> list[Finding]:
             "stuck channels",
             "warning",
             f"{signal.name} is stuck at {signal.values[a]:.4g} {signal.unit} from "
-            f"{signal.time(a):.6g} to {signal.time(b - 1):.6g} s{more}: cut that out, with a "
-            "`segment` column that changes there.",
+            f"{signal.time(a):.6g} to {signal.time(b - 1):.6g} s{more}: cut that out, with "
+            "records of the same file and span = [begin, end] before and after it.",
             {
                 "from": signal.time(a),
                 "to": signal.time(b - 1),

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...finding import Finding
+from ..encoder import reading_noise
 from ..filtering import Array
-from ..motion import reading_noise
 from .signal import Signal
 
 #: ratio of seen to stated noise that is worth a warning; noise of a quarter of a second of record

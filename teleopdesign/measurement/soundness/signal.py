@@ -14,9 +14,9 @@ from ...finding import Graph, Series
 from ...quantity import unit_of
 from ..channel import BODY_QUANTITIES, Channel
 from ..description import ONE_BODY
+from ..encoder import reading_step
 from ..experiment import Experiment
 from ..filtering import Array
-from ..motion import reading_step
 from ..record import Record
 
 #: chance of a false warning about one channel of one record
@@ -31,6 +31,7 @@ class Signal:
 
     name: as the user writes it ("position", "slave.position");  unit: SI
     values: (n,);  step: smallest step between its values, 0 where it is constant
+    axis: of its body
     """
 
     name: str
@@ -39,6 +40,7 @@ class Signal:
     record: Record
     values: Array
     step: float
+    axis: str = "prismatic"
 
     @property
     def stretches(self) -> Iterator[tuple[int, Array]]:
@@ -83,7 +85,17 @@ def signals(experiment: Experiment) -> list[Signal]:
             unit = unit_of(BODY_QUANTITIES[channel.quantity], experiment.axis(channel.body))
             middle = max(0, (len(values) - ENOUGH) // 2)
             step = reading_step(values[middle : middle + ENOUGH])
-            rows.append(Signal(written(experiment, key), unit, channel, record, values, step))
+            rows.append(
+                Signal(
+                    written(experiment, key),
+                    unit,
+                    channel,
+                    record,
+                    values,
+                    step,
+                    experiment.axis(channel.body),
+                )
+            )
     return rows
 
 

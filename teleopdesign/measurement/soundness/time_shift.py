@@ -7,6 +7,8 @@ in a comparison, but it tells whether clock and units of the position are what t
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ...finding import Finding
@@ -19,6 +21,8 @@ STEPS = 4
 BAND = 0.05
 #: factor beyond which units or clock are doubted
 FACTOR = 1.05
+#: part by which a factor may miss that of a slip of units
+NEAR = 0.03
 #: samples of one stretch that are looked at
 ENOUGH = 200_000
 
@@ -51,6 +55,38 @@ def shift_and_factor(
     return float(shift), float(factor), left
 
 
+def factor_cause(factor: float, position: Signal, velocity: Signal) -> str:
+    """What makes a velocity so many times the position's derivative, and what to type."""
+    size, turn, degree = abs(factor), 2 * math.pi, math.pi / 180
+    place = f"channels.{position.name}"
+    ways = {
+        "the time is in ms": (1e3, 'write unit = "ms" at channels.time'),
+        "the time is in us": (1e6, 'write unit = "us" at channels.time'),
+    }
+    if position.axis == "revolute":
+        ways |= {
+            "the position is in turns": (turn, f'write unit = "turns" at {place}'),
+            "the position is in deg": (degree, f'write unit = "deg" at {place}'),
+            "the velocity is in deg/s": (
+                1 / degree,
+                f'write unit = "deg/s" at channels.{velocity.name}',
+            ),
+            "the velocity is in rpm": (
+                60 / turn,
+                f'write unit = "rpm" at channels.{velocity.name}',
+            ),
+        }
+    else:
+        ways |= {
+            "the position is in mm": (1e-3, f'write unit = "mm" at {place}'),
+            "the velocity is in mm/s": (1e3, f'write unit = "mm/s" at channels.{velocity.name}'),
+        }
+    near = [f"{why}: {how}" for why, (f, how) in ways.items() if abs(size / f - 1.0) < NEAR]
+    if factor < 0:
+        near.append(f"one of the two is turned: write sign = -1 at channels.{velocity.name}")
+    return " or ".join(near) if near else "units, sign or clock disagree"
+
+
 def check_velocity(position: Signal, velocity: Signal) -> list[Finding]:
     """The velocity channel of a body against its position."""
     h = position.record.sample_time
@@ -67,9 +103,10 @@ def check_velocity(position: Signal, velocity: Signal) -> list[Finding]:
         return [Finding("time shift", "warning", f"{velocity.name} {text}.", numbers, where)]
     findings = []
     if not 1 / FACTOR < factor < FACTOR:
-        text = f"is {factor:.4g} times the derivative of {position.name}: units, sign or clock"
+        text = f"is {factor:.4g} times the derivative of {position.name}: "
+        cause = factor_cause(factor, position, velocity)
         findings.append(
-            Finding("units", "warning", f"{velocity.name} {text} disagree.", numbers, where)
+            Finding("units", "warning", f"{velocity.name} {text}{cause}.", numbers, where)
         )
     if abs(shift) > h:
         way = "lags" if shift > 0 else "leads"

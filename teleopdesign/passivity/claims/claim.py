@@ -8,7 +8,7 @@ what was computed or searched, and with what margin; it is never called a proof.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from ...by_value import ByValue
@@ -64,10 +64,17 @@ class Proof(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class Refutation(ByValue):
-    """A motion that gives out `record.energy` > 0 J; `record.replay()` computes it anew."""
+    """A motion that gives out `record.energy` > 0 J; `record.replay()` computes it anew.
+
+    replayed: what that replay gave out, J; a claim whose motion does not replay is not refuted
+    """
 
     method: str
     record: Counterexample
+    replayed: float = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "replayed", float(self.record.replay()))
 
     status = "refuted"
     holds = False
@@ -119,6 +126,15 @@ class Claim(ByValue):
 
     statement: str
     verdict: Verdict
+
+    def __post_init__(self) -> None:
+        verdict = self.verdict
+        if isinstance(verdict, Refutation) and not (verdict.replayed > 0 < verdict.record.energy):
+            why = (
+                f"{verdict.method}: a motion that should give out {verdict.record.energy:.6g} J "
+                f"gives out {verdict.replayed:.6g} J where it is replayed: it shows nothing"
+            )
+            object.__setattr__(self, "verdict", Unknown(why))
 
     @property
     def status(self) -> str:

@@ -7,7 +7,6 @@ the sixteen digits of a float.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Literal
@@ -16,6 +15,7 @@ import numpy as np
 import sympy as sp
 
 from ...arguments import described
+from ...controllers import resolvent
 from ...errors import ModelError
 from ...realise.lti import S
 from .polynomials import fraction
@@ -171,30 +171,10 @@ def from_state_space(a: Any, b: Any, c: Any, d: Any) -> Impedance:
 
     a: (n, n), b: (n, 1), c: (1, n), d: (1, 1)
     """
-    a, b, c, d = ([[exact(x) for x in row] for row in np.atleast_2d(m)] for m in (a, b, c, d))
-    below, above = _resolvent([[fraction(x) for x in row] for row in a], b, c)
+    a, b, c, d = (
+        [[fraction(exact(x)) for x in row] for row in np.atleast_2d(m)] for m in (a, b, c, d)
+    )
+    below, above = resolvent(a, [row[0] for row in b], c[0])
     q = sp.Poly(below, S, domain="QQ")
-    p = sp.Poly(above or [0], S, domain="QQ") + q.mul_ground(d[0][0])
+    p = sp.Poly(above or [Fraction(0)], S, domain="QQ") + q.mul_ground(sp.Rational(d[0][0]))
     return _coprime(p, q)
-
-
-def _resolvent(
-    a: list[list[Fraction]], b: Sequence[Sequence[Any]], c: Sequence[Sequence[Any]]
-) -> tuple[list[Any], list[Any]]:
-    """Coefficients of det(s I - A) and of C adj(s I - A) B (Faddeev, Leverrier)."""
-    n = len(a)
-    power = [[Fraction(i == j) for j in range(n)] for i in range(n)]
-    below, above = [sp.Integer(1)], []
-    for k in range(1, n + 1):
-        gain = sum(
-            c[0][i] * power[i][j] * b[j][0] for i in range(n) for j in range(n) if power[i][j]
-        )
-        above.append(sp.Rational(gain))
-        moved = [
-            [sum((a[i][m] * power[m][j] for m in range(n)), Fraction(0)) for j in range(n)]
-            for i in range(n)
-        ]
-        coefficient = -sum((moved[i][i] for i in range(n)), Fraction(0)) / k
-        below.append(sp.Rational(coefficient))
-        power = [[moved[i][j] + (i == j) * coefficient for j in range(n)] for i in range(n)]
-    return below, above

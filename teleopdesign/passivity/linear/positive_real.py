@@ -15,10 +15,13 @@ import numpy as np
 import sympy as sp
 
 from ..claims.certificate import positive_real_certificate
-from ..claims.claim import Claim, Proof, Refutation
-from ..search.growing_wave import growing_wave
-from .impedance import Impedance, Motion, exact, impedance
+from ..claims.claim import Claim, Proof, Refutation, Unknown
+from ..search.growing_wave import GrowingWave, growing_wave
+from .impedance import Impedance, Motion, exact, gaussian, impedance
 from .polynomials import X, even_part, is_hurwitz, is_non_negative, positive_roots, value
+
+#: relative; coefficients are known no better than some operations on floats leave them, 2^-53 each
+NEARBY = 2.0**-50
 
 
 def is_positive_real(z: Impedance) -> bool:
@@ -34,7 +37,8 @@ def positive_real(system: Any, *, motion: Motion = "velocity") -> Claim:
 
     system, motion: see `impedance`
     returns: proved, with the excess of damping as margin (N s/m: what could be taken away), or
-    refuted by a growing wave; never unknown
+    refuted by a growing wave; unknown only where floats came in, and the wave's sign rests on their
+    last digits
     raises ModelError: not a rational function of s with given coefficients
     """
     z = impedance(system, motion=motion)
@@ -43,6 +47,11 @@ def positive_real(system: Any, *, motion: Motion = "velocity") -> Claim:
         wave = growing_wave(z)
         if wave is None:
             raise AssertionError(f"not positive real, but no wave found: {z}")
+        if is_rounded(system) and _rests_on_rounding(z, wave):
+            why = (
+                f"it fails by less than a change of {NEARBY:.1g} of coefficients decides: rounding"
+            )
+            return Claim(statement, Unknown(why))
         w, a = float(wave.frequency), float(wave.rate)
         method = (
             f"Re Z = {wave.value[0, 0].real:.6g} N s/m at s = {a:.6g} + {w:.6g} j, a growing wave"
@@ -53,6 +62,27 @@ def positive_real(system: Any, *, motion: Motion = "velocity") -> Claim:
     method = "the positive-real test"
     proof = Proof(method, (certificate,), float(margin.lower), "N s/m", _equality(z, margin))
     return Claim(statement, proof)
+
+
+def is_rounded(system: Any) -> bool:
+    """Whether a system was given in floats, which operations on them have rounded."""
+    if isinstance(system, Impedance):
+        return False
+    return hasattr(system, "isdtime") or bool(sp.sympify(system).atoms(sp.Float))
+
+
+def _rests_on_rounding(z: Impedance, wave: GrowingWave) -> bool:
+    """Whether Re Z at the wave may turn its sign where each coefficient changes by NEARBY.
+
+    To first order abs(dZ) <= NEARBY (sum abs(p_k s^k) + abs(Z) sum abs(q_k s^k))/abs(q).
+    """
+    s = wave.s
+    above, below = (
+        sum(abs(float(c)) * abs(s) ** k for (k,), c in part.terms()) for part in (z.p, z.q)
+    )
+    value = complex(wave.value[0, 0])
+    size = abs(complex(*map(float, gaussian(z.q, wave.rate, wave.frequency))))
+    return bool(abs(value.real) * size <= NEARBY * (above + abs(value) * below))
 
 
 def _equality(z: Impedance, margin: Excess) -> str:

@@ -1,7 +1,8 @@
 """Theorems about friction, its cancellation and computers: one file each.
 
-Every file that does not begin with `_` holds one; where it states a `THEOREM`, that is asked about
-every device and diagram (`settle`). Adding a theorem is adding a file.
+Every file that does not begin with `_` states one as `THEOREM`: functions of numbers with their
+hypotheses, and what is asked about every device and diagram (`settle`). Adding a theorem is adding
+a file.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ __all__ = ["THEOREMS", "Question", "Theorem", "TopicClaim", "Wall", "settle"]
 def _theorems() -> Mapping[str, Theorem]:
     names = sorted(p.stem for p in Path(__file__).parent.glob("*.py") if p.stem[0] != "_")
     modules = {name: importlib.import_module(f"{__name__}.{name}") for name in names}
-    stated = {n: m.THEOREM for n, m in modules.items() if hasattr(m, "THEOREM")}
+    stated = {n: m.THEOREM for n, m in modules.items()}
     by_order = sorted(stated.items(), key=lambda item: item[1].order)
     return Catalogue(dict(by_order), "theorem")
 

@@ -1,19 +1,21 @@
 """What a theorem is here: which questions about a device it answers, and its claims about them.
 
-A file of this folder states its mathematics as functions of numbers; with a `THEOREM` it is also
-asked about every device and diagram. Another file with a `THEOREM` is another theorem asked.
+A file of this folder states its mathematics as functions of numbers, each with its hypotheses, and
+a `THEOREM`: what of it is asked about every device and diagram. Another file is another theorem.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 from ...controllers import Stage
 from ...simulate import Sampling
 from ..claims.claim import Claim, Counterexample
 from ..identified import IdentifiedDevice
 from ..search.by_simulation import SimulatedMotion
+from ._hypotheses import hypotheses_of
 
 
 @dataclass(frozen=True)
@@ -56,21 +58,38 @@ class Question:
         return None if level is None or stiffness is None else (level, stiffness)
 
     @property
-    def late(self) -> int:
-        """Whole samples by which the computer is late."""
-        return round(self.computer.delay / self.computer.period) if self.computer else 0
+    def late(self) -> int | None:
+        """Whole samples by which the computer is late; None where its delay is no such number."""
+        if self.computer is None:
+            return 0
+        samples = self.computer.delay / self.computer.period
+        # 1e-9: a delay written as a multiple of the period, rounded
+        return round(samples) if abs(samples - round(samples)) <= 1e-9 * max(samples, 1) else None
+
+
+Time = Literal["continuous", "sampled", "any"]
 
 
 @dataclass(frozen=True)
 class TopicClaim:
     """A claim in its topic; replayed: energy (J) that its motion gave out in simulation, NaN where
     none was replayed; motion: that simulated motion.
+    time: of the controllers in it: "sampled", "continuous", or "any" where it holds in both
+    spends_damping: whether its proof uses the device's viscous damping, which no other may then use
     """
 
     topic: str
     claim: Claim
     replayed: float = float("nan")
     motion: SimulatedMotion | None = None
+    spends_damping: bool = False
+    time: Time = "continuous"
+
+    @property
+    def heading(self) -> str:
+        """The status; of what is proved in continuous time alone, with these words."""
+        limited = self.claim.status == "proved" and self.time == "continuous"
+        return f"{self.claim.status}{' (in continuous time)' * limited}"
 
 
 def simulate_nothing(counterexample: Counterexample) -> SimulatedMotion | None:
@@ -83,19 +102,36 @@ def cover_nothing(question: Question) -> Sequence[str]:
     return ()
 
 
+def ask_nothing(question: Question) -> bool:
+    """No question: a theorem on numbers alone."""
+    return False
+
+
+def claim_nothing(question: Question) -> Sequence[TopicClaim]:
+    """No claim."""
+    return ()
+
+
 @dataclass(frozen=True)
 class Theorem:
-    """A theorem that is asked about devices and diagrams.
+    """A theorem, on numbers, and as it is asked about devices and diagrams.
 
-    applies: whether it is about the question at all
+    mathematics: its functions of numbers, each with its hypotheses (`under`): what is claimed comes
+        from them, so that nothing is claimed outside of these
+    applies: whether it is about the question at all; by default it is about numbers alone
     claims: about friction, walls and computers alone, each in its topic
     order: where it stands among all: continuous time before computers, friction before walls
     covers: effects of the device that it is about, though no claim about friction alone is
     simulate: the motion of its refutations in the compiled simulation, as far as that confirms it
     """
 
-    applies: Callable[[Question], bool]
-    claims: Callable[[Question], Sequence[TopicClaim]]
+    mathematics: tuple[Callable[..., Claim], ...]
     order: int
+    applies: Callable[[Question], bool] = ask_nothing
+    claims: Callable[[Question], Sequence[TopicClaim]] = claim_nothing
     covers: Callable[[Question], Sequence[str]] = cover_nothing
     simulate: Callable[[Counterexample], SimulatedMotion | None] = simulate_nothing
+
+    def __post_init__(self) -> None:
+        for function in self.mathematics:
+            hypotheses_of(function)

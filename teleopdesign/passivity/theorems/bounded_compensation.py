@@ -20,9 +20,11 @@ from ..linear.impedance import decimal, exact
 from ..rate_independent import Coulomb, Dahl, symmetric_cycle
 from . import _dahl_certificates as shown
 from ._cycle_simulation import simulate_cycle
+from ._hypotheses import POSITIVE, under
 from ._theorem import Question, Theorem, TopicClaim
 
 
+@under(coulomb_level=POSITIVE, bound=POSITIVE)
 def bounded_compensation(*, coulomb_level: Any, bound: Any) -> Claim:
     """Is Coulomb friction passive beside any compensator whose force stays within `bound`?
 
@@ -80,7 +82,7 @@ def _claims(question: Question) -> list[TopicClaim]:
     device, bound = question.device, question.bound
     assert bound is not None
     acting = device.acting_force(bound)
-    claims = [TopicClaim("any law within the level", _bounded(device, acting))]
+    claims = [TopicClaim("any law within the level", _bounded(device, acting), time="any")]
     if question.estimates:
         claims.append(TopicClaim("the same, damping counted", _at_every_speed(device, acting)))
     return claims
@@ -103,7 +105,7 @@ def _bounded(device: IdentifiedDevice, acting: float) -> Claim:
 
 def _at_every_speed(device: IdentifiedDevice, acting: float) -> Claim:
     """Whether level and damping together cover a law that acts with no more than that, N."""
-    least, unit = device.least_resistance.low, device.force_unit
+    least, unit = device.least_resistance.low, device.force_unit.replace("*", " ")
     margin = least - acting
     statement = (
         f"ideal friction of the device and its viscous damping resist with more than "
@@ -116,5 +118,10 @@ def _at_every_speed(device: IdentifiedDevice, acting: float) -> Claim:
 
 
 THEOREM = Theorem(
-    applies=_applies, claims=_claims, order=10, covers=_covers, simulate=simulate_cycle
+    mathematics=(bounded_compensation,),
+    applies=_applies,
+    claims=_claims,
+    order=10,
+    covers=_covers,
+    simulate=simulate_cycle,
 )

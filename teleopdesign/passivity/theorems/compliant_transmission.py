@@ -15,15 +15,26 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ...errors import ModelError
 from ..claims.certificate import Certificate, Term, storage_certificate
 from ..claims.claim import Claim, Evidence, Proof, Refutation
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Coulomb, Cycle, Dahl, Element, Spring, lost_share, symmetric_cycle
 from ._dahl_certificates import Values, d, f_D
+from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, WHOLE, under
+from ._theorem import Theorem
 from .dahl_compensation import dahl_compensation
 
 
+@under(
+    motor_level=POSITIVE,
+    link_level=NOT_NEGATIVE,
+    transmission_stiffness=POSITIVE,
+    compensator_level=POSITIVE,
+    compensator_stiffness=POSITIVE,
+    motor_inertia=POSITIVE,
+    link_inertia=POSITIVE,
+    transmission_damping=NOT_NEGATIVE,
+)
 def any_environment(
     *,
     motor_level: Any,
@@ -55,11 +66,6 @@ def any_environment(
             "m_2": exact(link_inertia),
             "f_D": f_d,
         }
-        if min(values["k"], values["m_1"], values["m_2"]) <= 0 or min(values.values()) < 0:
-            raise ModelError(
-                "any_environment: expected stiffness and inertias > 0 and nothing negative, found "
-                + ", ".join(f"{n} = {decimal(x)}" for n, x in values.items())
-            )
         certificate = _certificate(values)
         equality = "while the motor slides" if f_d == f_1 else ""
         method = "V = kinetic energies + k (x_1 - x_2)^2/2"
@@ -73,6 +79,15 @@ def any_environment(
     return Claim(statement, clamped.verdict)
 
 
+@under(
+    motor_level=POSITIVE,
+    link_level=POSITIVE,
+    transmission_stiffness=POSITIVE,
+    compensator_level=POSITIVE,
+    compensator_stiffness=POSITIVE,
+    rng=FREE,
+    paths=WHOLE,
+)
 def free_motion(
     *,
     motor_level: float,
@@ -93,9 +108,6 @@ def free_motion(
 
     f_1, f_2, N;  k, N/m;  f_D, N;  sigma_D, N/m;  paths: how many are searched
     """
-    values = motor_level, link_level, transmission_stiffness, compensator_level
-    if min(*values, compensator_stiffness) <= 0:
-        raise ModelError(f"free_motion: expected numbers > 0, found {values}")
     helps = Dahl(compensator_level, compensator_stiffness)
     against: list[Element] = [Coulomb(motor_level), Spring(link_level, transmission_stiffness)]
     statement = (
@@ -231,3 +243,6 @@ def _certificate(values: Values) -> Certificate:
         },
         example={**values, "d": 0, "v1": 1, "v2": 1},
     )
+
+
+THEOREM = Theorem(mathematics=(any_environment, free_motion), order=76)

@@ -28,11 +28,19 @@ from ..rate_independent import (
 )
 from . import _dahl_certificates as shown
 from ._cycle_simulation import simulate_cycle
-from ._theorem import Question, Theorem, TopicClaim
+from ._hypotheses import POSITIVE, under
+from ._theorem import Question, Theorem, Time, TopicClaim
 from .bounded_compensation import amplitude_beyond_onset, positive_numbers, proof_of_level
 from .lugre import beside_bristle_damping
 
 
+@under(
+    coulomb_level=POSITIVE,
+    compensator_level=POSITIVE,
+    compensator_stiffness=POSITIVE,
+    presliding_stiffness=POSITIVE.or_none(),
+    highest_level=POSITIVE.or_none(),
+)
 def dahl_compensation(
     *,
     coulomb_level: Any,
@@ -106,15 +114,30 @@ def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: 
     return float(brentq(out, levels[max(k - 1, 0)], above[0], xtol=1e-12 * coulomb_level))
 
 
-def largest_ratio(u: float, *, motion: Literal["cycles", "any"] = "cycles") -> float:
+def largest_ratio(u: float, *, motion: Literal["cycles", "closed paths"] = "cycles") -> float:
     """Largest f_D/f_C that gives out no energy within u = sigma_D A/f_D bristle lengths either way.
 
     motion: "cycles": exact for plain cycles of that amplitude, 1/(1 - tanh(u)/u);
-        "any": enough for every motion that stays within it, 1/(1 - e^(-2 u))^2 (P56)
+        "closed paths": enough for every closed path within it, 1/(1 - e^(-2 u))^2 (P56). A motion
+        that does not come back may give out what the bristle holds, once: `largest_one_off_energy`
     """
     if u <= 0:
         raise ModelError(f"largest_ratio: expected an amplitude > 0, found u = {u:g}")
     return 1 / lost_share(u) if motion == "cycles" else 1 / math.expm1(-2 * u) ** 2
+
+
+def largest_one_off_energy(*, level: float, stiffness: float, u: float) -> float:
+    """Most energy that a motion within u bristle lengths gives out once, from rest, J (P56).
+
+    f_D^2 (1 - e^(-2 u))^2/(2 sigma_D), what the compensator's bristle holds, wherever
+    f_D <= largest_ratio(u, motion="closed paths") f_C. level: f_D, N;  stiffness: sigma_D, N/m
+    """
+    if min(level, stiffness, u) <= 0:
+        raise ModelError(
+            "largest_one_off_energy: expected level, stiffness and amplitude > 0, found "
+            f"{level:g}, {stiffness:g}, {u:g}"
+        )
+    return (level * math.expm1(-2 * u)) ** 2 / (2 * stiffness)
 
 
 def onset_amplitude(
@@ -232,14 +255,18 @@ def _claims(question: Question) -> list[TopicClaim]:
     device, (level, stiffness) = question.device, question.bristle
     sampled = question.computer is not None and device.presliding is not None
     when = ", continuous time" if sampled else ""
-    certain = TopicClaim(f"95 % interval{when}", dahl_claim(device, level, stiffness))
+    # beside ideal friction it rests on the bound alone, which a computer keeps too
+    time: Time = "any" if device.presliding is None else "continuous"
+    topic = f"95 % interval{when}"
+    certain = TopicClaim(topic, dahl_claim(device, level, stiffness), time=time)
     if not question.estimates:
         return [certain]
     estimate = dahl_claim(device, level, stiffness, certain=False)
-    return [TopicClaim(f"estimate{when}", estimate), certain]
+    return [TopicClaim(f"estimate{when}", estimate, time=time), certain]
 
 
 THEOREM = Theorem(
+    mathematics=(dahl_compensation,),
     applies=lambda question: question.bristle is not None,
     claims=_claims,
     order=20,

@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ...errors import ModelError
 from ...frequency.closed_forms import dahl
 from ...realise.lti import S
 from ..claims.certificate import Certificate, storage_certificate
@@ -25,6 +24,8 @@ from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..linear.impedance import decimal, exact
 from ..search.growing_wave import GrowingWave, halvings, wave_of
 from ._dahl_certificates import Values, sigma_D
+from ._hypotheses import NOT_NEGATIVE, under
+from ._theorem import Theorem
 
 #: just above 0.2172336, minus the least value of sin(y)/y (at tan y = y, y = 4.4934)
 SINC_LEAST = sp.Rational(21724, 100000)
@@ -49,6 +50,12 @@ def inertia_given_out(*, inertia: float, amplitude: float, frequency: float, del
     return float(np.pi * inertia * amplitude**2 * w**2 * np.sin(w * delay))
 
 
+@under(
+    damping=NOT_NEGATIVE,
+    compensator_stiffness=NOT_NEGATIVE,
+    delay=NOT_NEGATIVE,
+    presliding_stiffness=NOT_NEGATIVE,
+)
 def delayed_small_motion(
     *, damping: Any, compensator_stiffness: Any, delay: Any, presliding_stiffness: Any
 ) -> Claim:
@@ -61,8 +68,6 @@ def delayed_small_motion(
     """
     b, tau = exact(damping), exact(delay)
     sigma_d, sigma_p = exact(compensator_stiffness), exact(presliding_stiffness)
-    if min(b, tau, sigma_d, sigma_p) < 0:
-        raise ModelError("delayed_small_motion: no value may be negative")
     statement = (
         f"small motion with damping {decimal(b)} N s/m, presliding {decimal(sigma_p)} N/m and a "
         f"compensator {decimal(sigma_d)} N/m that is {decimal(tau)} s late is passive"
@@ -118,3 +123,6 @@ def _certificate(values: Values) -> Certificate:
         },
         example={**values, "q": 1},
     )
+
+
+THEOREM = Theorem(mathematics=(delayed_small_motion,), order=72)

@@ -13,15 +13,24 @@ from typing import Any
 
 import sympy as sp
 
-from ...errors import ModelError
 from ..claims.certificate import Certificate, storage_certificate
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal, exact
 from ..two_port.claims import absolutely_stable
 from ..two_port.two_port import teleoperator_two_port
 from ._dahl_certificates import Values
+from ._hypotheses import NOT_NEGATIVE, REAL, under
+from ._theorem import Theorem
 
 
+@under(
+    master_inertia=NOT_NEGATIVE,
+    master_damping=REAL,
+    slave_inertia=NOT_NEGATIVE,
+    slave_damping=REAL,
+    stiffness=NOT_NEGATIVE,
+    delay=NOT_NEGATIVE,
+)
 def delayed_spring(
     *,
     master_inertia: Any,
@@ -37,8 +46,6 @@ def delayed_spring(
     returns: proved (equality allowed), or refuted by a wave with port 2 held by a spring or mass
     """
     b_m, b_s, k, late = map(exact, (master_damping, slave_damping, stiffness, delay))
-    if min(exact(master_inertia), exact(slave_inertia), k, late) < 0:
-        raise ModelError("delayed_spring: inertias, stiffness and delay must not be negative")
     master, slave = (
         exact(m) * sp.Symbol("s") + b for m, b in ((master_inertia, b_m), (slave_inertia, b_s))
     )
@@ -75,3 +82,6 @@ def _certificate(values: Values) -> Certificate:
         },
         example={**values, "q": 1},
     )
+
+
+THEOREM = Theorem(mathematics=(delayed_spring,), order=70)

@@ -27,6 +27,8 @@ from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown
 from ..linear.impedance import decimal, exact
 from ..linear.positive_real import positive_real
 from ..search.growing_wave import GrowingWave, halvings, wave_of
+from ._hypotheses import NOT_NEGATIVE, one_of, under
+from ._theorem import Theorem
 
 Order = Literal[1, 2]
 _PER_TURN = 200  # samples of g per turn of its phase: its maxima within 1e-4, then refined
@@ -61,6 +63,14 @@ def largest_passive_inertia(
     return damping / _maximum(delay, time_constant)[1]
 
 
+@under(
+    inertia=NOT_NEGATIVE,
+    damping=NOT_NEGATIVE,
+    cancelled=NOT_NEGATIVE,
+    delay=NOT_NEGATIVE,
+    time_constant=NOT_NEGATIVE,
+    order=one_of(1, 2),
+)
 def cancelled_inertia(
     *,
     inertia: Any,
@@ -79,7 +89,6 @@ def cancelled_inertia(
     """
     m, b, c = exact(inertia), exact(damping), exact(cancelled)
     tau, t = exact(delay), exact(time_constant)
-    _check(b, c, tau, t, order)
     filtered = f", low-passed of order {order} with {decimal(t)} s" if t else ""
     statement = (
         f"a device of {decimal(m)} kg and {decimal(b)} N s/m with {decimal(c)} kg cancelled "
@@ -166,3 +175,6 @@ def _certificate(order: int, values: dict[str, sp.Expr]) -> Certificate:
         },
         example={**values, "g": 0},
     )
+
+
+THEOREM = Theorem(mathematics=(cancelled_inertia,), order=74)

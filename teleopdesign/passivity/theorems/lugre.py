@@ -24,6 +24,7 @@ from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Dahl
 from ._dahl_certificates import Values, abs_v, dahl_rate, v
+from ._hypotheses import NOT_NEGATIVE, POSITIVE, under
 from ._theorem import Question, Theorem, TopicClaim
 
 _STRIBECK = EFFECTS["stribeck"]
@@ -81,6 +82,14 @@ class Jumps:
         return {"kind": "jumps", **vars(self), "energy": self.energy}
 
 
+@under(
+    coulomb_level=POSITIVE,
+    static_level=POSITIVE,
+    stiffness=POSITIVE,
+    bristle_damping=NOT_NEGATIVE,
+    viscous_damping=NOT_NEGATIVE,
+    stribeck_velocity=POSITIVE,
+)
 def lugre_passivity(
     *,
     coulomb_level: Any,
@@ -266,10 +275,11 @@ def _claims(question: Question) -> list[TopicClaim]:
     if device.body.level() != plain and not claim.holds:
         why = "the condition fails, and no motion is sought where the level is not Stribeck's alone"
         claim = Claim(claim.statement, Unknown(why))
-    return [TopicClaim("the device's own friction", claim)]
+    return [TopicClaim("the device's own friction", claim, time="any")]
 
 
 THEOREM = Theorem(
+    mathematics=(lugre_passivity,),
     applies=_applies,
     claims=_claims,
     order=50,

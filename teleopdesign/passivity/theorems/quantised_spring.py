@@ -20,10 +20,10 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ...errors import ModelError
 from ..claims.certificate import Certificate, Term, storage_certificate
 from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..linear.impedance import decimal, exact
+from ._hypotheses import NOT_NEGATIVE, POSITIVE, under
 from ._theorem import Question, Theorem, TopicClaim
 
 
@@ -65,6 +65,14 @@ class Flip:
         return {"kind": "flip", **vars(self), "energy": self.energy}
 
 
+@under(
+    stiffness=NOT_NEGATIVE,
+    damping=NOT_NEGATIVE,
+    sample_time=POSITIVE,
+    step=NOT_NEGATIVE,
+    coulomb_level=NOT_NEGATIVE,
+    compensator_level=NOT_NEGATIVE,
+)
 def quantised_spring(
     *,
     stiffness: Any,
@@ -82,8 +90,6 @@ def quantised_spring(
     """
     k, b, late = exact(stiffness), exact(damping), exact(sample_time)
     delta, f_c, f_d = exact(step), exact(coulomb_level), exact(compensator_level)
-    if late <= 0 or min(k, b, delta, f_c, f_d) < 0:
-        raise ModelError("quantised_spring: expected a sample time > 0, and nothing negative")
     statement = (
         f"a virtual spring {decimal(k)} N/m at steps of {decimal(delta)} m and {decimal(late)} s, "
         f"damping {decimal(b)} N s/m, "
@@ -185,7 +191,7 @@ def _applies(question: Question) -> bool:
     wall, computer = question.wall, question.computer
     if wall is None or computer is None:
         return False
-    return bool(computer.encoder_step) and not wall.damping and not question.late
+    return bool(computer.encoder_step) and not wall.damping and question.late == 0
 
 
 def _claims(question: Question) -> list[TopicClaim]:
@@ -199,7 +205,7 @@ def _claims(question: Question) -> list[TopicClaim]:
         coulomb_level=device.lowest.low,
         compensator_level=wall.cancelled,
     )
-    return [TopicClaim("virtual wall, encoder steps", claim)]
+    return [TopicClaim("virtual wall, encoder steps", claim, time="sampled")]
 
 
-THEOREM = Theorem(applies=_applies, claims=_claims, order=60)
+THEOREM = Theorem(mathematics=(quantised_spring,), applies=_applies, claims=_claims, order=60)

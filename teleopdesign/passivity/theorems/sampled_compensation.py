@@ -21,12 +21,12 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ModelError
 from ..claims.claim import Claim, Refutation, Unknown
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Dahl
 from ..search.stroke_motion import Strokes
 from ._cycle_simulation import simulate_cycle
+from ._hypotheses import NOT_NEGATIVE, POSITIVE, WHOLE, under
 from ._theorem import Question, Theorem, TopicClaim
 from .bounded_compensation import bounded_compensation
 
@@ -117,6 +117,15 @@ class Trembling:
         return first + self.friction.leg(there, -self.back)[1]
 
 
+@under(
+    coulomb_level=POSITIVE,
+    compensator_level=POSITIVE,
+    compensator_stiffness=POSITIVE,
+    sample_time=POSITIVE,
+    presliding_stiffness=POSITIVE.or_none(),
+    viscous_damping=NOT_NEGATIVE,
+    late=WHOLE,
+)
 def sampled_compensation(
     *,
     coulomb_level: Any,
@@ -144,11 +153,6 @@ def sampled_compensation(
     f_c, f_d, stiffness, period, presliding, b = map(
         exact, (*numbers, presliding_stiffness, viscous_damping)
     )
-    if min(f_c, f_d, stiffness, period, presliding) <= 0 or min(b, late) < 0:
-        raise ModelError(
-            "sampled_compensation: expected levels, stiffnesses and sample time > 0, damping and "
-            f"late >= 0, found {f_c}, {f_d}, {stiffness}, {presliding}, {period}, {b}, {late}"
-        )
     statement = (
         f"Dahl friction {decimal(f_c)} N, {decimal(presliding)} N/m and damping {decimal(b)} N s/m "
         f"with a Dahl compensator ({decimal(f_d)} N, {decimal(stiffness)} N/m) in a computer, each "
@@ -191,13 +195,13 @@ def _best(helps: Dahl, against: Dahl, damping: float, period: float, late: int) 
 def _applies(question: Question) -> bool:
     """To a Dahl bristle in a computer beside friction that gives before it slides."""
     sampled = question.computer is not None and question.device.presliding is not None
-    return sampled and question.bristle is not None
+    return sampled and question.bristle is not None and question.late is not None
 
 
 def _claims(question: Question) -> list[TopicClaim]:
     """The pair at the estimates in a computer, whatever the motion."""
     device, computer = question.device, question.computer
-    assert computer is not None and question.bristle is not None
+    assert computer is not None and question.bristle is not None and question.late is not None
     level, stiffness = question.bristle
     if device.bristle_damping.high > 0:
         why = "no theorem here is about bristle damping beside a compensator in a computer"
@@ -212,7 +216,13 @@ def _claims(question: Question) -> list[TopicClaim]:
         viscous_damping=device.damping.estimate,
         late=question.late,
     )
-    return [TopicClaim("any motion, sampled", claim)]
+    return [TopicClaim("any motion, sampled", claim, time="sampled")]
 
 
-THEOREM = Theorem(applies=_applies, claims=_claims, order=40, simulate=simulate_cycle)
+THEOREM = Theorem(
+    mathematics=(sampled_compensation,),
+    applies=_applies,
+    claims=_claims,
+    order=40,
+    simulate=simulate_cycle,
+)

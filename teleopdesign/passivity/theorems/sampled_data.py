@@ -6,7 +6,7 @@ speed); a spring K_0 of the body gives K_0 (x d + d^2/2). So the body is passive
 
     G(z) = (H(z) + K_0)/(z - 1) + K_0/2 + b/T      from travel to force
 
-is positive real in the discrete sense, whatever the inertia. On the unit circle that reads
+is positive real in the discrete sense, for any b >= 0 and inertia. On the unit circle that reads
 
     b >= T/2 / (1 - cos wT)  Re[(1 - e^(-j w T)) H(e^(j w T))],    and at z = 1: H(1) + K_0 >= 0
 
@@ -16,7 +16,7 @@ positive-real test of a rational function, which is exact; equality is passive t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -32,13 +32,19 @@ from ..claims.claim import Claim, Proof, Refutation
 from ..linear.impedance import Impedance, decimal, exact, impedance, readable
 from ..linear.positive_real import damping_excess, is_positive_real
 from ..search.growing_wave import growing_wave
+from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, REAL, under
 from ._theorem import Question, Theorem, TopicClaim
 
 #: forward shift by one sample
 Z = sp.Symbol("z")
-_SAMPLES = 4000  # of a replayed motion, at most
+#: of a replayed motion, at most: a second of computing; one that is cut off does not begin at rest
+_SAMPLES = 1_000_000
+_LONGEST_WAIT = (
+    4096  # samples between two steps: a controller that grows by 1 % a sample needs 1000
+)
 
 
+@under(controller=FREE, damping=NOT_NEGATIVE, sample_time=POSITIVE, stiffness=REAL)
 def sampled_passivity(
     controller: Any, *, damping: Any, sample_time: Any, stiffness: Any = 0
 ) -> Claim:
@@ -46,7 +52,8 @@ def sampled_passivity(
 
     controller: H(z), rational in z: held force against the motion (N) over position (m); delays
         are factors z^-1
-    damping: b of the body, N s/m;  sample_time: T, s;  stiffness: spring K_0 of the body, N/m
+    damping: b of the body, N s/m: >= 0, for between two samples nothing holds one that drives
+    sample_time: T, s;  stiffness: spring K_0 of the body, N/m
     raises ModelError: not rational in z, or a sample time that is not positive
     """
     late = _positive(sample_time)
@@ -74,15 +81,16 @@ def sampled_passivity(
 
 
 def required_damping(controller: Any, *, sample_time: Any, stiffness: Any = 0) -> float:
-    """Least damping (N s/m) with which the body is passive; inf where none is enough.
+    """Least damping (N s/m, >= 0) with which the body is passive; inf where none is enough.
 
-    Negative: the controller damps more than sampling costs. Arguments as in `sampled_passivity`.
+    Arguments as in `sampled_passivity`.
     """
     late = _positive(sample_time)
     operator = travel_operator(_law(controller), sp.S(0), late, exact(stiffness))
-    return -float(late) * float(damping_excess(operator))
+    return max(-float(late) * float(damping_excess(operator)), 0.0)
 
 
+@under(coupling=FREE, master_damping=NOT_NEGATIVE, slave_damping=NOT_NEGATIVE, sample_time=POSITIVE)
 def sampled_coupling(
     coupling: Any, *, master_damping: Any, slave_damping: Any, sample_time: Any
 ) -> Claim:
@@ -91,8 +99,6 @@ def sampled_coupling(
     Of all ways to share a travel of x_m - x_s the cheapest has the damping b_m b_s/(b_m + b_s).
     """
     b_m, b_s = exact(master_damping), exact(slave_damping)
-    if b_m < 0 or b_s < 0:
-        raise ModelError(f"sampled_coupling: dampings must not be negative: {b_m}, {b_s}")
     both = b_m * b_s / (b_m + b_s) if b_m + b_s else sp.S(0)
     return sampled_passivity(coupling, damping=both, sample_time=sample_time)
 
@@ -184,14 +190,36 @@ def sampled_wave(
     rate: Fraction,
     frequency: Fraction,
 ) -> SampledWave:
-    """The growing travel at s = rate + j frequency, with the phase that gives out most."""
+    """The growing travel at s = rate + j frequency, with the phase that gives out most.
+
+    Where the controller itself grows faster than that travel: a step, and a second one along the
+    force that it has led to.
+    """
     system = law, damping, sample_time, stiffness
     z = _factor(rate, frequency)
     number = int(min(np.ceil(16 / np.log(abs(z))), _SAMPLES))
-    phases = np.exp(1j * np.linspace(0, np.pi, 181))  # to a degree
-    waves = (phases[:, None] * z ** np.arange(-number, 1)).real
-    best = waves[int(np.argmax(_given_out(waves, *system)))]
+    wave = z ** np.arange(-number, 1)
+    out, best = _largest(wave.real, wave.imag, system)
+    waited = 1
+    while out <= 0 and waited <= _LONGEST_WAIT:
+        waited *= 2
+        steps = np.eye(2, waited, k=0), np.eye(2, waited, k=waited - 2)
+        out, best = _largest(steps[0][0], steps[1][1], system)
     return SampledWave(*system, rate, frequency, best)
+
+
+def _largest(
+    one: np.ndarray, other: np.ndarray, system: tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr]
+) -> tuple[float, np.ndarray]:
+    """Of all mixtures of two travels (n,), the one that gives out most: its energy, J, and travel.
+
+    Energy is quadratic in the travel, so that its largest eigenvector is the best mixture.
+    """
+    out = _given_out(np.array([one, other, one + other]), *system)
+    mixed = (out[2] - out[0] - out[1]) / 2
+    share = np.linalg.eigh(np.array([[out[0], mixed], [mixed, out[1]]]))[1][:, -1]
+    travel = share[0] * one + share[1] * other
+    return float(_given_out(travel, *system)), travel
 
 
 def _factor(rate: Fraction, frequency: Fraction) -> complex:
@@ -219,13 +247,13 @@ def _given_out(
 def _claims(question: Question) -> list[TopicClaim]:
     """A virtual wall beside damping alone; a Dahl bristle in small motion, where it is a spring."""
     device, computer, wall = question.device, question.computer, question.wall
-    assert computer is not None
+    assert computer is not None and question.late is not None
     period, claims = computer.period, []
     if wall is not None:
         law = sp.Float(wall.stiffness) + sp.Float(wall.damping) * (Z - 1) / (period * Z)
         law = law * Z**-question.late
         claim = sampled_passivity(law, damping=device.damping.low, sample_time=period)
-        claims.append(TopicClaim("virtual wall, damping alone", claim))
+        claims.append(TopicClaim("virtual wall, damping alone", claim, time="sampled"))
     if question.bristle is not None and device.presliding is not None:
         claim = sampled_passivity(
             -sp.Float(question.bristle[1]) * Z**-question.late,
@@ -233,12 +261,19 @@ def _claims(question: Question) -> list[TopicClaim]:
             sample_time=period,
             stiffness=device.presliding.low,
         )
-        claims.append(TopicClaim("small motion, sampled", claim))
-    return claims
+        claims.append(TopicClaim("small motion, sampled", claim, time="sampled"))
+    if not computer.encoder_step:
+        return claims
+    exactly = "with readings that have no steps"
+    return [
+        replace(one, claim=replace(one.claim, statement=f"{one.claim.statement}, {exactly}"))
+        for one in claims
+    ]
 
 
 THEOREM = Theorem(
-    applies=lambda question: question.computer is not None,
+    mathematics=(sampled_passivity, sampled_coupling),
+    applies=lambda question: question.computer is not None and question.late is not None,
     claims=_claims,
     order=30,
 )

@@ -27,10 +27,11 @@ from typing import Any
 import sympy as sp
 
 from ...controllers import laws_that_declare
-from ...errors import ModelError
 from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Coulomb, Dahl
+from ._hypotheses import NOT_NEGATIVE, POSITIVE, WHOLE, under
+from ._theorem import Question, Theorem, Time, TopicClaim
 from ._velocity_certificates import held_command, ideal_contact, yielding_contact
 
 _SYMBOLS = sp.symbols("velocity level smoothing", real=True)
@@ -98,6 +99,15 @@ class SteadyStrokes:
         }
 
 
+@under(
+    coulomb_level=POSITIVE,
+    compensator_level=POSITIVE,
+    smoothing_velocity=NOT_NEGATIVE,
+    viscous_damping=NOT_NEGATIVE,
+    presliding_stiffness=POSITIVE.or_none(),
+    sample_time=POSITIVE.or_none(),
+    late=WHOLE,
+)
 def velocity_compensation(
     *,
     coulomb_level: Any,
@@ -123,15 +133,6 @@ def velocity_compensation(
     a, b = exact(smoothing_velocity), exact(viscous_damping)
     presliding = None if presliding_stiffness is None else exact(presliding_stiffness)
     period = sp.S(0) if sample_time is None else exact(sample_time)
-    if (
-        min(f_c, f_d) <= 0
-        or min(a, b, period, late) < 0
-        or (presliding is not None and presliding <= 0)
-    ):
-        raise ModelError(
-            "velocity_compensation: expected levels and stiffness > 0, the rest >= 0, found "
-            f"{f_c}, {f_d}, {presliding}, {a}, {b}, {period}, {late}"
-        )
     contact = "ideal" if presliding is None else f"presliding ({decimal(presliding)} N/m)"
     computer = f", sampled each {decimal(period)} s, {late} late," if period else ""
     statement = (
@@ -206,3 +207,39 @@ def _fastest_gain(f_d: float, a: float, least: float, b: float) -> float:
     if a:
         return a * (f_d + least) / (f_d - least)
     return (f_d - least) / (2 * b) if b else 0.01
+
+
+def _applies(question: Question) -> bool:
+    """To a law smoothed by its velocity; in a computer only where that is the plain difference."""
+    computer, law = question.computer, question.cancellation
+    if law is None or law.value_of("smoothing") is None or question.bound is None:
+        return False
+    if computer is None:
+        return True
+    plain = computer.velocity != "observer" and math.isinf(computer.velocity_bandwidth)
+    return plain and not computer.encoder_step and question.late is not None
+
+
+def _claims(question: Question) -> list[TopicClaim]:
+    """With the damping that is there at every speed, for all values within the intervals."""
+    device, law, computer = question.device, question.cancellation, question.computer
+    assert law is not None and question.late is not None
+    topic = "law of velocity, damping counted"
+    if device.bristle_damping.high > 0:
+        why = "no theorem here is about bristle damping beside a law of velocity"
+        statement = "the device's friction beside its compensator of velocity is passive"
+        return [TopicClaim(topic, Claim(statement, Unknown(why)), spends_damping=True)]
+    claim = velocity_compensation(
+        coulomb_level=device.lowest.low,
+        compensator_level=question.bound,
+        smoothing_velocity=law.value_of("smoothing"),
+        viscous_damping=device.damping.low,
+        presliding_stiffness=device.presliding and device.presliding.low,
+        sample_time=computer and computer.period,
+        late=question.late,
+    )
+    time: Time = "sampled" if computer else "continuous"
+    return [TopicClaim(topic, claim, spends_damping=True, time=time)]
+
+
+THEOREM = Theorem(mathematics=(velocity_compensation,), applies=_applies, claims=_claims, order=15)

@@ -1,6 +1,6 @@
-"""Fill the printed parts of the README and of docs/recordings.md from real runs.
+"""Fill the printed parts of docs/recordings.md from real runs.
 
-python docs/make_readme.py [--source FOLDER]
+python docs/make_recordings.py [--source FOLDER]
 
 --source: a folder of copies of the public recordings, laid out as OWNER/REPOSITORY/PATH, in place
 of downloading them
@@ -10,8 +10,6 @@ from __future__ import annotations
 
 import argparse
 import re
-import subprocess
-import sys
 import tempfile
 import warnings
 from collections.abc import Iterator, Sequence
@@ -20,31 +18,14 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 
 import teleopdesign as td
-from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.recordings import RECORDINGS
 from teleopdesign.unexplained import where_it_fails
 
 DOCS = Path(__file__).resolve().parent
-README, PAGE = DOCS.parent / "README.md", DOCS / "recordings.md"
+PAGE = DOCS / "recordings.md"
 PICTURES = DOCS / "_static" / "recordings"
 #: sentences of what the last model leaves that the page shows
 SENTENCES = 4
-PACKAGE = Path(td.__file__).parent
-
-
-def demo() -> str:
-    with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "teleopdesign.cli", "demo"]
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
-    return f"```text\n{done.stdout.replace(f'{PACKAGE.parent}/', '').strip()}\n```"
-
-
-def effects() -> str:
-    roles: dict[str, list[str]] = {}
-    for name, effect in EFFECTS.items():
-        roles.setdefault(effect.role.replace("_", " "), []).append(f"`{name}`")
-    rows = [f"| {role} | {', '.join(names)} |" for role, names in roles.items()]
-    return "\n".join(["| role | effects |", "| --- | --- |", *rows])
 
 
 def diagnosed(source: str | None) -> Iterator[tuple[str, td.Diagnosis | None, str]]:
@@ -108,7 +89,7 @@ def _ladder(found: td.Diagnosis) -> str:
 
 
 def fill(text: str, what: str, printed: str) -> str:
-    begin = f"<!-- printed by docs/make_readme.py: {what} -->\n"
+    begin = f"<!-- printed by docs/make_recordings.py: {what} -->\n"
     pattern = re.escape(begin) + r".*?(?=<!-- end -->)"
     return re.sub(pattern, lambda _: f"{begin}\n{printed}\n\n", text, flags=re.S)
 
@@ -119,15 +100,10 @@ def main() -> None:
     source = parser.parse_args().source
     warnings.simplefilter("ignore")
     runs = list(diagnosed(source))
-    printed = {
-        README: {"demo": demo(), "effects": effects(), "recordings": recordings(runs)},
-        PAGE: {"what is found": page(runs)},
-    }
-    for path, blocks in printed.items():
-        text = path.read_text(encoding="utf-8")
-        for what, block in blocks.items():
-            text = fill(text, what, block)
-        path.write_text(text, encoding="utf-8")
+    text = PAGE.read_text(encoding="utf-8")
+    for what, block in {"recordings": recordings(runs), "what is found": page(runs)}.items():
+        text = fill(text, what, block)
+    PAGE.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,53 @@
+"""What the page gives out: report, answer, figure, and a script that repeats what was clicked."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..diagnose.answer import write_answer
+from ..plain_data import replacing, write_text
+from .workbench import Workbench
+
+#: name of the folder with what is written, below the page's folder
+RESULTS = "results"
+
+
+def script(bench: Workbench, folder: str | None = None) -> str:
+    """Python that comes to the same model: the experiment, then each effect that was added."""
+    place = folder or bench.experiment.folder.name
+    lines = [
+        "import teleopdesign as td",
+        "",
+        f"experiment = td.load_experiment({place!r})",
+        "model = td.Model.from_experiment(experiment)",
+    ]
+    for rung in bench.rungs:
+        if rung.added is not None:
+            lines.append(
+                f"model = model.with_effect({rung.added.effect.name!r}, at={rung.added.at!r})"
+            )
+    lines += [
+        "model = td.fit(model, experiment)",
+        "print(model)",
+        "print(td.compare(model, experiment))",
+    ]
+    return "\n".join(lines)
+
+
+def write_all(bench: Workbench, folder: Path) -> str:
+    """Write everything below `folder`/results; one line with what was written."""
+    from ..report import write_report
+    from ..unexplained import where_it_fails
+
+    target = folder / RESULTS / bench.experiment.folder.name
+    target.mkdir(parents=True, exist_ok=True)
+    diagnosis = bench.diagnosis()
+    left = where_it_fails(diagnosis.after, diagnosis.prepared, diagnosis.floor)
+    write_report(diagnosis, target / "report.html", unexplained=left)
+    write_answer(diagnosis, target / "answer.json")
+    with replacing(target / "figure.svg") as part:
+        diagnosis.plot().savefig(part, format="svg")
+    write_text(target / "script.py", script(bench, str(bench.experiment.folder)) + "\n")
+    return (
+        f"written to {target.relative_to(folder)}: report.html, answer.json, figure.svg, script.py"
+    )

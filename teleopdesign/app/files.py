@@ -1,0 +1,74 @@
+"""What the page may open: experiments and logs inside its folder, nothing outside."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from ..errors import ExperimentError
+
+#: endings of files that may be dropped on the page
+LOGS = (".csv", ".txt", ".tsv", ".gz", ".parquet", ".xlsx", ".mat", ".npz", ".h5", ".hdf5", ".bag")
+#: folder for what is dropped
+DROPPED = "dropped"
+#: bytes of a dropped file at most: a browser holds it in memory once, this process twice
+LARGEST = 200_000_000
+#: characters of its name that are kept: most file systems take 255 bytes, a character has up to 3
+LONGEST = 60
+
+
+def experiments_in(folder: Path) -> tuple[str, ...]:
+    """Names of the experiments below a folder, two levels deep, relative to it; "." is itself."""
+    places = [folder, *sorted(folder.glob("*")), *sorted(folder.glob("*/*"))]
+    return tuple(
+        str(p.relative_to(folder))
+        for p in places
+        if p.is_dir() and (p / "experiment.toml").is_file() and is_inside(folder, p)
+    )
+
+
+def logs_in(folder: Path) -> tuple[str, ...]:
+    """Names of the logs in a folder and in what was dropped, relative to it."""
+    files = [*sorted(folder.glob("*")), *sorted((folder / DROPPED).glob("*"))]
+    return tuple(
+        str(p.relative_to(folder))
+        for p in files
+        if p.is_file() and p.suffix.lower() in LOGS and is_inside(folder, p)
+    )
+
+
+def is_inside(folder: Path, path: Path) -> bool:
+    """Whether a path, links followed, lies in the folder."""
+    return path.resolve().is_relative_to(folder.resolve())
+
+
+def inside(folder: Path, name: str) -> Path:
+    """The path of that name in the folder; raises ExperimentError where it leads out of it."""
+    path = folder / name
+    if not is_inside(folder, path):
+        raise ExperimentError(f'"{name}": lies outside of {folder.name}')
+    return path
+
+
+def keep_dropped(folder: Path, name: str, content: bytes) -> str:
+    """Write a dropped file; its name relative to the folder. No file is written over.
+
+    raises ExperimentError: an ending that is no log's, or too large
+    """
+    base = re.sub(r"[^\w.\- ]", "_", name.replace("\\", "/").rpartition("/")[2])
+    stem, _, ending = base.rpartition(".")
+    plain = f"{stem.strip(' .')[:LONGEST] or 'log'}.{ending}"
+    if Path(plain).suffix.lower() not in LOGS:
+        raise ExperimentError(
+            f'"{plain}": found {Path(plain).suffix!r}, expected {" or ".join(LOGS)}'
+        )
+    if len(content) > LARGEST:
+        raise ExperimentError(f'"{plain}": {len(content)} bytes, expected at most {LARGEST}')
+    target = inside(folder, DROPPED)
+    target.mkdir(exist_ok=True)
+    path, number = target / plain, 1
+    while path.exists():
+        number += 1
+        path = target / f"{Path(plain).stem}-{number}{Path(plain).suffix}"
+    path.write_bytes(content)
+    return str(path.relative_to(folder))

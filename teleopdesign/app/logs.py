@@ -1,0 +1,125 @@
+"""From a log to an experiment: what the log seems to hold, as chosen, and the folder made of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import ExperimentError
+from ..measurement.new_folder import make_folder
+from ..measurement.survey import Choices, Survey, survey_log
+from ..measurement.tables import open_log
+from .files import inside
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: points of a line in the preview: more are not seen
+POINTS = 3000
+#: what the page asks for -> what the survey calls it
+ASKED = {
+    "time": "time",
+    "position": "position",
+    "actuator force": "actuator_force",
+    "hand force": "interaction_force",
+}
+
+
+@dataclass(frozen=True)
+class Preview:
+    """A log as it is understood with what was chosen.
+
+    columns: names of the log's columns;  survey: what they are taken for
+    """
+
+    name: str
+    columns: tuple[str, ...]
+    survey: Survey
+
+    def table(self) -> str:
+        """Channels with column, unit and the reason of each guess, as Markdown."""
+        lines = ["| channel | column | unit | guessed |", "|---|---|---|---|"]
+        for key, entry in self.survey.channels.items():
+            why = "; ".join(w for k, w in self.survey.guesses.items() if k.split(".")[1:2] == [key])
+            column = entry.get("column", entry.get("value", ""))
+            lines.append(
+                f"| {key} | {_cell(column)} | {_cell(entry.get('unit', ''))} | {_cell(why)} |"
+            )
+        return "\n".join(lines)
+
+    def plot(self) -> Figure:
+        """The columns that were taken, over time, as they are written in the log."""
+        from matplotlib.figure import Figure
+
+        shown = [
+            (key, entry)
+            for key, entry in self.survey.channels.items()
+            if key != "time" and entry.get("column") in self.survey.columns
+        ]
+        figure = Figure(figsize=(8.5, 1.5 * max(1, len(shown))), layout="constrained")
+        panels = figure.subplots(max(1, len(shown)), 1, sharex=True, squeeze=False)[:, 0]
+        some = slice(None, None, max(1, len(self.survey.time) // POINTS))
+        for axes, (key, entry) in zip(panels, shown, strict=False):
+            values = self.survey.columns[entry["column"]].values
+            axes.plot(self.survey.time[some], values[some], lw=0.8)
+            axes.set_ylabel(f"{key.replace('_', ' ')}\n({entry.get('unit', '')})")
+        panels[-1].set_xlabel("time (s)")
+        return figure
+
+
+def preview(folder: Path, name: str, choices: Choices | None = None) -> Preview:
+    """Look at a log of the folder.
+
+    choices: columns, axis and constants that the user states; the rest is found
+    raises ExperimentError: the log cannot be read, or holds no position or no force
+    """
+    path = inside(folder, name)
+    log = open_log(path, path.name)
+    return Preview(name, tuple(log.names), survey_log(log, path.name, choices or Choices()))
+
+
+def make_experiment(folder: Path, shown: Preview) -> str:
+    """Make the experiment's folder beside the log; its name relative to the page's folder.
+
+    raises ExperimentError: the folder is there already, or cannot be written
+    """
+    log = inside(folder, shown.name)
+    stem = log.name.split(".")[0] or "experiment"
+    target = inside(folder, f"{stem}_experiment")
+    if target.exists():
+        raise ExperimentError(f"{target.name}: is there already: rename it or the log")
+    make_folder(shown.survey, [log], target, title=stem)
+    return str(target.relative_to(folder))
+
+
+def choices_of(answers: dict[str, str | None]) -> Choices:
+    """What a form of the page says; an empty answer is left to be found.
+
+    answers: of `ASKED`, "axis", "torque constant" (N m/A) and "gear ratio"
+    raises ExperimentError: a constant that is no number
+    """
+    constant = _number(answers.get("torque constant"), "torque constant")
+    column = {key: answers.get(name) or None for name, key in ASKED.items()}
+    return Choices(
+        axis=answers.get("axis") or None,
+        time=column["time"],
+        position=column["position"],
+        actuator_force=column["actuator_force"],
+        interaction_force=column["interaction_force"],
+        torque_constant=None if constant is None else (constant, "N*m/A"),
+        gear_ratio=_number(answers.get("gear ratio"), "gear ratio"),
+    )
+
+
+def _number(text: str | None, name: str) -> float | None:
+    if text is None or not text.strip():
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        raise ExperimentError(f"{name}: found {text!r}, expected a number") from None
+
+
+def _cell(text: object) -> str:
+    return str(text).replace("|", "\\|").replace("\n", " ")

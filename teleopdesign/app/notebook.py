@@ -1,0 +1,333 @@
+"""The page of `teleopdesign app`: a marimo notebook, also for `marimo edit ... -- --folder F`."""
+
+import marimo
+
+app = marimo.App(width="medium", app_title="teleopdesign")
+
+
+@app.cell
+def _():
+    import marimo as mo
+
+    from teleopdesign.app import charts, export, files, logs, pages, settings
+    from teleopdesign.app.task import Task
+    from teleopdesign.app.workbench import Workbench
+    from teleopdesign.errors import TeleopDesignError
+
+    folder = settings.folder(mo.cli_args().to_dict())
+    return Task, TeleopDesignError, Workbench, charts, export, files, folder, logs, mo, pages
+
+
+@app.cell
+def _(mo):
+    get_bench, set_bench = mo.state(None)
+    get_task, set_task = mo.state(None)
+    get_note, set_note = mo.state("")
+    get_names, set_names = mo.state(0)
+    return get_bench, get_names, get_note, get_task, set_bench, set_names, set_note, set_task
+
+
+@app.cell
+def _(TeleopDesignError, files, folder, mo, set_names, set_note):
+    def keep(dropped):
+        for file in dropped:
+            try:
+                name = files.keep_dropped(folder, file.name, file.contents)
+            except TeleopDesignError as error:
+                set_note(str(error))
+            else:
+                set_note(f"{name} is written; its columns are shown below")
+        set_names(lambda n: n + 1)
+
+    drop = mo.ui.file(kind="area", multiple=True, on_change=keep, label="Drop a log here")
+    return (drop,)
+
+
+@app.cell
+def _(files, folder, get_names, mo):
+    get_names()
+    names = files.experiments_in(folder)
+    choice = mo.ui.dropdown(options=names, value=names[-1] if names else None, label="Experiment")
+    return choice, names
+
+
+@app.cell
+def _(Task, Workbench, choice, files, folder, mo, set_note, set_task):
+    def start_opening(_):
+        if choice.value is None:
+            set_note("choose an experiment first")
+            return
+        path = files.inside(folder, choice.value)
+        set_note("")
+        set_task(
+            Task(f"opening {choice.value}", lambda say: Workbench.of_folder(path, progress=say))
+        )
+
+    open_button = mo.ui.button(label="Open", on_click=start_opening, kind="success")
+    return (open_button,)
+
+
+@app.cell
+def _(files, folder, get_names, mo):
+    get_names()
+    known_logs = files.logs_in(folder)
+    log = mo.ui.dropdown(
+        options=known_logs, value=known_logs[-1] if known_logs else None, label="Log"
+    )
+    return (log,)
+
+
+@app.cell
+def _(TeleopDesignError, folder, log, logs, mo):
+    columns, trouble = (), ""
+    if log.value is not None:
+        try:
+            columns = logs.preview(folder, log.value).columns
+        except TeleopDesignError as error:
+            trouble = str(error)
+    form = mo.ui.dictionary(
+        {
+            "axis": mo.ui.dropdown(["prismatic", "revolute"], label="axis"),
+            **{n: mo.ui.dropdown(columns, label=n) for n in logs.ASKED},
+            "torque constant": mo.ui.text(label="torque constant (N*m/A)"),
+            "gear ratio": mo.ui.text(label="gear ratio"),
+        }
+    )
+    return columns, form, trouble
+
+
+@app.cell
+def _(TeleopDesignError, columns, drop, folder, form, log, logs, mo, set_names, set_note, trouble):
+    parts = [drop]
+    if log.value is not None:
+        parts.append(log)
+    if columns:
+        try:
+            understood = logs.preview(folder, log.value, logs.choices_of(form.value))
+        except TeleopDesignError as error:
+            parts += [form, mo.callout(str(error), kind="warn")]
+        else:
+
+            def make(_):
+                try:
+                    set_note(f"{logs.make_experiment(folder, understood)} is made: open it above")
+                except TeleopDesignError as error:
+                    set_note(str(error))
+                set_names(lambda n: n + 1)
+
+            parts += [
+                mo.md("What is left empty is found. Choose what was found wrongly:"),
+                mo.hstack(list(form.elements.values()), wrap=True, justify="start"),
+                mo.md(understood.table()),
+                understood.plot(),
+                mo.ui.button(label="Make the experiment", on_click=make, kind="success"),
+            ]
+    elif trouble:
+        parts.append(mo.callout(trouble, kind="warn"))
+    log_view = mo.vstack(parts)
+    return (log_view,)
+
+
+@app.cell
+def _(choice, folder, log_view, mo, names, open_button):
+    mo.vstack(
+        [
+            mo.md(f"# teleopdesign\n\nWhat does the model lack? Folder: `{folder.name}`"),
+            mo.hstack([choice, open_button], justify="start")
+            if names
+            else mo.md("No experiment here yet: drop a log, and look at its columns."),
+            mo.accordion({"Bring a log of your own": log_view}),
+        ]
+    )
+    return
+
+
+@app.cell
+def _(get_task, mo, set_bench, set_note, set_task):
+    task = get_task()
+    pulse = mo.ui.refresh(default_interval="0.5s", options=["0.5s"]) if task is not None else None
+    cancel = mo.ui.button(label="Cancel", on_click=lambda _: task.cancel(), kind="warn")
+    return cancel, pulse, task
+
+
+@app.cell
+def _(cancel, get_note, mo, pulse, set_bench, set_note, set_task, task):
+    if task is None:
+        shown = mo.callout(get_note(), kind="warn") if get_note() else mo.md("")
+    elif task.done:
+        if task.error:
+            set_note(task.error)
+        else:
+            set_bench(task.result)
+        set_task(None)
+        shown = mo.md("")
+    else:
+        pulse.value  # noqa: B018 - the cell runs again at each of its beats
+        shown = mo.hstack(
+            [mo.md(f"**{task.name}** … {task.progress}"), cancel, pulse], justify="start"
+        )
+    shown  # noqa: B018 - a cell shows its last line
+    return
+
+
+@app.cell
+def _(get_bench, mo, pages):
+    bench = get_bench()
+    mo.stop(bench is None, mo.md("Open an experiment to begin."))
+    bodies = tuple(bench.model.bodies)
+    body = mo.ui.dropdown(options=bodies, value=bodies[0], label="Body")
+    uses = [u for u in ("check", "fit") if bench.search.whole.of(u)]
+    use = mo.ui.dropdown(options=uses, value=uses[0], label="Records")
+    rungs = pages.rung_options(bench)
+    rung = mo.ui.dropdown(options=rungs, value=list(rungs)[-1], label="Model")
+    return bench, body, rung, use
+
+
+@app.cell
+def _(bench, body, charts, mo, pages, rung, use):
+    data = pages.residuals(bench, rung.value)
+    residual_view = mo.vstack(
+        [
+            mo.hstack([body, use, rung], justify="start"),
+            charts.residual_chart(data, body.value, use.value),
+            mo.md("Draw a span in one panel: the others show the same samples."),
+        ]
+    )
+    return (residual_view,)
+
+
+@app.cell
+def _(Task, TeleopDesignError, bench, mo, pages, set_bench, set_note, set_task):
+    options = pages.candidate_options(bench)
+    candidate = mo.ui.dropdown(
+        options=options, value=next(iter(options), None), label="Candidate", searchable=True
+    )
+
+    def add(_):
+        try:
+            set_bench(bench.add(*candidate.value))
+            set_note("")
+        except TeleopDesignError as error:
+            set_note(str(error))
+
+    def take_back(_):
+        try:
+            set_bench(bench.take_back())
+            set_note("")
+        except TeleopDesignError as error:
+            set_note(str(error))
+
+    add_button = mo.ui.button(label="Add", on_click=add, kind="success", disabled=not options)
+    back_button = mo.ui.button(label="Take back", on_click=take_back, disabled=len(bench.rungs) < 2)
+    rank_button = mo.ui.button(
+        label="Look for what else is missing",
+        on_click=lambda _: set_task(Task("ranking the candidates", bench.rank)),
+        disabled=bench.is_ranked,
+    )
+    all_button = mo.ui.button(
+        label="Add all that the records support",
+        on_click=lambda _: set_task(Task("diagnosing", bench.go_on)),
+    )
+    return add_button, all_button, back_button, candidate, rank_button
+
+
+@app.cell
+def _(add_button, all_button, back_button, bench, candidate, mo, pages, rank_button):
+    ladder_view = mo.vstack(
+        [
+            mo.md(pages.ladder(bench)),
+            mo.hstack([candidate, add_button, back_button], justify="start"),
+            mo.hstack([rank_button, all_button], justify="start"),
+            mo.ui.table(pages.candidate_rows(bench), selection=None, page_size=8)
+            if bench.candidates
+            else mo.md("The candidates beside this model were not looked at yet."),
+        ]
+    )
+    return (ladder_view,)
+
+
+@app.cell
+def _(bench, mo):
+    free = [n for n, v in bench.model.parameters.items() if not v.fixed and v.value]
+    which = mo.ui.dropdown(options=free, value=free[0] if free else None, label="Parameter")
+    return (which,)
+
+
+@app.cell
+def _(mo):
+    factor = mo.ui.slider(
+        start=0.5, stop=1.5, step=0.01, value=1.0, label="times its value", show_value=True
+    )
+    return (factor,)
+
+
+@app.cell
+def _(bench, factor, mo, pages, which):
+    slider_view = (
+        mo.vstack(
+            [
+                mo.hstack([which, factor], justify="start"),
+                mo.md(pages.moved(bench, which.value, factor.value)),
+            ]
+        )
+        if which.value
+        else mo.md("This model has no free parameter.")
+    )
+    return (slider_view,)
+
+
+@app.cell
+def _(bench, mo, pages):
+    left_view = mo.lazy(lambda: pages.what_is_left(bench), show_loading_indicator=True)
+    next_view = mo.lazy(lambda: pages.next_experiment(bench), show_loading_indicator=True)
+    return left_view, next_view
+
+
+@app.cell
+def _(bench, body, mo, pages):
+    design_view = mo.lazy(lambda: pages.design(bench, body.value), show_loading_indicator=True)
+    return (design_view,)
+
+
+@app.cell
+def _(bench, export, folder, mo, set_note):
+    def write(_):
+        set_note(export.write_all(bench, folder))
+
+    write_button = mo.ui.button(
+        label="Write report, answer, model and script", on_click=write, kind="success"
+    )
+    export_view = mo.vstack(
+        [
+            mo.md(
+                "Report (html), answer (json), figure (svg), and a script that repeats these steps."
+            ),
+            write_button,
+            mo.accordion({"The script": mo.md(f"```python\n{export.script(bench)}\n```")}),
+        ]
+    )
+    return (export_view,)
+
+
+@app.cell
+def _(design_view, export_view, ladder_view, left_view, mo, next_view, residual_view, slider_view):
+    mo.vstack(
+        [
+            ladder_view,
+            mo.ui.tabs(
+                {
+                    "Residual": residual_view,
+                    "Parameters": slider_view,
+                    "What is left": left_view,
+                    "Next experiment": next_view,
+                    "Design": design_view,
+                    "Export": export_view,
+                }
+            ),
+        ]
+    )
+    return
+
+
+if __name__ == "__main__":
+    app.run()

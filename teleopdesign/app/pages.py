@@ -1,0 +1,135 @@
+"""The parts of the page as text, tables and figures of a workbench; no part changes anything."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from ..diagnose.comparison import residual_data
+from ..errors import TeleopDesignError
+from .workbench import Workbench
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from xarray import Dataset
+
+    from ..diagnose.rung import Rung
+    from ..model import Model
+
+
+def residuals(bench: Workbench, rung: int = -1) -> Dataset:
+    """Forces of a rung's model along every measured motion; see `Comparison.data`."""
+    return _residuals(_Key(bench, bench.rungs[rung].fit.model))
+
+
+def rung_options(bench: Workbench) -> dict[str, int]:
+    """The models of the ladder as the page names them -> number of the rung."""
+    return {_name(rung): k for k, rung in enumerate(bench.rungs)}
+
+
+def _name(rung: Rung) -> str:
+    return "your model, re-estimated" if rung.added is None else f"+ {rung.added}"
+
+
+def ladder(bench: Workbench) -> str:
+    """The errors of every rung as a Markdown table, and what counts as noise."""
+    lines = ["| model | fit error | check error |", "|---|---:|---:|"]
+    for rung in bench.rungs:
+        fit, check = (_percent(e) for e in (rung.fit.fit_error, rung.fit.check_error))
+        lines.append(f"| {_name(rung)} | {fit} | {check} |")
+    lines.append(f"| noise floor | | {_percent(bench.state.floor.value)} |")
+    return "\n".join(lines)
+
+
+def candidate_options(bench: Workbench) -> dict[str, tuple[str, str]]:
+    """What may be added, best first, as the page names it -> (effect, place)."""
+    return {
+        f"{r.candidate}: check error {_percent(r.fit.check_error)}"
+        + (f" ({r.note})" if r.note else ""): r.candidate.key
+        for r in bench.candidates
+    }
+
+
+def candidate_rows(bench: Workbench) -> list[dict[str, str]]:
+    """The candidates beside the last rung as rows of a table."""
+    supported = {r.candidate.key for r in bench.state.supported}
+    return [
+        {
+            "effect": r.candidate.effect.name,
+            "at": r.candidate.at,
+            "fit error": _percent(r.fit.fit_error),
+            "check error": _percent(r.fit.check_error),
+            "supported": "yes" if r.candidate.key in supported else "no",
+            "note": r.note,
+        }
+        for r in bench.candidates
+    ]
+
+
+def moved(bench: Workbench, parameter: str, factor: float) -> str:
+    """What the errors become where one parameter is `factor` times its value."""
+    value = bench.model.parameters[parameter]
+    name, unit = parameter, bench.model.unit(parameter)
+    try:
+        errors = bench.errors({parameter: factor * value.value})
+    except TeleopDesignError as error:
+        return str(error)
+    there = bench.state.fit
+    rows = (
+        ("fit", there.fit_error, errors[0]),
+        ("check", there.check_error, errors[1]),
+    )
+    table = "\n".join(f"| {n} | {_percent(a)} | {_percent(b)} |" for n, a, b in rows)
+    sure = f" ± {value.stderr:.2g}" if value.stderr == value.stderr else ""
+    return (
+        f"`{name}` = {factor * value.value:.4g} {unit} (estimated: {value.value:.4g}{sure} {unit})"
+        f"\n\n| error | as estimated | as moved |\n|---|---:|---:|\n{table}"
+    )
+
+
+def what_is_left(bench: Workbench) -> Figure:
+    """Views of the residual of the last model, with a sentence for each dependence."""
+    from ..plot.unexplained import plot_unexplained
+    from ..unexplained import describe_residual
+
+    floor = bench.state.floor if bench.is_ranked else None
+    return plot_unexplained(describe_residual(bench.state.fit, bench.search.whole, floor))
+
+
+def next_experiment(bench: Workbench) -> str:
+    """What to measure next to tell apart what the records leave open."""
+    from ..next_experiment import propose
+
+    return f"```\n{propose(bench.diagnosis())!r}\n```"
+
+
+def design(bench: Workbench, body: str) -> Figure | str:
+    """A compensation for the body as the last model describes it: figure with its claims."""
+    from ..design import design as propose_design
+
+    try:
+        return propose_design(bench.diagnosis(), place=body).plot()
+    except TeleopDesignError as error:
+        return str(error)
+
+
+class _Key:
+    """A workbench by its model, for the cache: the models of two steps are two objects."""
+
+    def __init__(self, bench: Workbench, model: Model) -> None:
+        self.bench, self.model = bench, model
+
+    def __hash__(self) -> int:
+        return id(self.model)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Key) and other.model is self.model
+
+
+@lru_cache(maxsize=8)
+def _residuals(key: _Key) -> Dataset:
+    return residual_data(key.model, key.bench.search.whole)
+
+
+def _percent(error: float) -> str:
+    return f"{100 * error:.2f} %" if error == error else "-"

@@ -1,0 +1,66 @@
+"""Long work beside a page: it tells how far it is, and can be cancelled."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
+from ..errors import TeleopDesignError
+
+T = TypeVar("T")
+
+
+class Cancelled(Exception):  # noqa: N818 - it is no error
+    """Raised inside the work at its next line of progress."""
+
+
+class Task(Generic[T]):
+    """One piece of work in a thread of its own.
+
+    name: what it does, for the page;  progress: its last line
+    result: what it gave; None until `done`, or where it failed or was cancelled
+    error: one line for the user, or ""
+    """
+
+    def __init__(self, name: str, work: Callable[[Callable[[str], None]], T]) -> None:
+        self.name = name
+        self.progress = ""
+        self.result: T | None = None
+        self.error = ""
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, args=(work,), daemon=True)
+        self._thread.start()
+
+    @property
+    def done(self) -> bool:
+        """Whether it is over, one way or another."""
+        return not self._thread.is_alive()
+
+    @property
+    def is_cancelled(self) -> bool:
+        """Whether `cancel` was called."""
+        return self._stop.is_set()
+
+    def cancel(self) -> None:
+        """Stop at the next line of progress."""
+        self._stop.set()
+
+    def wait(self, timeout: float | None = None) -> None:
+        """Until it is over, or for `timeout` seconds."""
+        self._thread.join(timeout)
+
+    def _say(self, text: str) -> None:
+        if self._stop.is_set():
+            raise Cancelled
+        self.progress = text
+
+    def _run(self, work: Callable[[Callable[[str], None]], T]) -> None:
+        try:
+            result = work(self._say)
+        except Cancelled:
+            self.error = "cancelled"
+        except (TeleopDesignError, OSError) as error:
+            self.error = str(error)
+        else:
+            self.result = result

@@ -1,0 +1,141 @@
+"""A diagnosis taken one step at a time: see the candidates, add one, look again, take it back.
+
+Frozen: each step gives a new workbench, and the one before it is the way back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ..diagnose.candidates import Candidate
+from ..diagnose.conclusion import conclude
+from ..diagnose.diagnosis import Diagnosis
+from ..diagnose.error import force_error
+from ..diagnose.ladder import next_move
+from ..diagnose.ladder_state import LadderSearch, LadderState, begin, look, search_for
+from ..diagnose.ranking import Ranked
+from ..diagnose.rung import Rung
+from ..effects import EFFECTS, Effect
+from ..errors import ModelError, did_you_mean
+from ..measurement.experiment import Experiment, load_experiment
+from ..model import Model
+
+
+@dataclass(frozen=True)
+class Workbench:
+    """The rungs that were chosen so far, and what was seen beside each of them.
+
+    search: what stays the same;  states: one for each rung, the last is the present one
+    is_ranked: whether the candidates beside the last rung are known already
+    """
+
+    search: LadderSearch
+    states: tuple[LadderState, ...]
+    is_ranked: bool = True
+
+    @classmethod
+    def of(
+        cls,
+        experiment: Experiment,
+        *,
+        known: Mapping[str, Effect] = EFFECTS,
+        progress: Callable[[str], None] | None = None,
+    ) -> Workbench:
+        """The user's model re-estimated, and every candidate beside it; takes some seconds.
+
+        raises ExperimentError: the experiment lacks what the comparison needs
+        """
+        model = Model.from_experiment(experiment, known)
+        search = search_for(experiment, model, progress=progress)
+        return cls(search, (begin(search),))
+
+    @classmethod
+    def of_folder(
+        cls, folder: str | Path, *, progress: Callable[[str], None] | None = None
+    ) -> Workbench:
+        """As `of`, of the experiment of a folder."""
+        return cls.of(load_experiment(folder), progress=progress)
+
+    @property
+    def experiment(self) -> Experiment:
+        """The experiment that all models are held against."""
+        return self.search.experiment
+
+    @property
+    def state(self) -> LadderState:
+        """Where the ladder stands."""
+        return self.states[-1]
+
+    @property
+    def model(self) -> Model:
+        """The model of the last rung."""
+        return self.state.fit.model
+
+    @property
+    def rungs(self) -> tuple[Rung, ...]:
+        """The user's model first, then one rung an effect."""
+        return self.state.rungs
+
+    @property
+    def candidates(self) -> tuple[Ranked, ...]:
+        """Effects that may be added, best first; none where they were not looked at yet."""
+        return self.state.ranking.ranked if self.is_ranked else ()
+
+    def add(self, effect: str, at: str) -> Workbench:
+        """With that candidate, whose fit is known: at once.
+
+        raises ModelError: no such candidate beside the last rung
+        """
+        chosen = self._candidate(effect, at)
+        rung = Rung(chosen.candidate, chosen.fit, self.state.ranking)
+        state = self.state.with_rungs((*self.rungs, rung))
+        return replace(self, states=(*self.states, state), is_ranked=False)
+
+    def take_back(self) -> Workbench:
+        """Without the last rung; ModelError where there is none but the user's model."""
+        if len(self.states) == 1:
+            raise ModelError("take back: nothing was added")
+        return replace(self, states=self.states[:-1], is_ranked=True)
+
+    def rank(self, progress: Callable[[str], None] | None = None) -> Workbench:
+        """With the candidates beside the last rung; takes some seconds."""
+        if self.is_ranked:
+            return self
+        search = replace(self.search, progress=progress) if progress else self.search
+        state = look(search, self.rungs, self.states[-2])
+        return replace(self, states=(*self.states[:-1], state), is_ranked=True)
+
+    def go_on(self, progress: Callable[[str], None] | None = None) -> Workbench:
+        """All that `teleopdesign diagnose` would do from here, each of its moves a step back."""
+        bench = self.rank(progress)
+        search = replace(self.search, progress=progress) if progress else self.search
+        states = bench.states
+        while (moved := next_move(search, states[-1])) is not None:
+            states = (*states, look(search, moved.rungs, moved))
+        return replace(bench, states=states)
+
+    def diagnosis(self, progress: Callable[[str], None] | None = None) -> Diagnosis:
+        """What is concluded of the rungs as they stand: verdict, probabilities, open questions."""
+        bench = self.rank(progress)
+        search = replace(self.search, progress=progress) if progress else self.search
+        return conclude(search, bench.state)
+
+    def errors(self, values: Mapping[str, float]) -> tuple[float, float]:
+        """Fit and check error (relative) of the model with other values of parameters (SI)."""
+        model, prepared = self.model.with_values(values), self.search.whole
+        return force_error(model, prepared.of("fit")), force_error(model, prepared.of("check"))
+
+    def _candidate(self, effect: str, at: str) -> Ranked:
+        for ranked in self.candidates:
+            if ranked.candidate.key == (effect, at):
+                return ranked
+        names = [f"{r.candidate}" for r in self.candidates]
+        wanted = f"{effect} at {at}"
+        raise ModelError(f'add: no candidate "{wanted}"{did_you_mean(wanted, names)}')
+
+
+def added_names(bench: Workbench) -> tuple[Candidate, ...]:
+    """The effects that were added, in their order."""
+    return tuple(rung.added for rung in bench.rungs if rung.added is not None)

@@ -1,0 +1,71 @@
+"""Channels that are something else than they are said to be: a clock in ms, swapped columns.
+
+These are told without a model: a force follows from inertia and friction of the motion, a position
+does not follow so from a force, and no machine is logged once in ten seconds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..finding import Finding
+from ..measurement.experiment import Experiment
+from ..measurement.first_guess import explain_force
+from ..measurement.soundness.signal import written
+
+#: Hz, rates between which a machine is logged
+SLOWEST, FASTEST = 5.0, 1e6
+#: part of the force that the motion explains, at most as given and at least the other way round
+AS_GIVEN, EXCHANGED = 0.3, 0.8
+
+
+def check_clock_unit(experiment: Experiment) -> Iterator[Finding]:
+    """A sample rate that no logger has: the time is in another unit than it is said to be."""
+    for record in experiment.records:
+        rate = 1.0 / record.sample_time
+        if SLOWEST <= rate <= FASTEST:
+            continue
+        channel = experiment.channels.get("time")
+        unit = "s" if channel is None else channel.unit
+        smaller = {"s": "ms", "ms": "us", "us": "ns"}.get(unit, "ms")
+        larger = {"ms": "s", "us": "ms", "ns": "us"}.get(unit, "s")
+        meant = smaller if rate < SLOWEST else larger
+        yield Finding(
+            "sample clock",
+            "warning",
+            f"{rate:.4g} samples a second: the time is in {meant}, given as {unit}; write "
+            f'unit = "{meant}" at channels.time.',
+            {"rate": rate},
+            record.file,
+        )
+
+
+def check_mixed_columns(experiment: Experiment) -> Iterator[Finding]:
+    """The columns of position and force exchanged within one body."""
+    record = experiment.fit_records[0]
+    rows = max(record.segments, key=lambda s: s.stop - s.start)
+    for body in experiment.bodies:
+        force, position = (
+            record.signals[f"{body}.{q}"][rows] for q in ("actuator_force", "position")
+        )
+        if force.std() == 0.0 or position.std() == 0.0:
+            continue
+        as_logged = explain_force(force, position, record.sample_time)
+        exchanged = explain_force(position, force, record.sample_time)
+        # in both orders a constant and a slope explain something: only an inertia tells a motion
+        inertia = exchanged.inertia > 5.0 * exchanged.errors[0] and exchanged.level > 0
+        if as_logged.explained < AS_GIVEN and exchanged.explained > EXCHANGED and inertia:
+            keys = [f"{body}.{q}" for q in ("position", "actuator_force")]
+            names = [written(experiment, key) for key in keys]
+            columns = [experiment.channels[key].column for key in keys]
+            yield Finding(
+                "swapped columns",
+                "warning",
+                f"the columns of {names[0]} and {names[1]} seem swapped: motion explains "
+                f"{100 * max(as_logged.explained, 0.0):.2g} % of the force, "
+                f"{100 * exchanged.explained:.2g} % the other way round; write "
+                f'column = "{columns[1]}" at channels.{names[0]} and column = "{columns[0]}" at '
+                f"channels.{names[1]}.",
+                {"as_given": as_logged.explained, "swapped": exchanged.explained},
+                body,
+            )

@@ -1,0 +1,49 @@
+"""open a page in the browser: see what a model leaves, add effects, take them back"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import secrets
+from pathlib import Path
+
+from ..errors import ExperimentError
+
+#: the machine itself: the page runs code, nobody else may reach it
+LOOPBACK = "127.0.0.1"
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument(
+        "folder",
+        type=Path,
+        nargs="?",
+        default=Path(),
+        help="folder of experiments or logs (the present one); no file outside of it is opened",
+    )
+    parser.add_argument("--port", type=int, default=0, metavar="N", help="port (a free one)")
+    parser.add_argument(
+        "--no-browser", action="store_true", help="print the address, open no browser"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Serve the page until Ctrl-C."""
+    folder = options.folder
+    if not folder.is_dir():
+        raise ExperimentError(f"{folder}: there is no such folder")
+    if not 0 <= options.port <= 65535:
+        raise ExperimentError(f"--port: found {options.port}, expected 0 to 65535")
+    try:
+        from ..app import server
+    except ImportError as error:
+        raise ExperimentError(
+            f'app: needs marimo, found none ({error}): pip install "teleopdesign[app]"'
+        ) from error
+    from ..app.settings import FOLDER
+
+    os.environ[FOLDER] = str(folder.resolve())
+    token = secrets.token_urlsafe(24)
+    server.serve(LOOPBACK, options.port, token, open_browser=not options.no_browser)
+    return 0

@@ -1,0 +1,204 @@
+"""make an experiment from a log: find its columns, units and signs, and ask what is not clear"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import ExperimentError
+from ..plain_data import replacing
+
+if TYPE_CHECKING:
+    from ..measurement.survey import Choices, Survey
+
+_EXAMPLES = """examples:
+  teleopdesign new log.csv                          looks, asks, writes log/experiment.toml
+  teleopdesign new log.csv --yes                    takes every guess
+  teleopdesign new a.mat b.mat --output arm         fits on a.mat, checks on b.mat
+  teleopdesign new log.csv --torque-constant "0.037 N*m/A" --gear-ratio 50
+"""
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.epilog = _EXAMPLES
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.add_argument(
+        "logs",
+        nargs="+",
+        type=Path,
+        metavar="LOG",
+        help="csv of any dialect, xlsx, mat, parquet, npz, h5, bag or mcap; of several, the last "
+        "one is the check record",
+    )
+    parser.add_argument("--output", type=Path, metavar="FOLDER", help="folder of the experiment")
+    parser.add_argument("--yes", action="store_true", help="take every guess, ask nothing")
+    parser.add_argument("--title", help="of the experiment; default: the log's name")
+    parser.add_argument("--axis", choices=("prismatic", "revolute"))
+    for name, text in (
+        ("time", "time"),
+        ("position", "the position"),
+        ("force", "the force or current commanded to the actuator"),
+        ("hand", "the measured force of the hand or environment"),
+    ):
+        parser.add_argument(f"--{name}", metavar="COLUMN", help=f"the column of {text}")
+    parser.add_argument(
+        "--unit",
+        action="append",
+        default=[],
+        metavar="COLUMN=UNIT",
+        help="the unit of a column (may be repeated)",
+    )
+    parser.add_argument(
+        "--torque-constant", metavar="VALUE", help='of the motor, such as "0.037 N*m/A"'
+    )
+    parser.add_argument("--gear-ratio", type=float, metavar="N", help="turns of the motor per turn")
+    parser.add_argument("--counts-per-turn", type=float, metavar="N", help="of the encoder")
+    parser.add_argument("--sample-rate", type=float, metavar="HZ", help="where there is no time")
+    parser.add_argument("--inertia", type=float, help="if it is known: kg or kg*m^2")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Look at the logs, ask, write the folder and a picture of what was understood."""
+    from ..measurement import load_experiment
+    from ..measurement.new_folder import make_folder
+    from ..measurement.survey import same_columns, survey_log
+    from ..measurement.tables import open_log
+
+    for path in options.logs:
+        if not path.exists():
+            raise ExperimentError(f"{path}: no such file")
+    logs = [open_log(path, path.name) for path in options.logs]
+    same_columns(logs, [path.name for path in options.logs])
+    choices = _choices(options)
+    survey = survey_log(logs[0], options.logs[0].name, choices)
+    ask = not options.yes and sys.stdin.isatty()
+    if ask:
+        choices = _ask_about(survey, choices, input)
+        survey = survey_log(logs[0], options.logs[0].name, choices)
+    print(survey_text(survey, options.logs[0].name))
+    if survey.guesses and not options.yes and not ask:
+        print("\nno terminal to ask on: every guess is taken, as with --yes")
+    stem = options.logs[0].name.split(".")[0] or "experiment"
+    folder = options.output or Path(f"{stem}_experiment")
+    make_folder(
+        survey,
+        options.logs,
+        folder,
+        title=options.title or stem,
+        inertia=options.inertia,
+    )
+    experiment = load_experiment(folder)
+    print()
+    print(experiment)
+    from ..plot.log import draw_survey
+
+    picture = folder / "understood.png"
+    with replacing(picture) as part:
+        draw_survey(survey, experiment).savefig(part, format="png")
+    print(f"\nwritten: {folder / 'experiment.toml'}, {picture}")
+    print(f"next: teleopdesign check {folder}")
+    print(f"      teleopdesign diagnose {folder} --report report.html")
+    return 0
+
+
+def survey_text(survey: Survey, name: str) -> str:
+    """What was understood, a line a channel, and what was guessed."""
+    lines = [f"{name}: {survey.duration:.4g} s, {len(survey.columns)} columns; {survey.axis} axis"]
+    for key, entry in survey.channels.items():
+        rest = {k: v for k, v in entry.items() if k not in ("column", "unit")}
+        more = ", ".join(f"{k} {_short(v)}" for k, v in rest.items())
+        column = f'"{entry["column"]}"' if "column" in entry else _short(entry)
+        unit = f" in {entry['unit']}" if "column" in entry else ""
+        lines.append(f"  {key:<18} {column}{unit}{', ' + more if more else ''}")
+    lines += [f"  {note}" for note in survey.notes]
+    if survey.guesses:
+        lines.append("guessed:")
+        lines += [f"  {key}: {why}" for key, why in survey.guesses.items()]
+    return "\n".join(lines)
+
+
+def _short(value: object) -> str:
+    if isinstance(value, dict):
+        return f"{value['value']:g} {value['unit']}"
+    return f"{value:g}" if isinstance(value, int | float) and value is not True else str(value)
+
+
+def _choices(options: argparse.Namespace) -> Choices:
+    from ..measurement.survey import Choices
+
+    units = {}
+    for text in options.unit:
+        column, equals, unit = text.rpartition("=")
+        if not equals or not column or not unit:
+            raise ExperimentError(f"--unit: found {text!r}, expected COLUMN=UNIT")
+        units[column] = unit
+    return Choices(
+        axis=options.axis,
+        time=options.time,
+        position=options.position,
+        actuator_force=options.force,
+        interaction_force=options.hand,
+        units=units,
+        torque_constant=_constant(options.torque_constant),
+        gear_ratio=options.gear_ratio,
+        counts_per_turn=options.counts_per_turn,
+        sample_rate=options.sample_rate,
+    )
+
+
+def _constant(text: str | None) -> tuple[float, str] | None:
+    """A number and a unit, "0.037 N*m/A"."""
+    if text is None:
+        return None
+    match = re.fullmatch(r"\s*([-+0-9.eE]+)\s*(\S.*?)\s*", text)
+    try:
+        if match is not None:
+            return float(match.group(1)), match.group(2)
+    except ValueError:
+        pass
+    raise ExperimentError(f'--torque-constant: found {text!r}, expected such as "0.037 N*m/A"')
+
+
+def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> Choices:
+    """The user's answers to what was guessed; an empty answer takes the guess."""
+    units = dict(choices.units)
+    for key, why in list(survey.guesses.items()):
+        _, quantity, part = (*key.split("."), "", "")[:3]
+        if part not in ("unit", "column", "torque_constant", "counts_per_turn") and key not in (
+            "model.device.axis",
+            "sample_rate",
+        ):
+            continue
+        entry = survey.channels.get(quantity, {})
+        answer = ask(f"{key}: {why}\n  Enter takes it; or type another: ").strip()
+        if not answer:
+            continue
+        if part == "unit":
+            units[entry["column"]] = answer
+        elif part == "column":
+            choices = _with_column(choices, quantity, answer)
+        elif part == "torque_constant":
+            choices = replace(choices, torque_constant=_constant(answer))
+        elif part == "counts_per_turn":
+            choices = replace(choices, counts_per_turn=float(answer))
+        elif key == "model.device.axis":
+            choices = replace(choices, axis=answer)
+        else:
+            choices = replace(choices, sample_rate=float(answer))
+    return replace(choices, units=units)
+
+
+def _with_column(choices: Choices, quantity: str, column: str) -> Choices:
+    if quantity == "time":
+        return replace(choices, time=column)
+    if quantity == "position":
+        return replace(choices, position=column)
+    if quantity == "actuator_force":
+        return replace(choices, actuator_force=column)
+    return replace(choices, interaction_force=column)

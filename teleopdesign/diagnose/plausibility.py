@@ -1,0 +1,86 @@
+"""Whether fitted effects deserve their names, by what their own files say of their parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import SimpleNamespace
+
+import numpy as np
+
+from ..effects import CONTACT_ROLES, Effect, RecordFacts
+from ..errors import ModelError
+from ..model import Model
+from .prepare import Prepared, Stretch
+
+
+def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str], str]:
+    """(effect, place) -> what it stands for instead, of each whose parameters do not fit its name.
+
+    raises ModelError: an effect's own check fails, or says something else than None or a sentence
+    """
+    found = {}
+    for place, body in model.bodies.items():
+        own = [e for e in body.effects if e.plausible is not None and e.role not in CONTACT_ROLES]
+        if not own:
+            continue
+        numbers = {n: v.value for n, v in body.parameters.items()}
+        facts = record_facts(model, place, prepared, numbers)
+        for effect in own:
+            if (effect.name, place) in model.absent:
+                continue
+            said = _said(effect, facts)
+            if said is not None:
+                found[effect.name, place] = said
+    return found
+
+
+def _said(effect: Effect, facts: RecordFacts) -> str | None:
+    assert effect.plausible is not None
+    values = {n: facts.body[f"{effect.name}.{n}"] for n in effect.parameters}
+    try:
+        said = effect.plausible(SimpleNamespace(**values), facts)
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        raise ModelError(f"{effect.name}: plausible: {type(error).__name__}: {error}") from error
+    if said is not None and not (isinstance(said, str) and said.strip()):
+        raise ModelError(f"{effect.name}: plausible: found {said!r}, expected None or a sentence")
+    return said
+
+
+def record_facts(
+    model: Model, place: str, prepared: Prepared, numbers: Mapping[str, float] | None = None
+) -> RecordFacts:
+    """What all records say of the body at that place.
+
+    numbers: the body's own, by their names; default: those of the model
+    """
+    stretches = [s for s in prepared.stretches if s.motion.body == place]
+    body = model.bodies[place]
+    if numbers is None:
+        numbers = {n: v.value for n, v in body.parameters.items()}
+    measured = [np.abs(s.motion.command + s.motion.interaction).max() for s in stretches]
+    return RecordFacts(
+        axis=body.axis,
+        travel=max(float(np.ptp(x)) for x in _comparable_positions(stretches)),
+        step=min(float(s.motion.step) for s in stretches),
+        stroke=_stroke(stretches),
+        force=float(max(measured)),
+        body=numbers,
+    )
+
+
+def _comparable_positions(stretches: Sequence[Stretch]) -> list[np.ndarray]:
+    """Positions of all records together; those with an encoder zero of their own stand alone."""
+    groups: dict[str, list[np.ndarray]] = {}
+    for s in stretches:
+        groups.setdefault(s.motion.file if s.has_zero_offset else "", []).append(s.motion.position)
+    return [np.concatenate(own) for own in groups.values()]
+
+
+def _stroke(stretches: Sequence[Stretch]) -> float:
+    """Mean time of motion between two reversals (s); inf where none is told."""
+    moving, reversals = 0.0, 0
+    for s in stretches:
+        told = s.motion.direction[s.motion.direction != 0]
+        moving += len(told) * s.motion.sample_time
+        reversals += int(np.count_nonzero(np.diff(told)))
+    return moving / reversals if reversals else float("inf")

@@ -1,0 +1,181 @@
+"""The clock of a logger: by how much the log of a body's command is later than its position's.
+
+A controller may write a command with the position that it answers, or with the next: a shift of up
+to one row, either way, belongs to the record. It is no physics, but what is not told of it looks
+like some: a delay, a lag, the lead of a compliant transmission. So it is estimated with every
+model, one shift for each body, common to all its records.
+
+Where records hardly tell it (a delay does the same to them, a spring and damper of the controller
+make viscous friction of it), what is known beforehand decides: most loggers are right, none is off
+by much more than a row. Normally distributed, the shift adds a row to the residual r of each body,
+
+    |r| d / (s sqrt(n)),    d: shift, s: `SPREAD`, n: independent observations
+
+for that makes the least squares the most probable values, r having an unknown size: -2 log p =
+n log |r|^2 + (d / s)^2. Standard errors of all else hold what is left open of the shift.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..blocks import Value
+from ..measurement.filtering import Array
+from ..model import Model
+from ..plain_data import plain
+from ..realise.stages_along import RECORD_SHIFT
+from .prepare import Stretch
+from .simulated_course import dead_times
+
+#: samples, standard deviation of what is known of a shift beforehand: twice this is one row.
+#: Lower: a delay of less than a row is called physics; higher: what a shift imitates is left open
+SPREAD = 0.5
+#: samples by which a record may be off: one row, and a tenth for the errors of an estimate there.
+#: What is late by more is a delay
+LARGEST = 1.1
+
+
+@dataclass(frozen=True)
+class RecordShifts:
+    """The shifts that are estimated with a model on some stretches.
+
+    bodies: those with a command that changes;  row: s between samples, of each;  count: n above
+    """
+
+    bodies: tuple[str, ...]
+    row: Array
+    count: int
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What their tangents are asked for by."""
+        return tuple(f"{body}.{RECORD_SHIFT}" for body in self.bodies)
+
+    def start(self, model: Model) -> Array:
+        """The model's shifts, in samples (k,)."""
+        late = np.array([model.command_late(body) for body in self.bodies])
+        return np.clip(late / self.row, -LARGEST, LARGEST)
+
+    def beside(self, model: Model, samples: Array, errors: Array | None = None) -> Model:
+        """The model with these shifts, in samples, and their standard errors."""
+        stderr = np.full(len(samples), np.nan) if errors is None else errors
+        found = {
+            body: Value(float(x * row), False, float(e * row))
+            for body, x, row, e in zip(self.bodies, samples, self.row, stderr, strict=True)
+        }
+        return model.with_record_shift({**model.record_shift, **found})
+
+    def prior(self, samples: Array, residual: Array, jacobian: Array) -> tuple[Array, Array]:
+        """Rows for what is known beforehand (k,), and their jacobian (k, p + k).
+
+        jacobian: (n, p + k) of the residual (n,), the shifts (in samples) last
+        """
+        size = max(float(np.linalg.norm(residual)), 1e-300)
+        part = 1.0 / (SPREAD * np.sqrt(self.count))
+        slope = np.outer(samples * part, residual @ jacobian / size)
+        slope[:, jacobian.shape[1] - len(samples) :] += size * part * np.eye(len(samples))
+        return size * part * samples, slope
+
+    def observed(
+        self, residual: Array, jacobian: Array, blocks: NDArray[np.intp]
+    ) -> tuple[Array, Array, NDArray[np.intp]]:
+        """Jacobian, residual and blocks with what is known beforehand as observations more.
+
+        Each is as far off as it is expected to be: so standard errors hold the prior's own spread.
+        """
+        k = len(self.bodies)
+        size = float(np.linalg.norm(residual)) / np.sqrt(self.count)
+        rows = np.zeros((k, jacobian.shape[1]))
+        rows[:, jacobian.shape[1] - k :] = size / SPREAD * np.eye(k)
+        first = int(blocks.max(initial=-1)) + 1
+        return (
+            np.vstack([jacobian, rows]),
+            np.append(residual, np.full(k, size)),
+            np.append(blocks, first + np.arange(k)),
+        )
+
+
+def record_shifts(stretches: Sequence[Stretch], count: int) -> RecordShifts:
+    """The shifts to estimate on these stretches; count: independent observations that they hold."""
+    row: dict[str, float] = {}
+    for s in stretches:
+        if np.ptp(s.motion.command) > 0.0:
+            row[s.motion.body] = min(s.motion.sample_time, row.get(s.motion.body, np.inf))
+    return RecordShifts(tuple(row), np.array(list(row.values())), max(count, 1))
+
+
+#: rows and standard errors from which a command that acts late is said to be like a delay
+TOLD_ROWS, TOLD_ERRORS = 0.1, 2.0
+
+
+@dataclass(frozen=True)
+class RecordShift:
+    """By how much the log of a body's command is late, as a fitted model has it.
+
+    late, stderr: s;  row: s between samples;  may_delay: whether the model has a dead time there
+    """
+
+    at: str
+    late: float
+    stderr: float
+    row: float
+    may_delay: bool
+
+    @property
+    def at_bound(self) -> bool:
+        """Whether the command is off by as much as a logger may be, or more."""
+        return abs(self.late) >= 0.999 * LARGEST * self.row
+
+    @property
+    def is_like_a_delay(self) -> bool:
+        """Whether a delay of less than a row would look the same."""
+        early = -self.late > max(TOLD_ROWS * self.row, TOLD_ERRORS * self.stderr)
+        return self.may_delay or early
+
+    def __str__(self) -> str:
+        rows, error = self.late / self.row, self.stderr / self.row
+        word = "late" if rows >= 0 else "early"
+        size = f"{abs(rows):.2f} +- {error:.1g}" if np.isfinite(error) else f"{abs(rows):.2f}"
+        text = f"clock of the records: command at {self.at} {size} rows {word}"
+        text += f" ({1e3 * self.late:.3g} ms)"
+        if self.at_bound:
+            return f"{text}, at its bound: what is beyond a row counts as physics"
+        if self.is_like_a_delay:
+            return f"{text}; a delay of less than a row looks the same"
+        return text
+
+
+def shifts_of(model: Model, stretches: Sequence[Stretch]) -> tuple[RecordShift, ...]:
+    """The shift of each body's records that a fitted model has, of those on these stretches."""
+    bodies = record_shifts(stretches, 1)
+    return tuple(
+        RecordShift(
+            at=body,
+            late=model.record_shift[body].value,
+            stderr=model.record_shift[body].stderr,
+            row=float(row),
+            may_delay=bool(dead_times(model.body(body))),
+        )
+        for body, row in zip(bodies.bodies, bodies.row, strict=True)
+        if body in model.record_shift
+    )
+
+
+def shift_data(model: Model, stretches: Sequence[Stretch]) -> dict[str, Any]:
+    """The shifts as an answer writes them, by body: seconds, and rows of the record."""
+    return {
+        shift.at: {
+            "value": plain(shift.late),
+            "stderr": plain(shift.stderr),
+            "unit": "s",
+            "rows": plain(shift.late / shift.row),
+            "at_bound": shift.at_bound,
+            "like_a_delay": shift.is_like_a_delay,
+        }
+        for shift in shifts_of(model, stretches)
+    }

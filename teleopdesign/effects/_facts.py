@@ -1,0 +1,52 @@
+"""What records say of a body: what an effect may hold its own parameters against.
+
+An effect deserves its name only where its parameters mean what the name says: something periodic
+must be seen to repeat, a bristle must give way within the travel. Each effect says so in its own
+file, as `plausible(p, facts)`: None, or one sentence that says what the values stand for instead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from ..quantity import unit_of
+
+#: travels per period from which something is seen to repeat. One and a half: half of it comes
+#: twice. Fewer: any slow force of the position fits; more: long true periods lose their name
+REPEATS = 1.5
+
+
+@dataclass(frozen=True)
+class RecordFacts:
+    """What the records of an experiment say of one body (SI, on its axis).
+
+    travel: range of its positions over all records
+    step: what one reading leaves open of the position
+    stroke: mean time of motion between two reversals (s); inf: the motion never turns round
+    force: largest size of the measured force, actuator and interaction together
+    body: its other numbers by their names, such as "inertia" and "coulomb.level"
+    """
+
+    axis: str
+    travel: float
+    step: float
+    stroke: float
+    force: float
+    body: Mapping[str, float]
+
+    def text(self, value: float, quantity: str) -> str:
+        """A value of that quantity with its unit on the body's axis."""
+        return f"{value:.3g} {unit_of(quantity, self.axis)}"
+
+
+def repeats_within_travel(p: Any, facts: RecordFacts) -> str | None:
+    """Whether a period is short enough for the travel to show that something repeats."""
+    if facts.travel >= REPEATS * abs(p.period):
+        return None
+    return (
+        f"a period of {facts.text(abs(p.period), 'position')} does not repeat within the travel of "
+        f"{facts.text(facts.travel, 'position')}: it stands for something else that varies slowly "
+        "along the travel, such as gravity, a spring or a friction that varies"
+    )

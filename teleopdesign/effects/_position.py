@@ -1,0 +1,64 @@
+"""Whether a law depends on where a body is, and whether it repeats along the way."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import sympy as sp
+
+from ._effect import SIGNALS, Effect
+
+#: points at which a law is held against itself: two laws that agree at all of them are the same
+_POINTS = (
+    (sp.Rational(3, 7), sp.Rational(11, 13)),
+    (sp.Rational(-17, 19), sp.Rational(5, 23)),
+    (sp.Rational(29, 31), sp.Rational(-2, 37)),
+)
+#: relative difference of two values of one law that is rounding (30 digits are computed)
+_SAME = sp.Float("1e-20")
+
+
+@lru_cache(maxsize=256)
+def depends_on_position(effect: Effect) -> bool:
+    """Whether the effect is another one elsewhere: its law, with all hidden positions moved too."""
+    return not _is_same_at(effect, sp.Rational(41, 43))
+
+
+@lru_cache(maxsize=256)
+def period(effect: Effect) -> str | float | None:
+    """What the effect repeats after: the name of a parameter, one turn (rad), or None: it does not.
+
+    Only of an effect that depends on the position.
+    """
+    if not depends_on_position(effect):
+        return None
+    lengths = [n for n, p in effect.parameters.items() if p.quantity == "position"]
+    found: list[tuple[str | float, sp.Expr]] = [(n, effect.symbols()[n]) for n in lengths]
+    found.append((float(2 * sp.pi), 2 * sp.pi))
+    return next((said for said, offset in found if _is_same_at(effect, offset)), None)
+
+
+def _is_same_at(effect: Effect, offset: sp.Expr) -> bool:
+    """Whether the effect is the same with its position, and hidden ones beside it, moved so far."""
+    moved = {SIGNALS["position"]: SIGNALS["position"] + offset}
+    for name, symbol in effect.state_symbols().items():
+        if effect.states[name].start == "position":
+            moved[symbol] = symbol + offset
+    laws = (effect.expression(), *effect.rates().values())
+    return all(_is_same(law, law.subs(moved, simultaneous=True)) for law in laws)
+
+
+def _is_same(one: sp.Expr, other: sp.Expr) -> bool:
+    symbols = sorted(one.free_symbols | other.free_symbols, key=str)
+    for first, step in _POINTS:
+        # parameters may be bounded from below by zero: all points but signals' are positive
+        values = {
+            s: (first if s in SIGNALS.values() else abs(first)) + step * (k + 1) ** 2 / 97
+            for k, s in enumerate(symbols)
+        }
+        a, b = (sp.N(law.subs(values), 30) for law in (one, other))
+        if a != b and not (
+            (a - b).is_number and abs(sp.N(a - b, 30)) <= _SAME * (1 + abs(sp.N(a, 30)))
+        ):
+            return False
+    return True

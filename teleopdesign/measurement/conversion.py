@@ -1,0 +1,263 @@
+"""From the columns of a log to a signal in SI: scale, offset, sign, wraps, gears, currents, counts.
+
+    signal = sign * unit * (torque constant) * (gear ratio)^(+-1) * (sum of scale * column + offset)
+
+A column that wraps (an angle within one turn, a counter) is unwrapped before. `gear_ratio` is
+turns of the motor per turn of the joint: a position read at the motor is divided by it, a force
+commanded at the motor is multiplied. On a prismatic axis it has a unit, `{ value = 1.257, unit =
+"rad/mm" }`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ExperimentError, quoted
+from ..quantity import converting_factor, si_factor, to_si
+from .toml_table import Table, described
+
+Array = NDArray[np.float64]
+
+#: words for the steps of a counter
+COUNTS = ("counts", "count", "ticks", "increments")
+#: s, longest delay of a channel: what the comparison trims at the ends of a record
+LONGEST_DELAY = 0.2
+#: keys of a channel that say how its column becomes a signal
+KEYS = (
+    "scale", "offset", "sign", "unwrap", "torque_constant", "gear_ratio", "count",
+    "counts_per_turn", "delay",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """How columns become one signal.
+
+    columns: summed, each times its `scales`;  offset: added to the sum
+    factor: from the sum to SI, with sign, gears and constants;  period: of a wrap, in the column's
+    own unit, 0 for none;  delay: s by which the log has the signal late
+    """
+
+    columns: tuple[str, ...]
+    scales: tuple[float, ...]
+    offset: float = 0.0
+    factor: float = 1.0
+    period: float = 0.0
+    delay: float = 0.0
+
+    def signal(self, columns: Mapping[str, Array]) -> Array:
+        """The signal (n,) in SI."""
+        if self.is_plain:
+            return columns[self.columns[0]] * self.factor
+        total = np.full(len(columns[self.columns[0]]), self.offset)
+        for name, scale in zip(self.columns, self.scales, strict=True):
+            total += scale * self._unwrapped(columns[name])
+        return total * self.factor
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether one column times a factor is the signal."""
+        one = len(self.columns) == 1 and self.scales == (1.0,)
+        return one and self.offset == 0.0 and self.period == 0.0
+
+    def wraps(self, columns: Mapping[str, Array]) -> int:
+        """How often the columns wrap."""
+        if self.period == 0.0:
+            return 0
+        half = 0.5 * self.period
+        return sum(int(np.sum(np.abs(np.diff(columns[n])) > half)) for n in self.columns)
+
+    def _unwrapped(self, column: Array) -> Array:
+        if self.period == 0.0:
+            return column
+        return np.asarray(np.unwrap(column, period=self.period), dtype=np.float64)
+
+
+def conversion_of(
+    table: Table, *, quantity: str, kind: str, axis: str, unit: str
+) -> tuple[Conversion, float | None]:
+    """The conversion that a channel's table says, and what one count is (SI), if it counts.
+
+    quantity: of the channel ("position", "actuator_force");  kind: that of the table of units
+    raises ExperimentError: keys that do not suit each other, units that do not fit
+    """
+    columns = _columns(table)
+    scales = _scales(table, len(columns))
+    sign = _sign(table)
+    constant = 1.0
+    names: list[str] = []
+    if "torque_constant" in table.content:
+        if kind != "force":
+            raise ExperimentError(
+                f"{table.where('torque_constant')}: found on {quoted(quantity)}, expected on a "
+                f"force"
+            )
+        value, written = _constant(table, "torque_constant", f"{_force(axis)}/A")
+        constant, names = constant * value, [*names, f"({written})"]
+    if "gear_ratio" in table.content:
+        if kind not in ("force", "position", "velocity"):
+            raise ExperimentError(
+                f"{table.where('gear_ratio')}: found on {quoted(quantity)}, expected on a "
+                f"position, "
+                "a velocity or a force"
+            )
+        value, written = _constant(table, "gear_ratio", None)
+        if value <= 0:
+            raise ExperimentError(
+                f"{table.where('gear_ratio')}: found {value:g}, expected above 0; a motor that "
+                f"turns "
+                "the other way has sign = -1"
+            )
+        if kind == "force":
+            constant, names = constant * value, [*names, f"({written})"] if written else names
+        else:
+            constant = constant / value
+            names = [*names, f"(1/({written}))"] if written else names
+    base, per_count = _counted(table, unit, kind=kind, axis=axis)
+    where = table.where("unit")
+    if names:
+        factor = converting_factor(base, "*".join(names), quantity=kind, axis=axis, where=where)
+    else:
+        factor = _without_constant(base, kind, axis, where)
+    factor *= sign * constant * per_count
+    period = _period(table, unit, kind=kind, axis=axis, scales=scales)
+    conversion = Conversion(
+        columns, scales, table.number_or_none("offset") or 0.0, factor, period, _delay(table)
+    )
+    counts = unit in COUNTS
+    return conversion, abs(factor) * max(map(abs, scales)) if counts else None
+
+
+def _force(axis: str) -> str:
+    return "N" if axis == "prismatic" else "N*m"
+
+
+def _columns(table: Table) -> tuple[str, ...]:
+    value = table.content.get("column")
+    if isinstance(value, list):
+        if not value or not all(isinstance(v, str) and v.strip() for v in value):
+            raise ExperimentError(
+                f"{table.where('column')}: found a list of other things, expected names of columns"
+            )
+        if len(set(value)) < len(value):
+            raise ExperimentError(f"{table.where('column')}: found a column twice")
+        return tuple(value)
+    return (table.text("column"),)
+
+
+def _scales(table: Table, count: int) -> tuple[float, ...]:
+    value = table.content.get("scale", 1.0)
+    listed = value if isinstance(value, list) else [value] * count
+    numbers = [v for v in listed if isinstance(v, int | float) and not isinstance(v, bool)]
+    if len(numbers) != len(listed) or not all(math.isfinite(v) and v != 0 for v in numbers):
+        raise ExperimentError(
+            f"{table.where('scale')}: found {described(value)}, expected a number other than 0"
+            + (", or a list of them" if count > 1 else "")
+        )
+    if len(listed) != count:
+        raise ExperimentError(
+            f"{table.where('scale')}: found {len(listed)} numbers, expected {count}, one a column"
+        )
+    return tuple(float(v) for v in numbers)
+
+
+def _sign(table: Table) -> float:
+    sign = table.number_or_none("sign")
+    if sign not in (None, 1.0, -1.0):
+        raise ExperimentError(f"{table.where('sign')}: found {sign:g}, expected 1 or -1")
+    return 1.0 if sign is None else sign
+
+
+def _constant(table: Table, key: str, example: str | None) -> tuple[float, str]:
+    """A number, or { value, unit }: the value, and its unit ("" for none)."""
+    if not isinstance(table.content[key], dict):
+        value, unit = table.number(key), ""
+    else:
+        entry = table.table(key)
+        entry.allow(("value", "unit"))
+        value, unit = entry.number("value"), entry.text("unit", "") if entry.content else ""
+        if "unit" not in entry.content:
+            unit = ""
+    if example is not None and not unit:
+        raise ExperimentError(
+            f"{table.where(key)}: no unit, expected {{ value = ..., unit = {quoted(example)} }}"
+        )
+    if value == 0:
+        raise ExperimentError(f"{table.where(key)}: found 0, expected another number")
+    return value, unit
+
+
+def _counted(table: Table, unit: str, *, kind: str, axis: str) -> tuple[str, float]:
+    """Unit of a count and how much of it one count is; other units are one of themselves."""
+    keys = [key for key in ("count", "counts_per_turn") if key in table.content]
+    if unit not in COUNTS:
+        if keys:
+            raise ExperimentError(
+                f"{table.where(keys[0])}: found with unit {quoted(unit)}, "
+                f"expected unit {quoted(COUNTS[0])}"
+            )
+        return unit, 1.0
+    if len(keys) != 1:
+        raise ExperimentError(
+            f'{table.where("unit")}: found "{unit}", expected beside it counts_per_turn = 4096, or '
+            'count = { value = 0.5, unit = "um" }: what one count is'
+        )
+    if keys == ["counts_per_turn"]:
+        return "turns", 1.0 / table.number("counts_per_turn", above=0)
+    entry = table.table("count")
+    entry.allow(("value", "unit"))
+    return entry.text("unit"), entry.number("value", above=0)
+
+
+def _without_constant(unit: str, kind: str, axis: str, where: str) -> float:
+    try:
+        return si_factor(unit, quantity=kind, axis=axis, where=where)
+    except ExperimentError as problem:
+        if kind == "force" and unit in ("A", "mA"):
+            raise ExperimentError(
+                f"{where}: found {quoted(unit)}, expected beside a current "
+                f'torque_constant = {{ value = ..., unit = "{_force(axis)}/A" }} of the motor'
+            ) from None
+        raise problem
+
+
+def _period(table: Table, unit: str, *, kind: str, axis: str, scales: Sequence[float]) -> float:
+    """Period of a wrap in the column's own unit; 0 where it does not wrap."""
+    value = table.content.get("unwrap", False)
+    if value is False:
+        return 0.0
+    where = table.where("unwrap")
+    if kind != "position":
+        raise ExperimentError(f"{where}: found on a {kind}, expected on a position")
+    if value is not True:
+        return table.number("unwrap", above=0)
+    if unit in COUNTS:
+        if "counts_per_turn" in table.content:
+            return table.number("counts_per_turn")
+        raise ExperimentError(f"{where}: found true with counts, expected where the counter wraps")
+    try:  # an angle wraps at one turn of what the encoder is on
+        turn = to_si(1.0, "turn", quantity="angle") / si_factor(unit, quantity="angle")
+    except ExperimentError:
+        raise ExperimentError(
+            f"{where}: found true with unit {quoted(unit)}, expected the length at which it wraps"
+        ) from None
+    return turn / abs(scales[0])
+
+
+def _delay(table: Table) -> float:
+    if "delay" not in table.content:
+        return 0.0
+    entry = table.table("delay")
+    entry.allow(("value", "unit"))
+    where = entry.where("unit")
+    delay = to_si(entry.number("value"), entry.text("unit"), quantity="time", where=where)
+    if abs(delay) > LONGEST_DELAY:
+        raise ExperimentError(
+            f"{table.where('delay')}: found {delay:g} s, expected at most {LONGEST_DELAY:g} s"
+        )
+    return delay

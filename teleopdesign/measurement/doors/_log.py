@@ -1,0 +1,83 @@
+"""What a door gives: names of columns, and a way to read some of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import ExperimentError
+
+Array = NDArray[np.float64]
+Columns = Mapping[str, Any]
+
+#: rows above which a file is refused before it is read: fourteen hours at 1 kHz, 0.4 GB a column
+MOST_ROWS = 50_000_000
+#: bytes that a packed file may hold unpacked: what so many rows of a few columns need
+MOST_BYTES = 4_000_000_000
+
+
+@dataclass(frozen=True)
+class Log:
+    """An open log.
+
+    names: of its columns, in order
+    read: columns by name, with the channel that wants each -> values as the file holds them
+    units: what the file itself says of units, by column
+    notes: what was found about the file ("semicolons, decimal comma")
+    clocks: column -> the column with its stamps, where a log has several clocks (topics of a bag)
+    """
+
+    names: tuple[str, ...]
+    read: Callable[[Mapping[str, str]], Columns]
+    units: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    clocks: Mapping[str, str] = field(default_factory=dict)
+
+
+def optional(module: str, file: str, extra: str = "io") -> ModuleType:
+    """A package that only some files need; raises ExperimentError: what to install."""
+    try:
+        return import_module(module)
+    except ImportError:
+        raise ExperimentError(
+            f'{file}: reading it needs {module.split(".")[0]}: pip install "teleopdesign[{extra}]"'
+        ) from None
+
+
+def refuse_size(rows: int, file: str) -> None:
+    """Raise an ExperimentError for a file that says it holds more than `MOST_ROWS`."""
+    if rows > MOST_ROWS:
+        raise ExperimentError(
+            f"{file}: found {rows:.4g} rows, expected at most {MOST_ROWS:.4g}: cut the record"
+        )
+
+
+def parts_of(name: str, shape: Sequence[int]) -> dict[str, tuple[str, int | None]]:
+    """Columns of an array: "x" for a vector, "x(:,1)" ... for a matrix; empty for what is neither.
+
+    returns: column -> (name of the array, its column from 0, None for a vector)
+    """
+    lengths = [n for n in shape if n != 1]
+    if len(shape) == 1 or len(shape) == 2 and len(lengths) == 1:
+        return {name: (name, None)}
+    if len(shape) == 2 and 2 <= shape[1] <= 1000 and shape[0] > shape[1]:
+        return {f"{name}(:,{k + 1})": (name, k) for k in range(shape[1])}
+    return {}
+
+
+def part(values: Any, column: int | None) -> Any:
+    """One column of an array (`parts_of`)."""
+    array = np.asarray(values)
+    return array.reshape(-1) if column is None else array[:, column]
+
+
+def listed(names: Iterable[str], most: int = 20) -> str:
+    """Names for a message."""
+    names = list(names)
+    return ", ".join(names[:most]) + (", ..." if len(names) > most else "")

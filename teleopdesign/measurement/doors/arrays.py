@@ -1,0 +1,58 @@
+"""numpy files (.npz): arrays by name, columns of matrices ("data(:,3)"); nothing is unpickled."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...errors import ExperimentError, quoted
+from ._log import MOST_BYTES, Log, part, parts_of, refuse_size
+
+
+def open_arrays(path: Path, file: str) -> Log:
+    """An .npz file; raises ExperimentError: none, or an array of objects where one is wanted."""
+    columns: dict[str, tuple[str, int | None]] = {}
+    try:
+        with zipfile.ZipFile(path) as packed:
+            for entry in packed.infolist():
+                name = entry.filename.removesuffix(".npy")
+                shape = _shape(packed, entry)
+                if shape is None:
+                    continue
+                refuse_size(max(shape, default=0), file)
+                if entry.file_size > MOST_BYTES:
+                    raise ExperimentError(f"{file}: found {entry.file_size:.3g} bytes unpacked")
+                columns |= parts_of(name, shape) or {name: (name, None)}
+    except (zipfile.BadZipFile, ValueError, EOFError, NotImplementedError, SyntaxError) as problem:
+        raise ExperimentError(f"{file}: not a readable .npz file: {problem}") from None
+
+    def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
+        out: dict[str, Any] = {}
+        try:
+            with np.load(path, allow_pickle=False) as content:
+                for name in wanted:
+                    array, column = columns[name]
+                    out[name] = part(content[array], column)
+        except (zipfile.BadZipFile, ValueError, EOFError, KeyError) as problem:
+            kind = "holds Python objects" if "pickle" in str(problem) else str(problem)
+            raise ExperimentError(f"{file}: {quoted(name)}: {kind}, expected numbers") from None
+        return out
+
+    return Log(tuple(columns), read)
+
+
+def _shape(packed: zipfile.ZipFile, entry: zipfile.ZipInfo) -> tuple[int, ...] | None:
+    """Shape that an array says it has, from its first bytes; None: it is no array."""
+    if not entry.filename.endswith(".npy"):
+        return None
+    with packed.open(entry) as stream:
+        version = np.lib.format.read_magic(stream)
+        head = np.lib.format.read_array_header_1_0
+        if version >= (2, 0):
+            head = np.lib.format.read_array_header_2_0
+        shape: tuple[int, ...] = head(stream)[0]
+        return shape

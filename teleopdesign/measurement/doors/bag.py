@@ -1,0 +1,140 @@
+"""Bags of ROS 1 (.bag), ROS 2 (a folder with metadata.yaml, .db3, .mcap): a column for each number.
+
+A column is TOPIC.FIELD ("/ft.wrench.force.z"); a `sensor_msgs/JointState` and what the da Vinci
+Research Kit publishes in the same form name their joints: "/joint_states.elbow.position". Each
+topic has stamps of its own, "TOPIC.stamp": those of its headers where it has them, when it was
+written down otherwise; seconds from the beginning of the bag.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...errors import ExperimentError
+from ._log import Array, Log, listed, optional, refuse_size
+
+#: numbers of one message that become columns: images and point clouds are no log
+MOST_FIELDS = 200
+STAMP = "stamp"
+_WRITTEN = "written"
+#: s between a header's stamp and when it was written down from which the two are different clocks
+_OTHER_CLOCK = 10.0
+
+
+def is_bag(path: Path) -> bool:
+    """Whether a path is a bag: a file of one, or the folder that ROS 2 writes."""
+    if path.is_dir():
+        return (path / "metadata.yaml").is_file()
+    return path.name.lower().endswith((".bag", ".mcap", ".db3"))
+
+
+def open_bag(path: Path, file: str) -> Log:
+    """A bag; every message of every topic with numbers is read once."""
+    anyreader = optional("rosbags.highlevel", file, "ros")
+    topics: dict[str, dict[str, list[float]]] = {}
+    source = path
+    if path.name.lower().endswith(".db3") and (path.parent / "metadata.yaml").is_file():
+        source = path.parent
+    try:
+        with anyreader.AnyReader([source]) as reader:
+            refuse_size(reader.message_count, file)
+            begin = reader.start_time
+            chosen = [c for c in reader.connections if c.msgcount > 1]
+            for connection, written, raw in reader.messages(connections=chosen):
+                message = reader.deserialize(raw, connection.msgtype)
+                _append(topics.setdefault(connection.topic, {}), message, written, begin)
+    except ExperimentError:
+        raise
+    except Exception as problem:  # a damaged bag can fail in any of the package's readers
+        reason = str(problem).splitlines()[0] if str(problem) else type(problem).__name__
+        raise ExperimentError(f"{file}: not a readable bag: {reason}") from None
+    columns = _columns(topics)
+    if not columns:
+        raise ExperimentError(
+            f"{file}: found no topic with numbers, but {listed(topics) or 'no messages'}"
+        )
+    clocks = {name: f"{_topic(name, topics)}.{STAMP}" for name in columns}
+
+    def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
+        return {name: columns[name] for name in wanted}
+
+    return Log(tuple(columns), read, _units(columns), (), clocks)
+
+
+def _append(rows: dict[str, list[float]], message: Any, written: int, begin: int) -> None:
+    """One message's numbers, in columns as long as the topic has messages; NaN where it has
+    none.
+    """
+    count = len(rows.get(STAMP, ()))
+    numbers: dict[str, float] = {}
+    _flatten(message, "", numbers, _joints(message))
+    header = getattr(getattr(message, "header", None), "stamp", None)
+    numbers[STAMP] = numbers[_WRITTEN] = (written - begin) * 1e-9
+    if header is not None and (header.sec or header.nanosec):
+        stamp = int(header.sec) * 1_000_000_000 + int(header.nanosec) - begin
+        numbers[STAMP] = stamp * 1e-9
+    for name, value in numbers.items():
+        if name not in rows and len(rows) > MOST_FIELDS:
+            continue
+        column = rows.setdefault(name, [])
+        column += [np.nan] * (count - len(column))
+        column.append(value)
+
+
+def _joints(message: Any) -> list[str]:
+    """Names of joints, where a message names them as a JointState does."""
+    names = getattr(message, "name", None)
+    if isinstance(names, list | tuple) and all(isinstance(n, str) for n in names):
+        return list(names)
+    return []
+
+
+def _flatten(value: Any, name: str, into: dict[str, float], joints: Sequence[str]) -> None:
+    if len(into) > MOST_FIELDS:
+        return
+    if isinstance(value, bool | int | float | np.number):
+        into[name] = float(value)
+    elif isinstance(value, np.ndarray | list | tuple):
+        if len(value) > MOST_FIELDS or len(value) and isinstance(value[0], str):
+            return
+        for k, item in enumerate(value):
+            if joints and len(value) == len(joints):
+                _flatten(item, f"{joints[k]}.{name}", into, ())
+            else:
+                _flatten(item, f"{name}[{k}]", into, ())
+    elif is_dataclass(value):
+        for field in fields(value):
+            if field.name in ("header", "layout") or field.name.startswith("__"):
+                continue
+            inner = f"{name}.{field.name}" if name else field.name
+            _flatten(getattr(value, field.name), inner, into, joints)
+
+
+def _columns(topics: Mapping[str, Mapping[str, list[float]]]) -> dict[str, Array]:
+    late = [np.median(np.subtract(r[STAMP], r[_WRITTEN])) for r in topics.values()]
+    clock = _WRITTEN if any(abs(x) > _OTHER_CLOCK for x in late) else STAMP
+    columns = {}
+    for topic, rows in topics.items():
+        length = len(rows[STAMP])
+        if len(rows) < 3:
+            continue
+        columns[f"{topic}.{STAMP}"] = np.array(rows[clock])
+        for name in rows:
+            if name not in (STAMP, _WRITTEN):
+                values = np.full(length, np.nan)
+                values[: len(rows[name])] = rows[name]
+                columns[f"{topic}.{name}"] = values
+    return columns
+
+
+def _topic(column: str, topics: Mapping[str, Any]) -> str:
+    return max((t for t in topics if column.startswith(f"{t}.")), key=len)
+
+
+def _units(columns: Mapping[str, Array]) -> dict[str, str]:
+    return {name: "s" for name in columns if name.endswith(f".{STAMP}")}

@@ -1,0 +1,86 @@
+"""MATLAB files: variables, fields of structs ("log.q"), columns of matrices ("data(:,3)").
+
+Version 7.3 is an HDF5 file. A timetable or table is an object that only MATLAB can unpack: one line
+says how to save it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...errors import ExperimentError, quoted
+from ._log import Log, part, parts_of, refuse_size
+from .hdf5 import open_hdf5
+
+#: structs within structs that are looked into
+_DEPTH = 4
+
+
+def open_matlab(path: Path, file: str) -> Log:
+    """A MAT file of any version."""
+    from scipy.io import loadmat, matlab, whosmat
+
+    try:
+        listed = whosmat(path)
+        for _, shape, _ in listed:
+            refuse_size(max(shape, default=0), file)
+        structs = [name for name, _, kind in listed if kind == "struct"]
+        objects = [name or "it" for name, _, kind in listed if kind in ("opaque", "object")]
+        content = dict(loadmat(path, variable_names=structs)) if structs else {}
+    except NotImplementedError:  # version 7.3 is an HDF5 file
+        return open_hdf5(path, file)
+    except (matlab.MatReadError, ValueError, TypeError, KeyError, IndexError) as problem:
+        raise ExperimentError(f"{file}: not a readable MAT file: {problem}") from None
+    columns: dict[str, tuple[str, int | None]] = {}
+    arrays: dict[str, Any] = {}
+    for name, shape, kind in listed:
+        if kind == "struct":
+            fields = _fields(name, content[name], 0)
+            arrays |= fields
+            for field, values in fields.items():
+                columns |= parts_of(field, np.shape(values))
+        elif kind not in ("opaque", "object", "function", "cell"):
+            # what is no column is listed too, so that a message can say what is wrong with it
+            columns |= parts_of(name, shape) or {name: (name, None)}
+            if len(shape) == 2 and 1 not in shape:
+                columns[name] = (name, -1)
+    if objects and not columns:
+        raise ExperimentError(
+            f"{file}: {quoted(objects[0])} is a timetable, table or other object that only "
+            f"MATLAB can "
+            'unpack: in MATLAB, writetimetable(T, "log.csv") or S = '
+            "table2struct(timetable2table(T), "
+            '"ToScalar", true); save("log.mat", "S")'
+        )
+
+    def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
+        plain = [columns[n][0] for n in wanted if columns[n][0] not in arrays]
+        try:
+            contents = loadmat(path, variable_names=list(dict.fromkeys(plain))) if plain else {}
+        except (matlab.MatReadError, ValueError, TypeError, KeyError, IndexError) as problem:
+            raise ExperimentError(f"{file}: not a readable MAT file: {problem}") from None
+        out = {}
+        for name in wanted:
+            array, column = columns[name]
+            values = arrays[array] if array in arrays else contents[array]
+            out[name] = values if column == -1 else part(values, column)
+        return out
+
+    return Log(tuple(n for n in columns), read)
+
+
+def _fields(name: str, value: Any, depth: int) -> dict[str, Any]:
+    """Numeric fields of a struct, "log.q"; of structs within as well."""
+    array = np.asarray(value)
+    if array.dtype.names and array.size == 1 and depth < _DEPTH:
+        contents: dict[str, Any] = {}
+        for field in array.dtype.names:
+            contents |= _fields(f"{name}.{field}", array.reshape(-1)[0][field], depth + 1)
+        return contents
+    if array.dtype.kind in "fiub" and array.size > 1:
+        return {name: array}
+    return {}

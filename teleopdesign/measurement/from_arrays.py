@@ -1,0 +1,214 @@
+"""An experiment from arrays or a DataFrame in memory, in one call."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..arguments import checked
+from ..errors import ExperimentError, did_you_mean, quoted
+from ..quantity import AXES, unit_of
+from .channel import BODY_QUANTITIES, channels_from, sample_rate_from
+from .column_names import likeness, unit_in_name
+from .description import BodyDescription, ModelValue, bodies_from
+from .doors._log import Log
+from .experiment import Experiment
+from .first_guess import guess_from
+from .record import Record, record_of, wanted_columns
+from .spans import cut_to
+from .tables import columns_of
+from .toml_table import Table
+
+#: what a channel may be given as: a column's name, or a table as in [channels]
+ChannelEntry = str | Mapping[str, Any]
+_WHERE = "experiment"
+
+
+@checked
+def experiment(
+    data: Any,
+    *,
+    axis: str,
+    position: ChannelEntry,
+    actuator_force: ChannelEntry,
+    interaction_force: ChannelEntry | None = None,
+    velocity: ChannelEntry | None = None,
+    time: ChannelEntry | None = None,
+    sample_rate: float | None = None,
+    units: Mapping[str, str] | None = None,
+    inertia: float | None = None,
+    effects: Sequence[str] = ("coulomb", "viscous"),
+    fit: Sequence[Sequence[float]] | None = None,
+    check: Sequence[Sequence[float]] = (),
+    bandwidth: float | None = None,
+    title: str = "data",
+) -> Experiment:
+    """An experiment on one body from arrays in memory.
+
+    data: a DataFrame of pandas or polars, a Dataset of xarray, or a dict of arrays of one length
+    axis: "prismatic" or "revolute"
+    position, actuator_force, ...: the column, or a table as in [channels] of a file
+        (`{"column": "i", "unit": "A", "torque_constant": {"value": 0.04, "unit": "N*m/A"}}`)
+    time: default: the column or index that sounds like it;  sample_rate: Hz, in place of a time
+    units: column -> unit; default: what the column's name ends with ("Pos (deg)"), or SI
+    inertia: kg or kg*m^2; default: estimated from the data, as are the friction's first values
+    effects: those of the model;  fit, check: spans (begin, end) in s from the first row; default:
+        all is fitted, and blocks of it are held out in turn
+    raises ExperimentError: no such column, a unit that does not fit, too little data
+    """
+    log = log_of(data)
+    entries: dict[str, Any] = {
+        "position": position,
+        "actuator_force": actuator_force,
+        "interaction_force": interaction_force,
+        "velocity": velocity,
+    }
+    if axis not in AXES:
+        raise ExperimentError(
+            f"{_WHERE}: axis: found {quoted(axis)}, expected {' or '.join(map(quoted, AXES))}"
+            f"{did_you_mean(axis, AXES)}"
+        )
+    entered = {key: entry for key, entry in entries.items() if entry is not None}
+    channels = {key: channel_table(e, key, axis, log, units or {}) for key, e in entered.items()}
+    content: dict[str, Any] = {"channels": channels}
+    if sample_rate is not None:
+        channels["sample_rate"] = {"value": sample_rate, "unit": "Hz"}
+    else:
+        channels["time"] = _time_table(time, log, units or {})
+    body: dict[str, Any] = {"axis": axis, "effects": {name: {} for name in effects}}
+    if inertia is not None:
+        body["inertia"] = inertia
+    content["model"] = {"device": body}
+    spans = [("fit", s) for s in (fit or [None] if fit is None else fit)]
+    spans += [("check", s) for s in check]
+    return in_memory(content, log, spans, title=title, bandwidth=bandwidth)
+
+
+def in_memory(
+    content: Mapping[str, Any],
+    log: Log,
+    spans: Sequence[tuple[str, Sequence[float] | None]],
+    *,
+    title: str,
+    bandwidth: float | None = None,
+    folder: Path | None = None,
+) -> Experiment:
+    """An experiment from the tables of a file and one open log.
+
+    spans: (use, (begin, end) in s) of each record;  a body without inertia gets first values
+    """
+    table = Table(content, _WHERE)
+    bodies = bodies_from(table.table("model"))
+    channels = channels_from(table.table("channels"), bodies)
+    rate = sample_rate_from(table, table.table("channels"))
+    columns = columns_of(log, _WHERE, wanted_columns(channels))
+    records: list[Record] = []
+    for k, (use, span) in enumerate(spans, start=1):
+        name = use if span is None else f"{use} {span[0]:g}-{span[-1]:g} s"
+        if any(r.file == name for r in records):
+            name = f"{name} ({k})"
+        part = columns if span is None else cut_to(columns, span, channels, bodies, rate, _WHERE)
+        records.append(
+            record_of(
+                part,
+                f"{_WHERE}: {name}",
+                file=name,
+                use=use,
+                offset_names=frozenset(),
+                channels=channels,
+                bodies=bodies,
+                sample_rate=rate,
+            )
+        )
+    if not any(r.use == "fit" for r in records):
+        raise ExperimentError(f"{_WHERE}: fit: found no span, expected at least one (begin, end)")
+    fitted = [r for r in records if r.use == "fit"]
+    bodies = {name: with_first_values(body, fitted) for name, body in bodies.items()}
+    where = Path(title) if folder is None else folder
+    return Experiment(where, title, bodies, None, channels, bandwidth, tuple(records))
+
+
+def with_first_values(body: BodyDescription, records: Sequence[Record]) -> BodyDescription:
+    """The body with inertia and first friction values from its records, where it says none."""
+    if body.inertia is not None:
+        return body
+    guess = guess_from(records, body.name)
+    if not guess.inertia > 0:
+        raise ExperimentError(
+            f"{_WHERE}: the motion tells no inertia of {body.name} ({guess.inertia:.3g} "
+            f"{unit_of('inertia', body.axis)}): give inertia, or look at signs and units of "
+            "position and force"
+        )
+
+    def value(number: float, key: str) -> ModelValue:
+        return ModelValue(float(f"{number:.3g}"), None, False, f"{body.where}.{key}")
+
+    effects = {name: dict(values) for name, values in body.effects.items()}
+    first = {"coulomb": ("level", guess.level), "viscous": ("damping", guess.damping)}
+    for name, (parameter, number) in first.items():
+        if name in effects and not effects[name] and number > 0:
+            effects[name] = {parameter: value(number, f"effects.{name}.{parameter}")}
+    return BodyDescription(
+        body.name, body.axis, value(guess.inertia, "inertia"), effects, body.where
+    )
+
+
+def channel_table(
+    entry: ChannelEntry, key: str, axis: str, log: Log, units: Mapping[str, str]
+) -> dict[str, Any]:
+    """The table of a channel: as given, or from a column's name with the unit that it says."""
+    if not isinstance(entry, str):
+        return dict(entry)
+    quantity = BODY_QUANTITIES[key]
+    unit = units.get(entry) or log.units.get(entry) or unit_in_name(entry, quantity, axis)
+    return {"column": entry, "unit": unit or unit_of(quantity, axis)}
+
+
+def _time_table(entry: ChannelEntry | None, log: Log, units: Mapping[str, str]) -> dict[str, Any]:
+    if entry is not None and not isinstance(entry, str):
+        return dict(entry)
+    if entry is None:
+        entry = max(log.names, key=lambda n: likeness(n, "time"), default="")
+        if not entry or likeness(entry, "time") == 0:
+            raise ExperimentError(
+                f"{_WHERE}: time: no column sounds like a time, found {', '.join(log.names)}: give "
+                "time or sample_rate"
+            )
+    unit = units.get(entry) or log.units.get(entry) or unit_in_name(entry, "time") or "s"
+    return {"column": entry, "unit": unit}
+
+
+def log_of(data: Any) -> Log:
+    """Arrays in memory as an open log; the index of a DataFrame is a column of its name.
+
+    raises ExperimentError: nothing of columns
+    """
+    columns: dict[str, Any] = {}
+    units: dict[str, str] = {}
+    if isinstance(data, Mapping) and not hasattr(data, "data_vars"):
+        columns = {str(name): values for name, values in data.items()}
+    elif hasattr(data, "data_vars"):  # xarray
+        for name, array in {**data.coords, **data.data_vars}.items():
+            columns[str(name)] = array.values
+            unit = array.attrs.get("units") or array.attrs.get("unit")
+            if isinstance(unit, str):
+                units[str(name)] = unit
+    elif hasattr(data, "index") and hasattr(data, "columns"):  # pandas
+        index = data.index
+        if index.dtype.kind in "fmM" or index.name is not None:
+            columns["time" if index.name is None else str(index.name)] = index.to_numpy()
+        columns |= {str(name): data[name].to_numpy() for name in data.columns}
+        if any(v.dtype.kind == "O" for v in map(np.asarray, columns.values())):
+            columns = {n: np.asarray(v) for n, v in columns.items()}
+    elif hasattr(data, "get_columns"):  # polars
+        columns = {column.name: column.to_numpy() for column in data.get_columns()}
+    else:
+        raise ExperimentError(
+            f"{_WHERE}: data: found {type(data).__name__}, expected a DataFrame, a Dataset of "
+            f"xarray "
+            "or a dict of arrays"
+        )
+    return Log(tuple(columns), lambda wanted: {n: columns[n] for n in wanted}, units)

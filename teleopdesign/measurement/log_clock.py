@@ -1,0 +1,217 @@
+"""From the rows of a log to the clock of a record, and what is said of that."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ExperimentError, quoted
+from .channel import Channel
+from .reading import ReadingStep, count_of
+from .tables import LogColumns
+from .time_grid import DATE, EVEN, RecordClock, clock_of, counted_time, segments_of, stamps_are_true
+
+Array = NDArray[np.float64]
+
+#: part of the rows without a number in some cell above which a log is refused: a column that is
+#: mostly empty is another column, or belongs to a slower clock
+MOST_EMPTY = 0.2
+#: standard errors by which the position must tell whether stamps are true
+SURE = 3.0
+
+
+@dataclass(frozen=True)
+class LogClock:
+    """The clock, and whether its stamps say when a row was taken or are on an even one."""
+
+    clock: RecordClock
+    stamped: bool
+
+
+def clock_of_log(
+    columns: LogColumns,
+    channels: Mapping[str, Channel],
+    name: str,
+    *,
+    file: str,
+    sample_rate: float | None,
+    to_seconds: float | None,
+) -> tuple[LogClock, list[ReadingStep]]:
+    """The clock of a log, with the steps that led to it.
+
+    name: of the log in messages;  to_seconds: factor of the time channel's unit
+    raises ExperimentError: see `clock_of`; too many cells without a number
+    """
+    on_this_clock = {c for c in columns.values if c not in columns.stamps}
+    filled = _filled_rows(columns, channels, on_this_clock, name)
+    empty = len(filled) - int(filled.sum())
+    if sample_rate is not None:
+        count = len(filled)
+        time, sample_time = counted_time(count, sample_rate, name)
+        stamps, where = time, name
+    else:
+        stamps = columns.values[channels["time"].column] * (to_seconds or 1.0)
+        where = f"{name}: channels.time"
+    labels = _labels(columns, channels, name)
+    rows = np.flatnonzero(filled)
+    stamps = stamps[rows]
+    steps: list[ReadingStep] = []
+    if len(stamps) and abs(stamps[0]) > DATE:
+        stamps = stamps - stamps[0]
+        steps.append(ReadingStep(file, "stamps that are dates", "time from the first row", "none"))
+    segments = segments_of(None if labels is None else labels[rows], len(rows))
+    if sample_rate is not None and empty == 0:
+        clock = RecordClock(rows, time, rows, time, sample_time, segments, segments)
+    else:
+        clock = clock_of(stamps, segments, _same(columns, channels, rows, on_this_clock), where)
+        clock = replace(clock, rows=rows[clock.rows])
+    stamped, more = _stamps(clock, columns, channels, file)
+    if empty:
+        steps.append(
+            ReadingStep(
+                file,
+                f"{count_of(empty, 'row')} with a cell that holds no number",
+                "read as lost",
+                f"{empty / len(filled):.2g} of the rows",
+            )
+        )
+    return LogClock(clock, stamped), steps + _order(clock, file, len(filled)) + more
+
+
+def _filled_rows(
+    columns: LogColumns, channels: Mapping[str, Channel], on_this_clock: set[str], name: str
+) -> NDArray[np.bool_]:
+    """Rows with a number in every wanted cell."""
+    length = max((len(columns.values[c]) for c in on_this_clock), default=0)
+    filled = np.ones(length, dtype=bool)
+    for key, channel in channels.items():
+        for column in channel.columns:
+            if column not in on_this_clock:
+                continue
+            bad = ~np.isfinite(columns.values[column])
+            if bad.mean() > MOST_EMPTY:
+                row = int(np.argmax(bad))
+                short = key.removeprefix("device.")
+                raise ExperimentError(
+                    f"{name}: channels.{short}: column {quoted(column)}, row {row + 1}: found "
+                    f"{columns.values[column][row]:g}, and no number in {bad.mean():.0%} of the "
+                    f"rows, expected at most {MOST_EMPTY:.0%}"
+                )
+            filled &= ~bad
+    return filled
+
+
+def _labels(columns: LogColumns, channels: Mapping[str, Channel], name: str) -> Array | None:
+    if "segment" not in channels:
+        return None
+    labels = columns.values[channels["segment"].column]
+    fractional = np.flatnonzero(np.isfinite(labels) & (labels != np.round(labels)))
+    if fractional.size:
+        raise ExperimentError(
+            f"{name}: channels.segment: row {fractional[0] + 1}: found {labels[fractional[0]]:g}, "
+            "expected a whole number"
+        )
+    return labels
+
+
+def _same(
+    columns: LogColumns,
+    channels: Mapping[str, Channel],
+    rows: NDArray[np.intp],
+    on_this_clock: set[str],
+) -> NDArray[np.bool_]:
+    """Rows that say the same as the one before in every channel but the time."""
+    same = np.ones(len(rows), dtype=bool)
+    same[:1] = False
+    for key, channel in channels.items():
+        for column in channel.columns:
+            if key != "time" and column in on_this_clock:
+                same[1:] &= np.diff(columns.values[column][rows]) == 0
+    return same
+
+
+def _order(clock: RecordClock, file: str, count: int) -> list[ReadingStep]:
+    """What is said of rows that were twice, out of order, lost, and of pauses."""
+    steps = []
+    if clock.dropped:
+        text = f"{count_of(clock.dropped, 'row')} with the stamp of another"
+        steps.append(ReadingStep(file, text, "the first of each is used", "none"))
+    if clock.sorted:
+        text = f"{count_of(clock.sorted, 'row')} out of order"
+        steps.append(ReadingStep(file, text, "sorted by their stamps", "none"))
+    if clock.counted:
+        text = "stamps that many rows share"
+        rule = "rows are counted at the mean rate"
+        effect = "lost rows cannot be seen in such stamps"
+        steps.append(ReadingStep(file, text, rule, effect))
+    if clock.restarts:
+        text = f"time set back {count_of(clock.restarts, 'time')}"
+        rule = "a new segment each time"
+        steps.append(ReadingStep(file, text, rule, "hidden states start anew at each"))
+    if clock.gaps:
+        text = f"{count_of(clock.gaps, 'pause')}, the longest {clock.longest_gap:.3g} s"
+        rule = "a new segment after each"
+        steps.append(ReadingStep(file, text, rule, "hidden states start anew at each"))
+    return steps
+
+
+def _stamps(
+    clock: RecordClock, columns: LogColumns, channels: Mapping[str, Channel], file: str
+) -> tuple[bool, list[ReadingStep]]:
+    """Whether the stamps say when a row was taken, and what is said of that."""
+    h = clock.sample_time
+    if clock.counted or clock.jitter <= EVEN * h:
+        return False, []
+    named = [
+        column
+        for channel in channels.values()
+        if channel.quantity == "position"
+        for column in channel.columns
+        if column not in columns.stamps
+    ]
+    positions = [columns.values[c][clock.rows] for c in named]
+    if math.isinf(clock.jitter):
+        steps = np.diff(clock.stamps) / h
+        text = f"uneven stamps, steps of {steps.min():.2g} to {steps.max():.2g} times {h:.3g} s"
+        rule = "each row at its own stamp: positions interpolated, commands held"
+        numbers = (
+            ("rate", 1.0 / h),
+            ("shortest", float(steps.min())),
+            ("longest", float(steps.max())),
+        )
+        effect = _own_stamps(clock, positions)
+        return True, [ReadingStep(file, text, rule, effect, topic="sample clock", numbers=numbers)]
+    slope, error = stamps_are_true(clock, positions)
+    text = f"stamps {100 * clock.jitter / h:.2g} % of a row off an even clock"
+    share = f"{slope:.2f} +- {error:.1g} of what they say"
+    sure = abs(slope - 0.5) > SURE * error
+    stamped = slope > 0.5 and math.isfinite(error)
+    if stamped:
+        rule = (
+            f"the position was read at its stamps ({share}): positions interpolated, commands held"
+        )
+        effect = _own_stamps(clock, positions)
+    else:
+        rule = f"an even clock: the position does not follow the stamps ({share})"
+        effect = "none"
+    if not sure:
+        effect = "the position hardly tells, so that it makes little difference"
+    numbers = (("jitter", clock.jitter), ("rate", 1.0 / h), ("followed", slope))
+    return stamped, [ReadingStep(file, text, rule, effect, topic="sample clock", numbers=numbers)]
+
+
+def _own_stamps(clock: RecordClock, positions: list[Array]) -> str:
+    """What even stamps would have done to the position."""
+    off = clock.stamps - clock.time[clock.places]
+    speeds = [
+        float(np.sqrt(np.mean((np.gradient(x, clock.stamps) * off) ** 2)))
+        / max(float(np.ptp(x)), 1e-300)
+        for x in positions
+    ]
+    if not speeds:
+        return "none"
+    return f"read as even, positions would err by {100 * max(speeds):.2g} % of the travel"

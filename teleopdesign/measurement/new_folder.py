@@ -1,0 +1,176 @@
+"""Make an experiment's folder from logs: what a survey proposes, written with its reasons."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..errors import ExperimentError
+from .channel import channels_from, sample_rate_from
+from .description import bodies_from
+from .first_guess import FirstGuess, guess_from
+from .record import read_record
+from .survey import Survey, spans_of
+from .toml_table import Table
+
+#: digits of first values: they are starts, not results
+_DIGITS = 3
+_FILE = "experiment.toml"
+
+
+def make_folder(
+    survey: Survey,
+    logs: Sequence[Path],
+    folder: Path,
+    *,
+    title: str,
+    inertia: float | None = None,
+    effects: Sequence[str] = ("coulomb", "viscous"),
+) -> Path:
+    """Copy the logs into a folder and write experiment.toml beside them.
+
+    One log is cut into a fit and a check record; of several the last is the check record.
+    raises ExperimentError: the folder holds an experiment already, or cannot be written
+    """
+    if (folder / _FILE).exists():
+        raise ExperimentError(f"{folder.name}/{_FILE}: is there already: choose another --output")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for log in logs:
+            target = folder / log.name
+            if log.resolve() != target.resolve():
+                (shutil.copytree if log.is_dir() else shutil.copyfile)(log, target)
+    except OSError as problem:
+        raise ExperimentError(f"{folder.name}: cannot be written: {problem.strerror}") from None
+    records = _records(survey, [log.name for log in logs])
+    first = _first_values(survey, folder, records) if inertia is None else None
+    if first is not None and not first.inertia > 0:
+        survey.guesses["model.device.inertia"] = (
+            "the motion tells no inertia: look at signs and units of position and force"
+        )
+    text = experiment_text(
+        survey, records, title=title, inertia=inertia, first=first, effects=effects
+    )
+    (folder / _FILE).write_text(text, encoding="utf-8")
+    return folder
+
+
+def _records(survey: Survey, names: Sequence[str]) -> list[dict[str, Any]]:
+    if len(names) > 1:
+        return [{"file": n, "use": "check" if n == names[-1] else "fit"} for n in names]
+    fit, check = spans_of(survey.duration)
+    return [
+        {"file": names[0], "use": "fit", "span": fit},
+        {"file": names[0], "use": "check", "span": check},
+    ]
+
+
+def _first_values(survey: Survey, folder: Path, records: Sequence[Mapping[str, Any]]) -> FirstGuess:
+    """First values of the model, from the fit records as they will be read."""
+    content = {"channels": _channels(survey), "model": {"device": {"axis": survey.axis}}}
+    table = Table(content, f"{folder.name}/{_FILE}")
+    bodies = bodies_from(table.table("model"))
+    channels = channels_from(table.table("channels"), bodies)
+    rate = sample_rate_from(table, table.table("channels"))
+    read = [
+        read_record(
+            folder,
+            r["file"],
+            use="fit",
+            offset_names=frozenset(),
+            channels=channels,
+            bodies=bodies,
+            sample_rate=rate,
+            span=r.get("span"),
+        )
+        for r in records
+        if r["use"] == "fit"
+    ]
+    return guess_from(read, "device")
+
+
+def _channels(survey: Survey) -> dict[str, Any]:
+    return {k: dict(v) for k, v in survey.channels.items()}
+
+
+def experiment_text(
+    survey: Survey,
+    records: Sequence[Mapping[str, Any]],
+    *,
+    title: str,
+    inertia: float | None,
+    first: FirstGuess | None,
+    effects: Sequence[str],
+) -> str:
+    """experiment.toml with a comment wherever something was guessed."""
+    axis = survey.axis
+    force, length = ("N", "m") if axis == "prismatic" else ("N*m", "rad")
+    mass = "kg" if axis == "prismatic" else "kg*m^2"
+    lines = ["# Written by `teleopdesign new`. What it guessed stands under [guessed] at the end:"]
+    lines += ["# correct it there where it is used, and take its line out.", ""]
+    lines += [f"title = {_text(title)}", "", "[model.device]"]
+    lines += [f"axis = {_text(axis)}".ljust(60) + f"# forces in {force}, positions in {length}"]
+    if inertia is not None:
+        lines.append(f'inertia = {{ value = {inertia!r}, unit = "{mass}", fixed = true }}')
+    elif first is not None:
+        value = _rounded(first.inertia) if first.inertia > 0 else 1.0
+        lines.append(
+            f'inertia = {{ value = {value!r}, unit = "{mass}" }}'.ljust(60)
+            + "# a start, from the log; fixed = true if you know it"
+        )
+    lines.append("[model.device.effects]")
+    for name in effects:
+        values = _first_of(name, first, force, length)
+        lines.append(f"{name} = {values}")
+    lines += ["", "[channels]"]
+    for key, entry in survey.channels.items():
+        comments = [w for k, w in survey.guesses.items() if k.startswith(f"channels.{key}.")]
+        line = f"{key} = {_inline(entry)}"
+        lines += [f"# guessed: {c}" for c in comments] + [line]
+    lines.append("")
+    for record in records:
+        lines.append("[[records]]")
+        lines += [f"{k} = {_plain(v)}" for k, v in record.items()]
+    if survey.guesses:
+        lines += ["", "[guessed]"]
+        lines += [f"{_text(key)} = {_text(why)}" for key, why in survey.guesses.items()]
+    return "\n".join(lines) + "\n"
+
+
+def _first_of(name: str, first: FirstGuess | None, force: str, length: str) -> str:
+    known = {
+        "coulomb": ("level", first.level if first else 0.0, force),
+        "viscous": ("damping", first.damping if first else 0.0, f"{force}*s/{length}"),
+    }
+    if name not in known or not known[name][1] > 0:
+        return "{}"
+    parameter, value, unit = known[name]
+    return f'{{ {parameter} = {{ value = {_rounded(value)!r}, unit = "{unit}" }} }}'
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{_DIGITS}g}")
+
+
+def _inline(entry: Mapping[str, Any]) -> str:
+    return "{ " + ", ".join(f"{k} = {_plain(v)}" for k, v in entry.items()) + " }"
+
+
+def _plain(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return _inline(value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return _text(value)
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(_plain, value)) + "]"
+    return repr(value)
+
+
+def _text(text: str) -> str:
+    """A basic string of TOML: that of JSON, which escapes the same characters."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

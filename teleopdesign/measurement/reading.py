@@ -1,0 +1,73 @@
+"""What was done to a log on the way to a record: each step, its rule, its effect on the answer."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+#: characters of a line, and of the columns before the last
+WIDTH, WIDEST = 100, 34
+
+
+@dataclass(frozen=True)
+class ReadingStep:
+    """One thing that was done when a file was read.
+
+    file: the record's;  observed: what the log held ("14 lost rows, 0.2 %")
+    rule: what was done with it;  effect: what it does to the answer, with a number where there is
+    one
+    size: part of the measured force that it may add to the force error; NaN: not a number of that
+    kind
+    topic: of the finding that it makes;  numbers: name -> value in SI
+    """
+
+    file: str
+    observed: str
+    rule: str
+    effect: str
+    size: float = float("nan")
+    topic: str = "reading"
+    numbers: tuple[tuple[str, float], ...] = ()
+
+
+def reading_table(steps: Sequence[ReadingStep]) -> list[str]:
+    """The steps as lines of a table; empty where every file was used as it is."""
+    if not steps:
+        return []
+    rows = [("record", "in the log", "how it was read, and what that does to the answer")]
+    rows += [(s.file, s.observed, f"{s.rule}; {s.effect}") for s in steps]
+    first = min(WIDEST, max(len(row[0]) for row in rows))
+    second = min(WIDEST, max(len(row[1]) for row in rows))
+    rest = WIDTH - first - second - 6
+    lines: list[str] = []
+    for row in rows:
+        cells = [
+            textwrap.wrap(text, width) or [""]
+            for text, width in zip(row, (first, second, rest), strict=True)
+        ]
+        for k in range(max(map(len, cells))):
+            one, two, three = (cell[k] if k < len(cell) else "" for cell in cells)
+            lines.append(f"  {one:<{first}}  {two:<{second}}  {three}".rstrip())
+    return lines
+
+
+def count_of(number: int, one: str, many: str | None = None) -> str:
+    """A number with its noun: "1 row", "12 rows"."""
+    return f"{number} {one}" if number == 1 else f"{number} {many or one + 's'}"
+
+
+def reading_data(steps: Iterable[ReadingStep]) -> list[dict[str, Any]]:
+    """The steps as plain data."""
+    return [
+        {
+            "record": s.file,
+            "observed": s.observed,
+            "rule": s.rule,
+            "effect": s.effect,
+            "force_error": s.size if math.isfinite(s.size) else None,
+        }
+        for s in steps
+    ]

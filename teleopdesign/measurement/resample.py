@@ -1,0 +1,194 @@
+"""Signals of a log on the even grid of a record, each by the rule of what it is.
+
+A command holds until the next row: what acts in a sample is its mean over the sample. A position is
+interpolated where it moves fast; where it moves by single encoder steps the nearer reading is
+taken, so that steps stay steps. Other measured signals follow the straight line between rows.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .time_grid import RecordClock
+
+Array = NDArray[np.float64]
+Rule = Literal["held", "position", "line"]
+
+#: encoder steps between two rows up to which the nearer reading is taken; above, steps are no
+#: longer
+#: seen one by one, and the rounding of a reading is smaller than the motion between two
+STEPS = 2.5
+#: pairs of rows that must say the same before that counts, part of those between the same two
+#: changes that must, and step in which the phase is searched, in samples
+_SEEN, _ALIKE, _PHASE = 20, 0.95, 0.005
+#: rows that are taken away and filled again, to see by how much filling errs
+TRIALS = 2000
+
+
+def on_grid(
+    values: Array, clock: RecordClock, rule: Rule, *, stamped: bool, step: float, delay: float = 0.0
+) -> Array:
+    """A signal (m,), a value a used row, on the record's grid (n,).
+
+    stamped: stamps say when a row was taken; otherwise it is at its place on the grid
+    step: of the encoder, 0 for none;  delay: s by which the log has the signal late
+    """
+    if clock.exact and not stamped and delay == 0.0:
+        return values
+    out = np.empty(len(clock.time))
+    for rows, samples in zip(clock.of_rows, clock.segments, strict=True):
+        place = clock.places[rows] - samples.start
+        grid = np.arange(samples.stop - samples.start, dtype=np.float64)
+        at = place.astype(np.float64)
+        if stamped:
+            at = (clock.stamps[rows] - clock.time[samples.start]) / clock.sample_time
+            if clock.restarts:
+                at += place[0] - at[0]
+        out[samples] = placed(values[rows], at - delay / clock.sample_time, grid, rule, step=step)
+    return out
+
+
+def placed(
+    values: Array, at: Array, grid: Array, rule: Rule, *, step: float, own_clock: bool = False
+) -> Array:
+    """Values (m,) at ascending instants (m,) by their rule at others (n,), both in samples.
+
+    own_clock: a slower signal, whose rows are not lost where they are more than a sample apart
+    """
+    if len(at) == len(grid) and np.array_equal(at, grid):
+        return values
+    if rule == "held":
+        return _held(*((values, at) if own_clock else _filled(values, at)), grid)
+    if rule == "position":
+        return _position(values, at, grid, step)
+    return np.interp(grid, at, values)
+
+
+def command_phase(values: Array, clock: RecordClock) -> float | None:
+    """Phase of the even clock on which a command changes, in samples; None: it follows the rows.
+
+    A log may read the command of a controller at instants of its own. Then two rows between the
+    same two changes say the same, and some commands are in no row. The phase is the one for which
+    rows say the same exactly where they lie between the same two changes.
+    values: (m,) of the clock's rows, whose stamps are true
+    """
+    at = clock.places + (clock.stamps - clock.time[clock.places]) / clock.sample_time
+    pairs = np.concatenate(
+        [np.arange(rows.start, rows.stop - 1) for rows in clock.of_rows], dtype=np.intp
+    )
+    pairs = pairs[np.diff(clock.places)[pairs] == 1]
+    equal = values[pairs] == values[pairs + 1]
+    if equal.sum() < _SEEN:
+        return None
+    best: tuple[float, float] | None = None
+    for phase in np.arange(-0.5, 0.5, _PHASE):
+        cell = np.floor(at - phase)
+        same = cell[pairs] == cell[pairs + 1]
+        if same.sum() < _SEEN or same.all():
+            continue
+        within, across = float(equal[same].mean()), float(equal[~same].mean())
+        if (
+            within > _ALIKE
+            and across < 0.5 * within
+            and (best is None or within - across > best[0])
+        ):
+            best = (within - across, float(phase))
+    return None if best is None else best[1]
+
+
+def commands_on_clock(values: Array, clock: RecordClock, phase: float) -> tuple[Array, float]:
+    """A command that changes on an even clock, on the record's grid, and the part in no row.
+
+    values: (m,) of the clock's rows;  phase: of the command's clock (`command_phase`)
+    """
+    at = clock.places + (clock.stamps - clock.time[clock.places]) / clock.sample_time
+    out = np.empty(len(clock.time))
+    unseen = 0
+    for rows, samples in zip(clock.of_rows, clock.segments, strict=True):
+        cells, first = np.unique(np.floor(at[rows] - phase), return_index=True)
+        unseen += int(cells[-1] - cells[0]) + 1 - len(cells)
+        grid = np.arange(samples.start, samples.stop, dtype=np.float64)
+        out[samples] = _held(*_filled(values[rows][first], cells + phase), grid)
+    return out, unseen / len(clock.time)
+
+
+def _filled(values: Array, at: Array) -> tuple[Array, Array]:
+    """Held values with the line between rows where rows are lost.
+
+    A row that is lost had a command of its own: the line between its neighbours errs by half of
+    what the older one would, held on.
+    """
+    steps = np.rint(np.diff(at)).astype(np.intp)
+    if np.all(steps <= 1):
+        return values, at
+    between = [
+        np.linspace(a, b, k + 1)[1:-1]
+        for a, b, k in zip(at[:-1], at[1:], steps, strict=True)
+        if k > 1
+    ]
+    new = np.concatenate(between)
+    whole = np.concatenate([at, new])
+    order = np.argsort(whole, kind="stable")
+    return np.concatenate([values, np.interp(new, at, values)])[order], whole[order]
+
+
+def _held(values: Array, at: Array, grid: Array) -> Array:
+    """Mean over each sample of a command that holds from each instant to the next."""
+    if len(at) == len(grid) and np.array_equal(at, grid):
+        return values
+    edges = np.append(grid, grid[-1] + 1.0)
+    ends = np.append(at, max(at[-1] + 1.0, edges[-1]))
+    total = np.concatenate([[0.0], np.cumsum(values * np.diff(ends))])
+    # before the first row the first command is taken to have held
+    early = np.minimum(edges - ends[0], 0.0) * values[0]
+    mean: Array = np.diff(np.interp(edges, ends, total) + early) / np.diff(edges)
+    return mean
+
+
+def _position(values: Array, at: Array, grid: Array, step: float) -> Array:
+    """Local cubic through four readings; where steps are single ones, the nearer reading."""
+    right = np.clip(np.searchsorted(at, grid), 1, len(at) - 1)
+    left = right - 1
+    part = np.clip((grid - at[left]) / (at[right] - at[left]), 0.0, 1.0)
+    nearer = np.where(part <= 0.5, values[left], values[right])
+    smooth = _cubic(values, at, grid, left) if len(at) > 3 else np.interp(grid, at, values)
+    # beyond the ends the end's reading stays
+    smooth = np.where((grid < at[0]) | (grid > at[-1]), nearer, smooth)
+    slow = np.abs(values[right] - values[left]) <= STEPS * step * (at[right] - at[left])
+    return np.where(slow, nearer, smooth)
+
+
+def _cubic(values: Array, at: Array, grid: Array, left: NDArray[np.intp]) -> Array:
+    first = np.clip(left - 1, 0, len(at) - 4)
+    nodes = [at[first + k] for k in range(4)]
+    total = np.zeros(len(grid))
+    for k in range(4):
+        weight = np.ones(len(grid))
+        for j in range(4):
+            if j != k:
+                weight *= (grid - nodes[j]) / (nodes[k] - nodes[j])
+        total += weight * values[first + k]
+    return total
+
+
+def filling_error(values: Array, clock: RecordClock, rule: Rule, *, step: float) -> float:
+    """Rms error of a filled row: rows that are there, filled as if each were lost."""
+    error: list[Array] = []
+    for rows in clock.of_rows:
+        x, place = values[rows], clock.places[rows]
+        inner = np.arange(2, len(x) - 2)
+        inner = inner[place[inner + 2] - place[inner - 2] == 4] if len(inner) else inner
+        inner = inner[:: max(1, len(inner) // TRIALS)]
+        if not len(inner):
+            continue
+        if rule == "position":
+            cubic = (-x[inner - 2] + 4 * x[inner - 1] + 4 * x[inner + 1] - x[inner + 2]) / 6.0
+            slow = np.abs(x[inner + 1] - x[inner - 1]) <= 2.0 * STEPS * step
+            made = np.where(slow, x[inner - 1], cubic)
+        else:
+            made = 0.5 * (x[inner - 1] + x[inner + 1])
+        error.append(made - x[inner])
+    return float(np.sqrt(np.mean(np.concatenate(error) ** 2))) if error else float("nan")

@@ -1,0 +1,203 @@
+"""From the columns of a log to the signals of a record: converted to SI, on its grid."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .channel import Channel
+from .conversion import Conversion
+from .encoder import reading_step
+from .log_clock import LogClock
+from .reading import ReadingStep, count_of
+from .resample import (
+    Rule,
+    command_phase,
+    commands_on_clock,
+    filling_error,
+    on_grid,
+    placed,
+)
+from .tables import LogColumns
+
+Array = NDArray[np.float64]
+
+#: values of a channel up to which whole numbers are states and no measurement
+STATES = 16
+#: mean of exp(2 pi i x / step) from which readings x lie on steps: 1 on them, 0 anywhere
+ON_STEPS = 0.9
+
+
+def signals_of_log(
+    columns: LogColumns,
+    channels: Mapping[str, Channel],
+    conversions: Mapping[str, Conversion],
+    clock: LogClock,
+    file: str,
+) -> tuple[dict[str, Array], list[ReadingStep]]:
+    """The signals (n,) by channel, and what was done for them."""
+    signals: dict[str, Array] = {}
+    steps: list[ReadingStep] = []
+    for key, conversion in conversions.items():
+        channel = channels[key]
+        wraps = conversion.wraps(columns.values)
+        name = key.removeprefix("device.")
+        if wraps:
+            steps.append(
+                ReadingStep(file, f"{name} wraps {count_of(wraps, 'time')}", "unwrapped", "none")
+            )
+        if conversion.delay:
+            text = f"{name} logged {1e3 * conversion.delay:.3g} ms late, as stated"
+            steps.append(ReadingStep(file, text, "moved back", "none"))
+        if conversion.columns[0] in columns.stamps:
+            signals[key], step = _of_another_clock(columns, channel, conversion, clock, file, name)
+            steps.append(step)
+            continue
+        rows = clock.clock.rows
+        values = conversion.signal({c: columns.values[c][rows] for c in conversion.columns})
+        phase = None
+        if clock.stamped and channel.quantity == "actuator_force" and not conversion.delay:
+            phase = command_phase(values, clock.clock)
+        if phase is None:
+            signals[key] = _on_grid(values, channel, conversion, clock)
+            continue
+        signals[key], unseen = commands_on_clock(values, clock.clock, phase)
+        steps.append(_on_own_clock(values, clock, phase, unseen, file, name))
+    if clock.clock.lost:
+        steps.append(_lost(columns, channels, conversions, clock, file))
+    return signals, steps
+
+
+def _on_own_clock(
+    values: Array, clock: LogClock, phase: float, unseen: float, file: str, name: str
+) -> ReadingStep:
+    """What is said of a command that changes on an even clock while rows are read at others."""
+    wrong = filling_error(values, clock.clock, "held", step=0.0)
+    size = float(np.sqrt(unseen)) * wrong / max(float(np.sqrt(np.mean(values**2))), 1e-300)
+    return ReadingStep(
+        file,
+        f"{name} changes on an even clock, rows are read at others",
+        f"each row tells the command between two changes; {100 * unseen:.2g} % are in no row and "
+        "are filled by the line between",
+        f"adds at most {100 * size:.2g} % of the force",
+        size,
+        "sample clock",
+        (("phase", phase * clock.clock.sample_time), ("unseen", unseen), ("force_error", size)),
+    )
+
+
+def rule_of(channel: Channel, values: Array) -> Rule:
+    """What holds between two rows of a channel."""
+    if channel.quantity == "actuator_force":
+        return "held"
+    if channel.quantity == "position":
+        return "position"
+    few = np.unique(values[:: max(1, len(values) // 5000)])
+    states = len(few) <= STATES and bool(np.all(few == np.round(few)))
+    return (
+        "held" if states and channel.quantity not in ("velocity", "interaction_force") else "line"
+    )
+
+
+def encoder_step(channel: Channel, values: Array) -> float:
+    """Step of the position's encoder as stated, or as the readings show it; 0 for other
+    channels.
+    """
+    if channel.quantity != "position":
+        return 0.0
+    return channel.resolution or reading_step(values)
+
+
+def _on_grid(values: Array, channel: Channel, conversion: Conversion, clock: LogClock) -> Array:
+    rule, step = rule_of(channel, values), encoder_step(channel, values)
+    out = on_grid(
+        values, clock.clock, rule, stamped=clock.stamped, step=step, delay=conversion.delay
+    )
+    return _stepped(out, values, channel, step)
+
+
+def _stepped(out: Array, values: Array, channel: Channel, step: float) -> Array:
+    """Where no resolution is stated it is seen in the readings, and filling must leave it there."""
+    if out is values or channel.quantity != "position" or channel.resolution or step <= 0.0:
+        return out
+    if np.abs(np.exp(2j * np.pi * (values - values[0]) / step).mean()) < ON_STEPS:
+        return out
+    stepped = values[0] + step * np.round((out - values[0]) / step)
+    return np.where(np.isin(out, values), out, stepped)
+
+
+def _of_another_clock(
+    columns: LogColumns,
+    channel: Channel,
+    conversion: Conversion,
+    clock: LogClock,
+    file: str,
+    name: str,
+) -> tuple[Array, ReadingStep]:
+    """A channel with stamps of its own, as each topic of a bag has them."""
+    stamps = columns.stamps[conversion.columns[0]] - conversion.delay
+    values = conversion.signal({c: columns.values[c] for c in conversion.columns})
+    fine = np.isfinite(values) & np.isfinite(stamps)
+    order = np.argsort(stamps[fine], kind="stable")
+    at, values = stamps[fine][order], values[fine][order]
+    once = np.r_[True, np.diff(at) > 0]
+    at, values = at[once], values[once]
+    h = clock.clock.sample_time
+    rule, step = rule_of(channel, values), encoder_step(channel, values)
+    out = np.concatenate(
+        [
+            placed(
+                values,
+                (at - clock.clock.time[s.start]) / h,
+                np.arange(s.stop - s.start, dtype=np.float64),
+                rule,
+                step=step,
+                own_clock=True,
+            )
+            for s in clock.clock.segments
+        ]
+    )
+    words = {"held": "held until its next", "position": "interpolated", "line": "interpolated"}
+    rate = (len(at) - 1) / max(float(at[-1] - at[0]), 1e-300)
+    text = f"{name} has stamps of its own, {rate:.4g} Hz"
+    return _stepped(out, values, channel, step), ReadingStep(file, text, words[rule], "none")
+
+
+def _lost(
+    columns: LogColumns,
+    channels: Mapping[str, Channel],
+    conversions: Mapping[str, Conversion],
+    clock: LogClock,
+    file: str,
+) -> ReadingStep:
+    """Lost rows: how many, how they are filled, and by how much that errs where it can be tried."""
+    lost, rows = clock.clock.lost, clock.clock.rows
+    part = lost / len(clock.clock.time)
+    error = force = 0.0
+    positions = []
+    for key, conversion in conversions.items():
+        channel = channels[key]
+        if conversion.columns[0] in columns.stamps or channel.quantity == "velocity":
+            continue
+        values = conversion.signal({c: columns.values[c][rows] for c in conversion.columns})
+        step = encoder_step(channel, values)
+        wrong = filling_error(values, clock.clock, rule_of(channel, values), step=step)
+        if channel.quantity == "position":
+            unit = f"{wrong / step:.2g} steps" if step > 0 else f"{wrong:.2g}"
+            positions.append(unit)
+        elif channel.quantity in ("actuator_force", "interaction_force"):
+            error += part * wrong**2
+            force += float(np.mean(values**2))
+    size = float(np.sqrt(error / force)) if force > 0 else float("nan")
+    return ReadingStep(
+        file,
+        f"{count_of(lost, 'row')} lost, {100 * part:.2g} %",
+        "filled: positions by the curve through their neighbours, commands by the line between",
+        f"adds at most {100 * size:.2g} % of the force; positions there err by "
+        + " and ".join(positions),
+        size,
+        "lost rows",
+        (("lost", float(lost)), ("part", part), ("force_error", size)),
+    )

@@ -1,0 +1,23 @@
+"""What was done to a log when it was read, as findings: lost rows, uneven stamps, wraps, pauses."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from ...finding import Finding
+from ..record import Record
+
+#: part of the force that reading a log may add to the force error, from which it needs care: a
+#: tenth of what a plain friction model leaves on the recordings of `fetch`
+CARE = 0.02
+
+
+def check_reading(record: Record) -> list[Finding]:
+    """The steps of reading one record."""
+    findings = []
+    for step in record.reading:
+        concern: Literal["note", "warning"] = "warning" if step.size > CARE else "note"
+        effect = "" if step.effect == "none" else f" ({step.effect})"
+        sentence = f"{step.observed}: {step.rule}{effect}."
+        findings.append(Finding(step.topic, concern, sentence, dict(step.numbers), record.file))
+    return findings

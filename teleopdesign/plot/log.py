@@ -1,0 +1,52 @@
+"""What `teleopdesign new` understood of a log: every channel over time, and force over velocity."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ..measurement.experiment import Experiment
+from ..measurement.first_guess import motion_columns
+from ..measurement.survey import Survey
+from ..quantity import unit_of
+
+#: points of a line: more are not seen
+_POINTS = 4000
+_KINDS = {"actuator_force": "force", "interaction_force": "force"}
+
+
+def draw_survey(survey: Survey, experiment: Experiment) -> Figure:
+    """The channels as they will be used, fit and check records in shades; SI units."""
+    keys = [k for k in experiment.channels if experiment.channels[k].body is not None]
+    figure = Figure(figsize=(9.0, 1.7 * len(keys) + 2.6), layout="constrained")
+    grid = figure.add_gridspec(len(keys) + 1, 1, height_ratios=[1.0] * len(keys) + [1.5])
+    first = None
+    for row, key in enumerate(keys):
+        axes = figure.add_subplot(grid[row], sharex=first)
+        first = first or axes
+        channel = experiment.channels[key]
+        kind = _KINDS.get(channel.quantity, channel.quantity)
+        for record in experiment.records:
+            some = slice(None, None, max(1, len(record.time) // _POINTS))
+            shade = "tab:blue" if record.use == "fit" else "tab:orange"
+            axes.plot(record.time[some], record.signals[key][some], lw=0.7, color=shade)
+        axes.set_ylabel(f"{channel.quantity.replace('_', ' ')}\n({unit_of(kind, survey.axis)})")
+        axes.set_title(f'column "{channel.column}" in {channel.unit}', fontsize=9, loc="left")
+    if first is not None:
+        figure.axes[len(keys) - 1].set_xlabel("time (s); blue: fit, orange: check")
+    axes = figure.add_subplot(grid[len(keys)])
+    body = next(iter(experiment.bodies))
+    record = experiment.fit_records[0]
+    rows = max(record.segments, key=lambda s: s.stop - s.start)
+    velocity, _, _ = motion_columns(record.signals[f"{body}.position"][rows], record.sample_time)
+    some = slice(None, None, max(1, len(velocity) // _POINTS))
+    force = record.signals[f"{body}.actuator_force"][rows]
+    axes.plot(velocity[some], force[some], ".", ms=2, color="0.5")
+    if survey.first is not None:
+        v = np.linspace(velocity.min(), velocity.max(), 401)
+        line = survey.first.level * np.sign(v) + survey.first.damping * v
+        axes.plot(v, line, lw=1.5, color="tab:red", label="friction of the first guess")
+        axes.legend(frameon=False, fontsize=8)
+    axes.set_xlabel(f"velocity ({unit_of('velocity', survey.axis)})")
+    axes.set_ylabel(f"actuator force ({unit_of('force', survey.axis)})")
+    return figure

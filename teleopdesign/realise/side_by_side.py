@@ -1,0 +1,179 @@
+"""Many simulations of one structure side by side: blocks of lanes over all cores.
+
+A block runs without Python's lock, in the same loop and on the same laws as one simulation
+(`integrator.py`); blocks share nothing that is written. Numbers differ from those of one simulation
+by rounding: exp is another one (`lane_exp.py`).
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from .kernel import (
+    Loop,
+    Program,
+    Timing,
+    fastest_rates,
+    first_memory,
+    grid,
+    loop_of,
+    slopes_at_rest,
+)
+
+#: lanes of a block: 8 take twice the time a lane, 32 gain a tenth and need more cases to be full
+LANES = 16
+
+#: reduction -> number by which the loop knows it (`integrator.keep`), and where it starts
+KINDS: Mapping[str, tuple[int, float]] = {
+    "final": (0, 0.0),
+    "maximum": (1, -np.inf),
+    "minimum": (2, np.inf),
+    "peak": (3, 0.0),
+    "mean": (4, 0.0),
+    "rms": (5, 0.0),
+    "energy": (6, 0.0),
+}
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """A number that stands for a signal over time.
+
+    kind: of `KINDS`;  column: of the program;  other: for "energy" the column of the velocity
+    """
+
+    kind: str
+    column: int
+    other: int = 0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What simulations side by side give, case by case.
+
+    kept: (cases, rows, columns asked for);  reduced: (cases, reductions)
+    worst: measure of the reload of bristles (see `kernel`);  is_finite: all signals stayed so
+    """
+
+    kept: np.ndarray
+    reduced: np.ndarray
+    worst: np.ndarray
+    is_finite: np.ndarray
+
+
+def workers() -> int:
+    """Threads that compute: as many as cores, or NUMBA_NUM_THREADS."""
+    given = os.environ.get("NUMBA_NUM_THREADS", "")
+    return int(given) if given.isdigit() and int(given) else len(os.sched_getaffinity(0))
+
+
+def lanes_of(made: Program) -> Loop:
+    """The loop of this program for a block of lanes."""
+    return loop_of(made.laws, LANES)
+
+
+def rates_of_cases(made: Program, parameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Fastest rate at rest (1/s) of each case and the state that takes part in it most.
+
+    parameters: (cases, parameters of the layout)
+    """
+    loop = lanes_of(made)
+    if not made.layout.states:
+        return np.zeros(len(parameters)), np.zeros(len(parameters), dtype=int)
+    found = [
+        fastest_rates(slopes_at_rest(made, loop, _in_lanes(parameters[first : first + LANES])))
+        for first in range(0, len(parameters), LANES)
+    ]
+    rates, states = (np.concatenate(part)[: len(parameters)] for part in zip(*found, strict=True))
+    return rates, states
+
+
+def execute_many(
+    made: Program,
+    parameters: np.ndarray,
+    timing: Timing,
+    *,
+    inputs: np.ndarray,
+    sampled: np.ndarray,
+    start: Mapping[str, float],
+    kept: Sequence[int],
+    reductions: Sequence[Reduction],
+    begin: int,
+) -> Outcome:
+    """Run all cases on one grid.
+
+    parameters: (cases, parameters of the layout);  inputs, sampled: as `kernel.execute`, for all
+    kept: columns whose rows are asked for;  begin: first row that is reduced
+    """
+    loop, cases, rows = lanes_of(made), len(parameters), timing.samples + 1
+    first_column = made.functions["COLUMNS"]
+    columns, others = (
+        LANES * (first_column + np.array([getattr(r, of) for r in reductions], dtype=np.int64))
+        for of in ("column", "other")
+    )
+    kinds = np.array([KINDS[r.kind][0] for r in reductions], dtype=np.int64)
+    starts = np.repeat([KINDS[r.kind][1] for r in reductions], LANES).astype(float)
+    rows_kept = LANES * (first_column + np.array(kept, dtype=np.int64))
+    worst_rows = made.functions["WORST"] + np.arange(len(made.layout.exponential))
+    found = Outcome(
+        np.empty((cases, rows, len(kept))),
+        np.empty((cases, len(reductions))),
+        np.empty(cases),
+        np.empty(cases, dtype=bool),
+    )
+
+    def block(first: int) -> None:
+        here = slice(first, min(first + LANES, cases))
+        used = here.stop - first
+        memory, results = first_memory(made, LANES, start), starts.copy()
+        out = np.empty(rows * len(kept) * LANES)
+        loop.run(
+            *grid(made, timing, LANES),
+            False,
+            _in_lanes(parameters[here]),
+            inputs,
+            sampled,
+            memory,
+            rows_kept,
+            out,
+            begin,
+            kinds,
+            columns,
+            others,
+            results,
+        )
+        table = memory.reshape(-1, LANES)[:, :used]
+        found.kept[here] = np.moveaxis(out.reshape(rows, len(kept), LANES), -1, 0)[:used]
+        found.reduced[here] = results.reshape(-1, LANES)[:, :used].T
+        found.worst[here] = table[worst_rows].max(axis=0, initial=0.0)
+        found.is_finite[here] = np.isfinite(table[made.functions["SPOILED"]])
+
+    firsts = range(0, cases, LANES)
+    if len(firsts) == 1 or workers() == 1:
+        for first in firsts:
+            block(first)
+    else:
+        with ThreadPoolExecutor(workers()) as threads:
+            list(threads.map(block, firsts))
+    for i, reduction in enumerate(reductions):
+        found.reduced[:, i] = _scaled(reduction.kind, found.reduced[:, i], rows - begin, timing)
+    return found
+
+
+def _in_lanes(parameters: np.ndarray) -> np.ndarray:
+    """Parameters of at most a block of cases, row by row; empty lanes repeat the last case."""
+    lanes = np.minimum(np.arange(LANES), len(parameters) - 1)
+    return np.ascontiguousarray(parameters[lanes].T).reshape(-1)
+
+
+def _scaled(kind: str, sums: np.ndarray, rows: int, timing: Timing) -> np.ndarray:
+    if kind == "mean":
+        return sums / rows
+    if kind == "rms":
+        return np.sqrt(sums / rows)
+    return sums * timing.period if kind == "energy" else sums

@@ -1,0 +1,192 @@
+"""Parameter sets of one diagram as numbers for its compiled laws, grouped by structure.
+
+What is simulated is not the diagram as it is given: absent effects are left out, ideal friction
+gets a little give, controllers take their sampled form. So cases fall into groups, by which
+effects their values switch off, and some numbers of the simulated form follow from several given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..blocks import Body
+from ..controllers import Controller
+from ..diagrams import Control, Diagram
+from ..errors import ModelError, did_you_mean
+
+#: relative change of a value that shows which simulated numbers follow from it
+_CHANGE = 1e-3
+
+
+@dataclass(frozen=True)
+class Group:
+    """Cases of one structure.
+
+    cases: their numbers;  diagram: the diagram at the first of them
+    """
+
+    cases: np.ndarray
+    diagram: Diagram
+
+
+def columns_of(diagram: Diagram, values: Mapping[str, ArrayLike]) -> dict[str, np.ndarray]:
+    """The values as one array (cases,) for each parameter, single numbers repeated.
+
+    raises ModelError: no such parameter, arrays of different lengths, no numbers
+    """
+    known = diagram.values
+    for name in values:
+        if name not in known:
+            raise ModelError(f'{diagram.name}: no parameter "{name}"{did_you_mean(name, known)}')
+    arrays: dict[str, np.ndarray] = {}
+    for name, value in values.items():
+        try:
+            arrays[name] = np.asarray(value, dtype=float)
+        except (TypeError, ValueError):
+            raise ModelError(f"simulate_many: {name}: expected numbers, found {value!r}") from None
+        if arrays[name].ndim > 1:
+            raise ModelError(
+                f"simulate_many: {name}: expected one number a case, found an array of shape "
+                f"{arrays[name].shape}"
+            )
+    lengths = {name: len(a) for name, a in arrays.items() if a.ndim}
+    cases = max(lengths.values(), default=1)
+    for name, length in lengths.items():
+        if length not in (1, cases) or length == 0:
+            longest = max(lengths, key=lambda n: lengths[n])
+            raise ModelError(
+                f"simulate_many: {name} has {length} values, {longest} has {cases}: "
+                "expected as many"
+            )
+    return {name: np.array(np.broadcast_to(a, (cases,))) for name, a in arrays.items()}
+
+
+def refused(diagram: Diagram, columns: Mapping[str, np.ndarray]) -> dict[int, str]:
+    """Case -> why the diagram does not take its values."""
+    suspect = np.zeros(_cases(columns), dtype=bool)
+    for name, column in columns.items():
+        lower, upper = _bounds(diagram, name)
+        suspect |= ~((column >= lower) & (column <= upper))
+    found = {}
+    for case in np.flatnonzero(suspect):
+        try:
+            at_case(diagram, columns, int(case))
+        except ModelError as error:
+            found[int(case)] = str(error)
+    return found
+
+
+def at_case(diagram: Diagram, columns: Mapping[str, np.ndarray], case: int) -> Diagram:
+    """The diagram with the values of one case."""
+    return diagram.with_values({name: float(column[case]) for name, column in columns.items()})
+
+
+def groups(
+    diagram: Diagram, columns: Mapping[str, np.ndarray], cases: np.ndarray
+) -> Iterator[Group]:
+    """The cases by structure: by which values leave an effect or an optional parameter out."""
+    flags = [
+        column[cases] == off for name, column in columns.items() for off in _off(diagram, name)
+    ]
+    table = np.array(flags, dtype=bool).reshape(len(flags), len(cases))
+    _, which = np.unique(table, axis=1, return_inverse=True)
+    which = np.broadcast_to(which.reshape(-1), (len(cases),))
+    for group in np.unique(which):
+        members = cases[which == group]
+        yield Group(members, at_case(diagram, columns, int(members[0])))
+
+
+def simulated_values(
+    group: Group,
+    columns: Mapping[str, np.ndarray],
+    form: Callable[[Diagram], Diagram],
+    names: tuple[str, ...],
+) -> tuple[np.ndarray, dict[int, str]]:
+    """Numbers of the simulated form for each case of the group, and cases that have none.
+
+    form: diagram -> the one that is simulated;  names: of its parameters
+    returns: (cases, names), NaN where there is no simulated form; number of the case -> reason
+    """
+    base = form(group.diagram).values
+    reasons: dict[int, str] = {}
+    out = np.tile(np.array([base[n] for n in names], dtype=float), (len(group.cases), 1))
+    given = group.diagram.values
+    sources: dict[str, list[str]] = {}  # number of the simulated form -> values it follows from
+    for name, column in columns.items():
+        if np.ptp(column[group.cases]) == 0.0:
+            continue
+        changed = _changed(group.diagram, name)
+        other = form(changed).values
+        moved = [n for n in names if other.get(n, base[n]) != base[n]]
+        for n in moved:
+            sources.setdefault(n, []).append(name)
+    derived: dict[tuple[str, ...], list[str]] = {}
+    for n, follows in sources.items():
+        if follows == [n] and base[n] == given[n]:
+            out[:, names.index(n)] = columns[n][group.cases]
+        else:
+            derived.setdefault(tuple(follows), []).append(n)
+    for from_, many in derived.items():
+        # each different set of values once: a sweep often repeats them
+        sets = np.column_stack([columns[n][group.cases] for n in from_])
+        different, which = np.unique(sets, axis=0, return_inverse=True)
+        at = [names.index(n) for n in many]
+        for k, row in enumerate(different):
+            here = np.flatnonzero(which.reshape(-1) == k)
+            try:
+                given_here = dict(zip(from_, map(float, row), strict=True))
+                there = form(group.diagram.with_values(given_here)).values
+                out[np.ix_(here, np.array(at))] = [there[n] for n in many]
+            except ModelError as error:
+                out[np.ix_(here, np.array(at))] = np.nan
+                reasons |= {int(case): str(error) for case in group.cases[here]}
+    return out, reasons
+
+
+def _cases(columns: Mapping[str, np.ndarray]) -> int:
+    return len(next(iter(columns.values()))) if columns else 1
+
+
+def _changed(diagram: Diagram, name: str) -> Diagram:
+    """The diagram with one value a little off, within its bounds."""
+    value, (lower, upper) = diagram.values[name], _bounds(diagram, name)
+    more = value + _CHANGE * (abs(value) or 1.0)
+    less = value - _CHANGE * (abs(value) or 1.0)
+    return diagram.with_values({name: float(more if lower <= more <= upper else less)})
+
+
+def _bounds(diagram: Diagram, name: str) -> tuple[float, float]:
+    """Least and largest value of a parameter; infinite where its block knows none."""
+    block_name, _, own = name.partition(".")
+    block = diagram.block(block_name)
+    if isinstance(block, Control):
+        if isinstance(block.controller, Controller):
+            law, _, parameter = own.partition(".")
+            for stage in block.controller.stages:
+                if stage.name == law and parameter in stage.law.parameters:
+                    declared = stage.law.parameters[parameter]
+                    return declared.lower, declared.upper
+    elif isinstance(block.body, Body):
+        declared = block.body.parameter(own)
+        return declared.lower, declared.upper
+    return -np.inf, np.inf
+
+
+def _off(diagram: Diagram, name: str) -> list[float]:
+    """Values of a parameter at which something is left out of the equations."""
+    block_name, _, own = name.partition(".")
+    body = getattr(diagram.block(block_name), "body", None)
+    if not isinstance(body, Body):
+        return []
+    effect_name, _, parameter = own.partition(".")
+    found = []
+    for effect in body.effects:
+        if effect.name == effect_name:
+            found += [v for n, v in effect.absent.items() if n == parameter]
+            if effect.parameters[parameter].optional:
+                found.append(0.0)
+    return sorted(set(found))

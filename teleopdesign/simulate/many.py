@@ -1,0 +1,356 @@
+"""Simulate a diagram for many parameter sets at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..diagrams import Diagram
+from ..errors import ModelError, did_you_mean
+from .cases import Group, columns_of, groups, refused, simulated_values
+from .sampling import SAMPLED, Sampling
+from .setup import MOST_NUMBERS, Input, Setup, prepare, samples_of, simulated_form
+from .trajectory import Trajectory
+from .units import signal_units
+
+if TYPE_CHECKING:
+    import xarray
+
+    from ..realise.side_by_side import Reduction
+
+#: what `reduce` knows, with the words of the result
+REDUCTIONS = {
+    "final": "last value",
+    "maximum": "largest value",
+    "minimum": "least value",
+    "peak": "largest size",
+    "mean": "mean",
+    "rms": "root mean square",
+    "energy": "energy that flows in at the port",
+}
+
+
+def simulate_many(
+    diagram: Diagram,
+    values: Mapping[str, ArrayLike],
+    *,
+    duration: float,
+    inputs: Mapping[str, Input] | None = None,
+    motion: Mapping[str, Trajectory] | None = None,
+    initial: Mapping[str, float] | None = None,
+    computer: Sampling | Literal["continuous"] = SAMPLED,
+    step: float = 1e-4,
+    give: float = 1e-5,
+    long_step: Literal["refine", "refuse"] = "refine",
+    keep: Sequence[str] = (),
+    reduce: Mapping[str, tuple[Any, str]] | None = None,
+    after: float = 0.0,
+) -> xarray.Dataset:
+    """Simulate every parameter set from t = 0, many side by side on all cores.
+
+    values: parameter, such as "Z_m.coulomb.level" (the names of `Diagram.values`) -> its value in
+        each case (SI), shape (n,), or one number for all
+    keep: signals whose samples are kept, over `case` and `time`; none by default, so that memory
+        does not grow with the duration
+    reduce: name of a result -> (signal, what): "final", "maximum", "minimum", "peak" (largest
+        size), "mean" or "rms" over the samples; or ((force, motion), "energy"), the energy (J) that
+        the force has done on the motion. Default: the rms of every signal as "SIGNAL_rms" where
+        nothing is kept, else none
+    after: start of what is reduced, s
+    other arguments: as in `simulate`, for all cases
+    returns: variables over `case`; coordinates: the values, `step` (s) that each case took, and
+        `reason` why a case has no numbers (they are NaN then), "" where it has. A case that fails
+        does not touch the others
+    raises ModelError: no such parameter or signal, arrays of different lengths, more samples kept
+        than 2 GB; what fails in every case
+    """
+    columns = columns_of(diagram, values)
+    cases = len(next(iter(columns.values()))) if columns else 1
+    study = _Study(
+        diagram,
+        columns,
+        dict(
+            duration=duration,
+            inputs=inputs,
+            motion=dict(motion or {}),
+            initial=initial,
+            computer=computer,
+            step=step,
+            give=give,
+        ),
+        long_step,
+        tuple(keep),
+        None if reduce is None else dict(reduce),
+        after,
+    )
+    result = _Result(cases)
+    period = (SAMPLED if isinstance(computer, str) else computer).period
+    result.open_rows(samples_of(duration, period), period, study.keep)
+    result.refuse(refused(diagram, columns))
+    first_error: ModelError | None = None
+    for group in groups(diagram, columns, np.flatnonzero(result.open)):
+        try:
+            study.run(group, result)
+        except _Mistake as error:
+            raise ModelError(str(error)) from None
+        except ModelError as error:
+            first_error = first_error or error
+            result.refuse(dict.fromkeys(map(int, group.cases), str(error)))
+    if first_error is not None and not np.isfinite(result.steps).any():
+        raise first_error
+    return result.labelled(study)
+
+
+class _Mistake(ModelError):
+    """What is asked for is wrong, whatever the values."""
+
+
+@dataclass
+class _Study:
+    """What is simulated and what is wanted of it."""
+
+    diagram: Diagram
+    columns: Mapping[str, np.ndarray]
+    arguments: dict[str, Any]
+    long_step: Literal["refine", "refuse"]
+    keep: tuple[str, ...]
+    reduce: dict[str, tuple[Any, str]] | None
+    after: float
+
+    def wanted(self, columns: Sequence[str]) -> dict[str, tuple[Any, str]]:
+        """The reductions, with the default in place."""
+        if self.reduce is None:
+            return {} if self.keep else {f"{name}_rms": (name, "rms") for name in columns}
+        return self.reduce
+
+    def run(self, group: Group, result: _Result) -> None:
+        """Simulate the cases of one structure."""
+        from ..realise.side_by_side import rates_of_cases
+
+        setup = prepare(group.diagram, **self.arguments)
+        layout, equations = setup.program.layout, setup.program.equations
+        kept, reductions = self._columns(setup)
+        free = {x for _, delay in equations.late.values() for x in delay.free_symbols}
+        late = tuple(equations.parameters[x] for x in sorted(free, key=str))
+        numbers, reasons = simulated_values(
+            group, self.columns, self._form, layout.parameters + late
+        )
+        result.refuse(reasons)
+        many = len(layout.parameters)
+        rates, states = rates_of_cases(setup.program, numbers[:, :many])
+        delays = _delays(setup, late, numbers[:, many:])
+        todo: dict[tuple[int, tuple[float, ...]], list[int]] = {}
+        for k, case in enumerate(group.cases):
+            if not result.open[case]:
+                continue
+            state = layout.states[states[k]] if layout.states else ""
+            try:
+                inner = setup.first_inner(float(rates[k]), state, self.long_step)
+                setup.timing(inner, delays[k])
+            except ModelError as error:
+                result.refuse({int(case): str(error)})
+                continue
+            todo.setdefault((inner, delays[k]), []).append(k)
+        while todo:
+            # the longest step first: what has to be refined may join cases that begin finer
+            key = min(todo)
+            for k, finer in self._run_grid(
+                setup, group, numbers[:, :many], key, todo.pop(key), kept, reductions, result
+            ):
+                todo.setdefault((finer, key[1]), []).append(k)
+
+    def _run_grid(
+        self,
+        setup: Setup,
+        group: Group,
+        numbers: np.ndarray,
+        key: tuple[int, tuple[float, ...]],
+        members: list[int],
+        kept: dict[str, int],
+        reductions: dict[str, Reduction],
+        result: _Result,
+    ) -> list[tuple[int, int]]:
+        """Run cases on one grid; returns those that need a finer one, with its steps a sample."""
+        from ..realise.side_by_side import execute_many
+
+        timing = setup.timing(*key)
+        setup.check_size(timing)
+        begin = min(round(self.after / timing.period), timing.samples)
+        found = execute_many(
+            setup.program,
+            numbers[members],
+            timing,
+            kept=list(kept.values()),
+            reductions=list(reductions.values()),
+            begin=begin,
+            **setup.arguments(timing),
+        )
+        finer: list[tuple[int, int]] = []
+        done = np.zeros(len(members), dtype=bool)
+        for i, k in enumerate(members):
+            case = int(group.cases[k])
+            try:
+                inner = setup.next_inner(
+                    timing, float(found.worst[i]), bool(found.is_finite[i]), self.long_step
+                )
+            except ModelError as error:
+                result.refuse({case: str(error)})
+                continue
+            if inner == timing.inner:
+                done[i] = True
+            else:
+                finer.append((k, inner))
+        where = group.cases[np.array(members)[done]]
+        result.steps[where] = timing.step
+        for j, name in enumerate(kept):
+            result.rows[name][where] = found.kept[done, :, j]
+        for j, name in enumerate(reductions):
+            result.numbers.setdefault(name, np.full(len(result.open), np.nan))
+            result.numbers[name][where] = found.reduced[done, j]
+        return finer
+
+    def _form(self, diagram: Diagram) -> Diagram:
+        a = self.arguments
+        return simulated_form(diagram, motion=a["motion"], computer=a["computer"], give=a["give"])
+
+    def _columns(self, setup: Setup) -> tuple[dict[str, int], dict[str, Reduction]]:
+        """Columns of what is kept and reduced, where this structure has them."""
+        from ..realise.side_by_side import Reduction
+
+        layout = setup.program.layout
+        names = layout.columns
+
+        def column(name: Any, where: str) -> int | None:
+            if name in names:
+                return names.index(name)
+            # a hidden state of an effect that is absent in these cases is there in others
+            if any(
+                isinstance(name, str) and name.startswith(f"{b.name}_") for b in self.diagram.blocks
+            ):
+                return None
+            raise _Mistake(
+                f'simulate_many: {where}: no signal "{name}", has {", ".join(names)}'
+                f"{did_you_mean(str(name), names)}"
+            )
+
+        kept = {name: column(name, "keep") for name in self.keep}
+        reductions: dict[str, Reduction] = {}
+        for name, what in self.wanted(names).items():
+            signal, kind = _reduction(name, what)
+            if (
+                name in self.keep
+                or name in self.columns
+                or name in ("case", "time", "step", "reason")
+            ):
+                raise _Mistake(
+                    f'simulate_many: reduce: "{name}" is taken: call the result otherwise'
+                )
+            if kind == "energy":
+                force, motion = signal
+                first, other = column(force, name), column(f"{motion}_velocity", name)
+            else:
+                first = other = column(signal, name)
+            if first is not None and other is not None:
+                reductions[name] = Reduction(kind, first, other)
+        return {n: i for n, i in kept.items() if i is not None}, reductions
+
+
+def _reduction(name: str, what: Any) -> tuple[Any, str]:
+    """(signal, what), or ((force, motion), "energy")."""
+    expected = 'expected (signal, "rms") or ((force, motion), "energy")'
+    if not (isinstance(what, tuple) and len(what) == 2):
+        raise _Mistake(f"simulate_many: reduce: {name}: found {what!r}, {expected}")
+    signal, kind = what
+    if kind not in REDUCTIONS:
+        raise _Mistake(
+            f'simulate_many: reduce: {name}: no reduction "{kind}", has {", ".join(REDUCTIONS)}'
+            f"{did_you_mean(str(kind), REDUCTIONS)}"
+        )
+    is_port = isinstance(signal, tuple) and len(signal) == 2
+    if is_port != (kind == "energy"):
+        raise _Mistake(f"simulate_many: reduce: {name}: found {what!r}, {expected}")
+    return signal, kind
+
+
+def _delays(setup: Setup, names: tuple[str, ...], numbers: np.ndarray) -> list[tuple[float, ...]]:
+    """Delay of each late signal in each case, s."""
+    equations = setup.program.equations
+    if not equations.late:
+        return [()] * len(numbers)
+    symbols = {name: x for x, name in equations.parameters.items()}
+    different, which = np.unique(numbers, axis=0, return_inverse=True)
+    found = []
+    for row in different:
+        at = {symbols[name]: float(x) for name, x in zip(names, row, strict=True)}
+        found.append(tuple(float(delay.subs(at)) for _, delay in equations.late.values()))
+    return [found[i] for i in which.reshape(-1)]
+
+
+class _Result:
+    """Numbers of all cases as they come."""
+
+    def __init__(self, cases: int) -> None:
+        self.open: np.ndarray = np.ones(cases, dtype=bool)
+        self.reasons = [""] * cases
+        self.steps: np.ndarray = np.full(cases, np.nan)
+        self.rows: dict[str, np.ndarray] = {}
+        self.numbers: dict[str, np.ndarray] = {}
+        self.time: np.ndarray = np.zeros(0)
+
+    def refuse(self, reasons: Mapping[int, str]) -> None:
+        for case, reason in reasons.items():
+            self.open[case] = False
+            self.reasons[case] = reason
+
+    def open_rows(self, samples: int, period: float, names: Sequence[str]) -> None:
+        """Room for the samples that are kept."""
+        if not names:
+            return
+        cases, rows = len(self.open), samples + 1
+        if (numbers := cases * rows * len(names)) > MOST_NUMBERS:
+            raise ModelError(
+                f"simulate_many: keep: {len(names)} signals of {cases} cases with {rows} samples "
+                f"need {8e-9 * numbers:.2g} GB: keep fewer, or reduce them"
+            )
+        self.time = period * np.arange(rows)
+        self.rows = {name: np.full((cases, rows), np.nan) for name in names}
+
+    def labelled(self, study: _Study) -> xarray.Dataset:
+        import xarray
+
+        units, texts = signal_units(study.diagram), study.diagram.texts
+        data: dict[str, Any] = {
+            name: (("case", "time"), rows, {"units": units(name), "text": texts.get(name, "")})
+            for name, rows in self.rows.items()
+        }
+        for name, (signal, kind) in self._reduced(study).items():
+            unit = "J" if kind == "energy" else units(signal)
+            text = f"{REDUCTIONS[kind]} of {' on '.join(signal) if kind == 'energy' else signal}"
+            empty = np.full(len(self.open), np.nan)
+            numbers = self.numbers.get(name, empty)
+            data[name] = ("case", numbers, {"units": unit, "text": text})
+        coordinates: dict[str, Any] = {
+            "case": np.arange(len(self.open)),
+            "reason": ("case", np.array(self.reasons, dtype=str)),
+            "step": ("case", self.steps, {"units": "s", "text": "inner step of the simulation"}),
+        }
+        coordinates |= {name: ("case", column) for name, column in study.columns.items()}
+        if self.rows:
+            coordinates["time"] = ("time", self.time, {"units": "s"})
+        attributes = {
+            "diagram": study.diagram.name,
+            "scheme": "exponential Runge-Kutta of order 4",
+            "duration_s": study.arguments["duration"],
+        }
+        fixed = {n: v for n, v in study.diagram.values.items() if n not in study.columns}
+        attributes |= {f"parameter {n}": v for n, v in fixed.items()}
+        return xarray.Dataset(data, coordinates, attributes)
+
+    def _reduced(self, study: _Study) -> dict[str, tuple[Any, str]]:
+        if study.reduce is not None or study.keep:
+            return study.wanted(())
+        return {name: (name.removesuffix("_rms"), "rms") for name in self.numbers}

@@ -1,0 +1,135 @@
+"""Points of a study simulated side by side: many lanes of one compiled loop.
+
+This is for measures of the package that say which signals they need; a user's function is given a
+whole simulation, one point at a time. Points are put into blocks by their numbers alone, so that
+the same ones are side by side wherever and whenever they are computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import GrowsWithoutBound, ModelError, TeleopDesignError
+from ..simulate import Simulation, simulate_many
+from .case import SimulatedCase
+from .evaluate import Task, evaluate, outcome_of
+from .journal import Outcome
+from .measures import Point
+
+if TYPE_CHECKING:
+    import xarray
+
+#: points that are computed, and kept, together
+Unit = tuple[int, ...]
+
+#: steps of all simulations of a block: about half a second, which is what a kill can cost
+_STEPS_OF_BLOCK = 8e6
+#: numbers that the signals of a block hold: 0.2 GB
+_NUMBERS_OF_BLOCK = 2e7
+_LEAST_IN_BLOCK, _MOST_IN_BLOCK = 16, 512
+
+
+def units_of(task: Task, todo: Iterable[int]) -> list[Unit]:
+    """The points in blocks where they can be simulated side by side, else one by one.
+
+    A block holds all of its points, also those that are not asked for.
+    """
+    size = block_size(task)
+    if size == 1:
+        return [(i,) for i in todo]
+    firsts = sorted({i - i % size for i in todo})
+    return [tuple(range(first, min(first + size, len(task.points)))) for first in firsts]
+
+
+def block_size(task: Task) -> int:
+    """Points of a block; 1 where points cannot be simulated side by side."""
+    case, signals = task.model, signals_of(task)
+    if not isinstance(case, SimulatedCase) or not signals or case.every_step or not case.duration:
+        return 1
+    varied = [n for n in task.points.columns if n in case.diagram.values]
+    is_number = all(c.values.dtype.kind in "biuf" for c in task.points.columns.values())
+    if not varied or not is_number:
+        return 1
+    period = 1e-3 if isinstance(case.computer, str) else case.computer.period
+    by_steps = _STEPS_OF_BLOCK * min(case.step, period) / case.duration
+    by_memory = _NUMBERS_OF_BLOCK * period / (case.duration * len(signals))
+    size = 16 * int(min(by_steps, by_memory) / 16)
+    return max(_LEAST_IN_BLOCK, min(size, _MOST_IN_BLOCK))
+
+
+def signals_of(task: Task) -> tuple[str, ...]:
+    """Signals that the measures need; none where one of them may need anything."""
+    listed = [m.signals for m in task.measures]
+    return () if not all(listed) else tuple(dict.fromkeys(s for one in listed for s in one))
+
+
+def evaluate_unit(task: Task, unit: Unit) -> list[Outcome]:
+    """What becomes of the points of a unit."""
+    if len(unit) == 1:
+        return [evaluate(task, unit[0])]
+    assert isinstance(task.model, SimulatedCase)
+    table = task.points.table(unit[0], unit[-1] + 1)
+    values = task.model.diagram.values
+    within = [n for n in table if n in values]
+    beside = [n for n in table if n not in values]
+    groups: dict[tuple[float, ...], list[int]] = {}
+    for row in range(len(unit)):
+        groups.setdefault(tuple(table[n][row].item() for n in beside), []).append(row)
+    outcomes: dict[int, Outcome] = {}
+    for content, rows in groups.items():
+        chosen = np.array(rows)
+        columns = {n: table[n][chosen] for n in within}
+        others = dict(zip(beside, content, strict=True))
+        try:
+            signals = _simulated(task, columns, others)
+        except TeleopDesignError:
+            # what is wrong with all of them: each says its own reason
+            outcomes |= {unit[row]: evaluate(task, unit[row]) for row in rows}
+            continue
+        for k, row in enumerate(rows):
+            point = _point(task, unit[row], k, signals)
+            outcomes[unit[row]] = outcome_of(task, unit[row], point)
+    return [outcomes[index] for index in unit]
+
+
+def _simulated(
+    task: Task, columns: dict[str, np.ndarray], others: dict[str, float]
+) -> xarray.Dataset:
+    """Signals of one group over `case` and `time`."""
+    assert isinstance(task.model, SimulatedCase)
+    case = task.model.with_values({**task.points.fixed, **others})
+    return simulate_many(
+        case.diagram,
+        columns,
+        duration=case.duration,
+        inputs=case.inputs,
+        motion=case.motion,
+        initial=case.initial,
+        computer=case.computer,
+        step=case.step,
+        give=case.give,
+        keep=signals_of(task),
+    )
+
+
+def _point(task: Task, index: int, row: int, signals: xarray.Dataset) -> Callable[[], Point]:
+    """What makes the point, whose simulation is a row of the block."""
+
+    def simulated() -> Simulation:
+        import xarray
+
+        assert isinstance(task.model, SimulatedCase)
+        if reason := str(signals["reason"].values[row]):
+            words = GrowsWithoutBound.words
+            raise GrowsWithoutBound(reason) if words in reason else ModelError(reason)
+        time = signals["time"].variable
+        data: dict[str, Any] = {
+            str(name): xarray.Variable("time", rows.values[row], rows.attrs)
+            for name, rows in signals.data_vars.items()
+        }
+        return Simulation(task.model.diagram, xarray.Dataset(data, {"time": time}))
+
+    return lambda: Point(task.model, task.points.at(index), (task.seed, index), simulated)

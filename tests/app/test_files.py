@@ -1,0 +1,51 @@
+"""The page opens and writes inside its folder alone."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from teleopdesign.app import files
+from teleopdesign.errors import ExperimentError
+
+
+def test_experiments_and_logs_are_found_below_the_folder(tmp_path):
+    for name in ("rod", "day/one", "a/b/deep"):
+        (tmp_path / name).mkdir(parents=True)
+        (tmp_path / name / "experiment.toml").write_text("")
+    (tmp_path / "log.csv").write_text("t\n")
+    (tmp_path / "notes.md").write_text("")
+    assert set(files.experiments_in(tmp_path)) == {"rod", "day/one"}
+    assert files.logs_in(tmp_path) == ("log.csv",)
+
+
+def test_links_that_lead_out_of_the_folder_are_not_followed(tmp_path):
+    outside, folder = tmp_path / "outside", tmp_path / "folder"
+    outside.mkdir()
+    folder.mkdir()
+    (outside / "experiment.toml").write_text("")
+    (outside / "log.csv").write_text("")
+    (folder / "link").symlink_to(outside)
+    (folder / "log.csv").symlink_to(outside / "log.csv")
+    assert files.experiments_in(folder) == () and files.logs_in(folder) == ()
+    for name in ("../outside", "link", "/etc"):
+        with pytest.raises(ExperimentError, match="outside of folder"):
+            files.inside(folder, name)
+
+
+@given(name=st.text(max_size=40))
+def test_a_dropped_file_stays_in_its_folder_whatever_its_name(tmp_path_factory, name):
+    folder = tmp_path_factory.mktemp("page")
+    written = files.keep_dropped(folder, name + ".csv", b"t,x\n")
+    path = folder / written
+    assert path.read_bytes() == b"t,x\n"
+    assert path.resolve().parent == (folder / files.DROPPED).resolve()
+
+
+def test_no_file_is_written_over(tmp_path):
+    names = [files.keep_dropped(tmp_path, "log.csv", bytes([k])) for k in range(3)]
+    assert [(tmp_path / n).read_bytes() for n in names] == [b"\0", b"\1", b"\2"]
+
+
+def test_a_file_that_is_no_log_is_refused(tmp_path):
+    with pytest.raises(ExperimentError, match="'.py'"):
+        files.keep_dropped(tmp_path, "run.py", b"")

@@ -1,0 +1,40 @@
+"""Long work beside a page."""
+
+import threading
+
+from teleopdesign.app.task import Task
+from teleopdesign.errors import ModelError
+
+
+def test_the_result_is_there_once_the_work_is_done():
+    task = Task("counting", lambda say: sum(range(10)))
+    task.wait(10)
+    assert task.done and task.result == 45 and task.error == ""
+
+
+def test_work_stops_at_its_next_line_of_progress_once_cancelled():
+    begun, go_on = threading.Event(), threading.Event()
+
+    def work(say):
+        say("one")
+        begun.set()
+        go_on.wait(10)
+        say("two")
+        raise AssertionError("went on")
+
+    task = Task("long", work)
+    begun.wait(10)
+    assert task.progress == "one" and not task.done
+    task.cancel()
+    go_on.set()
+    task.wait(10)
+    assert task.done and task.error == "cancelled" and task.result is None
+
+
+def test_bad_input_becomes_one_line():
+    def work(say):
+        raise ModelError("model: no parameter")
+
+    task = Task("bad", work)
+    task.wait(10)
+    assert task.error == "model: no parameter"

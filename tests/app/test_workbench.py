@@ -1,0 +1,88 @@
+"""The workbench of the page: effects are added one at a time, and taken back."""
+
+import json
+
+import numpy as np
+import pytest
+
+from teleopdesign import example, load_experiment
+from teleopdesign.app import Workbench, charts, export, pages
+from teleopdesign.effects import EFFECTS
+from teleopdesign.errors import ModelError
+
+FEW = {name: EFFECTS[name] for name in ("coulomb", "viscous", "stribeck", "quadratic_drag")}
+
+
+@pytest.fixture(scope="module")
+def bench():
+    return Workbench.of(load_experiment(example("rod")), known=FEW)
+
+
+def test_a_candidate_is_added_with_the_error_that_it_was_listed_with(bench):
+    best = bench.candidates[0]
+    added = bench.add(*best.candidate.key)
+    assert best.candidate.effect.name == "stribeck"
+    assert added.state.fit.check_error == best.fit.check_error < 0.3 * bench.state.fit.check_error
+    assert added.model.effects[-1] == ("stribeck", "device")
+    assert not added.is_ranked and added.candidates == ()
+
+
+def test_what_was_added_can_be_taken_back(bench):
+    assert bench.add("stribeck", "device").take_back() == bench
+    with pytest.raises(ModelError, match="nothing was added"):
+        bench.take_back()
+
+
+def test_a_candidate_that_is_not_there_is_named_with_the_nearest(bench):
+    with pytest.raises(ModelError, match='no candidate "stribek at device".*stribeck at device'):
+        bench.add("stribek", "device")
+
+
+def test_after_the_missing_effect_no_candidate_is_supported_and_the_diagnosis_names_it(bench):
+    ranked = bench.add("stribeck", "device").rank()
+    assert ranked.is_ranked and ranked.state.supported == ()
+    by_itself = bench.go_on()
+    assert [r.added for r in by_itself.rungs] == [r.added for r in ranked.rungs]
+    diagnosis = ranked.diagnosis()
+    assert diagnosis.verdict == "effects_missing"
+    assert [c.key for c in diagnosis.missing] == [("stribeck", "device")]
+
+
+def test_the_chart_holds_the_samples_that_count_and_one_selection(bench):
+    data = pages.residuals(bench)
+    chart = charts.residual_chart(data, "device", "check")
+    kind, text = chart._mime_()
+    specification = json.loads(text)
+    assert kind.startswith("application/vnd.vegalite")
+    rows = specification["datasets"]["rows"]
+    count = data["counts"].values & (data["use"].values == "check")
+    assert 0.3 * charts.MOST < len(rows) <= charts.MOST
+    share = np.sqrt(np.mean([r["residual"] ** 2 for r in rows]))
+    every = np.sqrt(np.mean(data["residual"].values[count] ** 2))
+    assert share == pytest.approx(every, rel=0.1)  # thinned samples of the same residual
+    assert [p["name"] for p in specification["params"]] == ["span"]
+    assert len(specification["params"][0]["views"]) == 3
+
+
+def test_moving_a_parameter_shows_the_error_that_it_makes(bench):
+    name = "device.inertia"
+    there = bench.errors({name: bench.model.parameters[name].value})
+    assert there[1] == pytest.approx(bench.state.fit.check_error, rel=1e-9)
+    text = pages.moved(bench, name, 1.5)
+    assert (
+        f"{100 * bench.errors({name: 1.5 * bench.model.parameters[name].value})[1]:.2f} %" in text
+    )
+
+
+def test_the_script_repeats_the_steps(bench):
+    added = bench.add("stribeck", "device")
+    text = export.script(added, "FOLDER")
+    lines = [line for line in text.splitlines() if "with_effect" in line]
+    assert lines == ["model = model.with_effect('stribeck', at='device')"]
+    compile(text, "script.py", "exec")
+
+
+def test_the_ladder_lists_each_rung_with_its_errors(bench):
+    text = pages.ladder(bench.add("stribeck", "device"))
+    assert "your model, re-estimated" in text and "+ stribeck at device" in text
+    assert list(pages.rung_options(bench.add("stribeck", "device")).values()) == [0, 1]

@@ -1,0 +1,186 @@
+"""Place and time are judged over all records, segments, directions and turns together."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+from diagnose.made_records import write_made
+from hypothesis import given
+from hypothesis import strategies as st
+
+from teleopdesign import Model, find_missing, load_experiment
+from teleopdesign.diagnose.candidates import candidates, tells_place_from_time
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.effects import EFFECTS, depends_on_position, load_effect, period
+
+TURN = 2 * np.pi
+GRAVITY = '''"""Gravity: a pendulum."""
+from sympy import sin
+from teleopdesign.effects import Effect, FitSearch, Parameter
+
+def law(now, p):
+    return p.amplitude * sin(now.position + p.phase)
+
+EFFECT = Effect(
+    role="force", law=law, absent={"amplitude": 0.0},
+    parameters={
+        "amplitude": Parameter("force", "A", lower=-9e9, search=FitSearch(starts=(0.3,))),
+        "phase": Parameter("angle", "phi", lower=-9e9, search=FitSearch(starts=(0.0,))),
+    },
+)
+'''
+
+
+@dataclass
+class Way:
+    """A motion of which only position, time and direction are asked."""
+
+    position: np.ndarray
+    time: np.ndarray
+    file: str = "fit.csv"
+    body: str = "device"
+    direction: np.ndarray = field(init=False)
+
+    def __post_init__(self):
+        self.direction = np.sign(np.gradient(self.position)).astype(np.int8)
+
+
+def sweep(start, end, begin=0.0, duration=10.0, **more):
+    t = np.linspace(0.0, duration, 400)
+    return Way(start + (end - start) * t / duration, begin + t, **more)
+
+
+def test_one_sweep_one_way_tells_nothing():
+    assert not tells_place_from_time([sweep(0, 1)])
+
+
+@given(speed=st.floats(0.1, 10.0), end=st.floats(0.01, 100.0))
+def test_a_sweep_and_its_way_back_tell_place_from_time(speed, end):
+    there, back = sweep(0, end, duration=1 / speed), sweep(end, 0, 1 / speed, 1 / speed)
+    assert tells_place_from_time([there, back])
+    # as two records, each from its own time zero
+    assert tells_place_from_time([there, sweep(end, 0, 0.0, 1 / speed, file="other.csv")])
+
+
+def test_constant_speeds_over_the_same_half_turn_tell_it_together_but_not_one_by_one():
+    runs = [sweep(0, 3, 10.0 * k, 30.0 / (k + 2)) for k in range(9)]
+    runs += [sweep(3, 0, 90 + 10.0 * k, 30.0 / (k + 2)) for k in range(9)]
+    assert tells_place_from_time(runs)
+    assert not any(tells_place_from_time([run]) for run in runs)
+
+
+def test_the_same_way_at_the_same_time_in_every_record_tells_nothing():
+    assert not tells_place_from_time([sweep(0, 1, file=f"{k}.csv") for k in range(4)])
+
+
+def test_what_lies_next_to_it_in_another_record_is_the_same_place_only_with_one_zero():
+    ways = [sweep(0, 1, file="a.csv"), sweep(0, 1, 50.0, file="b.csv")]
+    assert tells_place_from_time(ways)
+    assert not tells_place_from_time(ways, own_zero={"a.csv", "b.csv"})
+
+
+def test_eight_turns_tell_what_repeats_every_turn_and_no_spring():
+    turning = [sweep(0, 8 * TURN)]
+    assert not tells_place_from_time(turning)
+    assert tells_place_from_time(turning, turn=TURN)
+    assert not tells_place_from_time([sweep(0, 0.9 * TURN)], turn=TURN)
+
+
+def test_a_rest_at_one_place_is_no_return_to_it():
+    t = np.linspace(0, 30, 900)
+    stop_and_go = np.interp(t, [0, 1, 14, 15, 29, 30], [0, 1, 1, 2, 2, 3])
+    assert not tells_place_from_time([Way(stop_and_go, t)])
+
+
+@pytest.mark.parametrize("name", sorted(EFFECTS))
+def test_an_effect_depends_on_the_position_if_its_law_is_another_one_elsewhere(name):
+    of_place = {
+        "spring", "hardening_spring", "cogging", "torque_ripple", "position_dependent_friction",
+        "gravity",
+    }  # fmt: skip
+    assert depends_on_position(EFFECTS[name]) == (name in of_place)
+
+
+def test_what_repeats_says_after_what(tmp_path):
+    (tmp_path / "pendulum.py").write_text(GRAVITY)
+    assert period(load_effect(tmp_path / "pendulum.py")) == pytest.approx(TURN)
+    assert period(EFFECTS["cogging"]) == "period"
+    assert period(EFFECTS["spring"]) is None and period(EFFECTS["viscous"]) is None
+
+
+MODEL = """coulomb = { level = { value = 1.0, unit = "N*m" } }
+viscous = { damping = { value = 0.5, unit = "N*m*s/rad" } }
+"""
+
+
+def known(*more):
+    names = ("coulomb", "viscous", "spring", "bias", "cogging", "hardening_spring", "stribeck")
+    return {n: EFFECTS[n] for n in names} | {e.name: e for e in more}
+
+
+def run(start, end, speed):
+    """A segment at constant speed, from place to place."""
+    way = np.sign(end - start)
+    return abs(end - start) / speed, lambda t: start + way * speed * t
+
+
+def write_pendulum(folder):
+    """Runs at constant speed over the same half turn, both ways, as segments."""
+    speeds = np.linspace(0.2, 1.6, 10)
+    runs = [run(*ends, v) for v in speeds for ends in ((-1.6, 1.5), (1.5, -1.6))]
+
+    def force(t, x, v):
+        return 8.0 * np.sin(x + 0.2) + 1.2 * np.sign(v) + 0.6 * v
+
+    return write_made(
+        folder,
+        {"fit": runs[0::4] + runs[1::4], "check": runs[2::4] + runs[3::4]},
+        force,
+        effects=MODEL,
+        step=1e-5,
+        noise=0.02,
+    )
+
+
+def test_a_pendulum_at_constant_speeds_shows_its_gravity(tmp_path):
+    (tmp_path / "pendulum.py").write_text(GRAVITY)
+    gravity = load_effect(tmp_path / "pendulum.py")
+    experiment = load_experiment(write_pendulum(tmp_path / "case"))
+    found = find_missing(experiment, Model.from_experiment(experiment, known(gravity)))
+    assert [str(c) for c in found.missing] == ["pendulum at device"]
+    assert found.model.parameters["device.pendulum.amplitude"].value == pytest.approx(8.0, rel=0.02)
+
+
+def test_gravity_that_the_catalogue_lacks_is_called_no_cogging(tmp_path):
+    experiment = load_experiment(write_pendulum(tmp_path / "case"))
+    found = find_missing(experiment, Model.from_experiment(experiment, known()))
+    assert "cogging" not in {c.effect.name for c in found.missing}
+    (cogging,) = [r for r in found.rungs[1].ranking.ranked if r.candidate.effect.name == "cogging"]
+    assert "does not repeat within the travel" in cogging.implausible
+
+
+def test_eight_turns_of_a_motor_show_its_cogging(tmp_path):
+    def turning(speed):
+        return 8 * TURN / speed, lambda t: speed * t
+
+    def force(t, x, v):
+        return 0.15 * np.sin(6 * x + 0.5) + 0.3 * np.sign(v) + 0.02 * v
+
+    folder = write_made(
+        tmp_path / "case",
+        {"fit": [turning(2.0), turning(5.0)], "check": [turning(3.0)]},
+        force,
+        effects=MODEL,
+        step=1e-3,
+        noise=0.01,
+        inertia=0.001,
+    )
+    experiment = load_experiment(folder)
+    model = Model.from_experiment(experiment, known())
+    one_way = [s.motion for s in prepare(experiment).stretches]
+    assert all((np.diff(m.position) > -1e-3).all() for m in one_way)
+    assert "cogging" in {c.effect.name for c in candidates(model, one_way)}
+    found = find_missing(experiment, model)
+    assert [str(c) for c in found.missing] == ["cogging at device"]
+    period_found = found.model.parameters["device.cogging.period"].value
+    assert period_found == pytest.approx(TURN / 6, rel=0.01)

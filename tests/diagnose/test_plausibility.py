@@ -1,0 +1,143 @@
+"""What an effect's parameters must obey to deserve its name stands in its own file."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from teleopdesign import Model, find_missing
+from teleopdesign.diagnose.answer import answer
+from teleopdesign.diagnose.decision import is_supported
+from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.ladder_text import ladder_text
+from teleopdesign.diagnose.noise_floor import NoiseFloor
+from teleopdesign.diagnose.plausibility import implausible_effects, record_facts
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.rank import rank_candidates
+from teleopdesign.effects import EFFECTS, RecordFacts, load_effect
+from teleopdesign.errors import ModelError
+
+FACTS = RecordFacts(
+    axis="revolute",
+    travel=1.0,
+    step=1e-4,
+    stroke=0.5,
+    force=3.0,
+    body={"inertia": 0.1, "coulomb.level": 0.5, "viscous.damping": 0.2},
+)
+#: effect -> (parameters that deserve its name, those that do not, what these stand for)
+SAID = {
+    "cogging": ({"period": 0.6}, {"period": 0.8}, "gravity"),
+    "torque_ripple": ({"period": 0.6}, {"period": 3.0}, "friction that varies"),
+    "presliding": ({"stiffness": 50.0}, {"stiffness": 0.03}, "a spring"),
+    "friction_drift": ({"time_constant": 5.0}, {"time_constant": 0.2}, "how the records begin"),
+    "viscous_asymmetry": ({"half_difference": -0.1}, {"half_difference": 0.3}, "another force"),
+    "coulomb_asymmetry": ({"half_difference": -0.1}, {"half_difference": -0.6}, "a constant force"),
+    "transmission_compliance": ({"tip_inertia": 0.05}, {"tip_inertia": 0.2}, "late"),
+    "backlash": ({"tip_inertia": 0.05}, {"tip_inertia": 0.2}, "late"),
+}
+
+
+@pytest.mark.parametrize("name", sorted(SAID))
+def test_parameters_that_do_not_fit_a_name_are_told_what_they_stand_for(name):
+    right, wrong, stands_for = SAID[name]
+    plausible = EFFECTS[name].plausible
+    assert plausible(SimpleNamespace(**right), FACTS) is None
+    said = plausible(SimpleNamespace(**wrong), FACTS)
+    assert stands_for in said and "\n" not in said
+
+
+@pytest.mark.parametrize("name", sorted(n for n, e in EFFECTS.items() if e.plausible))
+def test_every_check_answers_for_values_of_any_size(name):
+    effect = EFFECTS[name]
+    needed = {f"{n}.{p}": 0.3 for n in effect.needs for p in EFFECTS[n].parameters}
+    facts = replace(FACTS, body={**FACTS.body, **needed})
+    for size in (1e-12, 1e-3, 1.0, 1e6):
+        for stroke in (0.5, float("inf")):
+            p = SimpleNamespace(**dict.fromkeys(effect.parameters, size))
+            said = effect.plausible(p, replace(facts, stroke=stroke))
+            assert said is None or (isinstance(said, str) and said.strip())
+
+
+def test_a_bristle_that_no_step_of_the_encoder_shows_is_coulomb_friction():
+    said = EFFECTS["presliding"].plausible(SimpleNamespace(stiffness=1e6), FACTS)
+    assert "sgn friction" in said
+
+
+# in a diagnosis, a user's own effect among them
+
+DAMPER = '''"""Own damper."""
+from teleopdesign.effects import Effect, Parameter
+
+def law(now, p):
+    return p.damping * now.velocity
+
+def plausible(p, facts):
+    {body}
+
+EFFECT = Effect(
+    role="force", law=law, absent={{"damping": 0.0}}, plausible=plausible,
+    parameters={{"damping": Parameter("damping", "B")}},
+)
+'''
+
+
+def own(tmp_path, name, body):
+    path = tmp_path / f"{name}.py"
+    path.write_text(DAMPER.format(body=body))
+    return load_effect(path)
+
+
+@pytest.fixture(scope="module")
+def case(experiment):
+    """The model without its friction, and the prepared records."""
+    known = {"coulomb": EFFECTS["coulomb"], "viscous": EFFECTS["viscous"]}
+    model = Model.from_experiment(experiment, known)
+    return model.without_effect("coulomb").without_effect("viscous"), prepare(experiment)
+
+
+def test_the_facts_are_those_of_all_records(case):
+    model, prepared = case
+    facts = record_facts(model, "device", prepared)
+    positions = [s.motion.position for s in prepared.stretches]
+    low, high = min(x.min() for x in positions), max(x.max() for x in positions)
+    assert facts.travel == pytest.approx(high - low)
+    assert facts.body == {"inertia": model.parameters["device.inertia"].value}
+    assert 0.0 < facts.stroke < 3.0 and facts.step > 0.0 and facts.force > 0.0
+
+
+def test_an_effect_that_its_own_file_does_not_believe_is_not_supported(case, tmp_path):
+    model, prepared = case
+    strict = own(tmp_path, "strict_damper", 'return "a brake" if p.damping < facts.force else None')
+    # the same law, but what it says is far from what is found
+    never = own(tmp_path, "never", "return f\"{facts.text(p.damping, 'damping')} is a brake\"")
+    base = estimate(replace(model, known={strict.name: strict, never.name: never}), prepared)
+    ranking = rank_candidates(base, prepared)
+    floor = NoiseFloor(0.0, "", 0.0)
+    by_name = {r.candidate.effect.name: r for r in ranking.ranked}
+    refused = by_name["never"]
+    assert refused.implausible.endswith("N*m*s/rad is a brake") and not refused.counts
+    assert not is_supported(base, refused, floor)
+    assert refused.note == refused.implausible
+    believed = by_name["strict_damper"]
+    assert believed.fit.check_error == pytest.approx(refused.fit.check_error, rel=1e-3)
+
+
+def test_the_answer_says_which_check_failed(experiment, case, tmp_path):
+    model, _ = case
+    never = own(tmp_path, "never", 'return "it is a brake"')
+    found = find_missing(experiment, replace(model, known={never.name: never}))
+    assert not found.missing and found.verdict == "undecided"
+    (row,) = answer(found)["candidates"]
+    assert row["refused"] == "it is a brake"
+    assert "refused: never at device" in ladder_text(found)
+
+
+def test_a_check_that_fails_is_an_error_of_its_file(case, tmp_path):
+    model, prepared = case
+    for body, words in (("return 1 / 0", "ZeroDivisionError"), ("return False", "None or a")):
+        broken = own(tmp_path, f"broken_{words[:4].strip()}", body)
+        fitted = replace(model, known={broken.name: broken})
+        fitted = fitted.with_effect(broken, values={"damping": 0.1})
+        with pytest.raises(ModelError, match=words):
+            implausible_effects(fitted, prepared)

@@ -1,0 +1,208 @@
+"""A shift between the rows of force and position belongs to the record: found with every model."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnose.own_cases import FEW, truth_of, write_own
+
+import teleopdesign as td
+from teleopdesign.check import check_experiment
+from teleopdesign.diagnose.answer import answer
+from teleopdesign.diagnose.answers.bodies import model_data, model_from
+from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.ladder_text import ladder_text
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.residual import residuals
+from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.effects import EFFECTS
+
+
+def shifted(experiment, rows):
+    """The experiment as a logger writes it whose commands are late by so many rows (< 0: early).
+
+    A part of a row is an average of what two rows hold, as a staircase that is sampled between.
+    """
+    whole, part = divmod(rows, 1.0)
+
+    def late(signal):
+        one, two = (np.roll(signal, int(whole) + k) for k in (0, 1))
+        return (1.0 - part) * one + part * two
+
+    def logged(record):
+        signals = {
+            n: (late(y) if n.endswith("actuator_force") else y)[2:-2]
+            for n, y in record.signals.items()
+        }
+        segments = (slice(0, len(record.time) - 4),)
+        return replace(record, time=record.time[2:-2], signals=signals, segments=segments)
+
+    return replace(experiment, records=tuple(logged(r) for r in experiment.records))
+
+
+def fitted(experiment, *effects, model=None):
+    """The model of the experiment, with these effects more, estimated on its records."""
+    model = model or td.Model.from_experiment(experiment)
+    for name in effects:
+        model = model.with_effect(name, at=next(iter(model.bodies)))
+    return estimate_from_starts(model, prepare(experiment))
+
+
+def rows_late(fit, experiment):
+    (late,) = fit.model.record_shift.values()
+    row = experiment.records[0].sample_time
+    return late.value / row, late.stderr / row
+
+
+@pytest.fixture(scope="module")
+def adequate(tmp_path_factory):
+    """A simulated device whose model is right."""
+    return td.load_experiment(write_own(tmp_path_factory.mktemp("own") / "null", None))
+
+
+@pytest.mark.parametrize("rows", [-1.0, -0.3, 0.0, 0.3, 1.0])
+def test_a_shift_of_up_to_a_row_is_found_and_costs_nothing(adequate, rows):
+    plain, late = fitted(adequate), fitted(shifted(adequate, rows))
+    found, error = rows_late(late, adequate)
+    before, _ = rows_late(plain, adequate)
+    # the simulated actuator holds its command without any delay, so the clock is right
+    assert abs(before) < 0.05
+    assert found - before == pytest.approx(rows, abs=0.03)
+    assert error < 0.05
+    # a part of a row is logged as an average of two, which the model knows only in its first order
+    assert late.check_error == pytest.approx(plain.check_error, rel=0.02)
+
+
+def test_estimates_do_not_depend_on_the_clock(adequate):
+    plain, late = fitted(adequate).model, fitted(shifted(adequate, 1.0)).model
+    for name, value in plain.parameters.items():
+        if not value.fixed:
+            assert late.parameters[name].value == pytest.approx(
+                value.value, abs=max(value.stderr, 1e-3 * abs(value.value))
+            )
+
+
+def test_the_slope_by_the_shift_is_that_of_the_residual(adequate):
+    prepared = prepare(adequate)
+    model, stretches = td.Model.from_experiment(adequate), prepared.of("fit")
+    place, row = next(iter(model.bodies)), adequate.records[0].sample_time
+
+    def at(late):
+        there = model.with_record_shift({place: td.Value(late)})
+        return residuals(there, stretches, [f"{place}.record_shift"])
+
+    step = 1e-3 * row
+    pairs = zip(at(0.2 * row), at(0.2 * row + step), at(0.2 * row - step), strict=True)
+    for (_, slope), (more, _), (less, _) in pairs:
+        size = np.abs(slope).max()
+        # where friction holds the residual is no smooth function of the force
+        near = np.abs(slope[0] - (more - less) / (2 * step)) < 0.01 * size
+        assert near.mean() > 0.99
+
+
+def test_a_delay_of_several_rows_is_no_clock(adequate):
+    late = shifted(shifted(adequate, -2.0), -2.0)
+    row = late.records[0].sample_time
+    without, with_delay = fitted(late), fitted(late, "actuation_delay")
+    found, _ = rows_late(without, late)
+    assert found == pytest.approx(-1.1, abs=1e-3)
+    assert with_delay.check_error < 0.5 * without.check_error
+    (place,) = with_delay.model.bodies
+    delay = with_delay.model.parameters[f"{place}.actuation_delay.delay"]
+    assert delay.value == pytest.approx(4.0 * row, abs=0.1 * row)
+    # a row more or less may be the logger's
+    assert 0.3 * row < delay.stderr < 0.7 * row
+
+
+def test_no_delay_below_a_row_is_called_physics(adequate):
+    late = shifted(adequate, -0.8)
+    alone, beside = fitted(late), fitted(late, "actuation_delay")
+    assert beside.check_error == pytest.approx(alone.check_error, rel=0.01)
+
+
+def test_what_a_controller_makes_of_a_shift_is_left_open(adequate):
+    """Under a spring and damper alone a late command is one of other damping: both are in doubt."""
+    model = td.Model.from_experiment(adequate)
+    (place,) = model.bodies
+    inertia, damping, stiffness, rate = 0.2, 2.0, 500.0, 5.0
+    values = {f"{place}.inertia": inertia, f"{place}.viscous.damping": damping}
+    model = model.with_values({**values, f"{place}.coulomb.level": 1e-6})
+    noise = np.random.default_rng(3)
+
+    def led(record):
+        def course(t):
+            waves = [(0.3 / k, 2 * np.pi * f) for k, f in enumerate((0.5, 1.3, 2.1), 1)]
+            x = sum(a * np.sin(w * t + w) for a, w in waves)
+            v = sum(a * w * np.cos(w * t + w) for a, w in waves)
+            return x, v, -sum(a * w**2 * np.sin(w * t + w) for a, w in waves)
+
+        x, v, acceleration = course(record.time)
+        # what is held until the next row acts half a row later than it is logged
+        held, held_rate, _ = course(record.time - 0.5 * record.sample_time)
+        acts = -stiffness * held - rate * held_rate
+        hand = inertia * acceleration + damping * v - acts
+        signals = {
+            f"{place}.position": x,
+            f"{place}.actuator_force": -stiffness * x - rate * v,
+            f"{place}.interaction_force": hand + 0.5 * noise.standard_normal(len(x)),
+        }
+        return replace(record, signals=signals)
+
+    experiment = replace(adequate, records=tuple(led(r) for r in adequate.records))
+    fit = estimate(model, prepare(experiment))
+    found, error = rows_late(fit, experiment)
+    # half a row is what is known of a clock beforehand: no more is learned from such a record
+    assert abs(found) < 2 * error
+    assert 0.3 < error < 0.6
+    told = fit.model.parameters[f"{place}.viscous.damping"]
+    assert told.value == pytest.approx(damping, abs=2 * told.stderr)
+    # half a row of a spring's force is that much damping
+    assert told.stderr == pytest.approx(
+        0.5 * experiment.records[0].sample_time * stiffness, rel=0.4
+    )
+
+
+def test_a_model_with_a_shift_is_written_and_read(adequate):
+    model = fitted(adequate).model
+    data = json.loads(json.dumps(model_data(model)))
+    back = model_from(data, EFFECTS, file="answer.json", key="models")
+    for place, late in model.record_shift.items():
+        assert back.record_shift[place] == late
+
+
+def test_the_answer_tells_the_shift_and_its_error(adequate):
+    late = shifted(adequate, 1.0)
+    diagnosis = td.find_missing(late, td.Model.from_experiment(late, FEW))
+    assert diagnosis.verdict == "model_adequate"
+    (told,) = answer(diagnosis)["record_shift"].values()
+    row = late.records[0].sample_time
+    assert told["value"] == pytest.approx(row, abs=0.05 * row)
+    assert told["stderr"] < 0.05 * row
+    assert told["unit"] == "s"
+    assert "rows late" in ladder_text(diagnosis)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rows", [-1.0, 0.3, 1.0])
+@pytest.mark.parametrize("seed", [11, 12, 13])
+def test_no_effect_is_named_for_a_logger_that_is_off(tmp_path, seed, rows):
+    experiment = td.load_experiment(write_own(tmp_path / "null", None, seed=seed))
+    assert not td.find_missing(shifted(experiment, rows)).missing
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rows", [-1.0, 1.0])
+@pytest.mark.parametrize("effect", ["stribeck", "cogging", "presliding"])
+def test_an_effect_keeps_its_name_under_a_shift(tmp_path, effect, rows):
+    folder = write_own(tmp_path / effect, effect)
+    diagnosis = td.find_missing(shifted(td.load_experiment(folder), rows))
+    named = [c.effect.name for c in diagnosis.missing]
+    assert named == [e["effect"] for e in truth_of(folder)["effects"]]
+
+
+def test_a_check_of_the_recording_notes_what_a_diagnosis_estimates(adequate):
+    found = check_experiment(shifted(adequate, 1.0))
+    (shift,) = [f for f in found if f.topic == "time shift"]
+    assert shift.concern == "note"
+    assert "logger's" in shift.sentence

@@ -1,0 +1,86 @@
+"""What is refuted stands whatever the last digits of floats are, and its motion replays."""
+
+from types import SimpleNamespace
+
+import control
+import numpy as np
+import pytest
+from devices import body
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from teleopdesign.controllers import from_control
+from teleopdesign.diagrams import haptic_interface
+from teleopdesign.frequency import transfer_function
+from teleopdesign.passivity import Claim, Refutation, diagram_claims, positive_real
+
+MASS, DAMPING = 0.15, 2.0
+BANDWIDTHS = (1, 2, 5, 10, 20, 50, 100, 200, 500)  # Hz
+
+
+def observer(bandwidth, as_matrices=False):
+    """A disturbance observer: it feeds back Q/(1 - Q) of the inverse plant, by control's floats."""
+    s, tau = control.tf("s"), 1 / (2 * np.pi * bandwidth)
+    q = 1 / (tau * s + 1) ** 2
+    law = -(MASS * s + DAMPING) * s * q / (1 - q)
+    return from_control(control.ss(law) if as_matrices else law)
+
+
+def observed(bandwidth):
+    """Z = m s + b + (m s + b)/(s tau (tau s + 2)), at low frequency Re Z = b + m/(2 tau) - b/4."""
+    device = body(MASS, viscous__damping=DAMPING)
+    return haptic_interface(device, cancellation=observer(bandwidth), analog=("C",))
+
+
+def claims(diagram):
+    return [s.claim for s in diagram_claims(diagram, rng=np.random.default_rng(0)).claims]
+
+
+@pytest.mark.parametrize("bandwidth", BANDWIDTHS)
+def test_a_disturbance_observer_of_a_transfer_function_is_not_refuted_by_rounding(bandwidth):
+    (claim,) = claims(observed(bandwidth))
+    assert claim.status == "proved"
+    claim.certificates[0].check()
+
+
+@pytest.mark.parametrize("bandwidth", BANDWIDTHS)
+def test_poles_and_dc_gain_of_what_cancels_on_paper_are_right(bandwidth):
+    """Stiffness b/(2 tau) of the observed device at rest; 1e-12: rounding of the coefficients."""
+    system, _ = transfer_function(observed(bandwidth), output="L", input="R_V")
+    assert system.poles().real.max() < 0
+    tau = 1 / (2 * np.pi * bandwidth)
+    assert float(system.dcgain()) == pytest.approx(2 * tau / DAMPING, rel=1e-12)
+
+
+@pytest.mark.parametrize("bandwidth", BANDWIDTHS)
+def test_matrices_rounded_by_python_control_refute_nothing(bandwidth):
+    """control.ss of the same law leaves a pole beside zero: proved or unknown, never refuted."""
+    device = body(MASS, viscous__damping=DAMPING)
+    diagram = haptic_interface(device, cancellation=observer(bandwidth, True), analog=("C",))
+    assert all(claim.status != "refuted" for claim in claims(diagram))
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    poles=st.lists(st.floats(0.01, 1e4), min_size=1, max_size=4),
+    powers=st.tuples(st.integers(-3, 3), st.integers(-3, 3)),
+)
+def test_a_passive_network_through_floats_is_never_refuted(poles, powers):
+    """A sum of r s/(s + p) and r/s, put together by control, is passive whatever the rounding."""
+    s = control.tf("s")
+    whole = 10.0 ** powers[0] / s + 10.0 ** powers[1] * s
+    for k, pole in enumerate(poles):
+        whole = whole + (1 + k) * s / (s + pole)
+    assert positive_real(whole).status != "refuted"
+
+
+@pytest.mark.parametrize("replayed", [float("nan"), 0.0, -1.0])
+def test_a_motion_that_does_not_replay_refutes_nothing(replayed):
+    record = SimpleNamespace(energy=1.0, replay=lambda: replayed)
+    assert Claim("it is passive", Refutation("a motion", record)).status == "unknown"
+
+
+def test_what_fails_by_more_than_rounding_is_still_refuted():
+    s = control.tf("s")
+    assert positive_real(0.15 * s - 1e-9).status == "refuted"
+    assert positive_real(1 / (s**2 + 1) + 2).status == "refuted"

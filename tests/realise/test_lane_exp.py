@@ -1,0 +1,38 @@
+"""exp by plain arithmetic."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numba import njit
+
+from teleopdesign.realise.lane_exp import exp
+
+
+@njit(error_model="numpy")
+def exponentials(x):
+    out = np.empty_like(x)
+    for i in range(len(x)):
+        out[i] = exp(x[i])
+    return out
+
+
+@settings(deadline=None)  # the first call compiles
+@given(st.lists(st.floats(-706.0, 709.0), min_size=1, max_size=50))
+def test_it_is_exp_to_two_units_in_the_last_place(x):
+    expected = np.array([math.exp(a) for a in x])
+    np.testing.assert_allclose(exponentials(np.array(x)), expected, rtol=2 * 2.3e-16)
+    np.testing.assert_allclose([exp.py_func(a) for a in x], expected, rtol=2 * 2.3e-16)
+
+
+@pytest.mark.parametrize(
+    ("x", "expected"), [(0.0, 1.0), (-0.0, 1.0), (-800.0, 0.0), (-np.inf, 0.0), (np.inf, np.inf)]
+)
+def test_ends_are_exact(x, expected):
+    assert exponentials(np.array([x]))[0] == expected
+
+
+def test_what_is_no_number_stays_none():
+    assert np.isnan(exponentials(np.array([np.nan]))[0])

@@ -1,0 +1,266 @@
+"""The same diagram through python-control and the kernel: every kind of block that comes in.
+
+1e-6 of the range: two integrators at tight tolerances on the same equations.
+"""
+
+import control
+import numpy as np
+import pytest
+from devices import body
+
+from teleopdesign.controllers import CONTROLLERS, Controller, Stage, from_control
+from teleopdesign.derive import transfer_function
+from teleopdesign.diagrams import (
+    Control,
+    Diagram,
+    Moving,
+    controller_parts,
+    haptic_interface,
+    plant_parts,
+)
+from teleopdesign.errors import ModelError
+from teleopdesign.realise.iosystem import to_iosystem
+from teleopdesign.simulate import Sampling, Trajectory, simulate
+
+RNG = np.random.default_rng(7)
+DURATION, STEP = 0.2, 1e-4
+LEAD = control.tf([-300.0, -9000.0], [1.0, 200.0])
+FOURTH = LEAD * control.tf([1.0, 20.0, 4e3], [1.0, 120.0, 4e3]) * control.tf([50.0], [1.0, 50.0])
+CROSSED = control.tf(
+    [[[-200.0, -4e3], [30.0]], [[25.0, 10.0], [-150.0, -3e3]]],
+    [[[1.0, 90.0], [1.0, 40.0]], [[1.0, 70.0], [1.0, 110.0]]],
+)
+#: an observer with state feedback: one set of states for both axes
+OBSERVER = control.ss(
+    [[-90.0, 40.0, 0.0], [-35.0, -70.0, 5.0], [2.0, 0.0, -30.0]],
+    [[1.0, 0.2], [0.1, 1.5], [0.5, 0.5]],
+    [[-2e3, 300.0, 0.0], [100.0, -2.5e3, 40.0]],
+    [[-20.0, 0.0], [0.0, -15.0]],
+)
+PLANT = control.tf([2.0, 30.0, 9e3], [0.3, 12.0, 2500.0, 3e4, 4e5])
+SISO = {
+    "transfer function": LEAD,
+    "transfer function of fourth order": FOURTH,
+    "state space": control.ss([[-120.0]], [[1.0]], [[9e3]], [[-150.0]]),
+    "static gain": control.tf([-900.0], [1.0]),
+}
+MIMO = {"2 x 2 transfer functions": CROSSED, "2 x 2 state space": OBSERVER}
+
+
+#: python-control takes inputs as straight lines between these times: so does the kernel then
+GRID = np.linspace(0.0, DURATION, 401)
+
+
+def push(t):
+    return np.interp(t, GRID, 0.5 * np.sin(40.0 * GRID) + 0.2)
+
+
+def pull(t):
+    return np.interp(t, GRID, 0.3 * np.cos(25.0 * GRID))
+
+
+def one_rod(system):
+    device = body(0.15, viscous__damping=2.0)
+    return haptic_interface(device, cancellation=from_control(system), analog=("C",))
+
+
+def two_rods(system, analog=True):
+    rods = tuple(
+        Moving(
+            f"Z{i}", body(0.1 * i, viscous__damping=3.0), f"x{i}", f"u{i}", {f"f{i}": 1.0}, f"f{i}"
+        )
+        for i in (1, 2)
+    )
+    controls, sums = controller_parts(
+        system, name="C", inputs=("x1", "x2"), outputs=("u1", "u2"), motion="x1", analog=analog
+    )
+    outside = {"f1": "force", "f2": "force"}
+    return Diagram("two rods", (*rods, *controls), sums, outside, ("x1", "x2"))
+
+
+def with_plant(plant):
+    parts, sums = plant_parts(plant, name="P", motion="x", command="u", driver="f")
+    law = Control("K", from_control(control.tf([-40.0, -10.0], [0.01, 1.0])), "x", "u", "x", True)
+    return Diagram("plant", (*parts, law), sums, {"f": "force"}, ("x",))
+
+
+def compare(diagram, inputs, motions):
+    """Largest difference of the motions, each over its range."""
+    kernel = simulate(
+        diagram, duration=DURATION, inputs=inputs, computer="continuous", step=STEP, jit=False
+    )
+    time = GRID
+    system = to_iosystem(diagram)
+    given = [np.asarray(inputs[n](time)) if n in inputs else 0 * time for n in system.input_labels]
+    answer = control.input_output_response(
+        system, time, given, solve_ivp_kwargs={"rtol": 1e-10, "atol": 1e-14, "max_step": 5e-4}
+    )
+    at = np.rint(kernel["time"].values / GRID[1]).astype(int)  # each time of it is on the grid
+    worst = 0.0
+    for name in motions:
+        theirs = answer.outputs[system.output_labels.index(name)][at]
+        worst = max(worst, float(np.abs(kernel[name].values - theirs).max() / np.ptp(theirs)))
+    return worst
+
+
+@pytest.mark.slow  # 3 s each: an adaptive integrator in Python
+@pytest.mark.parametrize("name", SISO)
+def test_a_controller_is_the_same_through_the_kernel_and_through_python_control(name):
+    assert compare(one_rod(SISO[name]), {"R_V": push}, ["L"]) < 1e-6
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", MIMO)
+def test_a_controller_of_several_signals_is_the_same_through_both(name):
+    diagram = two_rods(MIMO[name])
+    assert compare(diagram, {"f1": push, "f2": pull}, ["x1", "x2"]) < 1e-6
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("plant", [PLANT, control.ss(PLANT), control.tf([1.0], [0.2, 3.0, 50.0])])
+def test_a_plant_is_the_same_through_both_and_its_own_transfer_function(plant):
+    diagram = with_plant(plant)
+    assert compare(diagram, {"f": push}, ["x"]) < 1e-6
+    alone = diagram.without("K")
+    found, left_out = transfer_function(alone, output="x", input="f")
+    points = 1j * np.array([0.3, 20.0, 70.0, 400.0])
+    np.testing.assert_allclose(found(points), control.tf(plant)(points), rtol=1e-6)
+    assert left_out == ()
+
+
+PERIOD = 1e-3
+WAVES = {
+    motion: Trajectory(
+        lambda t, w=w: 0.01 * np.sin(w * t),
+        lambda t, w=w: 0.01 * w * np.cos(w * t),
+        lambda t, w=w: -0.01 * w**2 * np.sin(w * t),
+    )
+    for motion, w in (("L", 30.0), ("x1", 30.0), ("x2", 47.0))
+}
+
+
+def stepped(diagram, motions):
+    """The diagram in a computer along these motions, a sample a row."""
+    computer = Sampling(period=PERIOD)
+    motion = {m: WAVES[m] for m in motions}
+    return simulate(diagram, duration=0.1, motion=motion, computer=computer, step=PERIOD, jit=False)
+
+
+@pytest.mark.parametrize("form", [control.tf, control.ss])
+@pytest.mark.parametrize("name", SISO)
+def test_in_discrete_time_a_block_steps_as_python_control_steps_it(name, form):
+    """Its answer to the reading of every sample, to 1e-9 of the range."""
+    system = form(control.sample_system(control.ss(SISO[name]), PERIOD, method="zoh"))
+    device = body(0.15, viscous__damping=2.0)
+    found = stepped(haptic_interface(device, cancellation=from_control(system)), ["L"])
+    answer = control.forced_response(system, found["time"].values, found["L"].values).outputs
+    assert np.abs(found["R_MBC"].values - answer).max() < 1e-9 * np.ptp(answer)
+
+
+@pytest.mark.parametrize("name", MIMO)
+def test_in_discrete_time_several_signals_step_as_python_control_steps_them(name):
+    """A matrix of transfer functions entry by entry: python-control alone steps no such matrix."""
+    if name == "2 x 2 state space":
+        system = control.sample_system(OBSERVER, PERIOD, method="zoh")
+        entries = [[system[i, j] for j in range(2)] for i in range(2)]
+    else:
+        entries = [
+            [
+                control.sample_system(
+                    control.tf(CROSSED.num[i][j], CROSSED.den[i][j]), PERIOD, method="zoh"
+                )
+                for j in range(2)
+            ]
+            for i in range(2)
+        ]
+        system = control.tf(
+            [[e.num[0][0] for e in row] for row in entries],
+            [[e.den[0][0] for e in row] for row in entries],
+            PERIOD,
+        )
+    found = stepped(two_rods(system, analog=False), ["x1", "x2"])
+    time = found["time"].values
+    for output, row in zip(("u1", "u2"), entries, strict=True):
+        answer = sum(
+            control.forced_response(entry, time, found[x].values).outputs
+            for entry, x in zip(row, ("x1", "x2"), strict=True)
+        )
+        assert np.abs(found[output].values - answer).max() < 1e-9 * np.ptp(answer)
+
+
+def test_transfer_functions_join_by_the_names_of_signals():
+    """A loop closed by control.interconnect is the diagram's own closed transfer function."""
+    diagram = one_rod(LEAD)
+    rod, _ = transfer_function(diagram.opened("C"), output="L", input="R_MBC")
+    law = control.tf(LEAD, inputs=["L"], outputs=["R_MBC"])
+    push_to_rod, _ = transfer_function(diagram.opened("C"), output="L", input="R_V")
+    assert (rod.input_labels, rod.output_labels) == (["R_MBC"], ["L"])
+    loop = control.interconnect(
+        [control.ss(rod, name="rod"), control.ss(law, name="law")],
+        inplist=["rod.R_MBC"],
+        inputs=["F"],
+        outputs=["L"],
+    )
+    whole, _ = transfer_function(diagram, output="L", input="R_V")
+    for point in (2j, 40j, 300j):
+        direct = complex(push_to_rod(point)) / complex(rod(point))
+        assert direct * complex(loop(point)) == pytest.approx(complex(whole(point)), rel=1e-6)
+
+
+def test_parameters_of_the_system_are_its_params():
+    """Other values at the call give what a diagram with these values gives."""
+    diagram = one_rod(LEAD)
+    changed = {"Z_M.inertia": 0.4, "Z_M.viscous.damping": 5.0}
+    system = to_iosystem(diagram)
+    assert set(system.params) == set(diagram.values)
+    time = np.linspace(0.0, 0.1, 101)
+    given = [push(time) * (n == "R_V") for n in system.input_labels]
+    tight = {"solve_ivp_kwargs": {"rtol": 1e-10, "atol": 1e-13}}
+    ours = control.input_output_response(system, time, given, params=changed, **tight)
+    other = to_iosystem(diagram.with_values(changed))
+    theirs = control.input_output_response(other, time, given, **tight)
+    np.testing.assert_allclose(ours.outputs, theirs.outputs, rtol=0, atol=1e-12)
+    plain = control.input_output_response(system, time, given, **tight)
+    assert np.abs(plain.outputs - ours.outputs).max() > 1e-4
+
+
+def probe(law):
+    """The law with 2 for every parameter, or the nearest within its bounds."""
+    values = {n: min(max(2.0, p.lower), p.upper) for n, p in law.parameters.items()}
+    return Controller((Stage(law, values),))
+
+
+SMOOTH = [n for n, law in CONTROLLERS.items() if law.linear and n != "model_inverse"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SMOOTH)
+def test_every_linear_law_of_the_catalogue_is_the_same_through_both(name):
+    device = body(0.15, viscous__damping=9.0, spring__stiffness=900.0)
+    law = probe(CONTROLLERS[name])
+    if CONTROLLERS[name].takes == "force":
+        diagram = haptic_interface(device, hand=body(0.1), force_feedback=law, analog=("H",))
+    else:
+        diagram = haptic_interface(device, cancellation=law, analog=("C",))
+    # kinks of abs(v) at reversals cost both integrators digits
+    assert compare(diagram, {"R_V": push, "R_D": push}, ["L"]) < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("plant", "words"),
+    [
+        (control.tf([1.0], [1.0, 1.0]), "two more poles than zeros"),
+        (control.tf([1.0], [1.0, -1.0, 3.0]), "b = -1"),
+        (control.tf([1.0], [-1.0, 0.0, 3.0]), "m = -1"),
+        (control.tf([1.0], [1.0, 1.0, 3.0], 1e-3), "continuous time"),
+    ],
+)
+def test_what_is_no_plant_is_said_in_one_line(plant, words):
+    with pytest.raises(ModelError, match=words) as caught:
+        plant_parts(plant, name="P", motion="x", command="u", driver="f")
+    assert "\n" not in str(caught.value)
+
+
+def test_signals_that_do_not_fit_a_system_are_counted():
+    with pytest.raises(ModelError, match="2 inputs and 2 outputs, found 1 and 2 signals"):
+        controller_parts(CROSSED, name="C", inputs=("x",), outputs=("u", "w"), motion="x")

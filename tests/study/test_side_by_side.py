@@ -1,0 +1,91 @@
+"""Points simulated side by side have the numbers of single simulations, whatever is beside them."""
+
+import numpy as np
+import pytest
+import study_models as models
+import xarray
+
+import teleopdesign as td
+from teleopdesign.studies import side_by_side
+from teleopdesign.studies.evaluate import Task, evaluate
+from teleopdesign.studies.measures import measures_of
+from teleopdesign.studies.points import points_of
+
+AXES = {
+    "C.dahl.level": np.linspace(0.0, 1.5, 7),
+    "computer.delay": [0.0, 1.5e-4, 1e-3],
+    "Z_M.viscous.damping": [0.5, 1.0],
+}
+MEASURES = ["force_error", "energy_drawn", td.measure("growth", signal="R_M")]
+
+
+def task(axes=AXES, measures=MEASURES):
+    case = td.studies.SimulatedCase(models.interface(), **models.SIMULATED)
+    return Task(case, {}, points_of(axes), measures_of(measures))
+
+
+def test_blocks_have_the_numbers_and_reasons_of_single_simulations():
+    one = task()
+    (unit,) = side_by_side.units_of(one, [5])
+    assert unit == tuple(range(42))
+    for together in side_by_side.evaluate_unit(one, unit):
+        alone = evaluate(one, together.point)
+        assert (together.reason, together.form) == (alone.reason, alone.form)
+        # lanes have another exp, right to a few units of the last digit; friction amplifies it
+        assert together.values == pytest.approx(alone.values, rel=1e-6, abs=1e-9)
+    assert "no whole number of steps" in evaluate(one, 2).reason
+
+
+def test_a_point_does_not_depend_on_those_beside_it():
+    whole = task()
+    blocks = side_by_side.evaluate_unit(whole, tuple(range(42)))
+    for first, last in ((0, 7), (6, 23), (30, 42)):
+        part = side_by_side.evaluate_unit(whole, tuple(range(first, last)))
+        assert part == blocks[first:last]
+
+
+@pytest.mark.parametrize(
+    ("axes", "measures"),
+    [
+        (AXES, ["force_error", lambda simulation: 1.0]),  # it may need any signal
+        (AXES, td.measure("onset", parameter="C.dahl.level", low=0.1, high=9, signal="L")),
+        ({"computer.delay": [0.0, 1e-3]}, MEASURES),  # no parameter of the diagram varies
+    ],
+)
+def test_what_cannot_be_side_by_side_is_one_by_one(axes, measures):
+    assert side_by_side.block_size(task(axes, measures)) == 1
+
+
+def test_blocks_are_longer_for_shorter_simulations_and_bounded():
+    sizes = []
+    for duration in (0.01, 1.0, 10.0, 1000.0):
+        case = td.studies.SimulatedCase(models.interface(), duration=duration)
+        one = Task(case, {}, points_of(AXES), measures_of("force_error"))
+        sizes.append(side_by_side.block_size(one))
+    assert sizes[0] == 512 and sizes[-1] == 16
+    assert sorted(sizes, reverse=True) == sizes
+
+
+@pytest.mark.slow
+def test_blocks_in_two_processes_and_after_a_stop_give_the_same_data(tmp_path):
+    axes = {"C.dahl.level": np.linspace(0.1, 1.5, 700), "computer.delay": [0.0, 1e-3]}
+    given = {"measures": MEASURES, **models.SIMULATED}
+    one = td.study(models.interface(), axes, workers=1, **given)
+    two = td.study(models.interface(), axes, workers=2, **given)
+    xarray.testing.assert_identical(one.data, two.data)
+    out = tmp_path / "s.nc"
+
+    def stop(progress):
+        if progress.done > 600:
+            raise KeyboardInterrupt
+
+    td.studies.progress._BETWEEN, before = -1.0, td.studies.progress._BETWEEN
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            td.study(models.interface(), axes, workers=1, out=out, progress=stop, **given)
+    finally:
+        td.studies.progress._BETWEEN = before
+    kept = []
+    again = td.study(models.interface(), axes, workers=1, out=out, progress=kept.append, **given)
+    assert kept[0].kept == 601  # in the middle of a block
+    xarray.testing.assert_identical(one.data, again.data)

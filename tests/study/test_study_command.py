@@ -1,0 +1,225 @@
+"""`teleopdesign study`: a study from a TOML or a Python file, and one line for what is wrong."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.cli import main
+from teleopdesign.studies import read_study, read_study_file
+
+DIAGRAM = """
+[diagram]
+kind = "haptic interface"
+[blocks.Z_M]
+axis = "prismatic"
+inertia = 0.15
+effects.coulomb.level = 1.0
+effects.viscous.damping = 1.0
+[blocks.C]
+law = "dahl"
+parameters = { level = 0.8, stiffness = 2e4 }
+"""
+STUDY = """
+[study]
+model = "interface.toml"
+[axes]
+"C.dahl.level" = { from = 0.2, to = 1.2, points = 3 }
+"computer.delay" = [0, 1e-3]
+[simulation]
+duration = 0.2
+motion.L = { amplitude = 0.01, frequency = 5.0 }
+[measures]
+force_error = {}
+hand = { measure = "peak", signal = "R_M" }
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    (tmp_path / "interface.toml").write_text(DIAGRAM)
+    (tmp_path / "s.toml").write_text(STUDY)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_toml_study_is_the_study_of_its_diagram(folder, capsys):
+    assert main(["study", "s.toml", "--workers", "1", "--out", "s.nc", "--figure", "s.png"]) == 0
+    said = capsys.readouterr()
+    assert "3 C.dahl.level x 2 computer.delay" in said.out
+    assert "6 of 6 points" in said.err
+    direct = td.study(
+        td.read_diagram("interface.toml"),
+        {"C.dahl.level": np.linspace(0.2, 1.2, 3), "computer.delay": [0.0, 1e-3]},
+        measures={"force_error": "force_error", "hand": td.measure("peak", signal="R_M")},
+        duration=0.2,
+        motion={"L": td.sine(amplitude=0.01, frequency=5.0)},
+    )
+    found = read_study("s.nc")
+    for name in ("force_error", "hand"):
+        np.testing.assert_array_equal(found[name].values, direct[name].values)
+    assert (folder / "s.png").stat().st_size > 10_000
+
+
+def test_samples_computer_inputs_and_states_come_from_the_file_too(folder):
+    text = STUDY.replace('"computer.delay" = [0, 1e-3]', '"Z_M.inertia" = 0.2')
+    text = text.replace("motion.L = { amplitude = 0.01, frequency = 5.0 }", "")
+    text = text.replace("duration = 0.2", "duration = 0.1\ncomputer = { period = 5e-4 }")
+    text += """
+[simulation.inputs]
+R_V = { amplitude = 2.0, frequency = 3.0, offset = 0.5 }
+R_D = 0.1
+[simulation.initial]
+L = 1e-3
+[samples]
+method = "sobol"
+points = 4
+seed = 7
+[samples.ranges]
+"Z_M.coulomb.level" = { mean = 1.0, standard_deviation = 0.1 }
+"C.dahl.stiffness" = { from = 1e3, to = 1e5, scale = "log" }
+"computer.delay" = { from = 0, to = 1e-3, step = 5e-4 }
+"""
+    (folder / "s.toml").write_text(text)
+    given = read_study_file("s.toml")
+    assert given["computer"] == td.Sampling(period=5e-4)
+    assert given["inputs"]["R_V"](np.array([0.0, 1 / 12])) == pytest.approx([0.5, 2.5])
+    found = td.study(**{**given, "measures": {"x": td.measure("peak", signal="L")}}, workers=1)
+    assert found["x"].dims == ("C.dahl.level", "sample")
+    assert not found.failures
+    assert set(np.round(found["computer.delay"].values / 5e-4)) <= {0, 1, 2}
+
+
+def test_a_python_file_is_run_and_gives_the_arguments(folder, capsys):
+    (folder / "s.py").write_text(
+        "import math\nSCALE = 2.0\n"
+        "def model(x):\n    return SCALE * math.sqrt(x)\n"
+        "STUDY = dict(model=model, axes={'x': [1.0, 4.0, -1.0]}, measures={'root': lambda r: r})\n"
+    )
+    assert main(["study", "s.py", "--workers", "2", "--out", "s.nc"]) == 0
+    said = capsys.readouterr().out
+    assert "1 failed: ValueError" in said
+    np.testing.assert_array_equal(read_study("s.nc")["root"].values, [2.0, 4.0, np.nan])
+
+
+def test_recordings_are_diagnosed_as_a_study(folder, capsys):
+    (folder / "d.toml").write_text(f'[study]\nexperiments = ["{td.example("rod")}"]\n')
+    given = read_study_file("d.toml")
+    assert given["axes"] == [{"experiment": [str(td.example("rod"))]}]
+    assert given["measures"] == ["verdict"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("[study]", "[stdy]", 'unknown key "stdy".*did you mean "study"'),
+        ('model = "interface.toml"', "", "expected model .* or experiments"),
+        ("interface.toml", "absent.toml", "absent.toml: cannot be read"),
+        ('"interface.toml"', '"haptic-interfac"', 'did you mean "haptic-interface"'),
+        ('model = "interface.toml"', 'experiments = ["none"]', "no folder with an experiment.toml"),
+        ("C.dahl.level", "C.dahl.levl", 'did you mean "C.dahl.level"'),
+        ("points = 3", "points = 1.5", "found 1.5, expected a whole number"),
+        ("points = 3", "points = 1", "expected at least 2"),
+        ("points = 3", 'points = 3, scale = "lg"', 'did you mean "log"'),
+        ("from = 0.2", 'from = 0, scale = "log"', "log scale needs from and to above 0"),
+        ("[0, 1e-3]", "[]", "axes.computer.delay: found a list, expected numbers"),
+        ("[0, 1e-3]", "[0, 0]", "a value is there twice"),
+        ("duration = 0.2", "duration = 0", "expected a finite number above 0"),
+        ("duration", "durration", 'did you mean "duration"'),
+        ("frequency = 5.0", "freqency = 5.0", 'did you mean "frequency"'),
+        ("motion.L", "motion.X", "X"),
+        ("force_error = {}", "force_eror = {}", 'did you mean "force_error"'),
+        ('"peak"', '"peek"', 'did you mean "peak"'),
+        ("signal", "sgnal", 'did you mean "signal"'),
+        ('signal = "R_M"', "signal = true", "expected a number or a text"),
+        ("[measures]", "[measures", "not valid TOML"),
+        ("[measures]\nforce_error = {}", "[measures]\nforce_error = 1", "expected a table"),
+    ],
+)
+def test_a_bad_toml_study_is_one_line_and_status_two(folder, capsys, old, new, said):
+    import re
+
+    assert old in STUDY
+    (folder / "s.toml").write_text(STUDY.replace(old, new))
+    status = main(["study", "s.toml", "--workers", "1"])
+    out, error = capsys.readouterr()
+    if status == 0:  # what only a simulation can know is a reason of its points
+        error = out
+    else:
+        assert status == 2 and error.count("\n") == 1
+        assert error.startswith("teleopdesign: ")
+    assert re.search(said, error), error
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["absent.toml"], "absent.toml: cannot be read"),
+        (["s.txt"], "expected .toml or .py"),
+        (["s.toml", "--out", "s.csv"], "expected .nc"),
+        (["s.toml", "--out", "none/s.nc"], "there is no folder 'none'"),
+        (["s.toml", "--figure", "s.gif"], "expected .pdf or .svg or .png"),
+        (["s.toml", "--workers", "2", "--scheduler", "tcp://a:1"], "a cluster brings its own"),
+        (["no_study.py"], "sets no STUDY"),
+        (["not_python.py"], "line 1: "),
+        (["wrong.py"], "unknown 'axis'.*did you mean \"axes\""),
+        (["lacking.py"], "measures is missing"),
+        (["a_list.py"], "found list, expected a dict"),
+    ],
+)
+def test_bad_arguments_are_one_line_and_status_two(folder, capsys, arguments, said):
+    import re
+
+    (folder / "no_study.py").write_text("study = 1\n")
+    (folder / "not_python.py").write_text("a b\n")
+    (folder / "wrong.py").write_text("STUDY = dict(model=len, axis={}, measures=len)\n")
+    (folder / "lacking.py").write_text("STUDY = dict(model=len, axes={})\n")
+    (folder / "a_list.py").write_text("STUDY = []\n")
+    assert main(["study", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and re.search(said, error), error
+
+
+@pytest.mark.parametrize("count", ["0", "-1", "two"])
+def test_a_number_of_workers_is_whole_and_above_zero(count, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["study", "s.toml", "--workers", count])
+    assert ended.value.code == 2
+    assert "expected a whole number from 1" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_ctrl_c_ends_in_one_line_and_the_same_command_goes_on(folder):
+    (folder / "s.py").write_text(
+        "import time\ndef model(x):\n    time.sleep(0.01)\n    return x\n"
+        "STUDY = dict(model=model, axes={'x': range(600)}, measures={'x2': lambda r: 2 * r})\n"
+    )
+    root = str(td.__path__[0]).removesuffix("/teleopdesign")
+    command = [sys.executable, "-m", "teleopdesign.cli", "study", "s.py", "--out", "s.nc"]
+    given = {
+        "env": {**os.environ, "PYTHONPATH": root},
+        "stderr": subprocess.PIPE,
+        "text": True,
+        "start_new_session": True,
+    }
+    with subprocess.Popen([*command, "--workers", "2"], **given) as process:
+        end = time.monotonic() + 60
+        while time.monotonic() < end and (
+            not (part := folder / "s.nc.part").exists() or part.read_bytes().count(b'"point":') < 50
+        ):
+            time.sleep(0.02)
+        os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all of its processes
+        _, said = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert said.count("\n") == 1 and "kept in s.nc.part, the same command goes on" in said
+    kept = part.read_bytes().count(b'"point":')
+    assert kept >= 50
+    again = subprocess.run(command, **given, check=True)
+    assert f"goes on after {kept} points" in again.stderr
+    np.testing.assert_array_equal(read_study(folder / "s.nc")["x2"].values, 2.0 * np.arange(600))
+    assert not part.exists()

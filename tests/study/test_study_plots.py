@@ -1,0 +1,142 @@
+"""Figures of studies show the numbers that they are given; Sobol indices are those of formulas."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.errors import ModelError
+
+COLUMNS = {"x": (-np.pi, np.pi), "y": (-np.pi, np.pi), "z": (-np.pi, np.pi)}
+
+
+def ishigami(x, y, z):
+    """Ishigami, Homma, Proc. ISUMA (1990) 398, with a = 7, b = 0.1: its indices are known."""
+    return np.sin(x) + 7 * np.sin(y) ** 2 + 0.1 * z**4 * np.sin(x)
+
+
+def plane(x, y, z=0.0):
+    return x - y + z
+
+
+def value(result):
+    return result
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    yield
+    plt.close("all")
+
+
+@pytest.fixture(scope="module")
+def drawn():
+    samples = td.sensitivity_samples(COLUMNS, 1024, seed=1)
+    return td.study(ishigami, samples, measures=value, workers=1)
+
+
+@pytest.fixture(scope="module")
+def gridded():
+    axes = {"z": [0.0, 1.0], "y": [0.0, 1.0, 2.0, 3.0], "x": np.geomspace(0.5, 8.0, 5)}
+    return td.study(plane, axes, measures=value, units={"x": "s", "value": "N"}, workers=1)
+
+
+def test_sobol_indices_are_those_of_the_formula(drawn):
+    """S = (0.3139, 0.4424, 0), S_T = (0.5576, 0.4424, 0.2437): Saltelli et al. (2010), table 1."""
+    found = drawn.sensitivity()
+    # ten standard errors of the estimate from 1024 pairs would be 0.1 to 0.4
+    np.testing.assert_allclose(found["first"].values, [0.3139, 0.4424, 0.0], atol=0.04)
+    np.testing.assert_allclose(found["total"].values, [0.5576, 0.4424, 0.2437], atol=0.04)
+    assert (found["first_interval"] < 0.15).all()
+
+
+def test_indices_need_points_that_were_drawn_for_them(gridded):
+    with pytest.raises(ModelError, match="need points of sensitivity_samples"):
+        gridded.sensitivity()
+    flat = td.study(plane, td.sensitivity_samples({"x": (0, 1), "y": (0, 1)}, 4), measures=len)
+    with pytest.raises(ModelError, match="every point failed"):
+        flat.sensitivity("len")
+
+
+def test_indices_are_refused_where_points_failed_or_nothing_varies():
+    samples = td.sensitivity_samples({"x": (0, 1), "y": (0, 1)}, 8)
+    some = td.study(lambda x, y: {"a": x / (x > 0.5)}, samples, measures={"a": dict})
+    with pytest.raises(ModelError, match="are no numbers"):
+        some.sensitivity("a")
+    same = td.study(lambda x, y: 1.0, samples, measures=value)
+    with pytest.raises(ModelError, match="nothing depends"):
+        same.sensitivity()
+
+
+def test_bars_stand_for_the_indices_with_the_largest_total_on_top(drawn):
+    axis = drawn.plot().axes[0]
+    names = [t.get_text() for t in axis.get_yticklabels()]
+    assert names == ["z", "y", "x"]
+    widths = [bar.get_width() for bar in axis.patches]
+    found = drawn.sensitivity().sel(parameter=names)
+    np.testing.assert_allclose(widths[:3], found["total"].values)
+    np.testing.assert_allclose(widths[3:], found["first"].values)
+
+
+def test_curves_show_one_line_for_each_value_of_the_second_axis(gridded):
+    axis = gridded.plot.curves(over="x", at={"z": 1.0}).axes[0]
+    lines = axis.get_lines()
+    assert len(lines) == 4
+    np.testing.assert_allclose(lines[2].get_ydata(), gridded["value"].sel(z=1.0, y=2.0).values)
+    assert axis.get_xscale() == "log"
+    assert axis.get_xlabel() == "x (s)" and axis.get_ylabel() == "value (N)"
+
+
+def test_a_map_shows_the_measure_with_proved_region_and_onset(gridded):
+    figure = gridded.plot.map(at={"z": 0.0}, x="x", y="y", proved=lambda x: 0.5 * x, onset=0.0)
+    mesh = figure.axes[0].collections[0]
+    expected = gridded["value"].sel(z=0.0).transpose("y", "x").values
+    np.testing.assert_allclose(np.asarray(mesh.get_array()).reshape(expected.shape), expected)
+    legend = [t.get_text() for t in figure.legends[0].get_texts()]
+    assert legend == ["proved", "onset, simulated"]
+
+
+def test_points_that_failed_stay_empty_in_a_map():
+    found = td.study(lambda x, y: x / (y > 0), {"x": [1.0, 2.0], "y": [0.0, 1.0]}, measures=value)
+    shown = found.plot.map(x="x", y="y").axes[0].collections[0].get_array()
+    assert np.ma.getmaskarray(shown).sum() == 2
+
+
+def test_a_region_that_a_measure_calls_proved_is_hatched_there_alone():
+    def settled(x, y):
+        return {"margin": y - x, "status": "proved" if x < y else "unknown"}
+
+    axes = {"x": [1.0, 2.0, 3.0], "y": [1.5, 2.5]}
+    found = td.study(settled, axes, measures={"m": dict})
+    hatched = found.plot.map("margin", x="x", y="y", proved="status").axes[0].collections[1]
+    shown = ~np.ma.getmaskarray(hatched.get_array())
+    assert shown.reshape(2, 3).tolist() == [[True, False, False], [True, True, False]]
+
+
+def test_panels_share_one_scale_of_colours(gridded):
+    figure = gridded.plot()
+    meshes = [a.collections[0] for a in figure.axes[:2]]
+    assert meshes[0].get_clim() == meshes[1].get_clim()
+    assert "z = 1" in figure.axes[1].get_title(loc="left")
+
+
+def test_points_drawn_together_are_shown_over_each_parameter():
+    found = td.study(ishigami, td.latin_hypercube(COLUMNS, 20, seed=1), measures=value)
+    figure = found.plot()
+    assert [a.get_xlabel() for a in figure.axes] == ["x (1)", "y (1)", "z (1)"]
+
+
+@pytest.mark.parametrize(
+    ("call", "text"),
+    [
+        (lambda plot: plot.map("valu"), 'did you mean "value"'),
+        (lambda plot: plot.map(), "a map has two axes"),
+        (lambda plot: plot.map(at={"w": 1.0}), 'no axis "w"'),
+        (lambda plot: plot.curves(over="x"), "give values of all but two"),
+        (lambda plot: plot.panels(by="xx"), 'did you mean "x"'),
+        (lambda plot: plot.scatter(), "points drawn together"),
+    ],
+)
+def test_figures_that_the_axes_do_not_allow_are_refused(gridded, call, text):
+    with pytest.raises(ModelError, match=text):
+        call(gridded.plot)
