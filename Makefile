@@ -4,11 +4,12 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 PYTEST_ARGS ?=
+FUZZ ?= 2000
 STUDY_ARGS ?=
 STUDY_OUTPUT ?= studies/output
 PIP := $(BIN)/python -m pip --disable-pip-version-check --no-input
 
-.PHONY: help demo test slow lint types imports docs studies benchmarks ci clean
+.PHONY: help demo test slow lint types imports docs studies benchmarks fuzz ci clean
 .DEFAULT_GOAL := help
 
 help:  ## list these targets
@@ -41,6 +42,10 @@ test: $(VENV)/installed-test  ## plain tests, some two minutes (PYTEST_ARGS adds
 slow: $(VENV)/installed-test  ## tests marked slow
 	@echo "== Slow tests"
 	@$(BIN)/pytest -n 2 -m slow $(PYTEST_ARGS)
+
+fuzz: $(VENV)/installed-test  ## spoilt files for every reader, FUZZ of each; failures go to build/fuzz
+	@echo "== $(FUZZ) spoilt files for each reader"
+	@FUZZ=$(FUZZ) $(BIN)/pytest tests/trust/test_fuzz.py $(PYTEST_ARGS)
 
 benchmarks: $(VENV)/installed-test  ## times against their bounds, one at a time
 	@echo "== Benchmarks"

@@ -7,10 +7,29 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from teleopdesign.errors import ModelError
 from teleopdesign.plot import save_figure
+from teleopdesign.studies import study
 
 if TYPE_CHECKING:
     import matplotlib.figure
+
+
+def values_over(model: Callable[..., Any], axes: Mapping[str, Any]) -> np.ndarray:
+    """What a function gives at every point of the axes, as an array over those that vary.
+
+    raises ModelError: a point failed, and why
+    """
+    found = study(model, axes, measures={"value": _itself})
+    if found.failures:
+        raise ModelError(f"{model.__name__}: {next(iter(found.failures))}")
+    return np.asarray(found["value"].values)
+
+
+def _itself(value: Any) -> Any:
+    return value
 
 
 def write_study(

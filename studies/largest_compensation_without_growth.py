@@ -22,7 +22,7 @@ import math
 
 import numpy as np
 import xarray
-from _study import write_study
+from _study import values_over, write_study
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
@@ -83,7 +83,7 @@ def run(*, quick: bool = False) -> xarray.Dataset:
     # the amplitudes of f_D/f_C = 1.05 (u = 21) to 4.2 (u = 1)
     u = np.geomspace(0.7, 25.0, 8 if quick else 20)
     fine = np.geomspace(0.5, 40.0, 200)
-    simulated = np.array([largest_without_growth(x, steps=11 if quick else 16) for x in u])
+    simulated = values_over(largest_without_growth, {"u": u, "steps": 11 if quick else 16})
     theory = np.array([largest_ratio(x) for x in u])
     worst = float(np.abs(simulated / theory - 1).max())
     attrs = {"units": "1"}

@@ -25,16 +25,16 @@ import math
 
 import numpy as np
 import xarray
-from _onset import least_that_grows
-from _study import write_study
+from _study import values_over, write_study
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving, teleoperator
-from teleopdesign.errors import ModelError
+from teleopdesign.errors import GrowsWithoutBound
 from teleopdesign.passivity import Claim, delayed_spring, region, sampled_coupling
 from teleopdesign.plot.onset import plot_delay_and_stiffness
 from teleopdesign.simulate import Sampling, simulate
+from teleopdesign.studies import least_that_grows
 
 MASSES, DAMPINGS = (0.2, 0.5), (1.0, 2.5)  # kg and N s/m, of master and slave
 HEAVY = 2.0  # kg at the master where hand and load are heavy
@@ -117,10 +117,8 @@ def grows(kind: str, late: float, stiffness: float, masses: tuple[float, float])
             step=step,
             every_step=True,
         )
-    except ModelError as problem:
-        if "beyond all bounds" in str(problem):
-            return True
-        raise
+    except GrowsWithoutBound:
+        return True
     error = simulation["X_e"].values
     parts = np.array_split(error, 3)
     return bool(np.square(parts[2]).mean() > np.square(parts[1]).mean())
@@ -161,10 +159,12 @@ def run(*, quick: bool = False) -> xarray.Dataset:
         status = region(claim, grid, stiffness).status.astype(str)
         onsets = np.full((2, m), np.nan)
         for i, masses in enumerate(ends(name)):
-            for k, late in enumerate(points):
-                bound = limit(name, float(late))
-                within = (0.5 * bound, 8 * bound)
-                onsets[i, k] = onset(name, float(late), masses, within=within, steps=steps)
+
+            def at(late: float, kind: str = name, masses: tuple[float, float] = masses) -> float:
+                bound = limit(kind, late)
+                return onset(kind, late, masses, within=(0.5 * bound, 8 * bound), steps=steps)
+
+            onsets[i] = values_over(at, {"late": points})
         over = onsets / np.array([limit(name, float(t)) for t in points])
         data[f"status_over_{name}"] = (("stiffness", name), status)
         data[f"onset_over_{name}"] = (("ends", f"{name}_simulated"), onsets, {"units": "N/m"})

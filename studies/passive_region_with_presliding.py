@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import numpy as np
 import xarray
-from _study import write_study
+from _study import values_over, write_study
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
@@ -76,7 +76,11 @@ def run(*, quick: bool = False) -> xarray.Dataset:
     softness, share = np.linspace(0.05, 1.25, n), np.linspace(0.05, 1.25, n)
     proofs = region(claim, softness, share)
     tested = motions(5 if quick else 8)
-    gives = np.array([[gives_out(x, y, tested) for x in softness] for y in share])
+
+    def beyond(share: float, softness: float) -> bool:
+        return gives_out(softness, share, tested)
+
+    gives = values_over(beyond, {"share": share, "softness": softness}) > 0
     proved = proofs.status == "proved"
     dims = ("share", "softness")
     return xarray.Dataset(

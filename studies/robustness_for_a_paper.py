@@ -6,8 +6,9 @@ of Mahvash, Okamura, ICRA 2006; the diagram is docs/examples/swing.toml.
 Each point of the map and each point of the Sobol indices is a simulation of 0.6 s, from rest at
 5 mm with the master held, controllers in continuous time.
 
-Finding: no swing grows within the proved region. The onset rises with the coupling's damping, and
-that damping decides most of the growth over the four ranges.
+Finding: none of 704 points within the proved region grows. Above it, of the variance of the growth
+over the four ranges, the coupling's damping causes 0.29 alone, the cancelled level 0.20, the law's
+bristle 0.19 and the environment 0.01.
 
     python studies/robustness_for_a_paper.py [--quick] [--output DIR]
 """

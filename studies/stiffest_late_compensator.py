@@ -28,17 +28,17 @@ from functools import partial
 
 import numpy as np
 import xarray
-from _onset import least_that_grows
-from _study import write_study
+from _study import values_over, write_study
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Diagram, haptic_interface
-from teleopdesign.errors import ModelError
+from teleopdesign.errors import GrowsWithoutBound
 from teleopdesign.passivity import Claim, region, required_damping, sampled_passivity
 from teleopdesign.passivity.theorems.sampled_data import Z
 from teleopdesign.plot.onset import plot_period_and_stiffness
 from teleopdesign.simulate import Sampling, simulate
+from teleopdesign.studies import least_that_grows
 
 MASS, DAMPING = 0.15, 2.0  # kg, N s/m
 FRICTION, PRESLIDING, SHARE = 0.5, 5e3, 0.9  # N, N/m, f_D/f_C
@@ -107,10 +107,8 @@ def grows(late: int, period: float, stiffness: float, *, free: bool = False) -> 
             give=SMALL,
             every_step=True,
         )
-    except ModelError as problem:
-        if "beyond all bounds" in str(problem):
-            return True
-        raise
+    except GrowsWithoutBound:
+        return True
     first, _, last = (np.sqrt(np.mean(p**2)) for p in np.array_split(simulation["L"].values, 3))
     return bool(last > first or last > 10 * SMALL)  # as large as the bristles let it become
 
@@ -134,7 +132,8 @@ def run(*, quick: bool = False) -> xarray.Dataset:
         status.append(region(partial(claim, late), period, stiffness).status.astype(str))
         limits.append([limit(late, float(t)) for t in period])
         for i, free in enumerate((True, False)):
-            onsets[i, k] = [onset(late, float(t), free=free, steps=steps) for t in simulated]
+            fixed = {"late": late, "free": free, "steps": steps}
+            onsets[i, k] = values_over(onset, {"period": simulated, **fixed})
     verdicts, bounds = np.array(status), np.array(limits)
     damped = np.array([[damping_limit(late, float(t)) for t in simulated] for late in LATE])
     over = onsets / np.array([np.minimum(damped, PRESLIDING), damped])

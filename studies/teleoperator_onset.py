@@ -25,7 +25,7 @@ import math
 
 import numpy as np
 import xarray
-from _study import write_study
+from _study import values_over, write_study
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
@@ -110,9 +110,8 @@ def run(*, quick: bool = False) -> xarray.Dataset:
     fixed = {"damping": DAMPING, "contact": CONTACT}
     data, worst, early = {}, 0.0, 0
     for name, values in axes.items():
-        cases = [{**fixed, name: float(x)} for x in values]
-        grown = np.array([[growth(float(s), **case) for case in cases] for s in shares])
-        expected = np.array([balance(**case) for case in cases])
+        grown = values_over(growth, {"share": shares, **fixed, name: values})
+        expected = np.array([balance(**{**fixed, name: float(x)}) for x in values])
         onset = np.array([_onset(shares, column) for column in grown.T])
         data[f"growth_over_{name}"] = (("share", name), grown, {"units": "1"})
         data[f"onset_over_{name}"] = ((name,), onset, {"units": "1", "how": "simulated"})

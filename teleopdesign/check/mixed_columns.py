@@ -15,8 +15,11 @@ from ..measurement.soundness.signal import written
 
 #: Hz, rates between which a machine is logged
 SLOWEST, FASTEST = 5.0, 1e6
-#: part of the force that the motion explains, at most as given and at least the other way round
-AS_GIVEN, EXCHANGED = 0.3, 0.8
+#: part of the force that the motion explains, at most as given and at least the other way round: on
+#: the recordings of `fetch` and twelve simulated ones it is 0.47 to 1.0 for columns in their
+#: places,
+#: and with one exception (0.43) at most 0.2 for columns that are exchanged
+AS_GIVEN, EXCHANGED = 0.25, 0.6
 
 
 def check_clock_unit(experiment: Experiment) -> Iterator[Finding]:
@@ -48,13 +51,13 @@ def check_mixed_columns(experiment: Experiment) -> Iterator[Finding]:
         force, position = (
             record.signals[f"{body}.{q}"][rows] for q in ("actuator_force", "position")
         )
+        hand = record.signals.get(f"{body}.interaction_force")
+        other = 0.0 if hand is None else hand[rows]
         if force.std() == 0.0 or position.std() == 0.0:
             continue
-        as_logged = explain_force(force, position, record.sample_time)
-        exchanged = explain_force(position, force, record.sample_time)
-        # in both orders a constant and a slope explain something: only an inertia tells a motion
-        inertia = exchanged.inertia > 5.0 * exchanged.errors[0] and exchanged.level > 0
-        if as_logged.explained < AS_GIVEN and exchanged.explained > EXCHANGED and inertia:
+        as_logged = explain_force(force + other, position, record.sample_time)
+        exchanged = explain_force(position + other, force, record.sample_time)
+        if as_logged.explained < AS_GIVEN and exchanged.explained > EXCHANGED:
             keys = [f"{body}.{q}" for q in ("position", "actuator_force")]
             names = [written(experiment, key) for key in keys]
             columns = [experiment.channels[key].column for key in keys]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from ..blocks import Body, Value
-from ..controllers import as_written, from_control
+from ..controllers import from_control
 from ..effects import EFFECTS
 from ..errors import ModelError
 from .parts import Control, Junction, Moving
@@ -88,14 +88,12 @@ def plant_parts(
     """
     import control
 
-    whole = control.tf(system)
-    if whole.isdtime(strict=True) or (whole.ninputs, whole.noutputs) != (1, 1):
+    if system.isdtime(strict=True) or (system.ninputs, system.noutputs) != (1, 1):
         raise ModelError(f"{name}: expected a plant of one input and output in continuous time")
     s = sp.Symbol("s")
-    above, below = (
-        sp.Poly([as_written(c) for c in side[0][0]], s, domain="QQ")
-        for side in (whole.num, whole.den)
-    )
+    # exact: python-control's own conversion of matrices leaves zeros far out
+    form = from_control(system, name="plant").linear_form(name, s, sp.S(0))
+    above, below = (sp.Poly(part, s, domain="QQ") for part in sp.fraction(sp.sympify(form)))
     if above.is_zero or below.degree() - above.degree() != 2:
         raise ModelError(
             f"{name}: a plant from force to position has two more poles than zeros, found "

@@ -81,12 +81,12 @@ def with_give(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> B
 
 def in_computer(diagram: Diagram, period: float) -> Diagram:
     """The diagram with controllers as a computer of that period (s) realises them."""
-    sampled = {
+    realised = {
         part.name: part.controller.sampled(period)
         for part in diagram.controls
         if isinstance(part.controller, Controller) and not part.analog
     }
-    return _with_blocks(diagram, sampled)
+    return _with_blocks(diagram, realised)
 
 
 def _with_blocks(diagram: Diagram, contents: Mapping[str, Body | Controller]) -> Diagram:
@@ -120,6 +120,6 @@ def simulated(diagram: Diagram, deflection: float, prescribed: Iterable[str] = (
         if isinstance(content, Body):
             bodies[part.name] = with_give(without_absent(content), deflection)
     apart = with_tips(_with_blocks(diagram, bodies), prescribed=prescribed)
-    # tips that dry friction holds
-    tips = {p.name: with_give(p.body, deflection) for p in apart.bodies if isinstance(p.body, Body)}
-    return _with_blocks(apart, tips)
+    # of a tip that dry friction holds
+    tips = {b.name: with_give(b.body, deflection) for b in apart.bodies if isinstance(b.body, Body)}
+    return _with_blocks(apart, dict(tips))

@@ -17,7 +17,7 @@ from ..arguments import check_arguments
 from .case import SimulatedCase
 from .diagnosed import diagnosed
 from .from_toml import read_study_file
-from .journal import Outcome
+from .journal import PointOutcome
 from .measures import MEASURES, Amount, Measure, Point, measure
 from .onset import growth, least_that_grows
 from .progress import Progress
@@ -31,7 +31,7 @@ __all__ = [
     "Amount",
     "SimulatedCase",
     "Measure",
-    "Outcome",
+    "PointOutcome",
     "Point",
     "Progress",
     "Samples",

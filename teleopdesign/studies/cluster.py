@@ -10,8 +10,8 @@ from functools import lru_cache
 from typing import Any
 
 from ..errors import ExperimentError, ModelError
-from .evaluate import Task
-from .journal import Outcome
+from .evaluate import StudyTask
+from .journal import PointOutcome
 from .processes import Sink, one_thread, packed
 from .side_by_side import Unit, evaluate_unit
 from .versions import versions
@@ -23,7 +23,7 @@ _MOST_IN_TASK = 1000
 _AHEAD = 3
 
 
-def run_on_cluster(task: Task, units: list[Unit], sink: Sink, address: str) -> None:
+def run_on_cluster(task: StudyTask, units: list[Unit], sink: Sink, address: str) -> None:
     """Points in the workers of the scheduler at that address, such as "tcp://10.0.0.1:8786".
 
     raises ExperimentError: no scheduler there, no worker, dask is not installed
@@ -51,13 +51,7 @@ def run_on_cluster(task: Task, units: list[Unit], sink: Sink, address: str) -> N
         def fill() -> None:
             threads = max(sum(client.nthreads().values()), 1)
             while waiting and len(known) < _AHEAD * threads:
-                size = int(_TASK_TIME / seconds_each) if seconds_each else 1
-                share = -(-len(waiting) // threads)
-                size = min(max(size, 1), _MOST_IN_TASK, max(share, 1), len(waiting))
-                batch = [waiting.popleft() for _ in range(size)]
-                if any(deaths.get(i) for i in batch):  # one that may end a worker goes alone
-                    waiting.extendleft(reversed(batch[1:]))
-                    batch = batch[:1]
+                batch = _next_batch(waiting, deaths, seconds_each, threads)
                 future = client.submit(_evaluated, payload, batch, pure=False)
                 known[future.key] = batch
                 every.add(future)
@@ -75,7 +69,7 @@ def run_on_cluster(task: Task, units: list[Unit], sink: Sink, address: str) -> N
                     deaths[unit] = deaths.get(unit, 0) + 1
                 if len(batch) == 1 and len(batch[0]) == 1:
                     ended = type(future.exception()).__name__
-                    sink(Outcome(batch[0][0], reason=f"{ended} on the cluster"))
+                    sink(PointOutcome(batch[0][0], reason=f"{ended} on the cluster"))
                 elif len(batch) == 1:  # its points one by one
                     alone = [(index,) for index in batch[0]]
                     deaths |= dict.fromkeys(alone, 1)
@@ -85,6 +79,20 @@ def run_on_cluster(task: Task, units: list[Unit], sink: Sink, address: str) -> N
             fill()
     finally:
         client.close(timeout=5)
+
+
+def _next_batch(
+    waiting: deque[Unit], deaths: dict[Unit, int], seconds_each: float, threads: int
+) -> list[Unit]:
+    """Units for one task, taken off those that wait; one that may end a worker goes alone."""
+    size = int(_TASK_TIME / seconds_each) if seconds_each else 1
+    share = -(-len(waiting) // threads)
+    size = min(max(size, 1), _MOST_IN_TASK, max(share, 1), len(waiting))
+    batch = [waiting.popleft() for _ in range(size)]
+    if any(deaths.get(unit) for unit in batch):
+        waiting.extendleft(reversed(batch[1:]))
+        batch = batch[:1]
+    return batch
 
 
 def _check_versions(client: Any, address: str) -> None:
@@ -101,7 +109,7 @@ def _check_versions(client: Any, address: str) -> None:
                 )
 
 
-def _evaluated(payload: bytes, batch: Sequence[Unit]) -> tuple[list[Outcome], float]:
+def _evaluated(payload: bytes, batch: Sequence[Unit]) -> tuple[list[PointOutcome], float]:
     """In a worker: the outcomes, and the time that they took, s."""
     task, start = _task(payload), time.monotonic()
     with one_thread():
@@ -110,6 +118,6 @@ def _evaluated(payload: bytes, batch: Sequence[Unit]) -> tuple[list[Outcome], fl
 
 
 @lru_cache(maxsize=4)
-def _task(payload: bytes) -> Task:
-    task: Task = pickle.loads(payload)
+def _task(payload: bytes) -> StudyTask:
+    task: StudyTask = pickle.loads(payload)
     return task

@@ -10,7 +10,7 @@ from typing import Any
 from ..diagrams import Diagram
 from ..errors import ModelError, TeleopDesignError, did_you_mean
 from .case import SimulatedCase
-from .journal import Outcome
+from .journal import PointOutcome
 from .measures import Amount, Measure, Point
 from .points import Points
 
@@ -18,7 +18,7 @@ _LONGEST_REASON = 300  # characters
 
 
 @dataclass(frozen=True)
-class Task:
+class StudyTask:
     """A study as every process gets it.
 
     model: a case, whose parameters are varied, or a function of the parameters
@@ -32,7 +32,7 @@ class Task:
     seed: int = 0
 
 
-def evaluate(task: Task, index: int) -> Outcome:
+def evaluate(task: StudyTask, index: int) -> PointOutcome:
     """What becomes of a point: its values, or the reason why it failed."""
 
     def point() -> Point:
@@ -42,7 +42,7 @@ def evaluate(task: Task, index: int) -> Outcome:
     return outcome_of(task, index, point)
 
 
-def outcome_of(task: Task, index: int, made: Callable[[], Point]) -> Outcome:
+def outcome_of(task: StudyTask, index: int, made: Callable[[], Point]) -> PointOutcome:
     """What the measures make of a point.
 
     Whatever a model or a measure raises is the reason of a failure: one point never ends a study.
@@ -56,17 +56,17 @@ def outcome_of(task: Task, index: int, made: Callable[[], Point]) -> Outcome:
                     raise ModelError(f'study: two measures give "{name}"')
                 amounts[name] = amount
     except TeleopDesignError as error:
-        return Outcome(index, reason=_shortened(str(error)))
+        return PointOutcome(index, reason=_shortened(str(error)))
     except Exception as error:
-        return Outcome(index, reason=_shortened(f"{type(error).__name__}: {error}"))
+        return PointOutcome(index, reason=_shortened(f"{type(error).__name__}: {error}"))
     form = tuple(
         (name, "text" if isinstance(a.value, str) else "number", a.unit, a.text, *(a.over or ()))
         for name, a in amounts.items()
     )
-    return Outcome(index, form, tuple(_whole(a.value) for a in amounts.values()))
+    return PointOutcome(index, form, tuple(_whole(a.value) for a in amounts.values()))
 
 
-def _content(task: Task, values: Mapping[str, Any]) -> Any:
+def _content(task: StudyTask, values: Mapping[str, Any]) -> Any:
     if isinstance(task.model, SimulatedCase):
         return task.model.with_values(values)
     result = task.model(**values)

@@ -28,7 +28,7 @@ except ImportError:  # no such thing on Windows: there two processes are not kep
 
 
 @dataclass(frozen=True)
-class Outcome:
+class PointOutcome:
     """What became of a point.
 
     form: what its values are: (name, kind, unit, text, dimension ...) of each;  values: in that
@@ -50,7 +50,7 @@ class Journal:
         raises ExperimentError: it is of another study, in use, or cannot be written
         """
         self.path, self.study, self.points = path, study, points
-        self.outcomes: dict[int, Outcome] = {}
+        self.outcomes: dict[int, PointOutcome] = {}
         self._forms: dict[str, tuple[Any, ...]] = {}
         self._file: int | None = None
         if path is not None:
@@ -105,12 +105,12 @@ class Journal:
     def _take(self, content: Mapping[str, Any]) -> None:
         index = int(content["point"])
         form = self._forms.get(content.get("form", ""), ())
-        outcome = Outcome(
+        outcome = PointOutcome(
             index, form, _tuples(content.get("values", ())), content.get("reason", "")
         )
         self.outcomes.setdefault(index, outcome)
 
-    def add(self, outcome: Outcome) -> None:
+    def add(self, outcome: PointOutcome) -> None:
         """Keep an outcome; raises ExperimentError where the disk refuses."""
         if outcome.point in self.outcomes:
             return

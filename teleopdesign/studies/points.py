@@ -14,8 +14,8 @@ from .samples import Samples, distribution_text
 
 #: dimension of points that were drawn together
 SAMPLE = "sample"
-#: most points of a study: the labels and results of 1e9 points need some 10 GB for each measure
-MOST_POINTS = 1_000_000_000
+#: most points of a study: what is kept of each while it runs takes some 400 bytes
+MOST_POINTS = 100_000_000
 
 #: parameter -> values (a dimension of its own), or one value;  or points drawn together
 Axes = Mapping[str, Any] | Samples | Sequence[Mapping[str, Any] | Samples]

@@ -21,12 +21,12 @@ from dataclasses import dataclass, field
 from typing import Any, BinaryIO, cast
 
 from ..errors import ModelError, TeleopDesignError
-from .evaluate import Task
+from .evaluate import StudyTask
 from .frames import receive, send
-from .journal import Outcome
+from .journal import PointOutcome
 from .side_by_side import Unit, evaluate_unit
 
-Sink = Callable[[Outcome], None]
+Sink = Callable[[PointOutcome], None]
 
 #: s: points handed to a process at once; short against a look at the progress, long against the
 #: 0.1 ms that a message takes
@@ -59,7 +59,7 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
-def packed(task: Task) -> bytes:
+def packed(task: StudyTask) -> bytes:
     """The task for another process; functions of a script or a notebook go with their code.
 
     raises ModelError: something in it is code that cannot be sent
@@ -95,7 +95,9 @@ def one_thread() -> Iterator[None]:
                 os.environ[name] = value
 
 
-def run_here(task: Task, units: Iterable[Unit], sink: Sink, *, until: float = float("inf")) -> int:
+def run_here(
+    task: StudyTask, units: Iterable[Unit], sink: Sink, *, until: float = float("inf")
+) -> int:
     """Points in this process, for at most `until` s; returns how many units were done."""
     start, count = time.monotonic(), 0
     with one_thread():
@@ -108,7 +110,7 @@ def run_here(task: Task, units: Iterable[Unit], sink: Sink, *, until: float = fl
     return count
 
 
-def run_in_processes(task: Task, units: list[Unit], sink: Sink, workers: int) -> None:
+def run_in_processes(task: StudyTask, units: list[Unit], sink: Sink, workers: int) -> None:
     """Points in that many processes beside this one."""
     pool = _Pool(packed(task), units, sink)
     try:
@@ -117,7 +119,9 @@ def run_in_processes(task: Task, units: list[Unit], sink: Sink, workers: int) ->
         pool.close()
 
 
-def run_on_this_machine(task: Task, units: list[Unit], sink: Sink, workers: int | None) -> None:
+def run_on_this_machine(
+    task: StudyTask, units: list[Unit], sink: Sink, workers: int | None
+) -> None:
     """Points in as many processes as there are cores; in this one where that is as fast."""
     if workers is None:
         count = cores()
@@ -174,7 +178,7 @@ class _Pool:
             else:
                 self._bury(worker)
 
-    def _take(self, outcomes: list[Outcome]) -> None:
+    def _take(self, outcomes: list[PointOutcome]) -> None:
         self.left -= 1
         for outcome in outcomes:
             self.sink(outcome)
@@ -241,7 +245,7 @@ class _Pool:
             self.todo.appendleft(first)
         elif len(first) == 1:
             reason = f"its process ended twice, {_how(status)}"
-            self._take([Outcome(first[0], reason=reason)])
+            self._take([PointOutcome(first[0], reason=reason)])
         else:  # its points one by one
             self.todo.extendleft((index,) for index in reversed(first))
             self.left += len(first) - 1

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from .journal import Outcome
+from .journal import PointOutcome
 
 #: s between two reports: as often as one can read
 _BETWEEN = 0.5
@@ -51,7 +51,7 @@ class Clock:
         #: compiled for the first point does not count to the end
         self._recent: deque[tuple[float, int]] = deque([(self.last, kept)], maxlen=_REMEMBERED)
 
-    def count(self, outcome: Outcome) -> None:
+    def count(self, outcome: PointOutcome) -> None:
         """One more outcome."""
         self.done += 1
         self.failed += bool(outcome.reason)

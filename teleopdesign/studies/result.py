@@ -15,7 +15,7 @@ from ..by_value import ByValue
 from ..errors import ExperimentError, ModelError, did_you_mean
 from ..notebook import html_table
 from ..plain_data import replacing
-from .journal import Outcome
+from .journal import PointOutcome
 from .points import SAMPLE, Points
 
 if TYPE_CHECKING:
@@ -94,11 +94,11 @@ class Study(ByValue):
 
     @property
     def _title(self) -> str:
-        sizes = " x ".join(f"{n} {d}" for d, n in self.data.sizes.items() if d in self._own)
+        sizes = " x ".join(f"{n} {d}" for d, n in self.data.sizes.items() if d in self._point_axes)
         return f"Study of the {self.data.attrs['model']}: {sizes or '1 point'}"
 
     @property
-    def _own(self) -> tuple[str, ...]:
+    def _point_axes(self) -> tuple[str, ...]:
         return tuple(str(d) for d in self.data[REASON].dims)
 
     @property
@@ -142,7 +142,7 @@ def check_netcdf() -> None:
 
 def labelled(
     points: Points,
-    outcomes: Mapping[int, Outcome],
+    outcomes: Mapping[int, PointOutcome],
     *,
     units: Mapping[str, str],
     attributes: Mapping[str, Any],
@@ -183,7 +183,7 @@ def labelled(
     return Study(xarray.Dataset(data, coordinates, dict(attributes)))
 
 
-def _form_of(outcomes: Sequence[Outcome]) -> tuple[list[tuple[Any, ...]], np.ndarray]:
+def _form_of(outcomes: Sequence[PointOutcome]) -> tuple[list[tuple[Any, ...]], np.ndarray]:
     """What the measures give, and why points have failed, "" where they have not."""
     first = next((o.form for o in outcomes if not o.reason), ())
     units = ["" for _ in first]

@@ -14,9 +14,9 @@ from ..errors import ExperimentError, ModelError, did_you_mean
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from .case import SimulatedCase
-from .evaluate import Task, check_parameters
+from .evaluate import StudyTask, check_parameters
 from .fingerprint import fingerprint
-from .journal import Journal, Outcome
+from .journal import Journal, PointOutcome
 from .measures import measures_of
 from .points import points_of
 from .processes import run_on_this_machine
@@ -101,7 +101,9 @@ def _check_places(workers: int | None, scheduler: str) -> None:
         raise ModelError("study: workers and scheduler: a cluster brings its own workers")
 
 
-def _task(model: Any, settings: Mapping[str, Any], axes: Any, measures: Any, seed: int) -> Task:
+def _task(
+    model: Any, settings: Mapping[str, Any], axes: Any, measures: Any, seed: int
+) -> StudyTask:
     """What every process gets, held against the parameters that the model has."""
     points, chosen = points_of(axes), measures_of(measures)
     if isinstance(model, Diagram):
@@ -110,11 +112,11 @@ def _task(model: Any, settings: Mapping[str, Any], axes: Any, measures: Any, see
         model.check_names(points.names)
     else:
         check_parameters(model, points)
-    return Task(model, settings, points, chosen, seed)
+    return StudyTask(model, settings, points, chosen, seed)
 
 
 def _with_file(
-    task: Task, words: _Words, target: Path | None, run: Callable[[Journal], None]
+    task: StudyTask, words: _Words, target: Path | None, run: Callable[[Journal], None]
 ) -> Study:
     """Run what the file and the journal beside it do not hold yet, and label it all."""
     attributes = _attributes(task, words)
@@ -141,7 +143,7 @@ def _with_file(
 
 
 def _run(
-    task: Task,
+    task: StudyTask,
     journal: Journal,
     *,
     workers: int | None,
@@ -151,7 +153,7 @@ def _run(
     todo = [i for i in range(len(task.points)) if i not in journal.outcomes]
     clock = Clock(len(task.points), len(journal.outcomes), progress)
 
-    def sink(outcome: Outcome) -> None:
+    def sink(outcome: PointOutcome) -> None:
         if outcome.point not in journal.outcomes:  # of a block that was done in part
             journal.add(outcome)
             clock.count(outcome)
@@ -178,7 +180,7 @@ def _stored(target: Path, key: str) -> Study:
     return stored
 
 
-def _units(task: Task, units: Mapping[str, str]) -> dict[str, str]:
+def _units(task: StudyTask, units: Mapping[str, str]) -> dict[str, str]:
     """Units of the parameters."""
     if isinstance(task.model, SimulatedCase):
         case = task.model
@@ -205,7 +207,7 @@ def _write_words(result: Study, words: _Words) -> None:
             result.data[name].attrs["long_name"] = words.labels[name]
 
 
-def _attributes(task: Task, words: _Words) -> dict[str, Any]:
+def _attributes(task: StudyTask, words: _Words) -> dict[str, Any]:
     """What stands beside the numbers: enough to compute them again."""
     points, model = task.points, task.model
     values: dict[str, Any] = dict(points.fixed)

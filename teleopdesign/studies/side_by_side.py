@@ -15,8 +15,8 @@ import numpy as np
 from ..errors import GrowsWithoutBound, ModelError, TeleopDesignError
 from ..simulate import Simulation, simulate_many
 from .case import SimulatedCase
-from .evaluate import Task, evaluate, outcome_of
-from .journal import Outcome
+from .evaluate import StudyTask, evaluate, outcome_of
+from .journal import PointOutcome
 from .measures import Point
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ _NUMBERS_OF_BLOCK = 2e7
 _LEAST_IN_BLOCK, _MOST_IN_BLOCK = 16, 512
 
 
-def units_of(task: Task, todo: Iterable[int]) -> list[Unit]:
+def units_of(task: StudyTask, todo: Iterable[int]) -> list[Unit]:
     """The points in blocks where they can be simulated side by side, else one by one.
 
     A block holds all of its points, also those that are not asked for.
@@ -44,7 +44,7 @@ def units_of(task: Task, todo: Iterable[int]) -> list[Unit]:
     return [tuple(range(first, min(first + size, len(task.points)))) for first in firsts]
 
 
-def block_size(task: Task) -> int:
+def block_size(task: StudyTask) -> int:
     """Points of a block; 1 where points cannot be simulated side by side."""
     case, signals = task.model, signals_of(task)
     if not isinstance(case, SimulatedCase) or not signals or case.every_step or not case.duration:
@@ -60,13 +60,13 @@ def block_size(task: Task) -> int:
     return max(_LEAST_IN_BLOCK, min(size, _MOST_IN_BLOCK))
 
 
-def signals_of(task: Task) -> tuple[str, ...]:
+def signals_of(task: StudyTask) -> tuple[str, ...]:
     """Signals that the measures need; none where one of them may need anything."""
     listed = [m.signals for m in task.measures]
     return () if not all(listed) else tuple(dict.fromkeys(s for one in listed for s in one))
 
 
-def evaluate_unit(task: Task, unit: Unit) -> list[Outcome]:
+def evaluate_unit(task: StudyTask, unit: Unit) -> list[PointOutcome]:
     """What becomes of the points of a unit."""
     if len(unit) == 1:
         return [evaluate(task, unit[0])]
@@ -78,7 +78,7 @@ def evaluate_unit(task: Task, unit: Unit) -> list[Outcome]:
     groups: dict[tuple[float, ...], list[int]] = {}
     for row in range(len(unit)):
         groups.setdefault(tuple(table[n][row].item() for n in beside), []).append(row)
-    outcomes: dict[int, Outcome] = {}
+    outcomes: dict[int, PointOutcome] = {}
     for content, rows in groups.items():
         chosen = np.array(rows)
         columns = {n: table[n][chosen] for n in within}
@@ -96,7 +96,7 @@ def evaluate_unit(task: Task, unit: Unit) -> list[Outcome]:
 
 
 def _simulated(
-    task: Task, columns: dict[str, np.ndarray], others: dict[str, float]
+    task: StudyTask, columns: dict[str, np.ndarray], others: dict[str, float]
 ) -> xarray.Dataset:
     """Signals of one group over `case` and `time`."""
     assert isinstance(task.model, SimulatedCase)
@@ -115,7 +115,7 @@ def _simulated(
     )
 
 
-def _point(task: Task, index: int, row: int, signals: xarray.Dataset) -> Callable[[], Point]:
+def _point(task: StudyTask, index: int, row: int, signals: xarray.Dataset) -> Callable[[], Point]:
     """What makes the point, whose simulation is a row of the block."""
 
     def simulated() -> Simulation:

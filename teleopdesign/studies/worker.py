@@ -6,7 +6,7 @@ import os
 import pickle
 import signal
 
-from .evaluate import Task
+from .evaluate import StudyTask
 from .frames import receive, send
 from .side_by_side import evaluate_unit
 
@@ -21,7 +21,7 @@ def main() -> None:
     os.dup2(2, 1)
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     try:
-        task: Task = pickle.loads(receive(questions))
+        task: StudyTask = pickle.loads(receive(questions))
         while True:
             for unit in receive(questions):
                 send(answers, evaluate_unit(task, unit))

@@ -66,6 +66,23 @@ def test_stricter_criteria_support_nothing(ladder):
     assert state.supported and not look(strict, state.rungs).supported
 
 
+def test_what_is_added_to_a_model_that_leaves_noise_says_what_else_it_could_be(ladder):
+    search, state = ladder
+    assert add(search, state).rungs[-1].could_be is None
+    noise = replace(state.floor, value=state.fit.check_error)
+    quiet = replace(state, floors=replace(state.floors, allowed=noise))
+    assert is_adequate(quiet.fit, quiet.floor)
+    rung = add(search, quiet).rungs[-1]
+    gain = state.fit.check_error**2 - rung.fit.check_error**2
+    helps = {
+        r.candidate
+        for r in state.ranking.ranked
+        if r.counts and state.fit.check_error**2 - r.fit.check_error**2 > 0.5 * gain
+    }
+    assert rung.could_be is not None
+    assert set(rung.could_be) == helps - {rung.added}
+
+
 def test_what_others_made_superfluous_is_removed(ladder):
     search, state = ladder
     full = with_effects(search, state, "quadratic_drag", "spring", "bias")

@@ -3,6 +3,8 @@
 import pytest
 from measurement.rod_example import assert_says, error_of
 
+from teleopdesign.measurement import load_experiment
+
 TIME = 'time = { column = "t", unit = "s" }'
 POSITION = 'position = { column = "x", unit = "mm", resolution = 5e-3 }'
 FORCE = 'actuator_force = { column = "u", unit = "N" }'
@@ -126,8 +128,9 @@ def test_a_folder_without_experiment_lists_what_it_holds(rod):
     )
 
 
-def test_a_record_file_as_folder_is_refused(rod):
-    assert_says(error_of(rod / "fit.csv"), "fit.csv: no such folder")
+def test_a_record_file_stands_for_its_folder(rod):
+    assert load_experiment(rod / "fit.csv") == load_experiment(rod)
+    assert_says(error_of(rod / "fat.csv"), 'fat.csv: no such folder; did you mean "fit.csv"')
 
 
 def test_a_toml_that_is_not_text_is_named(rod):

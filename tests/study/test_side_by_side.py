@@ -7,7 +7,7 @@ import xarray
 
 import teleopdesign as td
 from teleopdesign.studies import side_by_side
-from teleopdesign.studies.evaluate import Task, evaluate
+from teleopdesign.studies.evaluate import StudyTask, evaluate
 from teleopdesign.studies.measures import measures_of
 from teleopdesign.studies.points import points_of
 
@@ -21,7 +21,7 @@ MEASURES = ["force_error", "energy_drawn", td.measure("growth", signal="R_M")]
 
 def task(axes=AXES, measures=MEASURES):
     case = td.studies.SimulatedCase(models.interface(), **models.SIMULATED)
-    return Task(case, {}, points_of(axes), measures_of(measures))
+    return StudyTask(case, {}, points_of(axes), measures_of(measures))
 
 
 def test_blocks_have_the_numbers_and_reasons_of_single_simulations():
@@ -60,7 +60,7 @@ def test_blocks_are_longer_for_shorter_simulations_and_bounded():
     sizes = []
     for duration in (0.01, 1.0, 10.0, 1000.0):
         case = td.studies.SimulatedCase(models.interface(), duration=duration)
-        one = Task(case, {}, points_of(AXES), measures_of("force_error"))
+        one = StudyTask(case, {}, points_of(AXES), measures_of("force_error"))
         sizes.append(side_by_side.block_size(one))
     assert sizes[0] == 512 and sizes[-1] == 16
     assert sorted(sizes, reverse=True) == sizes

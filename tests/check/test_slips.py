@@ -1,0 +1,84 @@
+"""Slips that a recording tells without a model: clocks, swapped columns, scales, other names."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.check.mixed_columns import check_clock_unit, check_mixed_columns
+from teleopdesign.cli import main
+from teleopdesign.effects import EFFECTS, find_effect
+from teleopdesign.errors import ModelError
+from teleopdesign.measurement.soundness.held_samples import stuck_stretches
+
+
+@pytest.fixture(scope="module")
+def rod():
+    return td.load_experiment(td.example("rod"))
+
+
+def changed(experiment, signals):
+    records = tuple(replace(r, signals=signals(dict(r.signals))) for r in experiment.records)
+    return replace(experiment, records=records)
+
+
+def test_a_time_in_ms_that_is_read_as_s_is_named(rod):
+    slow = tuple(
+        replace(r, time=1e3 * r.time, sample_time=1e3 * r.sample_time) for r in rod.records
+    )
+    findings = list(check_clock_unit(replace(rod, records=slow)))
+    assert 'write unit = "ms" at channels.time' in findings[0].sentence
+    assert not list(check_clock_unit(rod))
+
+
+def test_position_and_force_that_are_swapped_are_named(rod):
+    def swapped(s):
+        x, u = s["device.position"], s["device.actuator_force"]
+        return s | {"device.position": u, "device.actuator_force": x}
+
+    assert not list(check_mixed_columns(rod))
+    (finding,) = check_mixed_columns(changed(rod, swapped))
+    assert 'write column = "u" at channels.position' in finding.sentence
+
+
+def test_a_body_that_rests_at_a_reversal_is_not_stuck_but_a_sensor_that_leaps_is():
+    moving = np.cumsum(np.r_[np.full(50, 20.0), np.zeros(40), -np.linspace(0, 400, 60)[1:]])
+    assert stuck_stretches(moving, 1.0, "position") == []
+    leaping = np.cumsum(np.r_[np.full(50, 20.0), np.zeros(40), [800.0], np.full(30, 20.0)])
+    assert len(stuck_stretches(leaping, 1.0, "position")) == 1
+
+
+@pytest.mark.parametrize(("word", "meant"), [("stiction", "stribeck"), ("LuGre", "presliding")])
+def test_other_names_of_the_field_suggest_the_effect(word, meant):
+    with pytest.raises(ModelError, match=f'did you mean "{meant}"'):
+        find_effect(word, EFFECTS)
+
+
+def test_a_file_of_the_folder_stands_for_it_and_a_lone_log_says_what_makes_one(tmp_path):
+    assert td.load_experiment(td.example("rod") / "fit.csv.gz").title
+    (tmp_path / "log.csv").write_text("t,x\n0,1\n")
+    with pytest.raises(td.ExperimentError, match="teleopdesign new log.csv"):
+        td.load_experiment(tmp_path / "log.csv")
+
+
+def test_columns_that_do_not_read_are_a_finding_where_the_log_tells_why(tmp_path, capsys, rod):
+    record = rod.fit_records[0]
+    rows = np.column_stack(
+        [
+            1e3 * record.time,
+            record.signals["device.position"],
+            record.signals["device.actuator_force"],
+        ]
+    )[:3000]
+    head = "time_ms,pos_m,force_N"
+    np.savetxt(tmp_path / "log.csv", rows, delimiter=",", header=head, comments="")
+    (tmp_path / "experiment.toml").write_text(
+        '[model.device]\naxis = "prismatic"\ninertia = 0.2\n[model.device.effects]\n[channels]\n'
+        'time = { column = "pos_m", unit = "s" }\nposition = { column = "time_ms", unit = "m" }\n'
+        'actuator_force = { column = "force_N", unit = "N" }\n'
+        '[[records]]\nfile = "log.csv"\nuse = "fit"\n'
+    )
+    assert main(["check", str(tmp_path)]) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert 'channels.time: the log looks like column = "time_ms", found "pos_m"' in shown

@@ -1,0 +1,116 @@
+"""What a file claims is not believed: sizes, objects, other files, damaged bytes, odd names."""
+
+import gzip
+import pickle
+
+import h5py
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.io import savemat
+
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.doors.text import stamps_of
+from teleopdesign.measurement.tables import open_log, read_columns
+
+
+def refused(path, *wanted):
+    with pytest.raises(ExperimentError) as caught:
+        read_columns(path, path.name, dict.fromkeys(wanted, "channels.position"))
+    message = str(caught.value)
+    assert message.isprintable() and message.startswith(path.name)
+    return message
+
+
+def test_a_dataset_of_three_thousand_million_rows_is_refused_unread(tmp_path):
+    path = tmp_path / "log.h5"
+    with h5py.File(path, "w") as file:
+        file.create_dataset("x", shape=(3_000_000_000,), dtype="f8", chunks=(1024,))
+    assert "3e+09 rows, expected at most 5e+07" in refused(path, "x")
+
+
+def test_data_in_another_file_are_refused(tmp_path):
+    (tmp_path / "secret").write_bytes(bytes(800))
+    path = tmp_path / "log.h5"
+    with h5py.File(path, "w") as file:
+        outside = [(str(tmp_path / "secret"), 0, 800)]
+        file.create_dataset("x", shape=(100,), dtype="f8", external=outside)
+    assert "lies in another file" in refused(path, "x")
+
+
+def test_nothing_is_unpickled(tmp_path):
+    path = tmp_path / "log.npz"
+    np.savez(path, x=np.array([{"a": 1}] * 100, dtype=object), allow_pickle=True)
+    assert "Python objects" in refused(path, "x")
+    path.write_bytes(pickle.dumps([1, 2]))
+    assert "not a readable .npz file" in refused(path, "x")
+
+
+def test_fields_of_structs_and_columns_of_matrices_are_columns(tmp_path):
+    path = tmp_path / "log.mat"
+    matrix = np.arange(300.0).reshape(100, 3)
+    inner = {"q": np.arange(100.0), "limits": {"upper": np.ones(100)}}
+    savemat(path, {"log": inner, "data": matrix})
+    log = open_log(path, "log.mat")
+    assert {"log.q", "log.limits.upper", "data(:,2)"} <= set(log.names)
+    values = read_columns(path, "log.mat", {"log.q": "", "data(:,2)": ""}).values
+    assert np.array_equal(values["log.q"], np.arange(100.0))
+    assert np.array_equal(values["data(:,2)"], matrix[:, 1])
+
+
+@pytest.mark.parametrize("ending", [".npz", ".xlsx", ".bag", ".mcap", ".db3", ".h5", ".parquet"])
+@pytest.mark.parametrize("content", [b"", b"\x00\x01PK\x03\x04 and no more" * 20])
+def test_a_damaged_file_is_one_line(tmp_path, ending, content):
+    path = tmp_path / f"log{ending}"
+    path.write_bytes(content)
+    refused(path, "x")
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t", "|"])
+@pytest.mark.parametrize("comma", [False, True])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "cp1252"])
+def test_every_dialect_gives_the_same_numbers(tmp_path, separator, comma, encoding):
+    if comma and separator == ",":
+        return
+    table = np.random.default_rng(0).normal(size=(200, 3)).round(6)
+    lines = ["# Prüfstand", separator.join(("t", "Weg", "Kraft"))]
+    lines += [separator.join(map(str, row)) for row in table.tolist()]
+    text = "\n".join(lines)
+    path = tmp_path / "log.csv"
+    path.write_text(text.replace(".", ",") if comma else text, encoding=encoding)
+    columns = read_columns(path, "log.csv", {"t": "", "Weg": "", "Kraft": ""}).values
+    assert np.array_equal(np.column_stack(list(columns.values())), table)
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [
+        ["2026-11-22T18:00:00.5", "2026-11-22T18:00:01.0"],
+        ["2026-11-22 18:00:00.5Z", "2026-11-22 18:00:01Z"],
+        ["22.11.2026 18:00:00,5", "22.11.2026 18:00:01,0"],
+        ["18:00:00.5", "18:00:01.0"],
+    ],
+)
+def test_dates_and_times_of_day_are_seconds(cells):
+    stamps = stamps_of(cells)
+    assert stamps is not None
+    assert np.diff(stamps) == pytest.approx([0.5])
+
+
+@given(content=st.binary(max_size=300))
+@settings(max_examples=150, deadline=None)
+def test_any_bytes_named_csv_are_read_or_refused_in_one_line(tmp_path_factory, content):
+    path = tmp_path_factory.getbasetemp() / "any.csv"
+    path.write_bytes(content)
+    try:
+        assert open_log(path, "any.csv").names
+    except ExperimentError as error:
+        assert str(error).isprintable()
+
+
+def test_a_packed_table_that_ends_early_is_one_line(tmp_path):
+    path = tmp_path / "log.csv.gz"
+    packed = gzip.compress(("t,x\n" + "0.1,2\n" * 50_000).encode())
+    path.write_bytes(packed[: len(packed) // 2])
+    assert "cannot be read" in refused(path, "t", "x")

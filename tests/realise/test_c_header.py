@@ -1,0 +1,92 @@
+"""Exported difference equations, compiled, are the block as the simulation steps it."""
+
+import ctypes
+import shutil
+import subprocess
+
+import control
+import numpy as np
+import pytest
+from devices import body
+
+from teleopdesign.controllers import CONTROLLERS, Controller, Stage, controller, from_control
+from teleopdesign.diagrams import haptic_interface
+from teleopdesign.errors import ModelError
+from teleopdesign.realise.c_header import as_c_header
+from teleopdesign.simulate import Sampling, Trajectory, simulate
+
+PERIOD = 1e-3
+NOTCH = control.tf([1.0, 6.0, 4e3], [1.0, 120.0, 4e3])
+SECOND = control.ss([[-5.0, 2.0], [0.0, -9.0]], [[1.0], [2.0]], [[3.0, 1.0]], [[0.0]])
+W = 30.0
+MOTION = Trajectory(
+    lambda t: 0.01 * (1 - np.cos(W * t)),
+    lambda t: 0.01 * W * np.sin(W * t),
+    lambda t: 0.01 * W**2 * np.cos(W * t),
+)
+compiled = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+
+
+def probe(name):
+    law = CONTROLLERS[name]
+    values = {n: min(max(2.0, p.lower), p.upper) for n, p in law.parameters.items()}
+    return Controller((Stage(law, values),))
+
+
+BLOCKS = {n: probe(n) for n in CONTROLLERS if CONTROLLERS[n].takes != "force"} | {
+    "transfer function": from_control(NOTCH),
+    "state space": from_control(SECOND),
+    "discrete": from_control(control.sample_system(NOTCH, PERIOD)),
+    "in series": controller("low_pass", {"bandwidth": 20.0}).then(from_control(NOTCH)),
+}
+
+
+def library(text, folder):
+    source, target = folder / "law.c", folder / "law.so"
+    (folder / "law.h").write_text(text)
+    source.write_text(
+        '#include "law.h"\n'
+        "void run(int n, const double *x, const double *v, double *out) {\n"
+        "    law_state s;\n    law_start(&s);\n"
+        "    for (int i = 0; i < n; i++) out[i] = law_step(&s, x[i], v[i], v[i]);\n}\n"
+    )
+    flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-O2"]
+    done = subprocess.run(
+        ["cc", *flags, str(source), "-o", str(target), "-lm"], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    return ctypes.CDLL(str(target))
+
+
+@compiled
+@pytest.mark.parametrize("name", BLOCKS)
+def test_the_compiled_export_gives_the_output_of_the_block(name, tmp_path):
+    """Along a motion from rest, 100 samples; 1e-9 of the range: rounding, and order of sums."""
+    block = BLOCKS[name]
+    found = simulate(
+        haptic_interface(body(0.1), cancellation=block),
+        duration=0.1,
+        motion={"L": MOTION},
+        computer=Sampling(period=PERIOD),
+        step=PERIOD,
+        jit=False,
+    )
+    x = np.ascontiguousarray(found["L"].values)
+    v = np.diff(x, prepend=x[0]) / PERIOD
+    out = np.zeros_like(x)
+    pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for a in (x, v, out)]
+    library(as_c_header(block, period=PERIOD, name="law"), tmp_path).run(len(x), *pointers)
+    expected = found["R_MBC"].values
+    assert np.abs(out - expected).max() <= 1e-9 * max(np.ptp(expected), 1e-12)
+
+
+def test_a_name_that_is_no_name_or_a_law_that_is_code_is_refused():
+    block = from_control(NOTCH)
+    for name in ("", "a b", "x;}", "1st", "Law"):
+        with pytest.raises(ModelError, match="expected such as"):
+            as_c_header(block, period=PERIOD, name=name)
+    with pytest.raises(ModelError, match="period: expected a time"):
+        as_c_header(block, period=0.0)
+    cubic = control.nlsys(None, lambda t, x, u, p: u**3, inputs=1, outputs=1)
+    with pytest.raises(ModelError, match="known as code only"):
+        as_c_header(from_control(cubic), period=PERIOD)
