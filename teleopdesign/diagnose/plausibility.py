@@ -77,10 +77,13 @@ def _comparable_positions(stretches: Sequence[Stretch]) -> list[np.ndarray]:
 
 
 def _stroke(stretches: Sequence[Stretch]) -> float:
-    """Mean time of motion between two reversals (s); inf where none is told."""
-    moving, reversals = 0.0, 0
+    """Mean time of motion one way (s), over all stretches; inf where there is one direction."""
+    moving, runs, ways = 0.0, 0, set()
     for s in stretches:
         told = s.motion.direction[s.motion.direction != 0]
+        if not len(told):
+            continue
         moving += len(told) * s.motion.sample_time
-        reversals += int(np.count_nonzero(np.diff(told)))
-    return moving / reversals if reversals else float("inf")
+        runs += 1 + int(np.count_nonzero(np.diff(told)))
+        ways |= set(told.tolist())
+    return moving / runs if len(ways) > 1 else float("inf")
