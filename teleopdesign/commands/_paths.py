@@ -15,7 +15,7 @@ from typing import Any
 from ..errors import ExperimentError
 
 #: options that name what a command reads, and what it writes: a file or a folder
-INPUTS = ("folder", "source", "file", "diagram", "answer", "check", "effect")
+INPUTS = ("folder", "logs", "source", "file", "diagram", "answer", "check", "effect")
 OUTPUTS = ("json", "predictions", "figure", "report", "output", "out", "effect_file")
 
 
