@@ -8,6 +8,7 @@ written down otherwise; seconds from the beginning of the bag.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
@@ -15,11 +16,13 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError
+from ...errors import ExperimentError, quoted
+from ...names import LONGEST
 from ._log import Array, Log, listed, optional, refuse_size
 
 #: numbers of one message that become columns: images and point clouds are no log
 MOST_FIELDS = 200
+_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
 STAMP = "stamp"
 _WRITTEN = "written"
 #: s between a header's stamp and when it was written down from which the two are different clocks
@@ -41,6 +44,7 @@ def open_bag(path: Path, file: str) -> Log:
     if path.name.lower().endswith(".db3") and (path.parent / "metadata.yaml").is_file():
         source = path.parent
     try:
+        _check_definitions(source, file)
         with anyreader.AnyReader([source]) as reader:
             refuse_size(reader.message_count, file)
             begin = reader.start_time
@@ -64,6 +68,63 @@ def open_bag(path: Path, file: str) -> Log:
         return {name: columns[name] for name in wanted}
 
     return Log(tuple(columns), read, _units(columns), (), clocks)
+
+
+def _check_definitions(source: Path, file: str) -> None:
+    """Names of types, fields and constants become source inside rosbags: plain words only.
+
+    raises ExperimentError: any other name, or a constant that is neither number nor text
+    """
+    readers = [optional(f"rosbags.rosbag{k}", file, "ros") for k in (1, 2)]
+    typesys = optional("rosbags.typesys", file, "ros")
+    idl = optional("rosbags.typesys.idl", file, "ros")
+    with readers[source.suffix != ".bag"].Reader(source) as reader:
+        for connection in reader.connections:
+            _check_type_name(connection.msgtype, file)
+            text = connection.msgdef.data
+            if connection.msgdef.format.name == "MSG":
+                types = typesys.get_types_from_msg(text, connection.msgtype)
+            elif connection.msgdef.format.name == "IDL":
+                parts = [
+                    p.split("\n", 1)[-1] if "IDL: " in p else p for p in text.split("=" * 80 + "\n")
+                ]
+                types = {
+                    n: t for part in parts if part for n, t in idl.get_types_from_idl(part).items()
+                }
+            else:
+                continue
+            for name, (constants, its_fields) in types.items():
+                _check_type_name(name, file)
+                for field, kind in its_fields:
+                    _check_field(field, kind, file)
+                for constant, kind, value in constants:
+                    _check_field(constant, kind, file)
+                    if type(value) not in (bool, int, float, str):
+                        raise ExperimentError(f"{file}: constant {constant}: expected a number")
+
+
+def _check_type_name(name: str, file: str) -> None:
+    """A type is words joined by slashes: "sensor_msgs/msg/JointState"."""
+    if not (0 < len(name) <= LONGEST and all(map(_WORD.fullmatch, name.split("/")))):
+        raise ExperimentError(
+            f"{file}: found a message type {quoted(name)}, expected words joined by slashes, such "
+            "as sensor_msgs/msg/JointState"
+        )
+
+
+def _check_field(name: str, kind: Any, file: str) -> None:
+    """A field is a word; its type holds words and sizes alone, at any depth."""
+    if not (len(name) <= LONGEST and _WORD.fullmatch(name)):
+        raise ExperimentError(f"{file}: found a field {quoted(name)}, expected a word")
+    parts = [kind]
+    while parts:
+        part = parts.pop()
+        if isinstance(part, tuple | list):
+            parts += part
+        elif isinstance(part, str):
+            _check_type_name(part, file)
+        elif not isinstance(part, int):  # the kind of node is one as well
+            raise ExperimentError(f"{file}: field {name}: found {type(part).__name__} as its type")
 
 
 def _append(rows: dict[str, list[float]], message: Any, written: int, begin: int) -> None:
