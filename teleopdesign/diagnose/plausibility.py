@@ -18,20 +18,22 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
 
     raises ModelError: an effect's own check fails, or says something else than None or a sentence
     """
-    found = {}
+    meanings = {}
     for place, body in model.bodies.items():
-        own = [e for e in body.effects if e.plausible is not None and e.role not in CONTACT_ROLES]
-        if not own:
+        effects = [
+            e for e in body.effects if e.plausible is not None and e.role not in CONTACT_ROLES
+        ]
+        if not effects:
             continue
         numbers = {n: v.value for n, v in body.parameters.items()}
         facts = record_facts(model, place, prepared, numbers)
-        for effect in own:
+        for effect in effects:
             if (effect.name, place) in model.absent:
                 continue
             said = _said(effect, facts)
             if said is not None:
-                found[effect.name, place] = said
-    return found
+                meanings[effect.name, place] = said
+    return meanings
 
 
 def _said(effect: Effect, facts: RecordFacts) -> str | None:
@@ -73,14 +75,14 @@ def _comparable_positions(stretches: Sequence[Stretch]) -> list[np.ndarray]:
     groups: dict[str, list[np.ndarray]] = {}
     for s in stretches:
         groups.setdefault(s.motion.file if s.has_zero_offset else "", []).append(s.motion.position)
-    return [np.concatenate(own) for own in groups.values()]
+    return [np.concatenate(positions) for positions in groups.values()]
 
 
 def _stroke(stretches: Sequence[Stretch]) -> float:
     """Mean time of motion between two reversals (s); inf where none is told."""
     moving, reversals = 0.0, 0
     for s in stretches:
-        told = s.motion.direction[s.motion.direction != 0]
-        moving += len(told) * s.motion.sample_time
-        reversals += int(np.count_nonzero(np.diff(told)))
+        directions = s.motion.direction[s.motion.direction != 0]
+        moving += len(directions) * s.motion.sample_time
+        reversals += int(np.count_nonzero(np.diff(directions)))
     return moving / reversals if reversals else float("inf")
