@@ -10,12 +10,23 @@ def _():
     import marimo as mo
 
     from teleopdesign.app import charts, export, files, logs, pages, settings
-    from teleopdesign.app.task import Task
+    from teleopdesign.app.task import BackgroundTask
     from teleopdesign.app.workbench import Workbench
     from teleopdesign.errors import TeleopDesignError
 
     folder = settings.folder(mo.cli_args().to_dict())
-    return Task, TeleopDesignError, Workbench, charts, export, files, folder, logs, mo, pages
+    return (
+        BackgroundTask,
+        TeleopDesignError,
+        Workbench,
+        charts,
+        export,
+        files,
+        folder,
+        logs,
+        mo,
+        pages,
+    )
 
 
 @app.cell
@@ -52,7 +63,7 @@ def _(files, folder, get_names, mo):
 
 
 @app.cell
-def _(Task, Workbench, choice, files, folder, mo, set_note, set_task):
+def _(BackgroundTask, Workbench, choice, files, folder, mo, set_note, set_task):
     def start_opening(_):
         if choice.value is None:
             set_note("choose an experiment first")
@@ -60,7 +71,9 @@ def _(Task, Workbench, choice, files, folder, mo, set_note, set_task):
         path = files.inside(folder, choice.value)
         set_note("")
         set_task(
-            Task(f"opening {choice.value}", lambda say: Workbench.of_folder(path, progress=say))
+            BackgroundTask(
+                f"opening {choice.value}", lambda say: Workbench.of_folder(path, progress=say)
+            )
         )
 
     open_button = mo.ui.button(label="Open", on_click=start_opening, kind="success")
@@ -197,7 +210,7 @@ def _(bench, body, charts, mo, pages, rung, use):
 
 
 @app.cell
-def _(Task, TeleopDesignError, bench, mo, pages, set_bench, set_note, set_task):
+def _(BackgroundTask, TeleopDesignError, bench, mo, pages, set_bench, set_note, set_task):
     options = pages.candidate_options(bench)
     candidate = mo.ui.dropdown(
         options=options, value=next(iter(options), None), label="Candidate", searchable=True
@@ -221,12 +234,12 @@ def _(Task, TeleopDesignError, bench, mo, pages, set_bench, set_note, set_task):
     back_button = mo.ui.button(label="Take back", on_click=take_back, disabled=len(bench.rungs) < 2)
     rank_button = mo.ui.button(
         label="Look for what else is missing",
-        on_click=lambda _: set_task(Task("ranking the candidates", bench.rank)),
+        on_click=lambda _: set_task(BackgroundTask("ranking the candidates", bench.rank)),
         disabled=bench.is_ranked,
     )
     all_button = mo.ui.button(
         label="Add all that the records support",
-        on_click=lambda _: set_task(Task("diagnosing", bench.go_on)),
+        on_click=lambda _: set_task(BackgroundTask("diagnosing", bench.go_on)),
     )
     return add_button, all_button, back_button, candidate, rank_button
 

@@ -15,7 +15,7 @@ class Cancelled(Exception):  # noqa: N818 - it is no error
     """Raised inside the work at its next line of progress."""
 
 
-class Task(Generic[T]):
+class BackgroundTask(Generic[T]):
     """One piece of work in a thread of its own.
 
     name: what it does, for the page;  progress: its last line

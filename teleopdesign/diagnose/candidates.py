@@ -53,7 +53,7 @@ def candidates(
     for place in model.places:
         body = model.body(place)
         roles = {e.role for e in body.effects} & set(ONE_ONLY)
-        own = [m for m in motions if m.body == model.holder(place)]
+        motions_here = [m for m in motions if m.body == model.holder(place)]
         for effect in model.known.values():
             if (place in model.bodies) == (effect.role in CONTACT_ROLES):
                 continue
@@ -61,9 +61,9 @@ def candidates(
                 continue
             if body.lacks(effect):
                 continue
-            if any(not effect.channels() <= set(m.further) for m in own):
+            if any(not effect.channels() <= set(m.further) for m in motions_here):
                 continue
-            if _is_seen_in_place(effect, own, own_zero):
+            if _is_seen_in_place(effect, motions_here, own_zero):
                 possible.append(Candidate(effect, place))
     return tuple(possible)
 
@@ -90,11 +90,11 @@ def tells_place_from_time(
     for motion in motions:
         groups.setdefault(motion.file if motion.file in own_zero else "", []).append(motion)
     among = whole = 0.0
-    for own in groups.values():
-        position = np.concatenate([m.position for m in own])
-        time = np.concatenate([m.time for m in own])
+    for group in groups.values():
+        position = np.concatenate([m.position for m in group])
+        time = np.concatenate([m.time for m in group])
         # by the way covered: a body at rest shows one place, however long
-        way = np.concatenate([np.abs(np.gradient(m.position)) * (m.direction != 0) for m in own])
+        way = np.concatenate([np.abs(np.gradient(m.position)) * (m.direction != 0) for m in group])
         if not way.any():
             continue
         here = np.mod(position, turn) if turn is not None else position

@@ -185,8 +185,8 @@ def objection(
     if gone := displaced(base, ranked.fit):
         return f"drives {', '.join(gone)} to a bound, which the model needs without it"
     driven = sorted(set(ranked.fit.at_bound) - set(base.at_bound))
-    own = [n for n in driven if n not in base.model.parameters]
-    needed = [n for n in own if not ranked.fit.model.declared(n).optional]
+    added = [n for n in driven if n not in base.model.parameters]
+    needed = [n for n in added if not ranked.fit.model.declared(n).optional]
     if needed and not _makes_adequate(base, ranked.fit, floor, criteria):
         return f"needs {', '.join(needed)} at a bound: it is another effect"
     return ""
@@ -206,9 +206,9 @@ def helps_but_is_barred(
     return objection(base, ranked, floor, criteria=criteria)
 
 
-def displaced(base: Fit, found: Fit) -> list[str]:
+def displaced(base: Fit, fit: Fit) -> list[str]:
     """Parameters driven to a bound whose effect the records tell from its absence in the base."""
-    driven = set(found.at_bound) - set(base.at_bound)
+    driven = set(fit.at_bound) - set(base.at_bound)
     return sorted(n for n in driven if n in base.model.parameters and _is_there(base, n))
 
 
@@ -220,26 +220,26 @@ def _is_there(base: Fit, name: str) -> bool:
 
 
 def superfluous_beside(
-    base: Fit, found: Fit, candidate: Candidate, *, criteria: Criteria = CRITERIA
+    base: Fit, fit: Fit, candidate: Candidate, *, criteria: Criteria = CRITERIA
 ) -> Candidate | None:
     """The one effect of the base that a candidate at its place makes superfluous; None or several.
 
     It was told from its absence, and beside the candidate its strength ends where it is absent, or
     it was surely there and is no longer told from its absence.
     """
-    gone, given_up = set(displaced(base, found)), []
+    gone, given_up = set(displaced(base, fit)), []
     for effect in base.model.body(candidate.at).effects:
         strengths = [f"{candidate.at}.{effect.name}.{n}" for n in effect.absent]
         values = [base.model.parameters.get(n) for n in strengths]
         if not values or any(v is None or v.fixed for v in values):
             continue
         at_absence = all(
-            n in gone and _near_absence(found, n, effect.absent[n.rpartition(".")[2]])
+            n in gone and _near_absence(fit, n, effect.absent[n.rpartition(".")[2]])
             for n in strengths
         )
         surely = all(
             criteria.surely * base.model.parameters[n].stderr < base.model.from_absence(n)
-            and found.model.parameters[n].stderr >= found.model.from_absence(n)
+            and fit.model.parameters[n].stderr >= fit.model.from_absence(n)
             for n in strengths
         )
         if at_absence or surely:
@@ -251,10 +251,10 @@ def superfluous_beside(
     return None if left else Candidate(given_up[0], candidate.at)
 
 
-def _near_absence(found: Fit, name: str, absent: float) -> bool:
+def _near_absence(fit: Fit, name: str, absent: float) -> bool:
     """Whether a parameter that was driven to a bound lies at the one where its effect is absent."""
-    declared = found.model.declared(name)
-    value = found.model.parameters[name].value
+    declared = fit.model.declared(name)
+    value = fit.model.parameters[name].value
     near_lower = abs(value - declared.lower) <= abs(value - declared.upper)
     return absent == (declared.lower if near_lower else declared.upper)
 

@@ -170,10 +170,10 @@ def with_errors(solution: Solution, free: tuple[str, ...], blocks: NDArray[np.in
     shifts, bound = solution.shifts, solution.shift_at_bound
     whole = np.hstack([solution.jacobian, np.where(bound, 0.0, solution.by_shift)])
     errors = standard_errors(*shifts.observed(solution.residual, whole, blocks))
-    own = errors[: len(free)] * solution.scale
+    parameter_errors = errors[: len(free)] * solution.scale
     values = {
         n: Value(float(v), solution.model.parameters[n].fixed, float(e))
-        for n, v, e in zip(free, solution.values, own, strict=True)
+        for n, v, e in zip(free, solution.values, parameter_errors, strict=True)
     }
     model = solution.model.with_values(values)
     return shifts.beside(model, shifts.start(model), errors[len(free) :])
@@ -219,14 +219,31 @@ def _held_out(
     return tuple(held), parts, float(np.sqrt(squares / whole)), _in_one(held, together)
 
 
-def solve(
-    model: Model,
-    free: tuple[str, ...],
-    prepared: Prepared,
-    stretches: Sequence[Stretch],
-    effort: Effort,
-) -> Solution:
-    """Bounded least squares on the relative residuals of these stretches, by shifts as well."""
+@dataclass(frozen=True, eq=False)
+class _SearchSpace:
+    """Free parameters as they are searched, x: over their scales, or the logarithm of that.
+
+    scale: (p,) SI value of the record's unit of each;  decades: (p,) whether x is a logarithm
+    lower, upper, start: (p,) bounds of x, and where the search begins
+    """
+
+    scale: Array
+    decades: NDArray[np.bool_]
+    lower: Array
+    upper: Array
+    start: Array
+
+    def values(self, x: Array) -> Array:
+        """Values (p,) of the parameters at x, in SI units."""
+        return self.scale * np.where(self.decades, np.exp(np.where(self.decades, x, 0.0)), x)
+
+    def units(self, x: Array) -> Array:
+        """Derivatives (p,) of the values by x, in SI units."""
+        return np.where(self.decades, self.values(x), self.scale)
+
+
+def _search_space(model: Model, free: tuple[str, ...], prepared: Prepared) -> _SearchSpace:
+    """Where the free parameters of a model are searched, by the scales of the fit records."""
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
     declared = [model.declared(n) for n in free]
     scale = np.array([unit[d.scale] for d in declared])
@@ -240,26 +257,34 @@ def solve(
     upper[decades] = np.log(np.minimum(upper[decades], 10.0**DECADES))
     start[decades] = np.log(np.maximum(start[decades], 1e-300))
     # a law may divide by a parameter whose bound is zero: stay a trifle inside
-    lower, upper = lower + 0.1 * AT_BOUND, upper - 0.1 * AT_BOUND
+    return _SearchSpace(scale, decades, lower + 0.1 * AT_BOUND, upper - 0.1 * AT_BOUND, start)
+
+
+def solve(
+    model: Model,
+    free: tuple[str, ...],
+    prepared: Prepared,
+    stretches: Sequence[Stretch],
+    effort: Effort,
+) -> Solution:
+    """Bounded least squares on the relative residuals of these stretches, by shifts as well."""
+    space = _search_space(model, free, prepared)
     p, lasts = len(free), sum(s.weight * len(s.keep) * s.motion.sample_time for s in stretches)
     shifts = record_shifts(stretches, round(lasts / BLOCK))
-    lower = np.append(lower, np.full(len(shifts.bodies), -LARGEST))
-    upper = np.append(upper, np.full(len(shifts.bodies), LARGEST))
-    start = np.append(start, shifts.start(model))
+    lower = np.append(space.lower, np.full(len(shifts.bodies), -LARGEST))
+    upper = np.append(space.upper, np.full(len(shifts.bodies), LARGEST))
+    start = np.append(space.start, shifts.start(model))
     roots = [np.sqrt(s.weight) for s in stretches]
 
-    def values(x: Array) -> Array:
-        return scale * np.where(decades, np.exp(np.where(decades, x[:p], 0.0)), x[:p])
-
     def there(x: Array) -> Model:
-        moved = model.with_values(dict(zip(free, values(x).tolist(), strict=True)))
+        moved = model.with_values(dict(zip(free, space.values(x[:p]).tolist(), strict=True)))
         return shifts.beside(moved, x[p:])
 
     def both(x: Array) -> tuple[Array, Array]:
         parts = relative_residuals(there(x), stretches, (*free, *shifts.names))
         r = np.concatenate([w * v for w, (v, _) in zip(roots, parts, strict=True)])
         j = np.concatenate([w * t.T for w, (_, t) in zip(roots, parts, strict=True)])
-        return r, j * np.append(np.where(decades, values(x), scale), shifts.row)
+        return r, j * np.append(space.units(x[:p]), shifts.row)
 
     def with_prior(x: Array) -> tuple[Array, Array]:
         r, j = both(x)
@@ -278,11 +303,10 @@ def solve(
         )
     residual, jacobian = both(best)
     at_bound = (best - lower < AT_BOUND) | (upper - best < AT_BOUND)
-    slope = np.where(decades, values(best), scale)
     return Solution(
         model=there(best),
-        values=values(best),
-        scale=slope,
+        values=space.values(best[:p]),
+        scale=space.units(best[:p]),
         at_bound=at_bound[:p],
         residual=residual,
         jacobian=jacobian[:, :p],

@@ -92,6 +92,7 @@ def _drawn(stretch: Stretch, prepared: Prepared, generator: np.random.Generator)
 def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Generator) -> Motion:
     """The stretch's motion as its sensors would read it once more."""
     motion, channels = stretch.motion, prepared.experiment.channels
+    side = _side(motion.position)
     signals = next(r for r in prepared.experiment.records if r.file == motion.file).signals
 
     def read(quantity: str, signal: Array) -> Array:
@@ -99,7 +100,7 @@ def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Genera
         if name not in signals:
             return signal
         sensor = sensor_of(prepared.experiment, name, signals[name][motion.rows])
-        return sensor.read(signal, generator)
+        return side * sensor.read(side * signal, generator)
 
     drawn = motion_of(
         body=motion.body,
@@ -114,3 +115,13 @@ def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Genera
         resolution=channels[f"{motion.body}.position"].resolution,
     )
     return replace(drawn, further=motion.further)
+
+
+def _side(position: Array) -> float:
+    """1 or -1: to which side a motion first leaves its start.
+
+    Errors of sensors are drawn as seen from that side: an axis that is turned round turns them
+    with it, and estimates stay the same.
+    """
+    moved = np.flatnonzero(position != position[0])
+    return 1.0 if len(moved) == 0 or position[moved[0]] > position[0] else -1.0

@@ -18,20 +18,22 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
 
     raises ModelError: an effect's own check fails, or says something else than None or a sentence
     """
-    found = {}
+    meanings = {}
     for place, body in model.bodies.items():
-        own = [e for e in body.effects if e.plausible is not None and e.role not in CONTACT_ROLES]
-        if not own:
+        effects = [
+            e for e in body.effects if e.plausible is not None and e.role not in CONTACT_ROLES
+        ]
+        if not effects:
             continue
         numbers = {n: v.value for n, v in body.parameters.items()}
         facts = record_facts(model, place, prepared, numbers)
-        for effect in own:
+        for effect in effects:
             if (effect.name, place) in model.absent:
                 continue
             said = _said(effect, facts)
             if said is not None:
-                found[effect.name, place] = said
-    return found
+                meanings[effect.name, place] = said
+    return meanings
 
 
 def _said(effect: Effect, facts: RecordFacts) -> str | None:
@@ -73,17 +75,17 @@ def _comparable_positions(stretches: Sequence[Stretch]) -> list[np.ndarray]:
     groups: dict[str, list[np.ndarray]] = {}
     for s in stretches:
         groups.setdefault(s.motion.file if s.has_zero_offset else "", []).append(s.motion.position)
-    return [np.concatenate(own) for own in groups.values()]
+    return [np.concatenate(positions) for positions in groups.values()]
 
 
 def _stroke(stretches: Sequence[Stretch]) -> float:
     """Mean time of motion one way (s), over all stretches; inf where there is one direction."""
     moving, runs, ways = 0.0, 0, set()
     for s in stretches:
-        told = s.motion.direction[s.motion.direction != 0]
-        if not len(told):
+        directions = s.motion.direction[s.motion.direction != 0]
+        if not len(directions):
             continue
-        moving += len(told) * s.motion.sample_time
-        runs += 1 + int(np.count_nonzero(np.diff(told)))
-        ways |= set(told.tolist())
+        moving += len(directions) * s.motion.sample_time
+        runs += 1 + int(np.count_nonzero(np.diff(directions)))
+        ways |= set(directions.tolist())
     return moving / runs if len(ways) > 1 else float("inf")

@@ -157,12 +157,12 @@ def ranked(
     )
 
 
-def _implausible(base: Fit, candidate: Candidate, found: Fit, prepared: Prepared) -> str:
+def _implausible(base: Fit, candidate: Candidate, fit: Fit, prepared: Prepared) -> str:
     """What the candidate stands for instead of its name, or an effect that fitted its name before.
 
     An effect of the base that did not deserve its name before is no fault of the candidate's.
     """
-    stands_for = implausible_effects(found.model, prepared)
+    stands_for = implausible_effects(fit.model, prepared)
     if not stands_for:
         return ""
     if candidate.key in stands_for:
@@ -173,24 +173,24 @@ def _implausible(base: Fit, candidate: Candidate, found: Fit, prepared: Prepared
 
 
 def _ranked_best(
-    base: Fit, tried: tuple[Candidate, Fit], prepared: Prepared, criteria: Criteria
+    base: Fit, fitted: tuple[Candidate, Fit], prepared: Prepared, criteria: Criteria
 ) -> Ranked:
     """The candidate beside the base, or in the place of an effect that it makes superfluous."""
-    candidate, found = tried
-    beside = ranked(base, candidate, found, prepared=prepared, criteria=criteria)
-    gains = check_squares(found) < (1.0 - criteria.relevant) * check_squares(base)
-    if candidate.key in found.model.absent or beside.refused or not gains:
+    candidate, fit = fitted
+    beside = ranked(base, candidate, fit, prepared=prepared, criteria=criteria)
+    gains = check_squares(fit) < (1.0 - criteria.relevant) * check_squares(base)
+    if candidate.key in fit.model.absent or beside.refused or not gains:
         return beside
-    superfluous = superfluous_beside(base, found, candidate, criteria=criteria)
+    superfluous = superfluous_beside(base, fit, candidate, criteria=criteria)
     if superfluous is None:
         return beside
     name, at = superfluous.key
     try:
-        less = found.model.without_effect(name, at=at)
+        less = fit.model.without_effect(name, at=at)
     except ModelError:  # another effect needs it
         return beside
     alone = estimate(less, prepared)
-    if check_squares(alone) > (1.0 + criteria.relevant) * check_squares(found):
+    if check_squares(alone) > (1.0 + criteria.relevant) * check_squares(fit):
         return beside
     return ranked(
         base, candidate, alone, prepared=prepared, instead_of=superfluous, criteria=criteria

@@ -64,11 +64,11 @@ class RecordShifts:
     def beside(self, model: Model, samples: Array, errors: Array | None = None) -> Model:
         """The model with these shifts, in samples, and their standard errors."""
         stderr = np.full(len(samples), np.nan) if errors is None else errors
-        found = {
+        shifts = {
             body: Value(float(x * row), False, float(e * row))
             for body, x, row, e in zip(self.bodies, samples, self.row, stderr, strict=True)
         }
-        return model.with_record_shift({**model.record_shift, **found})
+        return model.with_record_shift({**model.record_shift, **shifts})
 
     def prior(self, samples: Array, residual: Array, jacobian: Array) -> tuple[Array, Array]:
         """Rows for what is known beforehand (k,), and their jacobian (k, p + k).

@@ -24,8 +24,8 @@ class Replaced:
 
     def back_in(self, model: Model) -> Model:
         """The model with the effect as it was."""
-        found = model.with_effect(self.effect.effect, at=self.effect.at)
-        return found.with_values(dict(self.values))
+        whole = model.with_effect(self.effect.effect, at=self.effect.at)
+        return whole.with_values(dict(self.values))
 
 
 def replaced_by(ranked: Ranked, before: Model) -> Replaced | None:
@@ -36,8 +36,8 @@ def replaced_by(ranked: Ranked, before: Model) -> Replaced | None:
 def replaced_from(effect: Candidate, before: Model) -> Replaced:
     """An effect that gives way, as it was in the model before."""
     start = f"{effect.at}.{effect.effect.name}."
-    own = tuple((n, v) for n, v in before.parameters.items() if n.startswith(start))
-    return Replaced(effect, own)
+    values = tuple((n, v) for n, v in before.parameters.items() if n.startswith(start))
+    return Replaced(effect, values)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -49,8 +49,8 @@ def controller_parts(
     sums: list[Junction] = []
     for i, output in enumerate(outputs):
         terms: dict[str, float] = {}
-        for j, given in enumerate(inputs):
-            own = f"{name}_{i + 1}_{j + 1}"
+        for j, source in enumerate(inputs):
+            entry_name = f"{name}_{i + 1}_{j + 1}"
             if isinstance(system, control.TransferFunction):
                 entry = control.tf(system.num[i][j], system.den[i][j], system.dt)
             elif isinstance(system, control.StateSpace):
@@ -60,11 +60,11 @@ def controller_parts(
             else:
                 raise ModelError(f"{name}: expected a transfer function or a state space")
             made = from_control(entry, name="entry")
-            form = made.linear_form(own, sp.Symbol("s"), sp.S(0), held=True)
+            form = made.linear_form(entry_name, sp.Symbol("s"), sp.S(0), held=True)
             if form == 0:
                 continue
-            controls.append(Control(own, made, given, f"{own}_out", motion, analog))
-            terms[f"{own}_out"] = 1.0
+            controls.append(Control(entry_name, made, source, f"{entry_name}_out", motion, analog))
+            terms[f"{entry_name}_out"] = 1.0
         sums.append(Junction(output, terms))
     return tuple(controls), tuple(sums)
 
@@ -114,11 +114,16 @@ def plant_parts(
     if proper.is_zero:
         return (Moving(name, body, motion, command, forces, driver),), ()
     sides = ([float(c) for c in part.all_coeffs()] for part in (proper, above))
-    own = f"{name}_rest"
+    rest_name = f"{name}_rest"
     block = Control(
-        own, from_control(control.tf(*sides), name="rest"), motion, own + "_force", motion, True
+        rest_name,
+        from_control(control.tf(*sides), name="rest"),
+        motion,
+        rest_name + "_force",
+        motion,
+        True,
     )
-    whole_command = Junction(f"{name}_command", {command: 1.0, own + "_force": -1.0})
+    whole_command = Junction(f"{name}_command", {command: 1.0, rest_name + "_force": -1.0})
     return (Moving(name, body, motion, whole_command.output, forces, driver), block), (
         whole_command,
     )

@@ -33,9 +33,9 @@ def period(effect: Effect) -> str | float | None:
     if not depends_on_position(effect):
         return None
     lengths = [n for n, p in effect.parameters.items() if p.quantity == "position"]
-    found: list[tuple[str | float, sp.Expr]] = [(n, effect.symbols()[n]) for n in lengths]
-    found.append((float(2 * sp.pi), 2 * sp.pi))
-    return next((said for said, offset in found if _is_same_at(effect, offset)), None)
+    offsets: list[tuple[str | float, sp.Expr]] = [(n, effect.symbols()[n]) for n in lengths]
+    offsets.append((float(2 * sp.pi), 2 * sp.pi))
+    return next((said for said, offset in offsets if _is_same_at(effect, offset)), None)
 
 
 def _is_same_at(effect: Effect, offset: sp.Expr) -> bool:

@@ -31,7 +31,7 @@ MECHANICS = "mechanics"
 
 
 @dataclass(frozen=True)
-class Numbers:
+class SymbolValues:
     """Values of symbols in the equations: parameters, with the user's names, and what is fixed."""
 
     parameters: dict[sp.Symbol, tuple[str, float]]
@@ -71,7 +71,7 @@ def _joined(names: PrivateNames, prescribed: tuple[str, ...]) -> control.Interco
             f"{diagram.name}: actuation_delay has no python-control form: use `simulate` instead"
         )
     values = diagram.values
-    numbers = Numbers(
+    numbers = SymbolValues(
         {s: (names.public_name(n), values[n]) for s, n in parts.parameters.items()}, {}
     )
     every: tuple[Junction | Kinematics, ...] = (*diagram.kinematics, *diagram.junctions)
@@ -101,7 +101,7 @@ def _joined(names: PrivateNames, prescribed: tuple[str, ...]) -> control.Interco
 
 def _mechanics(
     parts: Equations,
-    numbers: Numbers,
+    numbers: SymbolValues,
     idle: Mapping[sp.Symbol, float],
     names: PrivateNames,
 ) -> Any:
@@ -132,7 +132,7 @@ def _code(part: Control) -> Any:
     return stages[0].law.system if len(stages) == 1 else None
 
 
-def _controller(part: Control, numbers: Numbers, names: PrivateNames) -> Any:
+def _controller(part: Control, numbers: SymbolValues, names: PrivateNames) -> Any:
     if (system := _code(part)) is not None:
         return _renamed(system, part, names)
     assert isinstance(part.controller, Controller)
@@ -157,7 +157,7 @@ def _static(part: Junction | Kinematics, names: PrivateNames) -> Any:
     inputs = [signal(s) for s in part.inputs]
     value = summed(part, signal)
     name = f"sum_{names.public_name(part.output)}"
-    return _nlsys(name, [], inputs, [], {part.output: value}, names, numbers=Numbers({}, {}))
+    return _nlsys(name, [], inputs, [], {part.output: value}, names, numbers=SymbolValues({}, {}))
 
 
 def _renamed(system: Any, part: Control, names: PrivateNames) -> Any:
@@ -182,7 +182,7 @@ def _nlsys(
     outputs: dict[str, sp.Expr],
     names: PrivateNames,
     *,
-    numbers: Numbers,
+    numbers: SymbolValues,
     joined: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
 ) -> Any:
     import control
@@ -198,14 +198,14 @@ def _nlsys(
 
         used = set().union(*(e.free_symbols for e in (*printed, *(e for _, e in steps))))
         symbols = [s for s in numbers.parameters if s in used]
-        given = [numbers.parameters[s] for s in symbols]
+        defaults = [numbers.parameters[s] for s in symbols]
         arguments = [TIME, list(states), list(inputs), symbols]
         call = sp.lambdify(arguments, printed, "math", cse=shared)
 
         def values(
             t: float, x: np.ndarray, u: np.ndarray, params: Mapping[str, float]
         ) -> np.ndarray:
-            return np.array(call(t, x, u, [params.get(n, v) for n, v in given]), dtype=float)
+            return np.array(call(t, x, u, [params.get(n, v) for n, v in defaults]), dtype=float)
 
         # a contact's law is evaluated where nothing touches too
         one_sided = any(e.has(sp.Piecewise) for e in (*printed, *(e for _, e in steps)))

@@ -209,6 +209,34 @@ def shape(h, half_step, columns, position, velocity, direction, {", ".join(argum
 """
 
 
+def _stop_lines(count: int) -> list[str]:
+    """Code that moves each state on by its rate, up to its stop."""
+    lines: list[str] = []
+    for i in range(count):
+        lines += [
+            f"stop_{i} = max(s{i}, 0.0)",
+            f"z_{i} += h * r{i}",
+            f"held_{i} = abs(z_{i}) > stop_{i}",
+            f"z_{i} = copysign(stop_{i}, z_{i}) if held_{i} else z_{i}",
+        ]
+    return lines
+
+
+def _stop_tangents(effect: Effect) -> list[str]:
+    """Code of column j of each state's tangents: those of its stop where it is held there."""
+    lines: list[str] = []
+    for i in range(len(effect.states)):
+        by_stop = f"s{i}_level * dlevel + {_by_parameter(effect, f's{i}')}"
+        by_rate = f"r{i}_level * dlevel + {_by_parameter(effect, f'r{i}')}"
+        lines += [
+            f"if held_{i}:",
+            f"    dz[{i}, j] = copysign(1.0, z_{i}) * ({by_stop})",
+            "else:",
+            f"    dz[{i}, j] += h * ({by_rate})",
+        ]
+    return lines
+
+
 @lru_cache(maxsize=64)
 def _stopped_source(effect: Effect) -> str:
     """Of a shape whose states follow the motion alone, each up to its stop: exact in each step."""
@@ -222,29 +250,11 @@ def _stopped_source(effect: Effect) -> str:
     laws = {f"r{i}": rate for i, (rate, _) in enumerate(stops.values())}
     laws |= {f"s{i}": stop for i, (_, stop) in enumerate(stops.values())}
     velocity = SIGNALS["velocity"]
-    give = sp.Add(
+    stiffness = sp.Add(
         *(sp.diff(law, z) * sp.diff(laws[f"r{i}"], velocity) for i, z in enumerate(states))
     )
     parameters = [names[s] for s in effect.symbols().values()]
     arguments = [*parameters, *(f"{n}_" for n in used)]
-    advance: list[str] = []
-    for i in range(m):
-        advance += [
-            f"stop_{i} = max(s{i}, 0.0)",
-            f"z_{i} += h * r{i}",
-            f"held_{i} = abs(z_{i}) > stop_{i}",
-            f"z_{i} = copysign(stop_{i}, z_{i}) if held_{i} else z_{i}",
-        ]
-    turn: list[str] = []
-    for i in range(m):
-        by_stop = f"s{i}_level * dlevel + {_by_parameter(effect, f's{i}')}"
-        by_rate = f"r{i}_level * dlevel + {_by_parameter(effect, f'r{i}')}"
-        turn += [
-            f"if held_{i}:",
-            f"    dz[{i}, j] = copysign(1.0, z_{i}) * ({by_stop})",
-            "else:",
-            f"    dz[{i}, j] += h * ({by_rate})",
-        ]
     moved = " + ".join(f"w{i} * dz[{i}, j]" for i in range(m))
     slopes = [line for name, one in laws.items() for line in _lines(name, one, by, names)]
     return f"""{_HEAD}
@@ -262,11 +272,11 @@ def shape(h, half_step, columns, position, velocity, direction, {", ".join(argum
 {indented([f"u_{n} = {n}_[k]" for n in used], 8)}
 {indented(assignments(laws, names), 8)}
 {indented(slopes, 8)}
-{indented(advance, 8)}
+{indented(_stop_lines(m), 8)}
         u_velocity = velocity[k]
-{indented(assignments({"force": law, "slope": give}, names), 8)}
+{indented(assignments({"force": law, "slope": stiffness}, names), 8)}
 {indented(assignments({f"w{i}": sp.diff(law, z) for i, z in enumerate(states)}, names), 8)}
-{indented(_lines("f", law, by, names) + _lines("g", give, by, names), 8)}
+{indented(_lines("f", law, by, names) + _lines("g", stiffness, by, names), 8)}
         free = half_step if direction[k] == 0 else 0.0
         below = force - free * abs(slope)
         above = force + free * abs(slope)
@@ -274,7 +284,7 @@ def shape(h, half_step, columns, position, velocity, direction, {", ".join(argum
         high[k] = above if direction[k] != 0 else min(above, forward[k])
         for j in range(p):
             dlevel = dforward[j, k] if ahead else dbackward[j, k]
-{indented(turn, 12)}
+{indented(_stop_tangents(effect), 12)}
             df = {moved} + f_level * dlevel + {_by_parameter(effect, "f")}
             dg = free * copysign(1.0, slope) * (g_level * dlevel + {_by_parameter(effect, "g")})
             dlow[j, k] = df - dg if low[k] == below else -dbackward[j, k]

@@ -2,12 +2,12 @@
 
 import threading
 
-from teleopdesign.app.task import Task
+from teleopdesign.app.task import BackgroundTask
 from teleopdesign.errors import ModelError
 
 
 def test_the_result_is_there_once_the_work_is_done():
-    task = Task("counting", lambda say: sum(range(10)))
+    task = BackgroundTask("counting", lambda say: sum(range(10)))
     task.wait(10)
     assert task.done and task.result == 45 and task.error == ""
 
@@ -22,7 +22,7 @@ def test_work_stops_at_its_next_line_of_progress_once_cancelled():
         say("two")
         raise AssertionError("went on")
 
-    task = Task("long", work)
+    task = BackgroundTask("long", work)
     begun.wait(10)
     assert task.progress == "one" and not task.done
     task.cancel()
@@ -35,6 +35,6 @@ def test_bad_input_becomes_one_line():
     def work(say):
         raise ModelError("model: no parameter")
 
-    task = Task("bad", work)
+    task = BackgroundTask("bad", work)
     task.wait(10)
     assert task.error == "model: no parameter"

@@ -102,12 +102,7 @@ def before(tmp_path_factory):
     [
         other_columns,
         other_order,
-        pytest.param(
-            turned_round,
-            marks=pytest.mark.xfail(
-                reason="sensor errors of the bootstrap are drawn unturned: 0.45 standard errors"
-            ),
-        ),
+        turned_round,
     ],
 )
 def test_a_fit_is_the_same_to_the_last_bit(change, before, tmp_path):

@@ -104,19 +104,9 @@ def evaluated(model: Model, prepared: Prepared) -> Fit:
 
 def steps_of(saved: SavedAnswer, known: Mapping[str, Effect]) -> _Steps:
     """The models and candidates of an answer; raises ExperimentError: they do not go together."""
+    _require_models(saved)
     content = saved.content
-    for key in _NEEDED:
-        if key not in content:
-            raise ExperimentError(
-                f'{saved.file}: no key "{key}": the answer of an earlier version, from which a '
-                "diagnosis cannot be taken up again; diagnose anew, or leave --answer out"
-            )
     rows, models = content["ladder"], content["models"]
-    if len(models["ladder"]) != len(rows):
-        raise ExperimentError(
-            f"{saved.file}: models.ladder: found {len(models['ladder'])} models, expected "
-            f"{len(rows)}, one for each row of the ladder"
-        )
 
     def model(data: Mapping[str, Any], key: str) -> Model:
         return model_from(data, known, file=saved.file, key=key)
@@ -165,6 +155,23 @@ def steps_of(saved: SavedAnswer, known: Mapping[str, Effect]) -> _Steps:
         for row in rows
     )
     return _Steps(ladder, estimated, added, tuple(replaced), equals, could_be, tuple(questions))
+
+
+def _require_models(saved: SavedAnswer) -> None:
+    """Raises ExperimentError: an answer without what restoring needs, a model for each row."""
+    content = saved.content
+    for key in _NEEDED:
+        if key not in content:
+            raise ExperimentError(
+                f'{saved.file}: no key "{key}": the answer of an earlier version, from which a '
+                "diagnosis cannot be taken up again; diagnose anew, or leave --answer out"
+            )
+    rows, models = content["ladder"], content["models"]
+    if len(models["ladder"]) != len(rows):
+        raise ExperimentError(
+            f"{saved.file}: models.ladder: found {len(models['ladder'])} models, expected "
+            f"{len(rows)}, one for each row of the ladder"
+        )
 
 
 def _in_model(

@@ -44,4 +44,4 @@ def in_units_of(axis: str, claim: Claim) -> Claim:
 
 def in_rotary_units(text: str) -> str:
     """The text with units behind numbers as on a revolute axis."""
-    return _MEASURE.sub(lambda found: _ROTARY[found.group(1)], text)
+    return _MEASURE.sub(lambda match: _ROTARY[match.group(1)], text)
