@@ -98,7 +98,10 @@ def _slopes_and_rest(law: LawExpressions, signals: list[sp.Symbol]) -> _Call:
     for state, rate in law.rates.items():
         slope = sp.diff(rate, state)
         if slope.has(state):
-            raise ModelError(f"{law.where}: the rate of {state} must be affine in it")
+            raise ModelError(
+                f"{law.where}: no describing function, for {state} rests or slips by what it is "
+                "itself: measure its impedance in simulation (`measured_impedance`)"
+            )
         slopes.append(slope)
     rest = [rate.xreplace({state: sp.S(0)}) for state, rate in law.rates.items()]
     # plain numbers: arrays of one or two states would cost ten times as much
