@@ -190,14 +190,24 @@ def cell(text, row=500):
     return change
 
 
+def every_second(text):
+    """Replaces the third cell of every second row."""
+
+    def change(lines):
+        rows = [line.split(",") for line in lines]
+        for parts in rows[1::2]:
+            parts[2] = text
+        return [",".join(parts) for parts in rows]
+
+    return change
+
+
 IN_A_RECORD = {
-    "nan": cell("nan"),
+    "nan in half the rows": every_second("nan"),
+    "half the cells empty": every_second(""),
     "text": cell("here"),
-    "gap": cell(""),
-    "samples left out": lambda lines: [*lines[:500], *lines[700:]],
-    "not uniform": lambda lines: [lines[0], *(
-        f"{float(line.split(',')[0]) ** 1.5:.6f},{line.split(',', 1)[1]}" for line in lines[1:]
-    )],
+    "time backwards": lambda lines: [lines[0], *lines[:0:-1]],
+    "one stamp": lambda lines: [lines[0], *[lines[1]] * 5000],
     "too short": lambda lines: lines[:400],
     "only a header": lambda lines: lines[:1],
     "nothing": lambda lines: [],
@@ -208,6 +218,28 @@ IN_A_RECORD = {
 def test_a_mistake_in_a_record_is_one_line_and_status_2(mistake, rod, capsys):
     line = refused(capsys, "diagnose", with_plain_record(rod, IN_A_RECORD[mistake]))
     assert "rod/fit.csv" in line
+
+
+AS_LOGGED = {
+    "nan": (cell("nan"), "1 row with a cell"),
+    "gap": (cell(""), "1 row with a cell"),
+    "samples left out": (lambda lines: [*lines[:500], *lines[700:]], "1 pause"),
+    "not uniform": (
+        lambda lines: [lines[0], *(
+            f"{float(line.split(',')[0]) ** 1.5:.6f},{line.split(',', 1)[1]}" for line in lines[1:]
+        )],
+        "uneven stamps",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("flaw", AS_LOGGED)
+def test_what_a_logger_did_to_a_record_is_read_and_told(flaw, rod, capsys):
+    change, expected = AS_LOGGED[flaw]
+    main(["check", str(with_plain_record(rod, change))])
+    out = capsys.readouterr()
+    assert not out.err
+    assert expected in out.out
 
 
 @pytest.mark.parametrize(
