@@ -84,7 +84,8 @@ def test_every_figure_has_an_alternative_text_and_every_table_a_caption(html):
 def test_the_verdict_and_the_fall_of_the_error_come_first(html, diagnosis):
     first = html.all("header")[0].text
     assert "Your model lacks stribeck at device" in first
-    assert "7.02" in first and "0.98" in first and "0.91" in first
+    for error in (diagnosis.before.check_error, diagnosis.after.check_error, diagnosis.floor.value):
+        assert f"{100 * error:.2f}" in first
 
 
 def test_every_number_shown_is_in_the_data(html, page):
