@@ -29,6 +29,8 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 DOCS = Path(__file__).resolve().parents[1]
+#: s after which an example counts as hung: a loaded machine takes minutes where it takes seconds
+HANG = 3600
 PAGES: dict[str, Page] = {}
 
 
@@ -154,7 +156,7 @@ class Shell(SphinxDirective):
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 text=True,
-                timeout=120,
+                timeout=HANG,
             )
             if done.returncode != self.options.get("status", 0):
                 raise self.error(f"status {done.returncode} of: {command}\n{done.stdout}")
