@@ -28,12 +28,15 @@ PUBLIC_KEYWORDS = {
         "identify/largest_stiffness",
         "passivity/search/by_simulation",
         "realise/iosystem",
+        "simulate",
     ),
     # motions that are prescribed: `bode(..., given=...)`, `transfer_function(..., given=...)`
     "given": ("derive", "frequency"),
 }
-#: written anew elsewhere: names there are not judged yet
-UNJUDGED = ("realise/_codegen_loop", "simulate")
+
+#: compiled by numba, which takes arrays one by one and no structures: the loop, and the laws in the
+#: form in which they are generated, have as many arguments as the loop has arrays
+COMPILED = ("realise/_free_mass", "realise/integrator")
 
 MOST_LINES = 60
 MOST_POSITIONAL = 6
@@ -58,6 +61,10 @@ def functions() -> Iterator[tuple[str, Function]]:
 
 def under(module: str, places: tuple[str, ...]) -> bool:
     return any(module == place or module.startswith(f"{place}/") for place in places)
+
+
+def by_hand() -> Iterator[tuple[str, Function]]:
+    return ((m, f) for m, f in functions() if not under(m, COMPILED))
 
 
 def names(tree: ast.AST) -> Iterator[tuple[int, str]]:
@@ -94,12 +101,7 @@ def length(function: Function) -> int:
 
 
 def test_no_name_says_grammar_instead_of_a_thing():
-    wrong = [
-        one
-        for module, tree in modules().items()
-        if not under(module, UNJUDGED)
-        for one in misnamed(module, tree)
-    ]
+    wrong = [one for module, tree in modules().items() for one in misnamed(module, tree)]
     assert not wrong, "\n".join(wrong)
 
 
@@ -142,13 +144,13 @@ def test_one_function_is_called_teleoperator():
 
 
 def test_no_function_is_longer_than_a_page():
-    long = [f"{m}.{f.name}: {length(f)}" for m, f in functions() if length(f) > MOST_LINES]
+    long = [f"{m}.{f.name}: {length(f)}" for m, f in by_hand() if length(f) > MOST_LINES]
     assert not long, "\n".join(long)
 
 
 def test_no_function_takes_more_positional_arguments_than_one_can_remember():
     wide = [
-        f"{m}.{f.name}: {positional(f)}" for m, f in functions() if positional(f) > MOST_POSITIONAL
+        f"{m}.{f.name}: {positional(f)}" for m, f in by_hand() if positional(f) > MOST_POSITIONAL
     ]
     assert not wide, "\n".join(wide)
 

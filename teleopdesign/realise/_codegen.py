@@ -259,8 +259,8 @@ class Generator:
     def _now(self) -> dict[sp.Symbol, sp.Expr]:
         """Accelerations and signals of continuous time, by their symbols."""
         e = self.equations
-        found = {acceleration(m): e.rates[velocity(m)] for m in e.motions}
-        return found | {signal(name): x for name, x in e.signals.items()}
+        accelerations = {acceleration(m): e.rates[velocity(m)] for m in e.motions}
+        return accelerations | {signal(name): x for name, x in e.signals.items()}
 
     def _made(self) -> dict[str, sp.Expr]:
         """Signals of the computer."""
@@ -322,9 +322,9 @@ class Generator:
         read = {x: f"sampled[{i}, n]" for i, x in enumerate(self.sampled_inputs)}
         places = _places(rows) | read | self._parameter_places()
         writer = _Writer(tuple(DIGITAL), places, self.names)
-        own = {x.name: text for x, text in read.items()}
-        own |= {name: _entry("MADE", i) for i, name in enumerate(made)}
-        commands = [f"{_entry('to', i)} = {own[c]}" for i, c in enumerate(self.commands)]
+        expressions = {x.name: text for x, text in read.items()}
+        expressions |= {name: _entry("MADE", i) for i, name in enumerate(made)}
+        commands = [f"{_entry('to', i)} = {expressions[c]}" for i, c in enumerate(self.commands)]
         parts = [
             self._stepped(writer, "computer_before", True),
             writer.function("computer_signals", to=made.values()),

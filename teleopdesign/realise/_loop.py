@@ -38,7 +38,7 @@ def module_source(laws: str, *, jit: bool = True, lanes: int = 1) -> str:
 def _laws_part(laws: str, *, jit: bool, lanes: int) -> list[str]:
     text = '"""Generated from the laws of the blocks of a diagram; do not edit."""'
     # numba takes as long for a product of constants as for any other
-    laws = re.sub(r"(\d+) \* LANES", lambda found: str(int(found[1]) * lanes), laws)
+    laws = re.sub(r"(\d+) \* LANES", lambda match: str(int(match[1]) * lanes), laws)
     decorators = _COMPILED if jit else _PLAIN
     return [text, _HEAD, decorators, f"LANES = {lanes}\n", PHI, WEIGHTS, "", laws]
 

@@ -135,7 +135,7 @@ def step(first, time, h, inputs, column, parameters, memory, lane):
 
 
 @jitted
-def know_velocity(at, seen, period, smoothing, memory, lane):
+def know_velocity(at, reading, period, smoothing, memory, lane):
     """Travel rate of a motion over the last sample, and velocity as the computer knows it.
 
     The observer is Luenberger's for a motion of constant velocity (order 2) or acceleration
@@ -144,7 +144,7 @@ def know_velocity(at, seen, period, smoothing, memory, lane):
         order 2: w^2/(s + w)^2, late by 2/w      order 3: (3 w^2 s + w^3)/(s + w)^3, late by nothing
     for slow motion. OBSERVER 0 is the filtered difference, w/(s + w), late by 1/w.
     """
-    travel = (seen - memory[SEEN + at]) / period
+    travel = (reading - memory[SEEN + at]) / period
     known = memory[KNOWN + at]
     left = 1.0 - smoothing
     memory[TRAVEL + at] = travel
@@ -154,7 +154,7 @@ def know_velocity(at, seen, period, smoothing, memory, lane):
     bend = memory[BEND + at]
     observed = memory[OBSERVED + at] + period * (known + 0.5 * period * bend)
     known += period * bend
-    missing = seen - observed
+    missing = reading - observed
     if OBSERVER == 2:
         position_gain, velocity_gain, bend_gain = 1.0 - smoothing**2, left**2 / period, 0.0
     else:
@@ -172,17 +172,17 @@ def read_sensors(n, encoder_step, period, smoothing, inputs, column, memory, lan
     motions(STATES, inputs, column, memory, POSITIONS, VELOCITIES, lane)
     for i in range(MANY_MOTIONS):
         at = i * LANES + lane
-        seen = memory[POSITIONS + at]
+        reading = memory[POSITIONS + at]
         if encoder_step > 0.0:
-            seen = np.floor(seen / encoder_step + 0.5) * encoder_step
+            reading = np.floor(reading / encoder_step + 0.5) * encoder_step
         if n == 0:
             velocity = memory[VELOCITIES + at]
             memory[TRAVEL + at] = velocity
             memory[KNOWN + at] = velocity
-            memory[OBSERVED + at] = seen
+            memory[OBSERVED + at] = reading
         else:
-            know_velocity(at, seen, period, smoothing, memory, lane)
-        memory[SEEN + at] = seen
+            know_velocity(at, reading, period, smoothing, memory, lane)
+        memory[SEEN + at] = reading
 
 
 @jitted

@@ -43,7 +43,7 @@ RELOAD = 0.02
 
 
 @dataclass(frozen=True)
-class Loop:
+class CompiledLoop:
     """Entries of `integrator.py` on the laws of one structure, compiled or plain Python."""
 
     lanes: int
@@ -63,7 +63,7 @@ class Program:
     equations: Equations
     layout: Layout
     laws: str
-    loop: Loop
+    loop: CompiledLoop
     functions: Mapping[str, Any]
 
 
@@ -123,13 +123,13 @@ def program(
     return _in_public(_programs[key], names)
 
 
-def loop_of(laws: str, lanes: int) -> Loop:
+def loop_of(laws: str, lanes: int) -> CompiledLoop:
     """The compiled loop on laws for that many simulations side by side."""
     return _entries(compiled_module(module_source(laws, lanes=lanes), "run"), lanes)
 
 
-def _entries(module: Mapping[str, Any], lanes: int) -> Loop:
-    return Loop(lanes, module["run"], module["differentiate_at_rest"])
+def _entries(module: Mapping[str, Any], lanes: int) -> CompiledLoop:
+    return CompiledLoop(lanes, module["run"], module["differentiate_at_rest"])
 
 
 def _in_public(private: Program, names: PrivateNames) -> Program:
@@ -278,18 +278,18 @@ def fastest_rate(made: Program, values: Mapping[str, float]) -> tuple[float, str
     return float(rate[0]), states[int(share[0])] if rate[0] else ""
 
 
-def slopes_at_rest(made: Program, loop: Loop, parameters: np.ndarray) -> np.ndarray:
+def slopes_at_rest(made: Program, loop: CompiledLoop, parameters: np.ndarray) -> np.ndarray:
     """How rates change with states at rest, 1/s: (lanes, states, states).
 
     parameters: flat, row by row;  exactly stepped states without their own slope
     """
     layout, n, lanes = made.layout, len(made.layout.states), loop.lanes
-    found = np.zeros(n * n * lanes)
+    slopes = np.zeros(n * n * lanes)
     memory = np.zeros(made.functions["ROWS"] * lanes)
     inputs = np.zeros((max(len(layout.inputs), 1), 1))
     with np.errstate(all="ignore"):  # a contact's law is evaluated where nothing touches too
-        loop.differentiate_at_rest(inputs, parameters, memory, _SMALL, found)
-    jacobian = np.moveaxis(found.reshape(n, n, lanes), -1, 0)
+        loop.differentiate_at_rest(inputs, parameters, memory, _SMALL, slopes)
+    jacobian = np.moveaxis(slopes.reshape(n, n, lanes), -1, 0)
     exact = [i for i, name in enumerate(layout.states) if name in layout.exponential]
     jacobian[:, exact, exact] = 0.0
     return jacobian
