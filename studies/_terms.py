@@ -118,7 +118,7 @@ TERMS: dict[str, Term] = {
 ALIKE = {"bias": "coulomb_asymmetry"}
 #: effects with a state of their own: no term of the measured motion is theirs
 WITH_MEMORY = frozenset(
-    {"presliding", "friction_memory", "transmission_compliance", "backlash"}
+    {"presliding", "friction_memory", "transmission_compliance", "backlash", "tip_friction"}
 )  # fmt: skip
 CONTACT = frozenset({"contact_damping", "contact_hardening"})
 

@@ -176,9 +176,11 @@ def test_a_longer_plan_begins_with_the_shorter_one():
 def test_a_plan_hides_every_effect_of_the_catalogue_on_both_kinds_of_machine():
     cases = plan(400, seed=1)
     contact = {"contact_damping", "contact_hardening"}
+    # beside a structure, which the reference of a case does not re-estimate
+    beside_structures = {n for n, e in EFFECTS.items() if e.role == "tip_level"}
     for kind, wanted in (("device", set(EFFECTS) - contact), ("teleoperator", set(EFFECTS))):
         hidden = {c.effect for c in cases if c.kind == kind and c.level == "clear"}
-        assert hidden >= wanted
+        assert hidden >= wanted - beside_structures
     for name in ("level", "excitation", "rate"):  # each together with each kind
         pairs = {(getattr(c, name), c.kind) for c in cases}
         assert len(pairs) == 2 * len({getattr(c, name) for c in cases})

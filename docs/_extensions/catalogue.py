@@ -50,6 +50,7 @@ _LEFT = {
     "friction_speed": r"\left|v\right| \text{ in } F_{\mathrm{level}}",
     "friction_shape": r"F_{\mathrm{friction}}",
     "actuation": r"f_{\mathrm{out}}",
+    "tip_level": r"\text{adds to the friction level of the tip}:\quad",
 }
 ROLE_TEXTS = {
     "actuation": "stands between the commanded force and the force that acts",
@@ -58,6 +59,7 @@ ROLE_TEXTS = {
     "friction_factor": "multiplies the friction level",
     "friction_speed": "the speed that the friction level follows, in place of the body's own",
     "friction_shape": "sets how friction follows the motion; sgn v unless one is given",
+    "tip_level": "dry friction of the tip behind a structure; levels add up",
     "contact": "a force of a modelled environment while it is touched; they add up and never pull",
     "contact_shape": "takes the place of the penetration in the spring of a modelled environment",
 }

@@ -15,7 +15,7 @@ import sympy as sp
 
 from ..arguments import checked, instance, number
 from ..by_value import ByValue
-from ..effects import SIGNALS, Effect, Parameter, ordered
+from ..effects import EFFECTS, SIGNALS, Effect, Parameter, ordered
 from ..errors import ModelError, did_you_mean, quoted
 from ..frozen import Frozen
 from ..notebook import html_table
@@ -98,8 +98,8 @@ class Body:
             if len(same) > 1:
                 raise ModelError(f"body: two {words}, {' and '.join(same)}: one is possible")
         for effect in self.effects:
-            if missing := effect.needs - set(names):
-                raise ModelError(f'body: "{effect.name}" needs "{min(missing)}" beside it')
+            if missing := self.lacks(effect):
+                raise ModelError(f'body: "{effect.name}" needs "{missing[0]}" beside it')
             if self.axis in effect.elsewhere:
                 raise ModelError(
                     f'body: "{effect.name}" holds on no {self.axis} axis: there it is '
@@ -145,6 +145,17 @@ class Body:
         """Whether the effect of that name is in the body."""
         return any(e.name == effect for e in self.effects)
 
+    def lacks(self, effect: Effect) -> tuple[str, ...]:
+        """Names of what an effect needs beside it and the body has not, sorted.
+
+        Of a role that one effect of a body can have, another one of that role will do.
+        """
+        roles = {e.role for e in self.effects} & set(ONE_ONLY)
+        known = {n: EFFECTS[n].role for n in effect.needs if n in EFFECTS}
+        return tuple(
+            n for n in sorted(effect.needs) if not self.has(n) and known.get(n) not in roles
+        )
+
     @checked
     def effect(self, name: str) -> Effect:
         """The effect of that name; ModelError where the body has none."""
@@ -173,17 +184,18 @@ class Body:
                 f"{did_you_mean(min(unknown), effect.parameters)}"
             )
         start = {n: effect.default(n) for n in effect.parameters} | stated
-        kept = self
-        if effect.role in ONE_ONLY:
-            for other in self.effects:
-                if other.role == effect.role:
-                    kept = kept.without_effect(other.name)
+        gone = tuple(e.name for e in self.effects if e.role in ONE_ONLY and e.role == effect.role)
         added = {
             f"{effect.name}.{n}": Value(v, fixed=effect.parameters[n].search.chosen)
             for n, v in start.items()
         }
         return replace(
-            kept, effects=(*kept.effects, effect), parameters={**kept.parameters, **added}
+            self,
+            effects=(*(e for e in self.effects if e.name not in gone), effect),
+            parameters={
+                **{n: v for n, v in self.parameters.items() if n.partition(".")[0] not in gone},
+                **added,
+            },
         )
 
     @checked
@@ -241,6 +253,10 @@ class Body:
         for effect in ordered(self.effects, "friction_speed"):
             level = level.subs(SIGNALS["velocity"], effect.expression())
         return level
+
+    def tip_level(self) -> sp.Expr:
+        """Level of the dry friction that holds the tip of a structure."""
+        return sp.Add(*(e.expression() for e in ordered(self.effects, "tip_level")))
 
     def contact(self) -> sp.Expr:
         """Force that a modelled environment takes from the body; 0 where there is none."""

@@ -114,11 +114,11 @@ def _waiting(model: Model, place: str) -> list[str]:
     """Effects that need another effect which the model lacks."""
     body = model.body(place)
     return [
-        f"{e.name} ({', '.join(n for n in sorted(e.needs) if not body.has(n))})"
+        f"{e.name} ({', '.join(body.lacks(e))})"
         for e in model.known.values()
         if not body.has(e.name)
         and (place in model.bodies) != (e.role in CONTACT_ROLES)
-        and not all(body.has(n) for n in e.needs)
+        and body.lacks(e)
     ]
 
 

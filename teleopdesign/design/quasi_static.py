@@ -18,6 +18,7 @@ from ..diagrams import Diagram
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..realise.simulated import without_absent
+from ..realise.tips import of_a_body
 from .stated_motion import StatedMotion
 
 #: what needs states that slow motion does not have: taken away, or at their settled value
@@ -25,8 +26,14 @@ _ROLES = ("friction_shape", "friction_speed", "structure", "actuation", "contact
 
 
 def slow_body(body: Body) -> Body:
-    """The body in slow motion: without presliding, memory, compliance, actuation and contact."""
+    """The body in slow motion: without presliding, memory, compliance, actuation and contact.
+
+    A tip then goes along with the body, and so does its friction.
+    """
     body = without_absent(body)
+    for effect in [e for e in body.effects if e.role == "tip_level"]:
+        values = {n: body.parameters[f"{effect.name}.{n}"].value for n in effect.parameters}
+        body = body.without_effect(effect.name).with_effect(of_a_body(effect), values)
     for effect in [e for e in body.effects if e.role in _ROLES]:
         if body.has(effect.name):
             body = body.without_effect(effect.name)

@@ -51,7 +51,7 @@ def candidates(model: Model, motions: Sequence[Motion] = ()) -> tuple[Candidate,
                 continue
             if effect.expression().has(SIGNALS["position"]) and not _comes_back(place, motions):
                 continue
-            if all(body.has(need) for need in effect.needs):
+            if not body.lacks(effect):
                 possible.append(Candidate(effect, place))
     return tuple(possible)
 

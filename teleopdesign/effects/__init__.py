@@ -38,7 +38,7 @@ from ._effect import (
     ordered,
     parameter_symbol,
 )
-from ._structure import make_structure, touching
+from ._structure import make_structure, rubbing, touching
 
 __all__ = [
     "BLOCK_EFFECTS",
@@ -59,6 +59,7 @@ __all__ = [
     "make_structure",
     "ordered",
     "parameter_symbol",
+    "rubbing",
     "touching",
     "with_block_effects",
 ]

@@ -8,6 +8,7 @@ A body is a chain of roles:
     level       = sum of the friction_level laws, each times the friction_factor laws that need
                   it (a factor that needs no effect scales all); where a friction_speed law is
                   there, at that speed instead of the body's own
+    tip         = of a structure: held by dry friction of the sum of the tip_level laws
     contact     = sum of the contact laws where the environment is touched, and no pull: among the
                   forces; a contact_shape law takes the place of the penetration in them
 
@@ -41,6 +42,7 @@ Role = Literal[
     "friction_factor",
     "friction_speed",
     "friction_shape",
+    "tip_level",
     "contact",
     "contact_shape",
 ]
@@ -162,12 +164,15 @@ class State:
     start: the signal that it equals when a record starts; "": it starts settled, or at rest
     correction: correction(now, p), the rate by which the force that is left unexplained, also in
         `now`, leads the state back along a measured motion; None: it runs free
+    dry: dry(now, p), the largest rate by which dry friction slows the state down; at zero it holds
+        it where no more is needed. None: no such friction
     """
 
     quantity: str
     rate: Callable[[Any, Any], sp.Expr]
     start: str = ""
     correction: Callable[[Any, Any], sp.Expr] | None = None
+    dry: Callable[[Any, Any], sp.Expr] | None = None
 
 
 @checked
@@ -177,7 +182,8 @@ class Effect:
 
     law(now, p) returns the force it adds (role force; role structure: the same, the interaction
     force with it, for that acts on a tip of its own), its share of the friction level
-    (friction_level), a factor of the levels it needs (friction_factor), the speed that the level
+    (friction_level; tip_level: of the tip of a structure), a factor of the levels it needs
+    (friction_factor), the speed that the level
     follows (friction_speed), the friction force (friction_shape), the stage's output (actuation), a
     share of the force that a modelled environment takes (contact), or the penetration that its
     spring feels (contact_shape).
@@ -192,7 +198,8 @@ class Effect:
     effect out, and says so. It is never found by differentiating sgn.
     absent: parameter values at which the effect is not there at all.
     canonical: of parameter values that mean the same, those to report.
-    needs: effects that the model must have for this one to mean anything.
+    needs: effects that the model must have for this one to mean anything; where a body has one of a
+        role at most, another of that role will do.
     elsewhere: an axis that the law does not hold on ("prismatic" or "revolute") -> the effect that
         says the same there
     coupling: of a structure, coupling(now, p), which its law and states are made from
@@ -311,6 +318,10 @@ class Effect:
         """Hidden state -> rate of its correction, on symbols; {} where no state is corrected."""
         return dict(_corrections(self))
 
+    def dry_bounds(self) -> dict[str, sp.Expr]:
+        """Hidden state -> largest rate by which dry friction slows it, on symbols; {}: none."""
+        return dict(_dry_bounds(self))
+
     def led_momentum(self) -> sp.Expr:
         """Momentum of the body that corrections lead, on symbols; 0 without corrections."""
         if self.led is None:
@@ -367,6 +378,16 @@ def _corrections(effect: Effect) -> dict[str, sp.Expr]:
 
 
 @lru_cache(maxsize=256)
+def _dry_bounds(effect: Effect) -> dict[str, sp.Expr]:
+    now, p = effect._now(None), effect._parameters(None)
+    return {
+        name: sp.sympify(state.dry(now, p), strict=True)
+        for name, state in effect.states.items()
+        if state.dry is not None
+    }
+
+
+@lru_cache(maxsize=256)
 def _strength(effect: Effect) -> str | None:
     if len(effect.absent) != 1 or effect.states:
         return None
@@ -390,15 +411,15 @@ def _without(effect: Effect, parameter: str) -> Effect:
     def at_zero(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
         return lambda now, p: law(now, SimpleNamespace(**{**vars(p), parameter: sp.S(0)}))
 
-    def corrected(state: State) -> Callable[[Any, Any], sp.Expr] | None:
-        return None if state.correction is None else at_zero(state.correction)
+    def if_any(law: Callable[[Any, Any], sp.Expr] | None) -> Callable[[Any, Any], sp.Expr] | None:
+        return None if law is None else at_zero(law)
 
     less = replace(
         effect,
         law=at_zero(effect.law),
-        coupling=None if effect.coupling is None else at_zero(effect.coupling),
+        coupling=if_any(effect.coupling),
         states={
-            n: replace(s, rate=at_zero(s.rate), correction=corrected(s))
+            n: replace(s, rate=at_zero(s.rate), correction=if_any(s.correction), dry=if_any(s.dry))
             for n, s in effect.states.items()
         },
         parameters={n: p for n, p in effect.parameters.items() if n != parameter},

@@ -1,6 +1,6 @@
 """Structures: two sides of one body, joined by a coupling, of which a hand leads the tip.
 
-    m_t dv_t/dt = coupling + interaction force - contact
+    m_t dv_t/dt = coupling + interaction force - contact - dry friction of the tip
     (m - m_t) a = acting force - coupling - ...
 
 An effect states coupling(now, p), the force between the sides, once: on `now.stretch`, position
@@ -87,6 +87,17 @@ def touching(structure: Effect, contact: sp.Expr) -> Effect:
     tip = replace(structure.states["tip_velocity"], rate=_accelerate(structure.coupling, contact))
     states = {**structure.states, "tip_velocity": tip}
     return remember(replace(structure, states=states), touching, structure, contact)
+
+
+@lru_cache(maxsize=64)
+def rubbing(structure: Effect, level: sp.Expr) -> Effect:
+    """A structure whose tip dry friction of that level holds.
+
+    level: on parameters of the body's effects
+    """
+    tip = replace(structure.states["tip_velocity"], dry=lambda now, p: level / p.tip_inertia)
+    states = {**structure.states, "tip_velocity": tip}
+    return remember(replace(structure, states=states), rubbing, structure, level)
 
 
 def _join(coupling: Coupling, now: Any, p: Any) -> sp.Expr:

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..blocks import Body
-from ..effects import SIGNALS, UNEXPLAINED, Effect, touching
+from ..effects import SIGNALS, UNEXPLAINED, Effect, rubbing, touching
 from ..measurement.motion import Motion
 from .friction_along import balance_friction, bound_friction, friction_of_acting_force, level_along
 from .ode_scan import ode_scan
@@ -73,6 +73,8 @@ def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
         structures = [touching(effect, contact) for effect in structures]
     elif contact != 0:
         needed = needed - along.evaluate(contact)
+    if (held := body.tip_level()) != 0:
+        structures = [rubbing(effect, held) for effect in structures]
     level, along = level_along(body, along)
     low, high = bound_friction(body, level, motion, along)
     for effect in structures:

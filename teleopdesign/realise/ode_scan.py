@@ -7,6 +7,10 @@ swings at a tenth of the sample rate by 3 %. Generated from the effect's rates.
 A state that declares a correction is led back by the force r that is left unexplained, as by an
 observer: dz/dt = rate + correction(r), r = rest - law - friction, 0 where friction can take it up.
 Without it two bodies that part and meet fall out of step with the machine after a few meetings.
+Dry friction on a state is a constant rate over each sub-step: what brings the state to rest at its
+end where the friction can, else its bound (time stepping by Moreau and Jean). A stuck state rests,
+without a stiff law of its own.
+
 Where a course of meetings depends on its past more and more, so do its tangents, until they say
 nothing of any change that could be made: they begin anew wherever a small difference has grown by
 `GROWTH` since it was smallest.
@@ -37,7 +41,7 @@ GROWTH = 30.0
 
 @lru_cache(maxsize=256)
 def _drivers(effect: Effect) -> list[str]:
-    laws = list(effect.rates().values())
+    laws = [*effect.rates().values(), *effect.dry_bounds().values()]
     if corrections := effect.corrections():
         laws += [*corrections.values(), effect.expression()]
     return [n for n, s in SIGNALS.items() if any(law.has(s) for law in laws)]
@@ -47,7 +51,11 @@ def _drivers(effect: Effect) -> list[str]:
 def _parameters(effect: Effect) -> tuple[sp.Symbol, ...]:
     """The effect's parameters, and others that its rates hold: an inertia, an environment's."""
     of_effect = effect.symbols().values()
-    laws = (*effect.rates().values(), *effect.corrections().values())
+    laws = (
+        *effect.rates().values(),
+        *effect.corrections().values(),
+        *effect.dry_bounds().values(),
+    )
     known = {*of_effect, *SIGNALS.values(), *effect.state_symbols().values(), UNEXPLAINED}
     others = set().union(*(law.free_symbols for law in laws)) - known
     return (*of_effect, *sorted(others, key=str))
@@ -133,6 +141,51 @@ def _rate_lines(effect: Effect) -> list[str]:
     return [*lines, *(line for end in ends for line in end.split("\n"))]
 
 
+def _dry_lines(effect: Effect) -> list[str]:
+    """Code of hold, the rates by which dry friction slows the states, and their tangents."""
+    states = list(effect.state_symbols().values())
+    places = {n: i for i, n in enumerate(effect.states)}
+    parameters, names = _parameters(effect), _names(effect)
+    lines: list[str] = []
+    for name, bound in effect.dry_bounds().items():
+        i = places[name]
+        before, moved, own = _slopes(f"dry_{i}", bound, states, parameters, names)
+        lines += [*assignments({f"most_{i}": bound}, names), *before]
+        lines += [
+            # half a step on, for what drives it changes on the way: else a stuck state creeps
+            f"wanted = z[{i}] / w + 1.5 * f[0, {i}] - 0.5 * before_f[{i}]",
+            f"within = abs(wanted) <= most_{i}",
+            f"hold[{i}] = wanted if within else copysign(most_{i}, wanted)",
+            "for c in range(q + 1):",
+            "    if within:",
+            f"        dhold[{i}, c] = d[{i}, c] / w + 1.5 * g[0, {i}, c] - 0.5 * before_g[{i}, c]",
+            "    else:",
+            f"        dhold[{i}, c] = copysign(1.0, wanted) * ({moved})",
+        ]
+        for j, slope in own.items():
+            lines += [
+                f"if not within and columns[{j}] >= 0:",
+                f"    dhold[{i}, columns[{j}]] += copysign(1.0, wanted) * {slope}",
+            ]
+    return lines
+
+
+def _held_lines(effect: Effect) -> list[str]:
+    """Code that takes the rates of dry friction from those of a stage."""
+    if not effect.dry_bounds():
+        return []
+    first = [
+        "if step == 0 and k == 0:",
+        "    before_f[:] = f[0]",
+        "    before_g[:] = g[0]",
+        *_dry_lines(effect),
+        "before_f[:] = f[0]",
+        "before_g[:] = g[0]",
+    ]
+    first = ["if stage == 0:", *(f"    {line}" for line in first)]
+    return [*first, "f[stage] -= hold", "g[stage] -= dhold"]
+
+
 @lru_cache(maxsize=32)
 def _source(effect: Effect) -> str:
     return f"""{head("Generated from an effect's rates; do not edit.")}
@@ -156,6 +209,10 @@ def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout)
     w = h / steps
     zs = np.zeros(s)
     ds = np.zeros((s, q + 1))
+    hold = np.zeros(s)
+    dhold = np.zeros((s, q + 1))
+    before_f = np.zeros(s)
+    before_g = np.zeros((s, q + 1))
     for k in range(n):
         grown = np.abs(d[:, q] / size).max()
         if grown > growth:
@@ -186,6 +243,7 @@ def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout)
                     for c in range(q + 1):
                         ds[i, c] = d[i, c] + part * w * g[before, i, c]
                 rate(zs, ds, u, v, p, columns, f[stage], g[stage])
+{indented(_held_lines(effect), 16)}
             for i in range(s):
                 z[i] += w / 6 * (f[0, i] + 2 * f[1, i] + 2 * f[2, i] + f[3, i])
                 for c in range(q + 1):

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
+from functools import lru_cache
 
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..diagrams import Control, Diagram
-from ..effects import EFFECTS, SIGNALS
+from ..effects import EFFECTS, SIGNALS, Effect
 from ..errors import ModelError
 from .tips import with_tips
 
@@ -35,14 +37,24 @@ def without_absent(body: Body, *, surely: bool = False) -> Body:
     levels = {e.name for e in body.effects if e.role == "friction_level"}
     if levels <= gone:
         gone |= {e.name for e in body.effects if e.role == "friction_shape"}
+    if any(e.role == "structure" for e in body.effects if e.name in gone):
+        gone |= {e.name for e in body.effects if e.role == "tip_level"}
     needed = {n for e in body.effects if e.name not in gone for n in e.needs}
-    for name in gone - needed:
+    needing = {e.name for e in body.effects if e.needs}
+    for name in sorted(gone - needed, key=lambda n: n not in needing):
         body = body.without_effect(name)
     for effect in body.effects:
         for name, parameter in effect.parameters.items():
             if parameter.optional and equals(f"{effect.name}.{name}", 0.0):
                 body = body.without_parameter(effect.name, name)
     return body
+
+
+@lru_cache(maxsize=2)  # laws compare by identity
+def _bristle(of_any_level: bool) -> Effect:
+    """Presliding, or presliding of any friction level: of a tip's, of a user's own."""
+    bristle = EFFECTS["presliding"]
+    return replace(bristle, needs=frozenset()) if of_any_level else bristle
 
 
 def with_give(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> Body:
@@ -55,7 +67,8 @@ def with_give(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> B
         return body
     at_rest = dict.fromkeys(SIGNALS.values(), 0) | dict.fromkeys(body.equation().rates, 0)
     level = float(body.equation().level.subs(at_rest).subs(body.numbers()))
-    lugre, stiffness = EFFECTS["presliding"], level / deflection
+    lugre = _bristle(bool(body.lacks(EFFECTS["presliding"])))
+    stiffness = level / deflection
     if not damping_ratio:
         return body.with_effect(lugre.without("bristle_damping"), {"stiffness": stiffness})
     damping = 2.0 * damping_ratio * (stiffness * body.parameters["inertia"].value) ** 0.5
@@ -81,4 +94,8 @@ def simulated(diagram: Diagram, deflection: float, prescribed: Iterable[str] = (
             raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no equations")
         if isinstance(content, Body):
             diagram = diagram.with_block(part.name, with_give(without_absent(content), deflection))
-    return with_tips(diagram, prescribed=prescribed)
+    apart = with_tips(diagram, prescribed=prescribed)
+    for part in apart.bodies:
+        if isinstance(part.body, Body):  # of a tip that dry friction holds
+            apart = apart.with_block(part.name, with_give(part.body, deflection))
+    return apart

@@ -126,7 +126,11 @@ def _sides(diagram: Diagram, part: Moving, body: Body, structure: Effect) -> tup
             f"{diagram.name}: {part.name}: the tip has {behind:g} {body.unit('inertia')} of the "
             f"body's {inertia:g}: it must be less, and more than none"
         )
-    device = body.without_effect(structure.name).with_values({"inertia": inertia - behind})
+    held = [e for e in body.effects if e.role == "tip_level"]
+    device = body
+    for effect in (*held, structure):
+        device = device.without_effect(effect.name)
+    device = device.with_values({"inertia": inertia - behind})
     end = Body(body.axis, {"inertia": Value(behind)})
     for effect in body.effects:
         if effect.role in CONTACT_ROLES:
@@ -134,7 +138,18 @@ def _sides(diagram: Diagram, part: Moving, body: Body, structure: Effect) -> tup
             end = end.with_effect(effect, values)
     for effect in reversed(end.effects):
         device = device.without_effect(effect.name)
+    for effect in held:
+        end = end.with_effect(
+            of_a_body(effect),
+            {n: body.parameters[f"{effect.name}.{n}"].value for n in effect.parameters},
+        )
     return device, end
+
+
+@lru_cache(maxsize=8)  # laws compare by identity
+def of_a_body(effect: Effect) -> Effect:
+    """Friction of a tip as the friction level that it is of the tip as a body of its own."""
+    return replace(effect, role="friction_level", needs=frozenset())
 
 
 @lru_cache(maxsize=8)  # laws compare by identity: one structure, one kernel

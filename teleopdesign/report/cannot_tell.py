@@ -172,7 +172,7 @@ def _not_tried(diagnosis: Diagnosis) -> list[Finding]:
             elsewhere = (place in model.bodies) == (effect.role in CONTACT_ROLES)
             if elsewhere or body.has(name) or (name, place) in fitted:
                 continue
-            needs = sorted(n for n in effect.needs if not body.has(n))
+            needs = list(body.lacks(effect))
             because = f" (needs {listed(needs)} beside it)" if needs else ""
             reasons.append(f"{name} at {place}{because}")
     if not reasons:

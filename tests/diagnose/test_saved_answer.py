@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 from diagnose.own_cases import FEW
+from effects.along import axis_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from measurement.rod_example import PAIR, rows
@@ -194,7 +195,7 @@ def test_a_modelled_environment_comes_back(tmp_path):
 
 @pytest.mark.parametrize("name", sorted(EFFECTS))
 def test_any_body_comes_back_even_where_its_effects_are_absent(name):
-    body = Body("prismatic", {"inertia": Value(0.2)})
+    body = Body(axis_of(name), {"inertia": Value(0.2)})
     needs = [name]
     while needs[0] in EFFECTS and EFFECTS[needs[0]].needs:
         needs = [*sorted(EFFECTS[needs[0]].needs), *needs]

@@ -5,6 +5,7 @@ The machines come from the truth simulator, which shares no law with the package
 
 import pytest
 from diagnose.own_cases import truth_of, write_own
+from effects.recorded import write_recorded
 
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.effects import EFFECTS
@@ -44,3 +45,24 @@ def test_an_effect_is_not_named_where_one_that_it_is_mistaken_for_is_planted(eff
     assert other in {
         c.effect.name for c in (*found.missing, *(g for gs in found.groups for g in gs))
     }
+
+
+GEAR = {"has_tip": 1.0, "tip_inertia": 0.06, "tip_stiffness": 800.0, "tip_damping": 1.0}
+RUBBING = {"level": 0.2, "damping": 0.5}
+BELIEVED = "coulomb = { level = 0.3 }\nviscous = { damping = 0.5 }\ntransmission_compliance = {}"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("level", [0.3, 0.0])
+def test_friction_of_a_tip_is_told_from_that_of_the_body_and_from_presliding(level, tmp_path):
+    folder = write_recorded(tmp_path / "gear", BELIEVED, tip_level=level, **GEAR, **RUBBING)
+    names = {"coulomb", "viscous", "transmission_compliance", "tip_friction", "presliding"}
+    known = {n: e for n, e in EFFECTS.items() if n in names}
+    experiment = load_experiment(folder)
+    found = find_missing(experiment, Model.from_experiment(experiment, known))
+    assert [c.effect.name for c in found.missing] == (["tip_friction"] if level else [])
+    if level:
+        fitted = found.model.parameters
+        # five standard errors; measured: 0.29978 +- 0.00765
+        assert fitted["device.tip_friction.level"].value == pytest.approx(level, rel=0.1)
+        assert found.after.check_error < 0.02 * found.before.check_error

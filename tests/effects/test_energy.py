@@ -19,10 +19,12 @@ from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.extremes import least_value
 
 SPEED = sp.Symbol("speed", positive=True)
-LEVELS = ("friction_level", "friction_factor")
+LEVELS = ("friction_level", "friction_factor", "tip_level")
 STATIC = [n for n in NAMES if not EFFECTS[n].states and EFFECTS[n].role in ("force", *LEVELS)]
 CONTACTS = [n for n in NAMES if EFFECTS[n].role in ("contact", "contact_shape")]
 STRUCTURES = [n for n in NAMES if EFFECTS[n].role == "structure"]
+#: on the velocity of the tip, not of the body
+AT_TIPS = [n for n in NAMES if EFFECTS[n].role == "tip_level"]
 ON_COMMANDS = [n for n in NAMES if EFFECTS[n].role == "actuation"]
 
 
@@ -128,7 +130,7 @@ def values_of(draw, name):
 
 
 @pytest.mark.parametrize(
-    "name", [n for n in declaring("dissipates") if n not in CONTACTS + STRUCTURES]
+    "name", [n for n in declaring("dissipates") if n not in CONTACTS + STRUCTURES + AT_TIPS]
 )
 @settings(max_examples=25, deadline=None)
 @given(data=st.data(), seed=st.integers(0, 2**31))

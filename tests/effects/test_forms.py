@@ -22,7 +22,7 @@ from excitation import fit_record
 from truth_effects import PUBLIC
 
 from teleopdesign.blocks import Body, Value
-from teleopdesign.effects import EFFECTS, SIGNALS, load_effect
+from teleopdesign.effects import EFFECTS, SIGNALS, load_effect, rubbing
 from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.ode_scan import ode_scan
 from teleopdesign.realise.traced import Along, Traced
@@ -57,6 +57,7 @@ def true_values(*names):
     values["inertia"] += values.pop("added_inertia", 0.0)
     values["inertia"] -= values.get("tip_inertia", 0.0)  # the package counts both sides
     values["has_tip"] = float("tip_inertia" in values)
+    values["tip_bristle"] = values.get("tip_level", 0.0) / (0.3 * STEP)
     return values
 
 
@@ -120,6 +121,28 @@ def test_what_a_device_touches_it_touches_with_its_tip(structure, contact):
     rigid = relative(residual_along(modelled("coulomb", *touched), motion), motion)
     assert true < 0.015
     assert rigid > 5 * true
+
+
+def test_a_tip_that_dry_friction_holds_rests_and_lets_the_spring_wind_up():
+    """A slow ramp of the body against a tip of 0.2 N: it goes when the spring has 0.2 N."""
+    held = {"transmission_compliance.tip_inertia": 0.05, "transmission_compliance.stiffness": 1e3,
+            "transmission_compliance.damping": 1.0, "tip_friction.level": 0.2}  # fmt: skip
+    effect = unled(body_of("transmission_compliance", "tip_friction", values=held))
+    body = effect.effects[0]
+    held_tip = rubbing(body, effect.tip_level())
+    t = np.arange(1000) * 1e-3
+    x = 4e-4 * t  # m; the spring has 0.2 N after 0.5 s
+    zero = Traced(np.zeros_like(x), np.zeros((0, len(x))))
+    given = {SIGNALS["position"]: Traced(x, zero.tangent), SIGNALS["acceleration"]: zero}
+    given |= {SIGNALS["velocity"]: Traced(np.full_like(x, 4e-4), zero.tangent)}
+    given |= {SIGNALS["interaction_force"]: zero}
+    hidden = ode_scan(held_tip, Along(given, effect.numbers(), (), 1e-3))
+    tip = hidden[held_tip.state_symbols()["tip_position"]].value
+    stuck = t < 0.49
+    stretch = 1e3 * (x - tip)
+    # it starts with the body's velocity, 4e-4 m/s, which friction of 4 m/s^2 stops in 0.1 ms
+    assert np.abs(tip[stuck]).max() < 1e-3 * x[stuck].max() + 2e-7
+    np.testing.assert_allclose(stretch[t > 0.9].mean(), 0.2, rtol=0.02)
 
 
 def test_noise_that_swings_a_lightly_damped_tip_is_led_out_of_it(monkeypatch):

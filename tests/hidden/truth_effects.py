@@ -99,6 +99,8 @@ PUBLIC: dict[str, dict[str, tuple[str, str]]] = {
         "drag": ("thinning", "thinning"),
         "exponent": ("thinning_power", "ratio"),
     },
+    # beside `transmission_compliance` or `backlash`, which the reference does not re-estimate
+    "tip_friction": {"level": ("tip_level", "force")},
     "contact_damping": {"damping": ("contact_damping", "damping")},
     "contact_hardening": {"power": ("contact_power", "ratio")},
     "outside_hum": {"amplitude": ("hum", "force"), "frequency": ("hum_frequency", "frequency")},

@@ -32,6 +32,7 @@ NAMES = (
     "hum", "hum_frequency", "hum_phase", "place_damping", "slow_force", "slow_frequency",
     "resolution", "grid_offset", "kp", "kd", "derivative_weight", "command_step",
     "gravity", "gravity_phase", "thinning", "thinning_power",
+    "tip_level", "tip_bristle",
 )  # fmt: skip
 INDEX = {n: i for i, n in enumerate(NAMES)}
 DEFAULTS = dict(
@@ -50,7 +51,8 @@ DEFAULTS = dict(
 (
     M, B, BD, D, FC, HD, FS, VS, SIG, SIG1, MU, DRF, DRT, MEM, EW, EP, EF, BIAS, K, K3, CA, CP, CF,
     TIP, TM, TK, TB, GAP, DEL, LAG, LIM, GAIN, RA, RP, RF, HAND, HM, GK, GB, AK, AB,
-    ENV, EK, EX, EB, EN, HUM, HUF, HUP, PD, SLO, SLF, RES, OFF, KP, KD, DW, UQ, GR, GRP, TH, THN,
+    ENV, EK, EX, EB, EN, HUM, HUF, HUP, PD, SLO, SLF, RES, OFF, KP, KD, DW, UQ,
+    GR, GRP, TH, THN, TFC, TSIG,
 ) = range(len(NAMES))  # fmt: skip
 TWO_PI = 2.0 * math.pi
 COLUMNS = ("x", "v", "friction", "acting", "interaction", "x_tip", "v_tip", "z", "contact")
@@ -137,8 +139,13 @@ def _forces(p, s, level, acting, place, hand_x, hand_v, direct, out):
     contact = _contact(p, xc, vc)
     if tip:
         c = _coupling(p, s[0] - s[5], v - s[6])
+        rub = 0.0
+        if p[TFC] > 0.0:  # a hard bristle at the tip, well damped while it sticks
+            f = p[TSIG] * s[9]
+            slip = s[6] - abs(s[6]) * f / p[TFC]
+            rub = f + 0.3 * math.sqrt(p[TSIG] * p[TM]) * slip
         out[0] = (total - c) / p[M]
-        out[1] = (interaction + contact + c) / p[TM]
+        out[1] = (interaction + contact + c - rub) / p[TM]
     else:
         out[0] = (total + interaction + contact) / p[M]
         out[1] = 0.0
@@ -209,6 +216,9 @@ def _drift(p, s, t, dt, u):
             s[2] = 0.0
     s[0] += dx
     s[5] += s[6] * dt
+    if p[TFC] > 0.0 and s[6] != 0.0:
+        give = math.copysign(p[TFC] / p[TSIG], s[6])
+        s[9] = give + (s[9] - give) * math.exp(-p[TSIG] * abs(s[6] * dt) / p[TFC])
     s[7] += s[8] * dt
 
 
@@ -340,7 +350,7 @@ def simulate(
         inner = sub * max(1, math.ceil(5e4 / rate / sub))
     if inner % sub:
         raise ValueError(f"inner ({inner}) must be a multiple of sub ({sub})")
-    s = np.zeros((len(p), 9)) if start is None else np.array(start, float)
+    s = np.zeros((len(p), 10)) if start is None else np.array(start, float)
     u, enc, out = _run(
         p, s, 1.0 / rate, inner, sub, open_loop, len(p) == 2, drive.reference,
         drive.reference_velocity, drive.feedforward, drive.hand, drive.hand_velocity, drive.direct,

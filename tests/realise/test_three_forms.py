@@ -31,7 +31,8 @@ TYPICAL = {
     "frequency": 10.0,
 }
 LEVEL = 0.5  # N; above every effect that lowers it
-NAMES = sorted(n for n, e in EFFECTS.items() if e.role != "structure")
+#: those of one body: of two, `test_tips`
+NAMES = sorted(n for n, e in EFFECTS.items() if e.role not in ("structure", "tip_level"))
 LINEAR = [n for n in NAMES if EFFECTS[n].linear]
 
 

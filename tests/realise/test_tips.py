@@ -6,6 +6,7 @@ import pytest
 from devices import body
 
 from teleopdesign.blocks import Body, spring_damper
+from teleopdesign.design.quasi_static import slow_body
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS, SIGNALS, load_effect
 from teleopdesign.errors import ModelError
@@ -120,6 +121,34 @@ def test_coulomb_friction_at_each_end():
     assert last["Z_M_friction"] == pytest.approx(passed, abs=2e-3)
     assert last["Z_M_tip_friction"] == pytest.approx(0.25 - passed, abs=2e-3)
     assert abs(last["L"]) < 1e-5 < last["L_tip"]  # 10 um: the give of its friction
+
+
+def test_friction_of_the_tip_is_that_of_the_tip_as_a_body_of_its_own():
+    held = haptic_interface(body(M, tip_friction__level=0.2, **COMPLIANT))
+    apart = with_tips(haptic_interface(body(M, **COMPLIANT)))
+    apart = apart.with_block("Z_M_tip", body(TIP, coulomb__level=0.2))
+    one, other = (
+        simulate(d, duration=0.05, inputs={"R_D": 1.0}, jit=False)["L_tip"].values
+        for d in (held, apart)
+    )
+    assert one.max() > 1e-4
+    np.testing.assert_allclose(one, other, rtol=0, atol=1e-12 * one.max())
+
+
+def test_in_slow_motion_friction_of_the_tip_adds_to_that_of_the_body():
+    made = body(M, coulomb__level=0.3, tip_friction__level=0.2, **COMPLIANT)
+    assert slow_body(made).level().subs(made.numbers()) == pytest.approx(0.5)
+
+
+def test_friction_of_a_tip_needs_a_structure_and_any_will_do():
+    with pytest.raises(ModelError, match='"tip_friction" needs "transmission_compliance" beside'):
+        body(M, tip_friction__level=0.2)
+    gap = body(M, backlash__tip_inertia=TIP, backlash__stiffness=K, backlash__damping=C,
+               backlash__gap=1e-3)  # fmt: skip
+    with_gap = gap.with_effect(EFFECTS["tip_friction"], {"level": 0.2})
+    assert with_gap.tip_level() == EFFECTS["tip_friction"].symbols()["level"]
+    other = with_gap.with_effect(EFFECTS["transmission_compliance"], {"tip_inertia": TIP})
+    assert [e.name for e in other.effects] == ["tip_friction", "transmission_compliance"]
 
 
 @pytest.mark.parametrize(
