@@ -149,7 +149,7 @@ def _dry_lines(effect: Effect) -> list[str]:
     lines: list[str] = []
     for name, bound in effect.dry_bounds().items():
         i = places[name]
-        before, moved, own = _slopes(f"dry_{i}", bound, states, parameters, names)
+        before, moved, by_parameter = _slopes(f"dry_{i}", bound, states, parameters, names)
         lines += [*assignments({f"most_{i}": bound}, names), *before]
         lines += [
             # half a step on, for what drives it changes on the way: else a stuck state creeps
@@ -162,7 +162,7 @@ def _dry_lines(effect: Effect) -> list[str]:
             "    else:",
             f"        dhold[{i}, c] = copysign(1.0, wanted) * ({moved})",
         ]
-        for j, slope in own.items():
+        for j, slope in by_parameter.items():
             lines += [
                 f"if not within and columns[{j}] >= 0:",
                 f"    dhold[{i}, columns[{j}]] += copysign(1.0, wanted) * {slope}",
@@ -186,15 +186,19 @@ def _held_lines(effect: Effect) -> list[str]:
     return [*first, "f[stage] -= hold", "g[stage] -= dhold"]
 
 
-@lru_cache(maxsize=32)
-def _source(effect: Effect) -> str:
+def _rate_source(effect: Effect) -> str:
     return f"""{head("Generated from an effect's rates; do not edit.")}
 
 @jitted
 def rate(z, d, u, v, p, columns, f, g):
 {indented(_rate_lines(effect), 4)}
 
+"""
 
+
+@lru_cache(maxsize=32)
+def _source(effect: Effect) -> str:
+    return f"""{_rate_source(effect)}
 @jitted
 def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout):
     m, n = drive.shape
