@@ -71,13 +71,13 @@ def refused(diagram: Diagram, columns: Mapping[str, np.ndarray]) -> dict[int, st
     for name, column in columns.items():
         lower, upper = _bounds(diagram, name)
         suspect |= ~((column >= lower) & (column <= upper))
-    found = {}
+    reasons = {}
     for case in np.flatnonzero(suspect):
         try:
             at_case(diagram, columns, int(case))
         except ModelError as error:
-            found[int(case)] = str(error)
-    return found
+            reasons[int(case)] = str(error)
+    return reasons
 
 
 def at_case(diagram: Diagram, columns: Mapping[str, np.ndarray], case: int) -> Diagram:
@@ -114,7 +114,7 @@ def simulated_values(
     base = form(group.diagram).values
     reasons: dict[int, str] = {}
     out = np.tile(np.array([base[n] for n in names], dtype=float), (len(group.cases), 1))
-    given = group.diagram.values
+    stated = group.diagram.values
     sources: dict[str, list[str]] = {}  # number of the simulated form -> values it follows from
     for name, column in columns.items():
         if np.ptp(column[group.cases]) == 0.0:
@@ -126,7 +126,7 @@ def simulated_values(
             sources.setdefault(n, []).append(name)
     derived: dict[tuple[str, ...], list[str]] = {}
     for n, follows in sources.items():
-        if follows == [n] and base[n] == given[n]:
+        if follows == [n] and base[n] == stated[n]:
             out[:, names.index(n)] = columns[n][group.cases]
         else:
             derived.setdefault(tuple(follows), []).append(n)
@@ -161,32 +161,32 @@ def _changed(diagram: Diagram, name: str) -> Diagram:
 
 def _bounds(diagram: Diagram, name: str) -> tuple[float, float]:
     """Least and largest value of a parameter; infinite where its block knows none."""
-    block_name, _, own = name.partition(".")
+    block_name, _, within = name.partition(".")
     block = diagram.block(block_name)
     if isinstance(block, Control):
         if isinstance(block.controller, Controller):
-            law, _, parameter = own.partition(".")
+            law, _, parameter = within.partition(".")
             for stage in block.controller.stages:
                 if stage.name == law and parameter in stage.law.parameters:
                     declared = stage.law.parameters[parameter]
                     return declared.lower, declared.upper
     elif isinstance(block.body, Body):
-        declared = block.body.parameter(own)
+        declared = block.body.parameter(within)
         return declared.lower, declared.upper
     return -np.inf, np.inf
 
 
 def _off(diagram: Diagram, name: str) -> list[float]:
     """Values of a parameter at which something is left out of the equations."""
-    block_name, _, own = name.partition(".")
+    block_name, _, within = name.partition(".")
     body = getattr(diagram.block(block_name), "body", None)
     if not isinstance(body, Body):
         return []
-    effect_name, _, parameter = own.partition(".")
-    found = []
+    effect_name, _, parameter = within.partition(".")
+    values = []
     for effect in body.effects:
         if effect.name == effect_name:
-            found += [v for n, v in effect.absent.items() if n == parameter]
+            values += [v for n, v in effect.absent.items() if n == parameter]
             if effect.parameters[parameter].optional:
-                found.append(0.0)
-    return sorted(set(found))
+                values.append(0.0)
+    return sorted(set(values))

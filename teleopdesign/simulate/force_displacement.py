@@ -98,13 +98,13 @@ def force_displacement(
     for case, simulation in simulations.items():
         kept = simulation.data["time"].values >= after - 1e-9
         time = simulation.data["time"][kept]
-        found = {n: sign * simulation[s].values[kept] for n, (s, sign) in _SIGNALS.items()}
-        for name, values in found.items():
+        signals = {n: sign * simulation[s].values[kept] for n, (s, sign) in _SIGNALS.items()}
+        for name, values in signals.items():
             rows[name].append(values)
-        loops[case] = loop_of(found["displacement"], found["force"], within=within)
-        there = found["environment_displacement"]
-        environment[case] = loop_of(there, found["environment_force"], within=within)
-        rms[case] = float(np.sqrt(np.mean((found["force"] - found["environment_force"]) ** 2)))
+        loops[case] = loop_of(signals["displacement"], signals["force"], within=within)
+        there = signals["environment_displacement"]
+        environment[case] = loop_of(there, signals["environment_force"], within=within)
+        rms[case] = float(np.sqrt(np.mean((signals["force"] - signals["environment_force"]) ** 2)))
     data = xarray.Dataset(
         {
             name: (

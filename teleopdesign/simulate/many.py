@@ -180,7 +180,7 @@ class _Study:
         timing = setup.timing(*key)
         setup.check_size(timing)
         begin = min(round(self.after / timing.period), timing.samples)
-        found = execute_many(
+        outcomes = execute_many(
             setup.program,
             numbers[members],
             timing,
@@ -195,7 +195,7 @@ class _Study:
             case = int(group.cases[k])
             try:
                 inner = setup.next_inner(
-                    timing, float(found.worst[i]), bool(found.is_finite[i]), self.long_step
+                    timing, float(outcomes.worst[i]), bool(outcomes.is_finite[i]), self.long_step
                 )
             except ModelError as error:
                 result.refuse({case: str(error)})
@@ -207,10 +207,10 @@ class _Study:
         where = group.cases[np.array(members)[done]]
         result.steps[where] = timing.step
         for j, name in enumerate(kept):
-            result.rows[name][where] = found.kept[done, :, j]
+            result.rows[name][where] = outcomes.kept[done, :, j]
         for j, name in enumerate(reductions):
             result.numbers.setdefault(name, np.full(len(result.open), np.nan))
-            result.numbers[name][where] = found.reduced[done, j]
+            result.numbers[name][where] = outcomes.reduced[done, j]
         return finer
 
     def _form(self, diagram: Diagram) -> Diagram:
@@ -283,11 +283,11 @@ def _delays(setup: Setup, names: tuple[str, ...], numbers: np.ndarray) -> list[t
         return [()] * len(numbers)
     symbols = {name: x for x, name in equations.parameters.items()}
     different, which = np.unique(numbers, axis=0, return_inverse=True)
-    found = []
+    delays = []
     for row in different:
         at = {symbols[name]: float(x) for name, x in zip(names, row, strict=True)}
-        found.append(tuple(float(delay.subs(at)) for _, delay in equations.late.values()))
-    return [found[i] for i in which.reshape(-1)]
+        delays.append(tuple(float(delay.subs(at)) for _, delay in equations.late.values()))
+    return [delays[i] for i in which.reshape(-1)]
 
 
 class _Result:

@@ -153,15 +153,15 @@ class Setup:
         """Inputs on the grid of that timing, as the kernel takes them."""
         layout, n = self.program.layout, 2 * timing.steps + 1
         half = 0.5 * timing.step * np.arange(n)
-        given: dict[str, Input] = dict(self.inputs)
+        signals: dict[str, Input] = dict(self.inputs)
         for name, motion in self.motion.items():
-            given |= zip(
+            signals |= zip(
                 (name, f"{name}_velocity", f"{name}_acceleration"), motion.all, strict=True
             )
         samples = timing.period * np.arange(timing.samples + 1)
         return {
-            "inputs": _table(layout.inputs, given, half),
-            "sampled": _table(layout.sampled_inputs, given, samples),
+            "inputs": _table(layout.inputs, signals, half),
+            "sampled": _table(layout.sampled_inputs, signals, samples),
             "start": self.initial,
         }
 
@@ -278,10 +278,10 @@ def _steps(delay: float, step: float, what: str) -> int:
     return count
 
 
-def _table(names: tuple[str, ...], given: Mapping[str, Input], time: np.ndarray) -> np.ndarray:
+def _table(names: tuple[str, ...], signals: Mapping[str, Input], time: np.ndarray) -> np.ndarray:
     table = np.zeros((max(len(names), 1), len(time)))
     for i, name in enumerate(names):
-        value = given.get(name, 0.0)
+        value = signals.get(name, 0.0)
         row = np.asarray(value(time) if callable(value) else value, dtype=float)
         if row.ndim and row.shape != time.shape:
             raise ModelError(

@@ -65,8 +65,8 @@ class _Sampled(ByValue):
         from scipy.interpolate import make_interp_spline
 
         spline = make_interp_spline(self.time, self.position, k=5)
-        found: Function = spline.derivative(self.order) if self.order else spline
-        return found
+        function: Function = spline.derivative(self.order) if self.order else spline
+        return function
 
     def __call__(self, t: np.ndarray) -> np.ndarray:
         first, last = self.time[0], self.time[-1]

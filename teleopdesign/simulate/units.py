@@ -31,15 +31,15 @@ def signal_units(diagram: Diagram) -> Callable[[str], str]:
 
 def _states(diagram: Diagram) -> dict[str, tuple[str, str]]:
     """Hidden state -> its quantity and a signal of its block."""
-    found = {}
+    by_state = {}
     for block in diagram.blocks:
         laws = [(e.name, e.states) for e in getattr(getattr(block, "body", None), "effects", ())]
         stages = getattr(getattr(block, "controller", None), "stages", ())
         for law, states in (*laws, *((g.name, g.law.states) for g in stages)):
             for state, declared in states.items():
                 name = f"{block.name}_{law}_{state}"
-                found[name] = (declared.quantity, block.outputs[0])
-    return found
+                by_state[name] = (declared.quantity, block.outputs[0])
+    return by_state
 
 
 def _quantities(diagram: Diagram) -> dict[str, str]:
@@ -81,15 +81,15 @@ def _feeds_controllers_alone(diagram: Diagram, signal: str) -> bool:
 
 def _axes(diagram: Diagram) -> dict[str, str]:
     """Axis of each signal: that of its body, carried on by blocks and sums."""
-    found = {k.output: k.axis for k in diagram.kinematics}
+    axis_of = {k.output: k.axis for k in diagram.kinematics}
     for block in diagram.bodies:
         axis = getattr(block.body, "axis", None)
         if axis is None:
             continue
         if isinstance(block, Moving):
-            found |= dict.fromkeys((block.motion, *block.inputs, f"{block.name}_friction"), axis)
+            axis_of |= dict.fromkeys((block.motion, *block.inputs, f"{block.name}_friction"), axis)
         else:
-            found |= dict.fromkeys((block.motion, block.force, f"{block.name}_friction"), axis)
+            axis_of |= dict.fromkeys((block.motion, block.force, f"{block.name}_friction"), axis)
     groups: list[tuple[str, ...]]
     groups = [(b.input, b.output) for b in diagram.blocks if isinstance(b, Control)]
     groups += [(b.motion, b.force) for b in diagram.blocks if isinstance(b, Attached)]
@@ -98,14 +98,14 @@ def _axes(diagram: Diagram) -> dict[str, str]:
     # a lever joins two axes; a sum does not
     groups += [(j.output, *j.terms) for j in diagram.junctions if not j.arms and _is_sum(j.terms)]
     for _ in range(len(groups)):
-        before = len(found)
+        before = len(axis_of)
         for group in groups:
-            axis = next((found[s] for s in group if s in found), None)
+            axis = next((axis_of[s] for s in group if s in axis_of), None)
             if axis is not None:
-                found |= {s: axis for s in group if s not in found}
-        if len(found) == before:
+                axis_of |= {s: axis for s in group if s not in axis_of}
+        if len(axis_of) == before:
             break
-    return found
+    return axis_of
 
 
 def _is_sum(terms: Mapping[str, Weight]) -> bool:
