@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -70,8 +69,10 @@ def _files_read(options: argparse.Namespace) -> Iterator[Path]:
 
 def _texts_of(file: Path) -> Iterator[str]:
     """Every text in a TOML file; none where it is not sound, which is told where it is read."""
+    from ..measurement.toml_table import parse_toml
+
     try:
-        content = tomllib.loads(file.read_bytes().decode("utf-8-sig"))
+        content = parse_toml(file.read_bytes().decode("utf-8-sig"))
         yield from _texts(content)
     except (OSError, ValueError, RecursionError):
         return

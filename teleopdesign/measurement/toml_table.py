@@ -1,6 +1,7 @@
 """A table of a TOML file, read strictly: a key unknown, missing or of a wrong type is an error."""
 
 import math
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -114,13 +115,27 @@ def described(value: object) -> str:
     return f"a {type(value).__name__}"
 
 
+#: words of a dotted key, text in quotes left out: the time that the reader takes grows with their
+#: square, and an experiment has three
+_LONG_KEY = re.compile(r"(?:[\w-]+|\"\")(?:\s*\.\s*(?:[\w-]+|\"\")){99}")
+_QUOTED = re.compile(r"\"(?:[^\"\\\n]|\\.)*\"|'[^'\n]*'")
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """The content of a TOML text; raises ValueError where it is none, or a key has 100 words."""
+    for number, line in enumerate(text.splitlines(), start=1):
+        if line.count(".") > 99 and _LONG_KEY.search(_QUOTED.sub('""', line)):
+            raise ValueError(f"a key of 100 words or more (at line {number})")
+    return tomllib.loads(text)
+
+
 def read_toml(path: Path, file: str) -> Table:
     """The whole file as a table; `file` is its name in messages.
 
     raises ExperimentError: unreadable, not UTF-8, or not TOML (with the line number)
     """
     try:
-        return Table(tomllib.loads(path.read_bytes().decode("utf-8-sig")), file)
+        return Table(parse_toml(path.read_bytes().decode("utf-8-sig")), file)
     except OSError as problem:
         raise ExperimentError(f"{file}: cannot be read: {problem.strerror}") from None
     except UnicodeDecodeError as problem:

@@ -211,6 +211,7 @@ def test_a_dahl_cancellation_equals_a_damper_in_linear_theory():
     assert 50.0 - found == pytest.approx(4 * 0.5 / (np.pi * motion.peak_speed), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_through_a_compliant_transmission_the_cancellation_is_proved_too(rod):
     """P53: f_D within the friction of the motor side, whatever lies beyond."""
     tip = {"tip_inertia": 0.05, "stiffness": 2e4, "damping": 1.0}

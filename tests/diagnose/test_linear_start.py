@@ -42,6 +42,7 @@ def base(cogged):
     return estimate(model, prepare(cogged))
 
 
+@pytest.mark.slow
 def test_a_fine_period_is_found_among_a_hundred(cogged, base):
     prepared = prepare(cogged)
     model = base.model.with_effect("cogging")

@@ -151,6 +151,7 @@ def test_a_pendulum_at_constant_speeds_shows_its_gravity(tmp_path):
     assert found.model.parameters["device.pendulum.amplitude"].value == pytest.approx(8.0, rel=0.02)
 
 
+@pytest.mark.slow
 def test_gravity_that_the_catalogue_lacks_is_called_no_cogging(tmp_path):
     experiment = load_experiment(write_pendulum(tmp_path / "case"))
     found = find_missing(experiment, Model.from_experiment(experiment, known()))

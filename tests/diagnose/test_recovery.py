@@ -121,6 +121,7 @@ def test_no_effect_is_named_on_records_that_lack_none(tmp_path):
     assert not named
 
 
+@pytest.mark.slow
 def test_a_parameter_led_astray_does_not_make_what_is_missing_pass_for_noise(tmp_path):
     # without cogging this machine's Stribeck level goes to 100 kN within 0.1 mm/s, where sensor
     # noise would ask for five times the measured force
