@@ -184,16 +184,16 @@ def test_the_answer_tells_the_shift_and_its_error(adequate):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rows", [-1.0, 0.3, 1.0])
-@pytest.mark.parametrize("seed", [11, 12, 13])
+@pytest.mark.parametrize(("seed", "rows"), [(11, -1.0), (12, 1.0), (13, 0.3)])
 def test_no_effect_is_named_for_a_logger_that_is_off(tmp_path, seed, rows):
     experiment = td.load_experiment(write_own(tmp_path / "null", None, seed=seed))
     assert not td.find_missing(shifted(experiment, rows)).missing
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rows", [-1.0, 1.0])
-@pytest.mark.parametrize("effect", ["stribeck", "cogging", "presliding"])
+@pytest.mark.parametrize(
+    ("effect", "rows"), [("stribeck", 1.0), ("cogging", -1.0), ("presliding", 1.0)]
+)
 def test_an_effect_keeps_its_name_under_a_shift(tmp_path, effect, rows):
     folder = write_own(tmp_path / effect, effect)
     diagnosis = td.find_missing(shifted(td.load_experiment(folder), rows))
