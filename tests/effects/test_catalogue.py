@@ -198,7 +198,7 @@ def positive(effect):
 
 
 @pytest.mark.parametrize("name", declaring("even in velocity"))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(data=st.data(), velocity=st.floats(1e-6, 2.0))
 def test_the_level_is_the_same_in_both_directions(name, data, velocity):
     values = data.draw(positive(EFFECTS[name]))
@@ -206,7 +206,7 @@ def test_the_level_is_the_same_in_both_directions(name, data, velocity):
 
 
 @pytest.mark.parametrize("name", declaring("non-negative"))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(data=st.data(), velocity=st.floats(-2.0, 2.0))
 def test_the_level_is_never_below_zero(name, data, velocity):
     values = data.draw(positive(EFFECTS[name]))
@@ -287,7 +287,7 @@ def test_an_effect_on_an_axis_that_it_does_not_hold_on_is_refused_with_what_to_w
 
 
 @pytest.mark.parametrize("name", [n for n in NAMES if EFFECTS[n].linear])
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(a=st.floats(-3, 3), b=st.floats(-3, 3))
 def test_a_linear_effect_superposes(name, a, b):
     names = with_needs(name)
