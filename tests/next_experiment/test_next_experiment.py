@@ -176,6 +176,7 @@ def test_the_predicted_separation_is_found_on_an_independent_simulator(one_speed
     assert after.separation(truth=other, other=truth) == 0.0
 
 
+@pytest.mark.slow
 def test_two_laws_that_need_the_same_force_are_said_to_be_told_by_nothing(tmp_path):
     _, experiment = POOR["one place"].experiment(tmp_path / "bias", 1)
     proposal = propose(diagnosed(experiment, FEW))
