@@ -18,6 +18,7 @@ from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.errors import ModelError
+from teleopdesign.measurement.reversals import since_reversal
 from teleopdesign.unexplained import describe_residual, where_it_fails
 from teleopdesign.unexplained.amounts import amount, number
 from teleopdesign.unexplained.curve import curve_of
@@ -25,7 +26,6 @@ from teleopdesign.unexplained.dependence import Dependence, dependences, model_c
 from teleopdesign.unexplained.effect_file import effect_text, write_effect
 from teleopdesign.unexplained.formula import formula_for
 from teleopdesign.unexplained.qualifiers import contrasts
-from teleopdesign.unexplained.reversals import since_reversal
 from teleopdesign.unexplained.rows import rows_of
 from teleopdesign.unexplained.sentences import sentence_for
 from teleopdesign.unexplained.shapes import (
