@@ -37,6 +37,7 @@ def conclude(search: LadderSearch, state: LadderState) -> Diagnosis:
         estimated=estimated,
         floor=floor,
         moment=moment,
+        left_out=search.plan.omissions(),
     )
     named = probable(diagnosis, criteria=criteria)
     if diagnosis.verdict == "effects_missing" and not named:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..by_value import ByValue
 from ..measurement.experiment import Experiment
@@ -46,6 +47,8 @@ class Diagnosis(ByValue):
     moment: the one moment that holds all that is left above noise; None where there is none
     open: what the records leave open, of a diagnosis that was read back: it has no rankings
     named: accepted effects that are probable enough to be said missing
+    left_out: what was not searched though it usually is, in words
+    recorded: the answer that a diagnosis was read back from, which has its candidates; else None
     """
 
     experiment: Experiment
@@ -58,6 +61,8 @@ class Diagnosis(ByValue):
     moment: Moment | None = None
     open: tuple[OpenQuestion, ...] | None = None
     named: tuple[Candidate, ...] = ()
+    left_out: tuple[str, ...] = ()
+    recorded: Mapping[str, Any] | None = None
 
     @property
     def before(self) -> Fit:

@@ -121,6 +121,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         f"  ({diagnosis.floor.source})"
     )
     lines += refused_lines(diagnosis)
+    lines += [f"left out: {words}" for words in diagnosis.left_out]
     lines.append("")
     lines.append(sentence(diagnosis))
     return "\n".join(lines)
