@@ -56,6 +56,7 @@ def record_facts(
     numbers: the body's own, by their names; default: those of the model
     """
     stretches = [s for s in prepared.stretches if s.motion.body == place]
+    motions = [s.motion for s in stretches]
     body = model.bodies[place]
     if numbers is None:
         numbers = {n: v.value for n, v in body.parameters.items()}
@@ -67,6 +68,8 @@ def record_facts(
         stroke=_stroke(stretches),
         force=float(max(measured)),
         body=numbers,
+        places=np.concatenate([m.position[m.direction != 0] for m in motions]),
+        speeds=np.concatenate([m.velocity[m.direction != 0] for m in motions]),
     )
 
 
