@@ -6,12 +6,13 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..errors import ModelError
 from ..plain_data import replacing
 from ._diagnosis import add_experiment, diagnosis_of, experiment_of
 from ._options import check_output, say
 
 if TYPE_CHECKING:
-    from ..diagnose import Diagnosis
+    from ..diagnose import Diagnosis, SimulationComparison
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -28,12 +29,26 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
     )
     parser.add_argument(
+        "--simulate",
+        action="store_true",
+        help="also drive the final model by the recorded command alone",
+    )
+    parser.add_argument(
+        "--loop",
+        type=float,
+        nargs=2,
+        metavar=("K", "B"),
+        help="with --simulate: stiffness and damping (SI) of the loop that held the device",
+    )
+    parser.add_argument(
         "--report", type=Path, metavar="F", help="write a page with everything (.html)"
     )
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the ladder; write what was asked for."""
+    if options.loop is not None and not options.simulate:
+        raise ModelError("--loop: found without --simulate, which it belongs to")
     for path, endings in (
         (options.json, (".json",)),
         (options.predictions, (".csv", ".csv.gz")),
@@ -49,8 +64,9 @@ def run(options: argparse.Namespace) -> int:
     print()
     diagnosis = diagnosis_of(experiment, options)
     print(diagnosis)
+    simulation = _simulation(diagnosis, options)
     if options.json is not None:
-        write_answer(diagnosis, options.json)
+        write_answer(diagnosis, options.json, simulation=simulation)
     if options.predictions is not None:
         write_predictions(diagnosis, options.predictions)
     if options.figure is not None:
@@ -61,6 +77,21 @@ def run(options: argparse.Namespace) -> int:
     for line in _next_commands(diagnosis, options.folder):
         print(line)
     return 0
+
+
+def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> SimulationComparison | None:
+    """The final model driven by the recorded command, printed; None: it was not asked for."""
+    if not options.simulate:
+        return None
+    from ..diagnose import RecordedLoop
+    from ..diagnose.by_simulation import compare_by_simulation
+
+    loop = None if options.loop is None else RecordedLoop(*options.loop)
+    say("simulating the final model")
+    comparison = compare_by_simulation(diagnosis.model, diagnosis.prepared, loop=loop)
+    say("")
+    print(f"\n{comparison}")
+    return comparison
 
 
 def _write_report(diagnosis: Diagnosis, path: Path) -> None:

@@ -18,6 +18,7 @@ from ..plain_data import harmless_cell, plain, replacing, write_json
 from ..realise.along_motion import residual_along
 from .answers.bodies import model_data
 from .answers.fingerprint import experiment_data
+from .by_simulation import SimulationComparison, simulation_data
 from .diagnosis import Diagnosis
 from .fit import Fit
 from .ladder_text import offset_rows
@@ -178,9 +179,12 @@ def _row(diagnosis: Diagnosis, one: CandidateEvidence) -> dict[str, Any]:
     }
 
 
-def write_answer(diagnosis: Diagnosis, path: str | Path) -> None:
-    """Write the answer as JSON."""
-    write_json(path, answer(diagnosis))
+def write_answer(
+    diagnosis: Diagnosis, path: str | Path, *, simulation: SimulationComparison | None = None
+) -> None:
+    """Write the answer as JSON, with a comparison by simulation where one was made."""
+    more = {} if simulation is None else {"simulation": simulation_data(simulation)}
+    write_json(path, answer(diagnosis) | more)
 
 
 def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
