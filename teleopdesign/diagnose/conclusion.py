@@ -42,6 +42,7 @@ def conclude(search: LadderSearch, state: LadderState) -> Diagnosis:
         moment=moment,
         learnable=learnable(model, search.whole, seed=search.seed),
         near_reversals=error_near_reversals(model, search.whole),
+        left_out=search.plan.omissions(),
     )
     named = probable(diagnosis, criteria=criteria)
     if diagnosis.verdict == "effects_missing" and not named:

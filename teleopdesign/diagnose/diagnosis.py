@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..by_value import ByValue
 from ..measurement.experiment import Experiment
@@ -49,6 +50,8 @@ class Diagnosis(ByValue):
     named: accepted effects that are probable enough to be said missing
     learnable: what a black box learns of what is left; None without the extra `learn`
     near_reversals: the check error near reversals; None where there are none
+    left_out: what was not searched though it usually is, in words
+    recorded: the answer that a diagnosis was read back from, which has its candidates; else None
     """
 
     experiment: Experiment
@@ -63,6 +66,8 @@ class Diagnosis(ByValue):
     named: tuple[Candidate, ...] = ()
     learnable: Learnable | None = None
     near_reversals: NearReversals | None = None
+    left_out: tuple[str, ...] = ()
+    recorded: Mapping[str, Any] | None = None
 
     @property
     def before(self) -> Fit:

@@ -125,6 +125,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     if diagnosis.learnable is not None:
         lines.append(f"black box: {diagnosis.learnable}")
     lines += refused_lines(diagnosis)
+    lines += [f"left out: {words}" for words in diagnosis.left_out]
     lines.append("")
     lines.append(sentence(diagnosis))
     return "\n".join(lines)

@@ -14,7 +14,14 @@ from ..finding import Finding, Graph
 from ..measurement.reading import ReadingStep
 from ..plain_data import plain
 from ..plot.graph import thin_series
-from .candidate_table import CandidateRow, LadderRow, candidate_rows, ladder_rows
+from .candidate_table import (
+    CandidateRow,
+    CandidateStep,
+    LadderRow,
+    candidate_rows,
+    candidate_steps,
+    ladder_rows,
+)
 from .cannot_tell import cannot_tell
 from .parameter_table import AddedEffect, ParameterRow, added_effects, parameter_rows
 from .provenance import ChannelRow, RecordRow, channel_rows, record_rows
@@ -47,6 +54,7 @@ class Page:
     added: tuple[AddedEffect, ...]
     views: tuple[BodyView, ...]
     parameters: tuple[ParameterRow, ...]
+    candidate_steps: tuple[CandidateStep, ...]
     candidates: tuple[CandidateRow, ...]
     cannot_tell: tuple[Finding, ...]
     soundness: tuple[Finding, ...]
@@ -91,6 +99,7 @@ def page_of(
         added=added_effects(diagnosis, rows),
         views=body_views(diagnosis, tuple(r.name for r in ladder)),
         parameters=rows,
+        candidate_steps=candidate_steps(diagnosis),
         candidates=candidate_rows(diagnosis),
         cannot_tell=cannot_tell(diagnosis),
         soundness=_bounded(soundness),

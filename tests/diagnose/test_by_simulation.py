@@ -123,10 +123,12 @@ def test_the_answer_holds_every_horizon_with_units(experiment):
     assert "whole record" in repr(comparison) and "whole record" in comparison._repr_html_()
 
 
-def test_a_loop_without_a_simulation_is_refused_by_the_command(capsys):
+def test_a_simulation_that_cannot_be_is_refused_by_the_command(tmp_path, capsys):
     folder = str(td.example("rod"))
     assert main(["diagnose", folder, "--loop", "100", "1"]) == 2
     assert "--simulate" in capsys.readouterr().err
+    assert main(["diagnose", folder, "--simulate", "--output", str(tmp_path / "answers")]) == 2
+    assert "--simulate: is of one folder" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -94,6 +94,8 @@ def restored(
             OpenQuestion(added, tuple((c, evaluated(m, prepared)) for c, m in others))
             for added, others in steps.open
         ),
+        left_out=tuple(content.get("left_out", ())),
+        recorded=content,
     )
 
 

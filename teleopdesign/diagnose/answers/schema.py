@@ -218,9 +218,11 @@ _LATER: dict[str, Check] = {
             "axes": _table_of(_text),
             "records": _list_of(_table({"file": _text, "use": _text, "samples": _SIZE}), least=1),
             "digest": _text,
-        }
+        },
+        {"folder": _text},
     ),
     "models": _table({"ladder": _list_of(_BODIES, least=1), "estimated": _BODIES}),
+    "left_out": _list_of(_text),
     "floor": _table({"drawn": _SIZE, "held": _flag}),
     "open": _list_of(
         _table(
