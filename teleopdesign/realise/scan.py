@@ -138,14 +138,15 @@ def driven_scan(effect: Effect, along: Along) -> dict[sp.Symbol, Traced]:
 def _advanced(effect: Effect, along: Along, command: Traced) -> tuple[Traced, Traced]:
     """The effect's state at the rows and its average over the hold of each."""
     scan = compiled(_stage_source(effect), "stage")
-    end, dend = np.empty_like(command.value), np.empty_like(command.tangent)
-    mean, dmean = np.empty_like(command.value), np.empty_like(command.tangent)
+    tangent = np.ascontiguousarray(command.tangent)
+    end, dend = np.empty_like(command.value), np.empty_like(tangent)
+    mean, dmean = np.empty_like(command.value), np.empty_like(tangent)
     scan(
         along.step,
         columns_of(effect, along.columns),
         *[along.values[s] for s in effect.symbols().values()],
         *[along.signals[SIGNALS[n]].value for n in _used(effect)],
-        command.tangent,
+        tangent,
         end,
         dend,
         mean,
