@@ -136,9 +136,9 @@ def _with_strength(model: Model, base: Fit) -> tuple[Effect, str] | None:
 
 def _moved(base: Fit, stated: Model) -> bool:
     """Whether the base moved a parameter further from the user's value than users usually err."""
-    fitted, given = base.model.parameters, stated.parameters
-    pairs = [(fitted[n].value, given[n].value) for n in base.free if n in given]
-    return any(abs(found - value) > PLAN.moved * abs(value) for found, value in pairs)
+    here, there = base.model.parameters, stated.parameters
+    pairs = [(here[n].value, there[n].value) for n in base.free if n in there]
+    return any(abs(value - before) > PLAN.moved * abs(before) for value, before in pairs)
 
 
 def _by_strength(

@@ -26,18 +26,18 @@ STEPS = 8
 def _balance(
     left: Array,
     rows: NDArray[np.intp],
-    needed: Array,
-    low: Array,
-    high: Array,
+    there: Array,
     sos: Array,
     steady: Array,
     m: int,
 ) -> Array:
     """Friction at the rows where its bounds leave it open; columns: the value, then its tangents.
 
-    left: needed less friction at all samples, changed in place;  needed, low, high: at these rows
+    left: needed less friction at all samples, changed in place
+    there: (3, rows, columns), what is needed at these rows, least and largest friction
     """
     n, r = left.shape
+    needed, low, high = there[0], there[1], there[2]
     extended = np.zeros((n + 2 * m, r))
     friction, ahead = np.empty_like(needed), needed.copy()
     momentum, carried = 1.0, 0.0
@@ -67,8 +67,8 @@ def balanced(
     rows = np.flatnonzero(is_open)
     sos, steady = sections(bandwidth, sample_time)
     left = columns((needed - low).rows())
-    there = [columns(a.rows(rows)) for a in (needed, low, high)]
+    there = np.stack([columns(a.rows(rows)) for a in (needed, low, high)])
     m = margin(len(left), sample_time)
     friction = low.rows()
-    friction[:, rows] = _balance(left, rows, *there, sos, steady, m)[:, : len(friction)].T
+    friction[:, rows] = _balance(left, rows, there, sos, steady, m)[:, : len(friction)].T
     return Traced(friction[0], friction[1:])

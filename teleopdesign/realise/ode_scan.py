@@ -351,9 +351,9 @@ def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[
     bends = _bends(drive, [_slope_of(n, along) for n in _drivers(effect)], step)
     n, count = drive.shape[1], len(effect.states)
     # without corrections nothing but the parameters of the rates moves the states
-    own = np.arange(len(columns)) if corrected else np.unique(places[places >= 0])
-    places = np.where(places >= 0, np.searchsorted(own, places), -1)
-    moving = np.zeros((len(corrected), n, len(own) + 1))
+    mine = np.arange(len(columns)) if corrected else np.unique(places[places >= 0])
+    places = np.where(places >= 0, np.searchsorted(mine, places), -1)
+    moving = np.zeros((len(corrected), n, len(mine) + 1))
     for i, r in enumerate(corrected):
         moving[i, :, :-1] = r.tangent.T
     start = np.array(
@@ -366,13 +366,12 @@ def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[
         states = effect.states.values()
         size = np.array([rate if s.quantity == "velocity" else 1.0 for s in states])
         growth = GROWTH if effect.corrections() and not effect.linear else np.inf
-        by_own = tangent if len(own) == len(columns) else np.empty((count, len(own), n))
+        by_mine = tangent if len(mine) == len(columns) else np.empty((count, len(mine), n))
         scan = compiled(_source(effect), "scan")
-        scan(
-            step, steps, parameters, places, drive, bends, moving, size, growth, start, out, by_own
-        )
-        if by_own is not tangent:
-            tangent[:, own] = by_own
+        known = (step, steps, parameters, places, drive, bends, moving)
+        scan(*known, size, growth, start, out, by_mine)
+        if by_mine is not tangent:
+            tangent[:, mine] = by_mine
     if covered > STABLE * MOST_STEPS or not np.isfinite(out).all():
         # too fast for the record's rate: no number at all rather than a wrong one
         out[:], tangent[:] = np.nan, np.nan
