@@ -22,8 +22,7 @@ settings.register_profile("ci", derandomize=True, deadline=None, max_examples=50
 settings.register_profile("here", deadline=None, max_examples=50)
 settings.load_profile("ci" if os.environ.get("CI") else "here")
 
-
-#: folder -> the folders of this name share fixtures that cost seconds
+#: folder of tests -> what it shares with other folders and costs seconds: they stay together
 TOGETHER = {
     "diagnose": "a diagnosis of a simulated case",
     "next_experiment": "a diagnosis of a simulated case",

@@ -188,7 +188,7 @@ def positive(effect):
 
 
 @pytest.mark.parametrize("name", declaring("even in velocity"))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(data=st.data(), velocity=st.floats(1e-6, 2.0))
 def test_the_level_is_the_same_in_both_directions(name, data, velocity):
     values = data.draw(positive(EFFECTS[name]))
@@ -196,7 +196,7 @@ def test_the_level_is_the_same_in_both_directions(name, data, velocity):
 
 
 @pytest.mark.parametrize("name", declaring("non-negative"))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(data=st.data(), velocity=st.floats(-2.0, 2.0))
 def test_the_level_is_never_below_zero(name, data, velocity):
     values = data.draw(positive(EFFECTS[name]))

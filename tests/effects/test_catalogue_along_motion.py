@@ -84,7 +84,7 @@ def test_a_trace_of_an_effect_changes_a_trace(name):
 
 
 @pytest.mark.parametrize("name", [n for n in NAMES if EFFECTS[n].linear])
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(a=st.floats(-3, 3), b=st.floats(-3, 3))
 def test_a_linear_effect_superposes(name, a, b):
     names = with_needs(name)

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.measurement.reversals import since_reversal
 from teleopdesign.unexplained import describe_residual, where_it_fails
 from teleopdesign.unexplained.amounts import amount, number
-from teleopdesign.unexplained.reversals import since_reversal
 from teleopdesign.unexplained.rows import rows_of
 from teleopdesign.unexplained.shapes import (
     POSITION,
