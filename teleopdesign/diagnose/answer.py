@@ -22,6 +22,7 @@ from .answers.fingerprint import experiment_data
 from .diagnosis import Diagnosis
 from .fit import Fit
 from .ladder_text import offset_rows
+from .learnable import learnable_data
 from .one_moment import Moment
 from .open_questions import open_questions
 from .probability import CandidateEvidence, evidence_of
@@ -59,6 +60,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "record_shift": shift_data(diagnosis.model, diagnosis.prepared.stretches),
         "model_parameters": _parameters(diagnosis.after, _added(diagnosis)),
         "left_over_noise_floors": plain(diagnosis.left),
+        **learnable_data(diagnosis.learnable, diagnosis.near_reversals),
         "one_moment": _moment(diagnosis.moment),
         "at_bound": list(diagnosis.after.at_bound),
         "evidence": (

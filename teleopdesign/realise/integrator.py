@@ -235,7 +235,9 @@ def delay(j, time, inputs, column, late_steps, history, slots, parameters, memor
             now = history[(then % slots) * MANY_LATE * LANES + at]
         if not SMOOTH[i]:
             end = now  # what is held over a step stays
-        elif then >= -1:
+        elif (
+            then >= 0
+        ):  # before t = 0 nothing was there: a jump at t = 0 comes whole, not as a ramp
             end = history[((then + 1) % slots) * MANY_LATE * LANES + at]
         memory[LATE + at] = now
         memory[LATE_END + at] = end

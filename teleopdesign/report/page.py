@@ -26,7 +26,7 @@ from .cannot_tell import cannot_tell
 from .parameter_table import AddedEffect, ParameterRow, added_effects, parameter_rows
 from .provenance import ChannelRow, RecordRow, channel_rows, record_rows
 from .residuals import BodyView, body_views
-from .words import judged_on, verdict
+from .words import judged_on, sentence_of, verdict
 
 #: most points of one series of a finding's graph, drawn and in the page's data
 POINTS = 400
@@ -48,6 +48,8 @@ class Page:
     floor: float
     floor_source: str
     left: float
+    learnable: str
+    near_reversals: str
     ladder: tuple[LadderRow, ...]
     added: tuple[AddedEffect, ...]
     views: tuple[BodyView, ...]
@@ -91,6 +93,8 @@ def page_of(
         floor=diagnosis.floor.value,
         floor_source=diagnosis.floor.source,
         left=diagnosis.left,
+        learnable=sentence_of(diagnosis.learnable),
+        near_reversals=sentence_of(diagnosis.near_reversals),
         ladder=ladder,
         added=added_effects(diagnosis, rows),
         views=body_views(diagnosis, tuple(r.name for r in ladder)),

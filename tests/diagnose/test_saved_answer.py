@@ -263,7 +263,7 @@ ANYTHING = st.recursive(
 
 
 # 250 answers in about 3 s: most places of the format are hit
-@settings(max_examples=250, deadline=None)
+@settings(max_examples=250)
 @given(data=st.data())
 def test_a_spoilt_answer_is_read_or_refused_in_one_line(
     data, content, experiment, tmp_path_factory
