@@ -43,9 +43,12 @@ class LinearBlocks:
     dead_times: Mapping[str, sp.Expr] = field(default_factory=dict)
 
 
-def linear_blocks(diagram: Diagram, *, speed: float = 0.0, held: bool = False) -> LinearBlocks:
+def linear_blocks(
+    diagram: Diagram, *, speed: float = 0.0, held: bool = False, only: str = ""
+) -> LinearBlocks:
     """Linear forms of all blocks with their values in place, which are exact numbers.
 
+    only: name of the one block that is asked for; blank: all
     speed: at which smoothed friction and schedules are frozen
     held: whether controllers in discrete time take part, as H(e^(s T)) (1 - e^(-s T))/(s T); that
         is a frequency response below half the sampling rate, and no ground for a proof
@@ -56,7 +59,7 @@ def linear_blocks(diagram: Diagram, *, speed: float = 0.0, held: bool = False) -
     left_out: list[str] = []
     sampled: list[str] = []
     times = {c.name: as_written(c.dead_time) for c in diagram.controls if c.dead_time is not None}
-    for part in diagram.blocks:
+    for part in diagram.blocks if not only else (diagram.block(only),):
         if isinstance(part, Control):
             if not isinstance(part.controller, Controller):
                 raise ModelError(
