@@ -7,7 +7,7 @@ file, as `plausible(p, facts)`: None, or one sentence that says what the values 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,6 +20,11 @@ Array = NDArray[np.float64]
 
 #: classes of equal size into which samples are sorted by speed, and samples that each must have
 SPEEDS, SAMPLES = 40, 10
+#: share of a pattern's variance over the place that must be no function of the speed. A sine of one
+#: amplitude leaves next to none, two of different amplitudes over one path 0.2 and more. Lower:
+#: friction of the speed is named for one of the place; higher: sweeps that hardly differ in speed
+#: say nothing
+APART = 0.1
 #: travels per period from which something is seen to repeat. One and a half: half of it comes
 #: twice. Fewer: any slow force of the position fits; more: long true periods lose their name
 REPEATS = 1.5
@@ -67,6 +72,31 @@ class RecordFacts:
     def text(self, value: float, quantity: str) -> str:
         """A value of that quantity with its unit on the body's axis."""
         return f"{value:.3g} {unit_of(quantity, self.axis)}"
+
+
+def slip_is_seen(subject: str, ways: Sequence[float], facts: RecordFacts) -> str | None:
+    """Whether one of the ways that something gives before it slips lies within what is read.
+
+    subject: what gives by the longest of them
+    """
+    # what gives by less than half a step is never read
+    if any(0.5 * facts.step < way < facts.travel for way in ways):
+        return None
+    if max(ways, default=0.0) >= facts.travel:
+        travel = facts.text(facts.travel, "position")
+        return f"{subject} never slips within the travel of {travel}: it stands for a spring"
+    step = facts.text(facts.step, "position")
+    return f"{subject} gives by less than steps of {step} show: it stands for sgn friction"
+
+
+def speeds_vary_by_place(pattern: Callable[[Array], Array], facts: RecordFacts) -> str | None:
+    """Whether the records tell a function of the place from one of the speed."""
+    if facts.apart_from_speed(pattern) >= APART:
+        return None
+    return (
+        "each place was passed at one speed only, so what varies along the travel varies with the "
+        "speed as well: it stands for a friction that depends on the speed"
+    )
 
 
 def repeats_within_travel(p: Any, facts: RecordFacts) -> str | None:

@@ -9,6 +9,7 @@ round the corners of the friction loop.
 """
 
 from ._effect import Effect, FitSearch, Parameter, State
+from ._facts import slip_is_seen
 
 
 def law(now, p):
@@ -23,14 +24,7 @@ def bristle(now, p):
 def plausible(p, facts):
     level = facts.body["coulomb.level"]
     said = f"a bristle of {facts.text(p.stiffness, 'stiffness')} at {facts.text(level, 'force')}"
-    if level > p.stiffness * facts.travel:
-        travel = facts.text(facts.travel, "position")
-        return f"{said} never slides within the travel of {travel}: it stands for a spring"
-    # what gives by less than half a step is never read
-    if level < p.stiffness * 0.5 * facts.step:
-        step = facts.text(facts.step, "position")
-        return f"{said} gives by less than steps of {step} show: it stands for sgn friction"
-    return None
+    return slip_is_seen(said, [level / p.stiffness], facts) if p.stiffness > 0 else None
 
 
 EFFECT = Effect(
