@@ -270,7 +270,7 @@ def solve(
     """Bounded least squares on the relative residuals of these stretches, by shifts as well."""
     space = _search_space(model, free, prepared)
     p, lasts = len(free), sum(s.weight * len(s.keep) * s.motion.sample_time for s in stretches)
-    shifts = record_shifts(stretches, round(lasts / BLOCK))
+    shifts = record_shifts(stretches, round(lasts / BLOCK), model)
     lower = np.append(space.lower, np.full(len(shifts.bodies), -LARGEST))
     upper = np.append(space.upper, np.full(len(shifts.bodies), LARGEST))
     start = np.append(space.start, shifts.start(model))
@@ -288,6 +288,7 @@ def solve(
 
     def with_prior(x: Array) -> tuple[Array, Array]:
         r, j = both(x)
+        j[:, p:][:, shifts.held] = 0.0
         known, slope = shifts.prior(x[p:], r, j)
         return np.append(r, known), np.vstack([j, slope])
 
