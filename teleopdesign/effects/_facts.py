@@ -33,6 +33,8 @@ class RecordFacts:
     step: what one reading leaves open of the position
     stroke: mean time of motion between two reversals (s); inf: the motion never turns round
     force: largest size of the measured force, actuator and interaction together
+    speed: largest speed;  film: friction (N or N m) at that speed by those effects of the body that
+        follow from the velocity alone and dissipate, such as `viscous`
     body: its other numbers by their names, such as "inertia" and "coulomb.level"
     places, speeds: (n,) of the samples in which the body slides, over all records
     """
@@ -42,6 +44,8 @@ class RecordFacts:
     step: float
     stroke: float
     force: float
+    speed: float
+    film: float
     body: Mapping[str, float]
     places: Array = field(default_factory=lambda: np.zeros(0))
     speeds: Array = field(default_factory=lambda: np.zeros(0))

@@ -19,9 +19,7 @@ def law(now, p):
 
 
 def plausible(p, facts):
-    if not len(facts.speeds):
-        return None
-    most = p.drag * float(abs(facts.speeds).max()) ** min(p.exponent, 1.0)
+    most = p.drag * facts.speed ** min(p.exponent, 1.0)
     if most <= facts.force:
         return None
     return (
@@ -44,6 +42,7 @@ EFFECT = Effect(
         ),
     },
     absent={"drag": 0.0},
+    counts_as=frozenset({"viscous"}),
     plausible=plausible,
     source="power law of a lubricant in gears and bearings; Waiboer, Aarts, Jonker, Multibody "
     "Dynamics (ECCOMAS, Madrid 2005)",

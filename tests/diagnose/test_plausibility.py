@@ -27,6 +27,8 @@ FACTS = RecordFacts(
     step=1e-4,
     stroke=0.5,
     force=3.0,
+    speed=np.pi,
+    film=0.2 * np.pi,
     body={
         "inertia": 0.1,
         "coulomb.level": 0.5,
@@ -167,6 +169,20 @@ def test_the_facts_are_those_of_all_records(case):
     assert facts.travel == pytest.approx(high - low)
     assert facts.body == {"inertia": model.parameters["device.inertia"].value}
     assert 0.0 < facts.stroke < 3.0 and facts.step > 0.0 and facts.force > 0.0
+
+
+@pytest.mark.parametrize("friction", ["viscous", "shear_thinning", "quadratic_drag"])
+def test_the_friction_of_speed_is_that_of_every_law_of_speed(case, friction):
+    model, prepared = case
+    values = dict.fromkeys(EFFECTS[friction].parameters, 0.5)
+    body = model.with_effect(EFFECTS[friction], values=values)
+    facts = record_facts(body, "device", prepared)
+    law = EFFECTS[friction].expression({"velocity": facts.speed}, values)
+    assert facts.speed > 0.0 and facts.film == pytest.approx(float(law))
+    # a force of the position, or a dry level, is none
+    other = body.with_effect(EFFECTS["spring"], values={"stiffness": 3.0})
+    other = other.with_effect(EFFECTS["coulomb"])
+    assert record_facts(other, "device", prepared).film == facts.film
 
 
 def test_an_effect_that_its_own_file_does_not_believe_is_not_supported(case, tmp_path):
