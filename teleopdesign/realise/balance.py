@@ -39,7 +39,8 @@ def _balance(
     n, r = left.shape
     needed, low, high = there[0], there[1], there[2]
     extended = np.zeros((n + 2 * m, r))
-    friction, ahead = np.empty_like(needed), needed.copy()
+    friction: Array = np.empty_like(needed)
+    ahead = needed.copy()
     momentum, carried = 1.0, 0.0
     for turn in range(STEPS + 1):
         if turn > 0:
