@@ -91,7 +91,7 @@ def _acts_before_what_is_measured(effect: Effect) -> bool:
         return False
     law = effect.expression()
     scale = sp.diff(law, SIGNALS["command"])
-    return bool(effect.states) or law.has(delayed) or scale.has(SIGNALS["command"])
+    return bool(effect.states or law.has(delayed) or scale.has(SIGNALS["command"]))
 
 
 def _is_seen_in_place(effect: Effect, motions: Sequence[Motion], own_zero: Collection[str]) -> bool:

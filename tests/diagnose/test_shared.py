@@ -67,3 +67,27 @@ def test_a_real_recording_is_explained_as_well_as_known(name, bound):
     """Check errors that plain models of the same effects reach on these recordings."""
     found = find_missing(load_experiment(shared_folder("data") / name))
     assert found.after.check_error <= bound
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "documented", "excluded"),
+    [
+        # friction at rest is well above sliding friction; the drive reports more than any limit
+        ("dm8009", {"stribeck"}, {"actuator_saturation", "actuator_lag"}),
+        # friction flattens with speed; one sine, whose places are passed at one speed each
+        (
+            "ur10e_joint1",
+            {"shear_thinning"},
+            {"actuator_saturation", "position_dependent_friction"},
+        ),
+    ],
+)
+def test_a_real_recording_has_the_names_that_its_authors_give(name, documented, excluded):
+    found = find_missing(load_experiment(shared_folder("data") / name))
+    named = {c.effect.name for c in found.missing}
+    listed = {c.effect.name for group in found.groups for c in group}
+    assert documented <= named | listed
+    assert not excluded & (named | {r.added.effect.name for r in found.rungs if r.added})
+    errors = [r.fit.check_error for r in found.rungs]
+    assert errors == sorted(errors, reverse=True)
