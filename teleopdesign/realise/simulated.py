@@ -135,6 +135,12 @@ def in_computer(diagram: Diagram, period: float) -> Diagram:
     return _with_blocks(diagram, realised)
 
 
+def without_no_delay(controller: Controller) -> Controller:
+    """The controller without dead times that are zero."""
+    stages = tuple(g for g in controller.stages if g.value_of("dead_time") != 0.0)
+    return controller if len(stages) == len(controller.stages) else Controller(stages)
+
+
 def _with_blocks(diagram: Diagram, contents: Mapping[str, Body | Controller]) -> Diagram:
     """The diagram with these in the places of their names; itself where nothing is another."""
 
@@ -163,6 +169,8 @@ def simulated(diagram: Diagram, deflection: float, prescribed: Iterable[str] = (
         content = part.controller if isinstance(part, Control) else part.body
         if not isinstance(content, Body | MatrixImpedance | Controller):
             raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no equations")
+        if isinstance(content, Controller):
+            bodies[part.name] = without_no_delay(content)
         if isinstance(content, Body):
             there = without_absent(content)
             check_levels(there, f"{diagram.name}: {part.name}")

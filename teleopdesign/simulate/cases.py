@@ -201,7 +201,11 @@ def _bounds(diagram: Diagram, name: str) -> tuple[float, float]:
 def _off(diagram: Diagram, name: str) -> list[float]:
     """Values of a parameter at which something is left out of the equations."""
     block_name, _, within = name.partition(".")
-    body = getattr(diagram.block(block_name), "body", None)
+    block = diagram.block(block_name)
+    stages = getattr(getattr(block, "controller", None), "stages", ())
+    if any(within == f"{g.name}.{g.law.dead_time}" for g in stages):
+        return [0.0]
+    body = getattr(block, "body", None)
     if not isinstance(body, Body):
         return []
     effect_name, _, parameter = within.partition(".")
