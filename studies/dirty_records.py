@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 import teleopdesign as td
 
@@ -260,33 +261,39 @@ def _reason(text: str) -> str:
     return text.split(": ", 1)[-1]
 
 
-def table(studies: dict[int, td.Study], points: Sequence[int]) -> str:
-    """A line for each defect and strength, in Markdown."""
-    lines = [
-        "| defect | strength | read | refused | `check` warns | names an effect | undecided | "
-        "left, noise floors |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- |",
-    ]
-    for k, point in enumerate(points):
-        data = [one.data.isel(point=k) for one in studies.values()]
-        reasons = [r for d in data if (r := str(d["failure"].values))]
-        refused = f"{len(reasons)} ({_reason(reasons[0])})" if reasons else "0"
+def _cell(data: Sequence[Any], size: str) -> str:
+    """What became of one defect of that size in all cases; a point that is not there has no say."""
+    reasons = [r for d in data if (r := str(d["failure"].values))]
 
-        def values(name: str, data: list[Any] = data) -> np.ndarray:
-            found = [float(d[name].values) for d in data if name in d]
-            return np.array([x for x in found if x == x])
+    def values(name: str) -> np.ndarray:
+        found = [float(d[name].values) for d in data if name in d]
+        return np.array([x for x in found if x == x])
 
-        warnings, names = values("warnings"), values("names_effect")
-        read = len(warnings)
-        left = f"{np.median(values('left')):.2g}" if len(names) else "-"
-        counts = [f"{int(values(n).sum())} of {len(names)}" for n in ("names_effect", "undecided")]
-        defect, strength = POINTS[point]
-        cells = ["none", "-"]
-        if defect != CLEAN:
-            one = DEFECTS[defect]
-            cells = [one.name, f"{one.sizes[strength - 1]:g} {one.unit}"]
-        cells += [str(read), refused, f"{int((warnings > 0).sum())} of {read}", *counts, left]
-        lines.append(f"| {' | '.join(cells)} |")
+    warnings, names = values("warnings"), values("names_effect")
+    parts = [f"warned {int((warnings > 0).sum())} of {len(warnings)}"]
+    if reasons:
+        parts.append(f"refused {len(reasons)} ({_reason(reasons[0])})")
+    if len(names):
+        undecided, left = int(values("undecided").sum()), np.median(values("left"))
+        parts.append(
+            f"named {int(names.sum())}, undecided {undecided} of {len(names)}, left {left:.2g}"
+        )
+    return f"{size}: {'; '.join(parts)}"
+
+
+def table(studies: dict[int, xr.Dataset]) -> str:
+    """A line for each defect, a column for each strength, in Markdown."""
+    lines = ["| defect | weak | middle | strong |", "| --- | --- | --- | --- |"]
+    for defect in (CLEAN, *range(CLEAN)):
+        cells = []
+        for strength in (0,) if defect == CLEAN else (1, 2, 3):
+            point = float(POINTS.index((defect, strength)))
+            data = [d.sel(point=point) for d in studies.values() if point in d["point"].values]
+            one = None if defect == CLEAN else DEFECTS[defect]
+            size = "as drawn" if one is None else f"{one.sizes[strength - 1]:g} {one.unit}"
+            cells.append(_cell(data, size) if data else "-")
+        name = "none" if defect == CLEAN else DEFECTS[defect].name
+        lines.append(f"| {' | '.join([name, *cells, *([''] * (3 - len(cells)))])} |")
     return "\n".join(lines)
 
 
@@ -302,7 +309,7 @@ def main() -> None:
         options.cases, points = [FIRST_CHECKED_ONLY], QUICK
     with tempfile.TemporaryDirectory() as scratch:
         studies = run(options.cases, points, Path(scratch) if options.quick else options.output)
-        text = table(studies, points)
+        text = table({case: one.data for case, one in studies.items()})
     print(text)
     path = (options.output / Path(__file__).stem).with_suffix(".md")
     path.write_text(text + "\n", encoding="utf-8")

@@ -4,7 +4,8 @@ Machines whose exact motion is known from code that shares nothing with the pack
 a mass on a Dahl bristle under a sinusoidal force, stick-slip on a belt, two masses with a gap. Each
 is simulated with steps or tolerances from coarse to fine; the error is the largest of the position
 at the samples over its range, the cost processor time of one call, the better of two. scipy has the
-same right-hand side in Python, python-control its own form of the diagram, both by LSODA.
+same right-hand side in Python, python-control its own form of the diagram (none of the gap), both
+by LSODA.
 
 What was found is in docs/trust.md, "Numbers that are right".
 
@@ -110,6 +111,8 @@ def run(quick: bool = False) -> xr.Dataset:
         both = pair(machine)
         exact = both.exact(times)["x"]
         for j, engine in enumerate(ENGINES):
+            if engine == "python-control" and isinstance(machine, Gap):
+                continue  # `to_iosystem` refuses what meets across a gap: the law bends in a motion
             position = _engine(engine, machine, both, times)
             settings = STEPS if engine == "teleopdesign" else TOLERANCES
             position(settings[0])  # compiles

@@ -12,7 +12,7 @@ TIMES = 1e-3 * np.arange(201)
 #: of the largest size: below it stands the rounding of the exact motions themselves
 ROUNDING = 1e-9
 MACHINES = (
-    Belt(speed=0.1),
+    Belt(),
     Bristle(),
     Bristle(extra=0.3, bristle_damping=20.0),
     Stroke(),
@@ -38,7 +38,7 @@ def estimated_and_true(machine):
 @pytest.mark.slow
 def test_the_estimate_is_never_below_half_of_the_true_error():
     """Bristles, belts, gaps soft and hard, relays and delays, each value within a factor of 4."""
-    rng = np.random.default_rng(20)
+    rng = np.random.default_rng(2)
     wrong, held = [], 0
     for case in range(CASES):
         machine = draw(rng, MACHINES[case % len(MACHINES)])
