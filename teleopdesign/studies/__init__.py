@@ -15,11 +15,13 @@ result.plot.map("force_error")
 
 from ..arguments import check_arguments
 from .case import SimulatedCase
+from .chosen_measures import Measure, measure
 from .diagnosed import diagnosed
 from .from_toml import read_study_file
 from .journal import PointOutcome
-from .measures import MEASURES, Amount, Measure, Point, measure
+from .measures import MEASURES
 from .onset import growth, least_that_grows
+from .point import Amount, Point
 from .progress import Progress
 from .result import Study, read_study
 from .run import study

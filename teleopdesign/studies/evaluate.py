@@ -10,8 +10,9 @@ from typing import Any
 from ..diagrams import Diagram
 from ..errors import ModelError, TeleopDesignError, did_you_mean
 from .case import SimulatedCase
+from .chosen_measures import Measure
 from .journal import PointOutcome
-from .measures import Amount, Measure, Point
+from .point import Amount, Point
 from .points import Points
 
 _LONGEST_REASON = 300  # characters

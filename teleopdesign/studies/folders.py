@@ -16,10 +16,10 @@ from ..by_value import ByValue
 from ..effects import EFFECTS, Effect
 from ..errors import ExperimentError, ModelError
 from ..measurement.files import content_digest
+from .chosen_measures import measures_of
 from .evaluate import StudyTask
 from .fingerprint import fingerprint
 from .journal import Journal, PointOutcome
-from .measures import measures_of
 from .points import points_of
 from .processes import run_on_this_machine
 from .progress import Clock, Progress

@@ -27,8 +27,9 @@ from ..effects import EFFECTS, Effect
 from ..errors import ExperimentError, ModelError, did_you_mean, quoted
 from ..measurement.toml_table import Table, described, read_toml
 from ..simulate import Sampling, sine
+from .chosen_measures import Measure, measure
 from .diagnosed import diagnosed
-from .measures import MEASURES, Measure, measure
+from .measures import MEASURES
 from .samples import (
     Samples,
     latin_hypercube,

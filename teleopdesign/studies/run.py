@@ -15,10 +15,10 @@ from ..measurement.files import content_digest, is_experiment
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from .case import SimulatedCase
+from .chosen_measures import measures_of
 from .evaluate import StudyTask, check_parameters
 from .fingerprint import fingerprint
 from .journal import Journal, PointOutcome
-from .measures import measures_of
 from .points import Points, points_of
 from .processes import run_on_this_machine
 from .progress import Clock, Progress

@@ -17,7 +17,7 @@ from ..simulate import Simulation, simulate_many
 from .case import SimulatedCase
 from .evaluate import StudyTask, evaluate, outcome_of
 from .journal import PointOutcome
-from .measures import Point
+from .point import Point
 
 if TYPE_CHECKING:
     import xarray

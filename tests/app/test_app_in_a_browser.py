@@ -77,7 +77,7 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
         press(page, "Write report, answer, model and script")
         page.get_by_text("written to results/swing_experiment").first.wait_for()
         picture(page, folder, "exported")
-    toml = (folder / "dropped" / "swing_experiment" / "experiment.toml").read_text()
+    toml = (folder / "swing_experiment" / "experiment.toml").read_text()
     spans = [line for line in toml.splitlines() if line.startswith("span")]
     assert len(spans) == 2 and float(spans[1].split(",")[1].rstrip("] ")) < 12 * 0.97
     results = folder / "results" / "swing_experiment"

@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 import teleopdesign as td
-from teleopdesign.app import charts, logs, pages
+from teleopdesign.app import charts, logs, pages, settings
 from teleopdesign.app.workbench import Workbench
 from teleopdesign.cli import main
 from teleopdesign.errors import ExperimentError
@@ -88,3 +88,22 @@ def test_a_chart_shows_the_residual_of_both(bench):
     by_name = {n: [r["residual"] for r in rows if r["of"] == n] for n in ("yours", "other")}
     assert len(by_name["yours"]) == len(by_name["other"]) <= charts.MOST
     assert sum(x * x for x in by_name["other"]) < sum(x * x for x in by_name["yours"])
+
+
+def test_the_page_tries_the_effects_that_it_was_started_with(monkeypatch):
+    monkeypatch.delenv(settings.EFFECTS, raising=False)
+    assert settings.effects() is None
+    monkeypatch.setenv(settings.EFFECTS, "stribeck,presliding")
+    assert settings.effects() == ("stribeck", "presliding")
+    assert settings.effects({"effects": "bias"}) == ("bias",)
+
+
+def test_the_workbench_tries_what_it_is_asked_to_beside_effects_that_are_described():
+    tried = Workbench.of(td.load_experiment(td.example("rod")), among=["bias", "coulomb"])
+    assert [r.candidate.key for r in tried.candidates] == [("bias", "device")]
+
+
+def test_a_page_is_not_served_for_an_unknown_effect(tmp_path, capsys):
+    pytest.importorskip("marimo", reason="needs the extra app")
+    assert main(["app", str(tmp_path), "--no-browser", "--only", "stribek"]) == 2
+    assert 'did you mean "stribeck"' in capsys.readouterr().err

@@ -7,8 +7,8 @@ import xarray
 
 import teleopdesign as td
 from teleopdesign.studies import side_by_side
+from teleopdesign.studies.chosen_measures import measures_of
 from teleopdesign.studies.evaluate import StudyTask, evaluate
-from teleopdesign.studies.measures import measures_of
 from teleopdesign.studies.points import points_of
 
 AXES = {

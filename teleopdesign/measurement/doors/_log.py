@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import ExperimentError
+from ...errors import ExperimentError, quoted
 
 Array = NDArray[np.float64]
 Columns = Mapping[str, Any]
@@ -48,6 +48,18 @@ def optional(module: str, file: str, extra: str = "io") -> ModuleType:
         raise ExperimentError(
             f'{file}: reading it needs {module.split(".")[0]}: pip install "teleopdesign[{extra}]"'
         ) from None
+
+
+def how_to_save(name: str) -> str:
+    """What a user types in MATLAB so that an object can be read: its content is known to it alone.
+
+    name: of the variable
+    """
+    return (
+        f"{quoted(name)} is a timetable, table or other object that only MATLAB can unpack: in "
+        'MATLAB, writetimetable(T, "log.csv") or S = table2struct(timetable2table(T), "ToScalar", '
+        'true); save("log.mat", "S")'
+    )
 
 
 def refuse_size(rows: int, file: str) -> None:

@@ -11,16 +11,19 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import ExperimentError, quoted
-from ._log import Log, optional, part, parts_of, refuse_size
+from ._log import Log, how_to_save, optional, part, parts_of, refuse_size
 
 #: datasets of one file that are listed
 _MOST = 10_000
+#: attribute by which MATLAB marks an object of its own; its numbers lie elsewhere in the file
+_OBJECT = "MATLAB_object_decode"
 
 
 def open_hdf5(path: Path, file: str) -> Log:
     """An HDF5 file, or a MAT file of version 7.3."""
     h5py = optional("h5py", file)
     columns: dict[str, tuple[str, int | str | None]] = {}
+    objects: list[str] = []
     with h5py.File(path, "r") as content:
         names: list[str] = []
 
@@ -36,12 +39,17 @@ def open_hdf5(path: Path, file: str) -> Log:
             if name.startswith("#"):  # where MATLAB keeps its cells
                 continue
             item = content[name]
-            if item.dtype.names:
+            if _OBJECT in item.attrs:
+                objects.append(name)
+            elif item.dtype.names:
                 columns |= {f"{name}.{field}": (name, field) for field in item.dtype.names}
             else:
                 columns |= parts_of(name, item.shape) or {name: (name, None)}
                 if len(item.shape) == 2 and 1 not in item.shape:
                     columns[name] = (name, -1)
+
+    if objects and not columns:
+        raise ExperimentError(f"{file}: {how_to_save(objects[0])}")
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         with h5py.File(path, "r") as content:
@@ -61,4 +69,5 @@ def open_hdf5(path: Path, file: str) -> Log:
             return item[column]
         return part(item[()], column)
 
-    return Log(tuple(columns), read)
+    notes = tuple(f"{how_to_save(name)}; it is left out" for name in objects)
+    return Log(tuple(columns), read, notes=notes)

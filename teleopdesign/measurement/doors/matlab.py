@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import ExperimentError, quoted
-from ._log import Log, part, parts_of, refuse_size
+from ...errors import ExperimentError
+from ._log import Log, how_to_save, part, parts_of, refuse_size
 from .hdf5 import open_hdf5
 
 #: structs within structs that are looked into
@@ -49,13 +49,7 @@ def open_matlab(path: Path, file: str) -> Log:
             if len(shape) == 2 and 1 not in shape:
                 columns[name] = (name, -1)
     if objects and not columns:
-        raise ExperimentError(
-            f"{file}: {quoted(objects[0])} is a timetable, table or other object that only "
-            f"MATLAB can "
-            'unpack: in MATLAB, writetimetable(T, "log.csv") or S = '
-            "table2struct(timetable2table(T), "
-            '"ToScalar", true); save("log.mat", "S")'
-        )
+        raise ExperimentError(f"{file}: {how_to_save(objects[0])}")
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         plain = [columns[n][0] for n in wanted if columns[n][0] not in arrays]
@@ -70,7 +64,8 @@ def open_matlab(path: Path, file: str) -> Log:
             out[name] = values if column == -1 else part(values, column)
         return out
 
-    return Log(tuple(n for n in columns), read)
+    notes = tuple(f"{how_to_save(name)}; it is left out" for name in objects)
+    return Log(tuple(n for n in columns), read, notes=notes)
 
 
 def _fields(name: str, value: Any, depth: int) -> dict[str, Any]:

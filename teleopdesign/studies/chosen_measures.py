@@ -1,0 +1,141 @@
+"""Measures: what is kept of each point; the package's own by name, or any function of a result.
+
+    "tracking_error"                              one of the package's own
+    measure("rms", signal="R_M")                  with its options
+    lambda simulation: float(abs(simulation["E"]).max())
+
+A function takes what the point gave: the simulation where there is a duration, else the diagram, or
+what the model's function returned. It returns a number, a text, a mapping of names to such, or a
+labelled array.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from ..by_value import ByValue
+from ..errors import ModelError, did_you_mean
+from ..expectations import described
+from .measures import MEASURES
+from .point import Amount, Function, Point
+
+
+@dataclass(frozen=True, eq=False)
+class Measure(ByValue):
+    """A measure with its options, under the name that its values get.
+
+    function: takes a `Point` (of the package's own), or what the point gave
+    signals: all that it needs of a simulation; none: it may need anything
+    """
+
+    name: str
+    function: Function
+    options: Mapping[str, Any] = field(default_factory=dict)
+    of_package: bool = False
+    signals: tuple[str, ...] = ()
+
+    def __call__(self, point: Point) -> dict[str, Amount]:
+        """The values of a point, by name."""
+        value = self.function(point if self.of_package else point.result, **self.options)
+        if isinstance(value, Mapping):
+            return {str(k): _amount(v, f"{self.name}: {k}") for k, v in value.items()}
+        return {self.name: _amount(value, self.name)}
+
+
+def measure(name: str, **options: Any) -> Measure:
+    """A measure of the package with options: measure("rms", signal="R_M").
+
+    raises ModelError: no measure of that name, an option that it does not have or that is missing
+    """
+    kind = MEASURES[name]
+    for option in options:
+        if option not in kind.options:
+            listed = ", ".join(kind.options) or "none"
+            raise ModelError(
+                f'measure {name}: no option "{option}", has {listed}'
+                f"{did_you_mean(option, kind.options)}"
+            )
+    for option, default in kind.options.items():
+        if default is ... and option not in options:
+            raise ModelError(f'measure {name}: option "{option}" has no value')
+    values = {**{k: v for k, v in kind.options.items() if v is not ...}, **options}
+    signal = values.get("signal") if kind.options.get("signal", "") is ... else None
+    label = f"{name}_{signal}" if signal else name
+    signals = tuple(str(values.get(s, s)) for s in kind.signals)
+    return Measure(label, kind.function, values, of_package=True, signals=signals)
+
+
+def measures_of(content: Any) -> tuple[Measure, ...]:
+    """One measure or several, by name where a mapping gives names.
+
+    raises ModelError: a name twice, something that is no measure, none at all
+    """
+    if isinstance(content, Mapping):
+        listed = [_measure_of(m, str(name)) for name, m in content.items()]
+    elif isinstance(content, str | Measure) or callable(content):
+        listed = [_measure_of(content)]
+    else:
+        listed = [_measure_of(m) for m in content]
+    names = [m.name for m in listed]
+    if doubled := {n for n in names if names.count(n) > 1}:
+        raise ModelError(
+            f'study: measures: "{min(doubled)}" is there twice: name them, {{"name": measure}}'
+        )
+    if not listed:
+        raise ModelError(f"study: found no measure, expected a function or {', '.join(MEASURES)}")
+    return tuple(listed)
+
+
+def _measure_of(content: Any, name: str = "") -> Measure:
+    if isinstance(content, str):
+        content = measure(content)
+    if isinstance(content, Measure):
+        return replace(content, name=name) if name else content
+    if not callable(content):
+        raise ModelError(
+            f"study: measures: found {described(content)}, expected a function or a name of "
+            f"{', '.join(MEASURES)}"
+        )
+    label = getattr(content, "__name__", type(content).__name__)
+    return Measure(name or ("measure" if label == "<lambda>" else label), content)
+
+
+def _amount(value: Any, where: str) -> Amount:
+    """A value of a user's measure as the package keeps it."""
+    if isinstance(value, Amount):
+        return value
+    if hasattr(value, "dims") and hasattr(value, "attrs"):  # a labelled array
+        unit, text = str(value.attrs.get("units", "1")), str(value.attrs.get("text", ""))
+        if not value.dims:
+            return replace(_amount(value.values[()], where), unit=unit, text=text)
+        if len(value.dims) == 1 and value.dtype.kind in "biuf":
+            (dimension,) = value.dims
+            along = value[dimension]
+            over = (
+                str(dimension),
+                tuple(float(x) for x in along.values),
+                str(along.attrs.get("units", "1")),
+            )
+            return Amount([float(x) for x in value.values], unit, text, over)
+        raise ModelError(f"measure {where}: found {len(value.dims)} dimensions, expected one")
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, np.ndarray | list | tuple):
+        array = np.asarray(value)
+        if array.ndim == 1 and array.dtype.kind in "biuf":
+            over = (f"{where}_entry", tuple(float(i) for i in range(len(array))), "1")
+            return Amount([float(x) for x in array], over=over)
+    if isinstance(value, bool | int | float):
+        return Amount(float(value))
+    if isinstance(value, str):
+        return Amount(value)
+    if value is None:
+        return Amount(float("nan"), "")
+    raise ModelError(
+        f"measure {where}: found {described(value)}, expected a number, a text, a mapping of names "
+        "to such, or a labelled array"
+    )

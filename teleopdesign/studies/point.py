@@ -1,0 +1,91 @@
+"""A point of a study as measures see it, and what a measure is: its value with unit and text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..by_value import ByValue
+from ..errors import ModelError
+from ..expectations import described
+from ..simulate import Simulation
+from .case import SimulatedCase
+
+
+@dataclass(frozen=True)
+class Amount:
+    """A measured value: number, text, or numbers over one dimension.
+
+    unit: SI; "": not known at this point, taken from another one
+    over: (dimension, its values, its unit) of an array (n,)
+    """
+
+    value: Any
+    unit: str = "1"
+    text: str = ""
+    over: tuple[str, tuple[float, ...], str] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """One point as measures see it.
+
+    content: what the model gave there: a `SimulatedCase`, or anything that its function returned
+    values: parameter -> value;  seed: of this point, the same wherever it is computed
+    simulated: gives the simulation, where it was computed with those of other points
+    """
+
+    content: Any
+    values: Mapping[str, Any]
+    seed: tuple[int, ...] = (0, 0)
+    simulated: Callable[[], Simulation] | None = None
+
+    @property
+    def case(self) -> SimulatedCase:
+        """The case; ModelError where the model gave something else."""
+        if not isinstance(self.content, SimulatedCase):
+            raise ModelError(f"study: found {described(self.content)}, expected a diagram")
+        return self.content
+
+    @cached_property
+    def simulation(self) -> Simulation:
+        """The simulation, computed once for all measures."""
+        if self.simulated is not None:
+            return self.simulated()
+        return self.content if isinstance(self.content, Simulation) else self.case.simulate()
+
+    @property
+    def result(self) -> Any:
+        """What a user's own measure is given."""
+        if not isinstance(self.content, SimulatedCase):
+            return self.content
+        return self.simulation if self.content.duration else self.content.diagram
+
+    def rng(self) -> np.random.Generator:
+        """Randomness of this point."""
+        return np.random.default_rng(self.seed)
+
+
+Function = Callable[..., Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Kind(ByValue):
+    """A measure that the package has: function(point, **options) -> Amount, or several by name.
+
+    options: name -> default; `...` where it must be given
+    signals: all that it needs of a simulation: signals, or options that name them
+    """
+
+    name: str
+    function: Function
+    options: Mapping[str, Any] = field(default_factory=dict)
+    signals: tuple[str, ...] = ()
+
+    @property
+    def text(self) -> str:
+        return (self.function.__doc__ or "").strip().split("\n")[0]

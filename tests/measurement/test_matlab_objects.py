@@ -1,0 +1,36 @@
+"""Timetables are objects that MATLAB alone can unpack: one line says what to type there."""
+
+import h5py
+import numpy as np
+import pytest
+
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.tables import open_log
+
+
+def version_73(path, **columns):
+    """A MAT file of version 7.3 with a timetable as MATLAB marks it, and plain variables."""
+    with h5py.File(path, "w", userblock_size=512) as file:
+        marked = file.create_dataset("T", data=np.arange(6, dtype=np.uint32))
+        marked.attrs["MATLAB_class"] = np.bytes_("timetable")
+        marked.attrs["MATLAB_object_decode"] = np.int32(3)
+        file.create_dataset("#subsystem#/MCOS", data=np.zeros(4))
+        for name, values in columns.items():
+            file.create_dataset(name, data=values)
+    head = b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM"
+    with path.open("r+b") as file:
+        file.write(head)
+
+
+def test_a_timetable_alone_is_refused_with_what_to_type(tmp_path):
+    version_73(tmp_path / "log.mat")
+    with pytest.raises(ExperimentError, match=r'^log.mat: "T" is a timetable.*writetimetable'):
+        open_log(tmp_path / "log.mat", "log.mat")
+
+
+def test_a_timetable_beside_columns_is_left_out_and_said(tmp_path):
+    version_73(tmp_path / "log.mat", q=np.linspace(0, 1, 50))
+    log = open_log(tmp_path / "log.mat", "log.mat")
+    assert log.names == ("q",)
+    (note,) = log.notes
+    assert note.startswith('"T" is a timetable') and note.endswith("it is left out")
