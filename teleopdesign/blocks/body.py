@@ -148,12 +148,16 @@ class Body:
     def lacks(self, effect: Effect) -> tuple[str, ...]:
         """Names of what an effect needs beside it and the body has not, sorted.
 
-        Of a role that one effect of a body can have, another one of that role will do.
+        Of a role that one effect of a body can have, another one of that role will do; so will an
+        effect that counts as the one needed, where the law holds no parameter of that one.
         """
         roles = {e.role for e in self.effects} & set(ONE_ONLY)
         known = {n: EFFECTS[n].role for n in effect.needs if n in EFFECTS}
+        counted = {n for e in self.effects for n in e.counts_as} - effect.parameters_of_others()
         return tuple(
-            n for n in sorted(effect.needs) if not self.has(n) and known.get(n) not in roles
+            n
+            for n in sorted(effect.needs)
+            if not (self.has(n) or n in counted or known.get(n) in roles)
         )
 
     @checked

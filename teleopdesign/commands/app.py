@@ -13,6 +13,12 @@ from ..errors import ExperimentError
 LOOPBACK = "127.0.0.1"
 
 
+EXAMPLES = """
+  teleopdesign app
+  teleopdesign app recordings --no-browser --port 8080
+"""
+
+
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(

@@ -7,16 +7,31 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..plain_data import replacing
-from ._diagnosis import add_experiment, diagnosis_of, experiment_of
-from ._options import check_output, say
+from ._diagnosis import add_search, diagnosed, experiment_of, print_diagnosis
+from ._folders import diagnose_all
+from ._options import add_effect_files, check_output, count_argument
+from ._report import write_page
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis
 
+EXAMPLES = """
+  teleopdesign diagnose rod
+  teleopdesign diagnose rod --json answer.json --report report.html
+  teleopdesign diagnose rod --quick --exclude cogging backlash
+  teleopdesign diagnose runs/* --output answers --workers 2
+"""
+
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    add_experiment(parser, answer=False)
+    parser.add_argument(
+        "folder",
+        type=Path,
+        nargs="+",
+        help="folder with experiment.toml and its records; several with --output",
+    )
+    parser.set_defaults(answer=None)
     parser.add_argument("--json", type=Path, metavar="F", help="write the answer there")
     parser.add_argument(
         "--predictions",
@@ -30,10 +45,30 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--report", type=Path, metavar="F", help="write a page with everything (.html)"
     )
+    add_search(parser)
+    parser.add_argument(
+        "--output",
+        type=Path,
+        metavar="DIR",
+        help="write an answer for each folder there, and table.csv; what is there already and has "
+        "not changed is not diagnosed again",
+    )
+    parser.add_argument(
+        "--workers",
+        type=count_argument,
+        metavar="N",
+        help="processes for several folders (default: one for each core)",
+    )
+    add_effect_files(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the ladder; write what was asked for."""
+    """Print the ladder; write what was asked for.
+
+    Of several folders: 0 where all were diagnosed, whatever the verdicts; 2 where one was not.
+    """
+    if len(options.folder) > 1 or options.output is not None:
+        return diagnose_all(options)
     for path, endings in (
         (options.json, (".json",)),
         (options.predictions, (".csv", ".csv.gz")),
@@ -44,11 +79,12 @@ def run(options: argparse.Namespace) -> int:
             check_output(path, endings)
     from ..diagnose.answer import write_answer, write_predictions
 
-    experiment = experiment_of(options.folder)
+    (folder,) = options.folder
+    experiment = experiment_of(folder)
     print(experiment)
     print()
-    diagnosis = diagnosis_of(experiment, options)
-    print(diagnosis)
+    diagnosis = diagnosed(experiment, options)
+    print_diagnosis(diagnosis)
     if options.json is not None:
         write_answer(diagnosis, options.json)
     if options.predictions is not None:
@@ -57,27 +93,10 @@ def run(options: argparse.Namespace) -> int:
         with replacing(options.figure) as part:
             diagnosis.plot().savefig(part)
     if options.report is not None:
-        _write_report(diagnosis, options.report)
-    for line in _next_commands(diagnosis, options.folder):
+        write_page(diagnosis, options.report)
+    for line in _next_commands(diagnosis, folder):
         print(line)
     return 0
-
-
-def _write_report(diagnosis: Diagnosis, path: Path) -> None:
-    """The page, with what was found about the recording, what is left, and what to measure next."""
-    from ..check import check_experiment
-    from ..next_experiment import propose
-    from ..report import write_report
-    from ..unexplained import where_it_fails
-
-    say("checking the recording")
-    soundness = check_experiment(diagnosis.experiment, diagnosis.before.model)
-    say("describing what is left")
-    left = where_it_fails(diagnosis.after, diagnosis.prepared, diagnosis.floor)
-    open_questions = diagnosis.verdict == "undecided" or bool(diagnosis.groups)
-    steps = propose(diagnosis, progress=say).findings() if open_questions else ()
-    say("")
-    write_report(diagnosis, path, soundness=soundness, unexplained=left, next_steps=steps)
 
 
 def _next_commands(diagnosis: Diagnosis, folder: Path) -> list[str]:

@@ -68,7 +68,7 @@ class LadderSearch:
             stated=self.stated,
             worth=worth,
             criteria=self.criteria,
-            progress=lambda text: self.progress(f"step {step}: {text}"),
+            progress=lambda line: self.progress(line.within(f"step {step}")),
         )
 
 
@@ -123,15 +123,17 @@ def search_for(
     *,
     progress: Callable[[str], None] | None = None,
     seed: int = 0,
+    plan: SearchPlan = PLAN,
 ) -> LadderSearch:
     """The search for what a model lacks (default: the model that the experiment describes)."""
     whole = prepare(experiment)
     return LadderSearch(
         experiment=experiment,
         whole=whole,
-        prepared=on_windows(whole),
+        prepared=on_windows(whole, plan),
         stated=model or Model.from_experiment(experiment),
         seed=seed,
+        plan=plan,
         progress=progress or (lambda _: None),
     )
 

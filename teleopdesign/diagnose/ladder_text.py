@@ -120,7 +120,12 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
         f"  ({diagnosis.floor.source})"
     )
+    if (near := diagnosis.near_reversals) is not None:
+        lines.append(f"check error {near}")
+    if diagnosis.learnable is not None:
+        lines.append(f"black box: {diagnosis.learnable}")
     lines += refused_lines(diagnosis)
+    lines += [f"left out: {words}" for words in diagnosis.left_out]
     lines.append("")
     lines.append(sentence(diagnosis))
     return "\n".join(lines)

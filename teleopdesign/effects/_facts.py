@@ -26,6 +26,8 @@ class RecordFacts:
     step: what one reading leaves open of the position
     stroke: mean time of motion between two reversals (s); inf: the motion never turns round
     force: largest size of the measured force, actuator and interaction together
+    speed: largest speed;  film: friction (N or N m) at that speed by those effects of the body that
+        follow from the velocity alone and dissipate, such as `viscous`
     body: its other numbers by their names, such as "inertia" and "coulomb.level"
     """
 
@@ -34,6 +36,8 @@ class RecordFacts:
     step: float
     stroke: float
     force: float
+    speed: float
+    film: float
     body: Mapping[str, float]
 
     def text(self, value: float, quantity: str) -> str:

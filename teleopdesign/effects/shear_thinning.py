@@ -32,6 +32,7 @@ EFFECT = Effect(
         ),
     },
     absent={"drag": 0.0},
+    counts_as=frozenset({"viscous"}),
     source="power law of a lubricant in gears and bearings; Waiboer, Aarts, Jonker, Multibody "
     "Dynamics (ECCOMAS, Madrid 2005)",
 )

@@ -69,9 +69,7 @@ def numeric(expression, blocks):
 
 
 # no search for a smaller example: with inverses of matrices in it, that takes minutes
-@settings(
-    max_examples=15, deadline=None, suppress_health_check=list(HealthCheck), phases=[Phase.generate]
-)
+@settings(max_examples=15, suppress_health_check=list(HealthCheck), phases=[Phase.generate])
 @given(diagrams())
 def test_transfers_solve_the_equations_of_the_wiring_for_matrices(diagram):
     """Against numpy: all equations of the wiring at once, 2 x 2 blocks, one column an input."""

@@ -9,7 +9,7 @@ from scipy.optimize import least_squares, lsq_linear
 from teleopdesign.diagnose.least_squares import minimise
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(seed=st.integers(0, 2**31))
 def test_a_linear_problem_with_bounds_is_solved_exactly(seed):
     rng = np.random.default_rng(seed)

@@ -23,6 +23,8 @@ FACTS = RecordFacts(
     step=1e-4,
     stroke=0.5,
     force=3.0,
+    speed=2.0,
+    film=0.4,
     body={"inertia": 0.1, "coulomb.level": 0.5, "viscous.damping": 0.2},
 )
 #: effect -> (parameters that deserve its name, those that do not, what these stand for)

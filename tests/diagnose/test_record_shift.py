@@ -61,9 +61,28 @@ def adequate(tmp_path_factory):
     return td.load_experiment(write_own(tmp_path_factory.mktemp("own") / "null", None))
 
 
-@pytest.mark.parametrize("rows", [-1.0, -0.3, 0.0, 0.3, 1.0])
-def test_a_shift_of_up_to_a_row_is_found_and_costs_nothing(adequate, rows):
-    plain, late = fitted(adequate), fitted(shifted(adequate, rows))
+@pytest.fixture(scope="module")
+def plain(adequate):
+    """Its model, estimated."""
+    return fitted(adequate)
+
+
+@pytest.fixture(scope="module")
+def a_row_late(adequate):
+    """Its model, estimated where the logger was a row late."""
+    return fitted(shifted(adequate, 1.0))
+
+
+def test_a_shift_of_a_row_is_found_and_costs_nothing(adequate, plain, a_row_late):
+    check_shift_is_found(adequate, plain, a_row_late, 1.0)
+
+
+@pytest.mark.parametrize("rows", [-1.0, -0.3, 0.0, 0.3])
+def test_a_shift_of_less_than_a_row_or_the_other_way_is_found(adequate, plain, rows):
+    check_shift_is_found(adequate, plain, fitted(shifted(adequate, rows)), rows)
+
+
+def check_shift_is_found(adequate, plain, late, rows):
     found, error = rows_late(late, adequate)
     before, _ = rows_late(plain, adequate)
     # the simulated actuator holds its command without any delay, so the clock is right
@@ -74,11 +93,10 @@ def test_a_shift_of_up_to_a_row_is_found_and_costs_nothing(adequate, rows):
     assert late.check_error == pytest.approx(plain.check_error, rel=0.02)
 
 
-def test_estimates_do_not_depend_on_the_clock(adequate):
-    plain, late = fitted(adequate).model, fitted(shifted(adequate, 1.0)).model
-    for name, value in plain.parameters.items():
+def test_estimates_do_not_depend_on_the_clock(plain, a_row_late):
+    for name, value in plain.model.parameters.items():
         if not value.fixed:
-            assert late.parameters[name].value == pytest.approx(
+            assert a_row_late.model.parameters[name].value == pytest.approx(
                 value.value, abs=max(value.stderr, 1e-3 * abs(value.value))
             )
 
@@ -163,8 +181,8 @@ def test_what_a_controller_makes_of_a_shift_is_left_open(adequate):
     )
 
 
-def test_a_model_with_a_shift_is_written_and_read(adequate):
-    model = fitted(adequate).model
+def test_a_model_with_a_shift_is_written_and_read(plain):
+    model = plain.model
     data = json.loads(json.dumps(model_data(model)))
     back = model_from(data, EFFECTS, file="answer.json", key="models")
     for place, late in model.record_shift.items():

@@ -80,7 +80,7 @@ def test_the_motion_keeps_within_the_limits_that_the_records_have_shown(one_spee
     acceleration=st.floats(0.1, 50.0),
     jerk=st.floats(1.0, 5e3),
 )
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_a_rounded_line_never_exceeds_its_limits(time, speed, acceleration, jerk):
     limits, reach, step = Limits(-3.0, 3.0, 1.0, acceleration, jerk, 1.0), speed * time, 2e-3
     assume(20 * step < window_length(2 * speed, limits) < 4.0)
@@ -176,6 +176,7 @@ def test_the_predicted_separation_is_found_on_an_independent_simulator(one_speed
     assert after.separation(truth=other, other=truth) == 0.0
 
 
+@pytest.mark.slow
 def test_two_laws_that_need_the_same_force_are_said_to_be_told_by_nothing(tmp_path):
     _, experiment = POOR["one place"].experiment(tmp_path / "bias", 1)
     proposal = propose(diagnosed(experiment, FEW))

@@ -74,7 +74,7 @@ def test_the_impedances_of_a_teleoperator_are_those_of_its_symbolic_two_port():
             assert abs(difference(2.0 + 7.0j)) < 1e-9
 
 
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=4)
 @given(
     stiffness=st.integers(1, 2000),
     damping=st.integers(0, 20),

@@ -207,7 +207,7 @@ def test_a_hostile_text_is_shown_and_adds_no_element(text, page_with, harmless):
 TEXTS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0\r"), min_size=1)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(text=TEXTS)
 def test_no_text_changes_the_elements_of_the_page(text, page_with, harmless):
     read = page_with(text)
