@@ -35,6 +35,8 @@ def diagnose_all(options: argparse.Namespace) -> int:
                 f"--{name}: is of one folder, found it beside --output: every answer goes there, "
                 "and `teleopdesign report ANSWER` makes its page"
             )
+    if options.simulate:
+        raise ExperimentError("--simulate: is of one folder, found it beside --output")
     for folder in options.folder:
         if not folder.is_dir():
             raise ExperimentError(f"{folder}: no such folder")

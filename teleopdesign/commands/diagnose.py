@@ -6,14 +6,15 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..errors import ModelError
 from ..plain_data import replacing
 from ._diagnosis import add_search, diagnosed, experiment_of, print_diagnosis
 from ._folders import diagnose_all
-from ._options import add_effect_files, check_output, count_argument
+from ._options import add_effect_files, check_output, count_argument, say
 from ._report import write_page
 
 if TYPE_CHECKING:
-    from ..diagnose import Diagnosis
+    from ..diagnose import Diagnosis, SimulationComparison
 
 EXAMPLES = """
   teleopdesign diagnose rod
@@ -43,6 +44,18 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
     )
     parser.add_argument(
+        "--simulate",
+        action="store_true",
+        help="also drive the final model by the recorded command alone",
+    )
+    parser.add_argument(
+        "--loop",
+        type=float,
+        nargs=2,
+        metavar=("K", "B"),
+        help="with --simulate: stiffness and damping (SI) of the loop that held the device",
+    )
+    parser.add_argument(
         "--report", type=Path, metavar="F", help="write a page with everything (.html)"
     )
     add_search(parser)
@@ -67,6 +80,8 @@ def run(options: argparse.Namespace) -> int:
 
     Of several folders: 0 where all were diagnosed, whatever the verdicts; 2 where one was not.
     """
+    if options.loop is not None and not options.simulate:
+        raise ModelError("--loop: found without --simulate, which it belongs to")
     if len(options.folder) > 1 or options.output is not None:
         return diagnose_all(options)
     for path, endings in (
@@ -85,8 +100,9 @@ def run(options: argparse.Namespace) -> int:
     print()
     diagnosis = diagnosed(experiment, options)
     print_diagnosis(diagnosis)
+    simulation = _simulation(diagnosis, options)
     if options.json is not None:
-        write_answer(diagnosis, options.json)
+        write_answer(diagnosis, options.json, simulation=simulation)
     if options.predictions is not None:
         write_predictions(diagnosis, options.predictions)
     if options.figure is not None:
@@ -97,6 +113,21 @@ def run(options: argparse.Namespace) -> int:
     for line in _next_commands(diagnosis, folder):
         print(line)
     return 0
+
+
+def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> SimulationComparison | None:
+    """The final model driven by the recorded command, printed; None: it was not asked for."""
+    if not options.simulate:
+        return None
+    from ..diagnose import RecordedLoop
+    from ..diagnose.by_simulation import compare_by_simulation
+
+    loop = None if options.loop is None else RecordedLoop(*options.loop)
+    say("simulating the final model")
+    comparison = compare_by_simulation(diagnosis.model, diagnosis.prepared, loop=loop)
+    say("")
+    print(f"\n{comparison}")
+    return comparison
 
 
 def _next_commands(diagnosis: Diagnosis, folder: Path) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..arguments import check_arguments
 from ..measurement.experiment import Experiment
 from ..model import Model
+from .by_simulation import HorizonError, RecordedLoop, SimulationComparison
 from .comparison import Comparison, compare
 from .corrected_fit import corrected_fit
 from .diagnosis import Diagnosis
@@ -21,9 +22,12 @@ __all__ = [
     "Comparison",
     "Diagnosis",
     "Fit",
+    "HorizonError",
     "Ranked",
     "Ranking",
+    "RecordedLoop",
     "Rung",
+    "SimulationComparison",
     "compare",
     "find_missing",
     "fit",

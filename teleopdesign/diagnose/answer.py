@@ -19,6 +19,7 @@ from ..plain_data import harmless_cell, plain, replacing, write_json
 from ..realise.along_motion import residual_along
 from .answers.bodies import model_data
 from .answers.fingerprint import experiment_data
+from .by_simulation import SimulationComparison, simulation_data
 from .diagnosis import Diagnosis
 from .fit import Fit
 from .ladder_text import offset_rows
@@ -183,12 +184,19 @@ def _row(diagnosis: Diagnosis, one: CandidateEvidence) -> dict[str, Any]:
     }
 
 
-def write_answer(diagnosis: Diagnosis, path: str | Path) -> None:
-    """Write the answer as JSON, with where its experiment is, as seen from the answer."""
+def write_answer(
+    diagnosis: Diagnosis, path: str | Path, *, simulation: SimulationComparison | None = None
+) -> None:
+    """Write the answer as JSON, with where its experiment is, as seen from the answer.
+
+    simulation: a comparison by simulation, where one was made
+    """
     content, folder = answer(diagnosis), diagnosis.experiment.folder
     if folder.is_dir():  # an experiment of arrays has none
         place = os.path.relpath(folder.resolve(), Path(path).resolve().parent)
         content["experiment"] = content["experiment"] | {"folder": Path(place).as_posix()}
+    if simulation is not None:
+        content["simulation"] = simulation_data(simulation)
     write_json(path, content)
 
 
