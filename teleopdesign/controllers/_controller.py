@@ -72,6 +72,7 @@ class ControlLaw:
     sampled(values, period): the stage that takes the place of this one in a computer of that
     period (s); None: this one, its states stepped as they say
     system: a python-control system in place of a law: known as code only, it has no equation
+    response: a sympy function of s in place of a law, known on the axis at measured frequencies
 
     What the law can do, each by the name of the parameter that says how much; "": it cannot.
     bound: its force is never more than that, whatever the motion
@@ -90,6 +91,7 @@ class ControlLaw:
     shift: Callable[[Mapping[str, float], sp.Symbol], sp.Expr] | None = None
     sampled: Callable[[Mapping[str, float], float], Stage] | None = None
     system: Any = None
+    response: Any = None
     bound: str = ""
     bristle_stiffness: str = ""
     smoothing: str = ""
@@ -118,6 +120,11 @@ class ControlLaw:
         return self
 
     def __reduce__(self) -> tuple[Any, ...]:
+        if self.response is not None:
+            raise ModelError(
+                f"{self.name}: a measured frequency response has no form in a file and is not "
+                "sent to another process"
+            )
         if self.system is not None:
             raise ModelError(
                 f"{self.name}: a nonlinear system of python-control is code, which cannot be "
@@ -255,6 +262,12 @@ class Controller:
         steps: dict[sp.Symbol, sp.Expr] = {}
         for stage in self.stages:
             law = stage.law
+            if law.response is not None:
+                raise ModelError(
+                    f"{prefix}: {law.name} is a measured frequency response, which tells nothing "
+                    "of the steps in time: it takes part in frequency responses alone; fit a "
+                    "transfer function to it"
+                )
             if law.system is not None:
                 raise ModelError(
                     f"{prefix}: {law.name} is a nonlinear python-control system, known as code "
@@ -284,18 +297,19 @@ class Controller:
     ) -> sp.Expr | None:
         """Transfer function at constant speed; None where a law declares no linear form.
 
-        held: also of laws in discrete time, as H(e^(s T)) (1 - e^(-s T))/(s T): from the samples to
-            the mean of the held output, copies at other multiples of the sampling rate left out
+        held: also of what was measured, and of laws in discrete time, as
+            H(e^(s T)) (1 - e^(-s T))/(s T): from the samples to the mean of the held output, copies
+            at other multiples of the sampling rate left out
         """
-        if not all(stage.law.linear or (held and _has_shift(stage)) for stage in self.stages):
+        if not all(stage.law.linear or (held and _has_numbers(stage)) for stage in self.stages):
             return None
-        if all(stage.law.transfer or stage.law.shift for stage in self.stages):
+        if all(_is_by_numbers(stage) for stage in self.stages):
             return sp.Mul(*(_by_numbers(stage, s) for stage in self.stages))
         drive = sp.Symbol("drive")
         moved = {"velocity": s * drive, "speed": speed, "travel_rate": s * drive}
         value: sp.Expr = drive
         for stage in self.stages:
-            if stage.law.transfer or stage.law.shift:
+            if _is_by_numbers(stage):
                 value *= _by_numbers(stage, s)
                 continue
             signals = {**moved, "input": value, "period": sp.S(0)}
@@ -322,15 +336,24 @@ class Controller:
         return html_table("Controller", ("parameter", "value (SI)", "meaning"), rows)
 
 
-def _has_shift(stage: Stage) -> bool:
-    """Whether it has a transfer function in z, at a period of its own."""
+def _has_numbers(stage: Stage) -> bool:
+    """Whether it was measured, or has a transfer function in z at a period of its own."""
+    if stage.law.response is not None:
+        return True
     return stage.law.shift is not None and stage.values["period"] > 0
+
+
+def _is_by_numbers(stage: Stage) -> bool:
+    law = stage.law
+    return any(x is not None for x in (law.transfer, law.shift, law.response))
 
 
 def _by_numbers(stage: Stage, s: sp.Symbol) -> sp.Expr:
     """Transfer function of a law that states it, with its values in place."""
     if stage.law.transfer is not None:
         return stage.law.transfer(stage.values, s)
+    if stage.law.response is not None:
+        return as_written(stage.values["scale"]) * stage.law.response(s)
     assert stage.law.shift is not None
     period, z = as_written(stage.values["period"]), sp.Symbol("z")
     late = sp.exp(-s * period)

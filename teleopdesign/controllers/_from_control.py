@@ -10,6 +10,7 @@ from ..errors import ModelError
 from ..names import check_name
 from . import _state_space
 from ._controller import Controller
+from ._measured import measured
 from ._opaque import opaque
 
 if TYPE_CHECKING:
@@ -26,8 +27,10 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
     name: in the names of parameters: "H.state_space.numerator_0" of a transfer function, the
         coefficient of s^0, "H.state_space.a_0_0" of a state space
     Its numbers are kept as they came, so that poles and zeros that cancel on paper do cancel.
-    A nonlinear system (`control.nlsys`) is Python code: it takes part in `to_iosystem` alone.
-    raises ModelError: several inputs or outputs, improper, measured frequency response, no system
+    A nonlinear system (`control.nlsys`) is Python code: it takes part in `to_iosystem` alone. A
+    measured frequency response (`control.frd`) takes part in `bode`, `loop_gain` and
+    `matrix_response` alone, within its frequencies, on the line between two of them.
+    raises ModelError: several inputs or outputs, improper, no system
     """
     import control
 
@@ -42,10 +45,7 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
             f"{system.noutputs}: a controller acts on one axis"
         )
     if isinstance(system, control.FrequencyResponseData):
-        raise ModelError(
-            "from_control: a frequency response tells nothing of the steps in time: fit a transfer "
-            "function to it"
-        )
+        return measured(name, system)
     if not isinstance(system, control.StateSpace | control.TransferFunction):
         if system.isdtime(strict=True):
             raise ModelError("from_control: a nonlinear system is taken in continuous time only")

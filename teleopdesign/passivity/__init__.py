@@ -20,6 +20,7 @@ from .linear.hand_port import hand_port
 from .linear.impedance import Impedance, impedance
 from .linear.kyp import Kyp, kyp, storage_function
 from .linear.positive_real import Excess, damping_excess, mobility_excess, positive_real
+from .margin_map import MarginMap, margin_map
 from .observer import (
     PassivityControlled,
     PortEnergy,
@@ -65,7 +66,6 @@ from .theorems.sampled_compensation import Trembling, sampled_compensation
 from .theorems.sampled_data import required_damping, sampled_coupling, sampled_passivity
 from .theorems.velocity_compensation import SteadyStrokes, velocity_compensation
 from .two_port.claims import absolutely_stable, passive
-from .two_port.margin_map import MarginMap, margin_map
 from .two_port.two_port import (
     FrequencyMargins,
     TwoPort,

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
 from ..blocks import Body
 from ..controllers import Controller, as_written, in_exact_numbers, parameter_symbol
@@ -106,6 +107,8 @@ def as_transfer_function(expression: sp.Expr, *, delay_order: int = 4) -> contro
         above, below = ([as_written(c) for c in side] for side in control.pade(tau, delay_order))
         return sp.Poly(above, S).as_expr() / sp.Poly(below, S).as_expr()
 
+    if expression.atoms(AppliedUndef):
+        raise ModelError("a measured frequency response is no rational function: fit one to it")
     exact = in_exact_numbers(expression).replace(sp.exp, lambda power: rational(power))
     above, below = (sp.Poly(p, S) for p in sp.fraction(sp.cancel(sp.together(exact))))
     lead = below.LC()

@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
-from ...arguments import checked
-from ...by_value import ByValue
-from ...derive import two_port_functions
-from ...diagrams import Diagram
-from ...errors import ModelError
-from ...realise.lti import LinearBlocks, S, linear_blocks, numerical
-from ...realise.tips import linear_tips
-from .two_port import passive_margin, stable_margin
+from ..arguments import checked
+from ..by_value import ByValue
+from ..derive import two_port_functions
+from ..diagrams import Diagram
+from ..errors import ModelError
+from ..realise.lti import LinearBlocks, S, linear_blocks, numerical
+from ..realise.tips import linear_tips
+from .two_port.two_port import passive_margin, stable_margin
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -46,7 +46,7 @@ class MarginMap(ByValue):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Llewellyn's margin over both values, and the line where it is zero."""
-        from ...plot.margin_map import plot_margin_map
+        from ..plot.margin_map import plot_margin_map
 
         return plot_margin_map(self)
 

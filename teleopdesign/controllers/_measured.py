@@ -1,0 +1,63 @@
+"""A measured frequency response as a controller: values at frequencies, and no known law."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import sympy as sp
+from sympy.utilities.lambdify import implemented_function
+
+from ..effects import Parameter
+from ..errors import ModelError
+from ._controller import ControlLaw, Controller, Stage
+
+if TYPE_CHECKING:
+    import control
+
+#: relative; a point of the axis may be off it by the rounding of its computation
+_ROUNDING = 1e-9
+
+
+def measured(name: str, system: control.FrequencyResponseData) -> Controller:
+    """The response as a controller that frequency responses take, and nothing else."""
+    w = np.asarray(system.frequency, dtype=float)
+    values = np.asarray(system.frdata, dtype=complex).reshape(-1)
+    order = np.argsort(w)
+    w, values = w[order], values[order]
+    if len(w) < 2 or w[0] <= 0 or not np.isfinite(values).all():
+        raise ModelError(
+            f"{name}: a frequency response needs two or more frequencies > 0 and finite values"
+        )
+
+    def at(s: Any) -> np.ndarray:
+        """On the line between its neighbours over the logarithm of frequency, part by part."""
+        s = np.asarray(s, dtype=complex)
+        asked_at = np.abs(s.imag)
+        ends = asked_at.min(initial=np.inf), asked_at.max(initial=0.0)
+        off_axis = np.abs(s.real) > _ROUNDING * np.abs(s)
+        low, high = w[0] * (1 - _ROUNDING), w[-1] * (1 + _ROUNDING)
+        if s.size and (off_axis.any() or ends[0] < low or ends[1] > high):
+            raise ModelError(
+                f"{name}: measured from {w[0]:.6g} to {w[-1]:.6g} rad/s on the axis, needed from "
+                f"{ends[0]:.6g} to {ends[1]:.6g} rad/s{' and off it' if off_axis.any() else ''}"
+            )
+        x = np.log(asked_at)
+        parts = (np.interp(x, np.log(w), part) for part in (values.real, values.imag))
+        real, imaginary = parts
+        return np.asarray(real + 1j * np.sign(s.imag) * imaginary)
+
+    mark = hashlib.sha256(w.tobytes() + values.tobytes()).hexdigest()[:16]
+    law = ControlLaw(
+        law=_unknown,
+        parameters={"scale": Parameter("dimensionless", "times what was measured", lower=-np.inf)},
+        response=implemented_function(sp.Function(f"measured_{mark}"), at),
+        source="python-control",
+    )
+    text = f"A measured frequency response at {len(w)} frequencies."
+    return Controller((Stage(law.named(name, text), {"scale": 1.0}),))
+
+
+def _unknown(now: Any, p: Any) -> Any:
+    raise NotImplementedError

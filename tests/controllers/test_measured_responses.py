@@ -1,0 +1,68 @@
+"""A measured frequency response is a block where a response is enough, and nowhere else."""
+
+import pickle
+
+import control
+import numpy as np
+import pytest
+from devices import body
+
+from teleopdesign.controllers import controller, from_control
+from teleopdesign.diagrams import haptic_interface
+from teleopdesign.errors import ModelError
+from teleopdesign.frequency import bode, delay_margin, loop_gain, matrix_response
+from teleopdesign.passivity import diagram_claims
+from teleopdesign.realise.iosystem import to_iosystem
+from teleopdesign.realise.lti import linear_blocks
+from teleopdesign.simulate import simulate
+
+W = np.geomspace(1.0, 1000.0, 61)
+FILTER = control.tf([30.0], [1.0, 30.0])
+MEASURED = from_control(control.frd(FILTER, W), name="drive")
+F = W / (2 * np.pi)
+
+
+def interface(law):
+    return haptic_interface(body(0.15), hand=body(0.5, viscous__damping=4.0), force_feedback=law)
+
+
+def test_responses_are_those_of_the_system_that_was_measured():
+    """At its own frequencies, where nothing lies between; 1e-12: rounding."""
+    known = interface(from_control(FILTER))
+    expected = bode(known, frequency=F).values()
+    found = interface(MEASURED)
+    np.testing.assert_allclose(bode(found, frequency=F).values(), expected, rtol=1e-12)
+    matrix = matrix_response(found, ["R_M"], ["R_D"], F).data.values.ravel()
+    np.testing.assert_allclose(matrix, expected, rtol=1e-10)
+    np.testing.assert_allclose(loop_gain(found)(1j * W), loop_gain(known)(1j * W), rtol=1e-12)
+
+
+def test_in_series_it_is_a_factor_and_between_two_frequencies_a_line():
+    """1 %: the filter bends by less between 20 frequencies a decade."""
+    both = MEASURED.then(controller("gain", {"gain": 2.0}))
+    between = 1j * np.sqrt(W[1:] * W[:-1])
+    found, known = (loop_gain(interface(law))(between) for law in (both, from_control(FILTER)))
+    np.testing.assert_allclose(found / known, 2.0, rtol=0.01)
+
+
+def test_it_is_left_out_by_name_of_what_is_exact():
+    linear = linear_blocks(interface(MEASURED))
+    assert linear.left_out == ("H",)
+    claims = diagram_claims(interface(MEASURED), rng=np.random.default_rng(1))
+    assert "H" in claims.nonlinear
+    assert all(c.claim.status != "proved" or "friction" in c.topic for c in claims.claims)
+
+
+def test_what_it_cannot_be_is_said_in_one_line():
+    found = interface(MEASURED)
+    for make, words in (
+        (lambda: simulate(found, duration=0.01), "takes part in frequency responses alone"),
+        (lambda: to_iosystem(found), "takes part in frequency responses alone"),
+        (lambda: bode(found, frequency=np.array([500.0])), "measured from 1 to 1000 rad/s"),
+        (lambda: loop_gain(found)(1.0 + 5.0j), "and off it"),
+        (lambda: delay_margin(loop_gain(found)), "is no rational function"),
+        (lambda: pickle.dumps(MEASURED), "not sent to another process"),
+    ):
+        with pytest.raises(ModelError) as caught:
+            make()
+        assert words in str(caught.value) and "\n" not in str(caught.value)
