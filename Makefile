@@ -39,7 +39,7 @@ demo: $(VENV)/installed-core  ## diagnose a recording that comes with the packag
 	@echo "== Demo: find the physical effect that a model lacks"
 	@$(BIN)/teleopdesign demo
 
-test: $(VENV)/installed-test  ## plain tests, some two minutes (PYTEST_ARGS adds or overrides)
+test: $(VENV)/installed-test  ## plain tests, some three minutes (PYTEST_ARGS adds or overrides)
 	@echo "== Tests without those marked slow"
 	@$(BIN)/pytest -n $(JOBS) $(PYTEST_ARGS)
 

@@ -1,8 +1,8 @@
 """What all tests share: how examples are drawn, one diagnosis of the shipped rod, two test devices.
 
-Under CI the property-based tests draw the same examples each time; elsewhere new ones. None has a
-deadline: on a loaded machine it would measure the load. The truth simulator of tests/hidden can be
-imported everywhere.
+Under CI the property-based tests draw the same examples each time; elsewhere new ones: fifty where
+a test says no other number. None has a deadline: on a loaded machine it would measure the load.
+The truth simulator of tests/hidden can be imported everywhere.
 """
 
 import os
@@ -18,12 +18,11 @@ from teleopdesign.diagrams import haptic_interface
 
 sys.path.insert(0, str(Path(__file__).parent / "hidden"))
 
-settings.register_profile("ci", derandomize=True, deadline=None)
-settings.register_profile("here", deadline=None)
+settings.register_profile("ci", derandomize=True, deadline=None, max_examples=50)
+settings.register_profile("here", deadline=None, max_examples=50)
 settings.load_profile("ci" if os.environ.get("CI") else "here")
 
-
-#: folder -> the folders of this name share fixtures that cost seconds
+#: folder of tests -> what it shares with other folders and costs seconds: they stay together
 TOGETHER = {
     "diagnose": "a diagnosis of a simulated case",
     "next_experiment": "a diagnosis of a simulated case",

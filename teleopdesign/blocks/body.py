@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import sympy as sp
 
@@ -235,8 +236,7 @@ class Body:
 
     def symbols(self) -> dict[str, sp.Symbol]:
         """Parameter name -> sympy symbol of the equation: "coulomb.level" -> coulomb_level."""
-        of_effects = {f"{e.name}.{n}": s for e in self.effects for n, s in e.symbols().items()}
-        return {"inertia": sp.Symbol("inertia", real=True), **of_effects}
+        return dict(_symbols(self.effects))
 
     def numbers(self) -> dict[sp.Symbol, float]:
         """Parameter symbol -> value, to substitute in the equation."""
@@ -247,16 +247,7 @@ class Body:
 
         A factor scales the levels that it needs ("coulomb"), all of them where it needs none.
         """
-        factors = ordered(self.effects, "friction_factor")
-        level = sp.S(0)
-        for effect in ordered(self.effects, "friction_level"):
-            of_this_level = [
-                f.expression() for f in factors if not f.needs or effect.name in f.needs
-            ]
-            level += effect.expression() * sp.Mul(*of_this_level)
-        for effect in ordered(self.effects, "friction_speed"):
-            level = level.subs(SIGNALS["velocity"], effect.expression())
-        return level
+        return _level(self.effects)
 
     def tip_level(self) -> sp.Expr:
         """Level of the dry friction that holds the tip of a structure."""
@@ -373,3 +364,24 @@ def _effects(effects: object) -> tuple[Effect, ...]:
 
 
 __all__ = ["INERTIA", "Body", "BodyEquation", "Value"]
+
+
+# laws on symbols are asked for at every evaluation of a residual: they are built once
+
+
+@lru_cache(maxsize=256)
+def _symbols(effects: tuple[Effect, ...]) -> dict[str, sp.Symbol]:
+    of_effects = {f"{e.name}.{n}": s for e in effects for n, s in e.symbols().items()}
+    return {"inertia": sp.Symbol("inertia", real=True), **of_effects}
+
+
+@lru_cache(maxsize=256)
+def _level(effects: tuple[Effect, ...]) -> sp.Expr:
+    factors = ordered(effects, "friction_factor")
+    level = sp.S(0)
+    for effect in ordered(effects, "friction_level"):
+        of_this_level = [f.expression() for f in factors if not f.needs or effect.name in f.needs]
+        level += effect.expression() * sp.Mul(*of_this_level)
+    for effect in ordered(effects, "friction_speed"):
+        level = level.subs(SIGNALS["velocity"], effect.expression())
+    return level

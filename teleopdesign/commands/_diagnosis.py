@@ -60,6 +60,11 @@ def add_search(parser: argparse.ArgumentParser) -> None:
         help="a first look: two effects at most, no pairs, no exchanges, windows of long records; "
         "what was left out is printed",
     )
+    add_tried(parser)
+
+
+def add_tried(parser: argparse.ArgumentParser) -> None:
+    """Which effects are tried."""
     for option, text in (
         ("--only", "the effects that are tried (all that the model could take)"),
         ("--exclude", "effects that are not tried"),
@@ -184,6 +189,22 @@ def print_diagnosis(diagnosis: Diagnosis) -> None:
         return next((s for begin, s in _STYLES.items() if line.startswith(begin)), "")
 
     print_styled(str(diagnosis), style)
+
+
+def model_of_source(options: argparse.Namespace) -> tuple[Model, Path]:
+    """The diagnosed model, and the answer or folder that it comes from.
+
+    Of an answer alone (.json) it needs no records; of a folder without one it is diagnosed now.
+    """
+    from ..diagnose.answers import load_answer
+
+    alone = _answer_in(options.folder)
+    if alone is not None and options.answer is None:
+        return load_answer(alone).model(known_of(options)), alone
+    experiment = experiment_and_answer(options)
+    if options.answer is not None:
+        return load_answer(options.answer).model(known_of(options), experiment), options.answer
+    return diagnosed(experiment, options).model, options.folder
 
 
 def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Reach | None]:

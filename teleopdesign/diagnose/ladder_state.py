@@ -11,6 +11,7 @@ from ..effects import depends_on_time
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .candidates import Candidate
+from .clock import with_paying_shift
 from .criteria import CRITERIA, Criteria
 from .decision import (
     Floors,
@@ -152,7 +153,9 @@ def look(
 
     before: the state that a move led to; None: the ladder begins
     """
-    here, prepared, criteria = rungs[-1].fit, search.prepared, search.criteria
+    prepared, criteria = search.prepared, search.criteria
+    here = with_paying_shift(rungs[-1].fit, prepared)
+    rungs = (*rungs[:-1], replace(rungs[-1], fit=here))
     drawn = noise_floor(here.model, prepared, search.generator())
     worth = worth_pursuing(here, drawn, criteria=criteria)
     ranking = search.rank(here, step=len(rungs), worth=worth)

@@ -57,6 +57,7 @@ def record_facts(
     numbers: the body's own, by their names; default: those of the model
     """
     stretches = [s for s in prepared.stretches if s.motion.body == place]
+    motions = [s.motion for s in stretches]
     body = model.bodies[place]
     if numbers is None:
         numbers = {n: v.value for n, v in body.parameters.items()}
@@ -71,6 +72,8 @@ def record_facts(
         speed=speed,
         film=_film(body, speed, numbers),
         body=numbers,
+        places=np.concatenate([m.position[m.direction != 0] for m in motions]),
+        speeds=np.concatenate([m.velocity[m.direction != 0] for m in motions]),
     )
 
 

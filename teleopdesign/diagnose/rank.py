@@ -8,7 +8,7 @@ from itertools import count
 
 from ..errors import ModelError
 from ..model import Model
-from .candidates import Candidate, candidates
+from .candidates import Candidate, candidates, measured_at
 from .criteria import CRITERIA, Criteria
 from .decision import rank_key, refusal, superfluous_beside
 from .effort import EFFORTS
@@ -112,6 +112,7 @@ def rank_candidates(
         base.model,
         [s.motion for s in prepared.stretches],
         own_zero={s.motion.file for s in prepared.stretches if s.has_zero_offset},
+        measured=measured_at(prepared.experiment),
     )
     if among is not None:
         wanted = {c.key for c in among}

@@ -9,6 +9,8 @@ from scipy.integrate import solve_ivp
 
 #: relative to each state, and absolute over the state's own size: rounding takes the rest
 RELATIVE, ABSOLUTE = 1e-13, 1e-14
+#: m or m/s by which a switch may be on the other side of its zero: rounding of what it is made from
+BESIDE = 1e-12
 
 
 def integrate(
@@ -26,7 +28,7 @@ def integrate(
     rate(t, y, mode): smooth for one mode, the signs of the switches
     switches: functions of (t, y) at whose zeros the law changes;  mode: their signs at the start
     sizes: of the states, for the absolute tolerance
-    longest: step, s; two crossings within one would be missed
+    longest: step, s; where two crossings fall into one, all is done again with shorter ones
     """
     out = np.empty((len(times), len(start)))
     out[0], y, t, signs = start, np.asarray(start, dtype=float), float(times[0]), list(mode)
@@ -45,7 +47,16 @@ def integrate(
             max_step=longest,
         )
         count = len(solved.t)
-        out[at : at + count] = solved.y.T
+        if count:  # none where a mode ends before the next of the times
+            out[at : at + count] = solved.y.T
+            sides = [
+                n * g(t, y)
+                for n, g in zip(signs, switches, strict=True)
+                for t, y in zip(solved.t, solved.y.T, strict=True)
+            ]
+            if min(sides) < -BESIDE:
+                options = {"start": start, "mode": mode, "times": times, "sizes": sizes}
+                return integrate(rate, switches, **options, longest=longest / 8)
         at += count
         hits = [(found[0], i) for i, found in enumerate(solved.t_events) if len(found)]
         if not hits:

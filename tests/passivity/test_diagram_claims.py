@@ -87,6 +87,7 @@ def test_masses_on_springs_and_dampers_are_always_proved_passive(stiffness, damp
     assert [c.status for c in claims.values()] == ["proved", "proved"]
 
 
+@pytest.mark.slow
 def test_a_coupling_that_leads_gives_out_energy_which_a_wave_shows():
     lead = controller("lead", {"gain": 300.0, "zero": 10.0, "pole": 1.0})
     claims = settled(teleoperator(body(0.15), body(0.15), coupling=lead))

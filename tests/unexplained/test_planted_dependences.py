@@ -77,9 +77,8 @@ def test_a_planted_constant_has_its_sign_and_size(
         assert curve_of(here, found[0]).y[0] == pytest.approx(size, rel=0.1)
 
 
-@pytest.mark.parametrize(
-    "frequency", [pytest.param(f, marks=pytest.mark.slow) for f in (0.3, 17.0)] + [50.0]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("frequency", [0.3, 17.0, 50.0])
 def test_a_hum_is_found_at_its_frequency(rows, floor_squares, frequency):
     here = planted(
         rows, lambda a: a.push * 0.15 * np.sin(2 * np.pi * frequency * a.signals["time"] + 1.0)

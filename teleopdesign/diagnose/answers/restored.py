@@ -150,6 +150,8 @@ def steps_of(saved: SavedAnswer, known: Mapping[str, Effect]) -> _Steps:
     replaced = []
     for row in rows:
         instead = row.get("instead_of")
+        if instead is not None and row["added"] is None:
+            raise ExperimentError(f"{saved.file}: ladder: instead_of: found it beside added: null")
         place = None if instead is None else {"effect": instead, "at": row["added"]["at"]}
         gone = None if place is None else candidate(place, "ladder", ladder[0])
         replaced.append(None if gone is None else replaced_from(gone, ladder[0]))
