@@ -11,8 +11,17 @@ import numpy as np
 import sympy as sp
 
 from ..blocks.body import ONE_ONLY
-from ..effects import CONTACT_ROLES, SIGNALS, Effect, delayed, depends_on_position, period
+from ..effects import (
+    CONTACT_ROLES,
+    SIGNALS,
+    Effect,
+    delayed,
+    depends_on_position,
+    depends_on_time,
+    period,
+)
 from ..measurement.experiment import Experiment
+from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..model import Model
 
@@ -37,7 +46,8 @@ class Candidate:
 #: time are told apart. A sweep that comes back by a quarter of its travel leaves 0.06, by a third
 #: 0.13, a full return 1. Lower: a drift passes for a force of the place; higher: more is not tried
 TOLD_APART = 0.1
-#: places into which the travel is divided for that: each holds 1/50 of it, far less than returns
+#: places into which the travel, or the range of speeds, is divided for that: each holds 1/50 of it,
+#: far less than returns
 PLACES = 50
 
 
@@ -53,7 +63,7 @@ def candidates(
     motions: all that the records hold; where a body never comes to a place at another time, no
         effect of the place can be told from a drift: it is no candidate there; nor is one whose law
         uses a channel that they have not. What repeats along the way comes back to the same place
-        of its period
+        of its period. Nor is an effect that follows time where the speed does so too
     own_zero: files whose positions cannot be compared with those of others
     measured: bodies whose actuator's force was measured, not commanded: a limit, a lag or a delay
         has acted already, and is no candidate; its scale may still be wrong, or vary
@@ -74,7 +84,7 @@ def candidates(
                 continue
             if any(not effect.channels() <= set(m.further) for m in motions_here):
                 continue
-            if _is_seen_in_place(effect, motions_here, own_zero):
+            if _is_told(effect, motions_here, own_zero):
                 possible.append(Candidate(effect, place))
     return tuple(possible)
 
@@ -94,8 +104,10 @@ def _acts_before_what_is_measured(effect: Effect) -> bool:
     return bool(effect.states or law.has(delayed) or scale.has(SIGNALS["command"]))
 
 
-def _is_seen_in_place(effect: Effect, motions: Sequence[Motion], own_zero: Collection[str]) -> bool:
-    """Whether these motions could tell the effect from a drift, if it depends on the position."""
+def _is_told(effect: Effect, motions: Sequence[Motion], own_zero: Collection[str]) -> bool:
+    """Whether these motions could tell an effect of the place, or one of time, from another."""
+    if motions and depends_on_time(effect) and not tells_speed_from_time(motions):
+        return False
     if not motions or not depends_on_position(effect):
         return True
     repeats = period(effect)
@@ -124,13 +136,34 @@ def tells_place_from_time(
         if not way.any():
             continue
         here = np.mod(position, turn) if turn is not None else position
-        size = float(np.ptp(here)) or 1.0
-        bins = np.minimum(((here - here.min()) / size * PLACES).astype(int), PLACES - 1)
-        weight = np.bincount(bins, way, PLACES)
-        mean = np.bincount(bins, way * time, PLACES) / np.where(weight > 0.0, weight, 1.0)
-        among += float(way @ (time - mean[bins]) ** 2)
-        whole += float(way @ (time - (way @ time) / way.sum()) ** 2)
+        spread = _spread_of_time(here, time, way)
+        among, whole = among + spread[0], whole + spread[1]
     return among > TOLD_APART * whole or whole == 0.0  # 0: no motion is told, nor its direction
+
+
+def tells_speed_from_time(motions: Sequence[Motion]) -> bool:
+    """Whether a body has the same speeds at different times of its records, all taken together.
+
+    Where each record is one run that grows faster, a friction that changes with time is one that
+    follows the speed.
+    """
+    speed = np.concatenate([np.abs(m.velocity) for m in motions])
+    time = np.concatenate([m.time for m in motions])
+    moving = np.concatenate([m.sample_time * (m.direction != 0) for m in motions])
+    if not moving.any():
+        return True
+    among, whole = _spread_of_time(speed, time, moving)
+    return among > TOLD_APART * whole
+
+
+def _spread_of_time(values: Array, time: Array, weight: Array) -> tuple[float, float]:
+    """Weighted squares of time about its mean at equal values, and about its mean of all."""
+    size = float(np.ptp(values)) or 1.0
+    bins = np.minimum(((values - values.min()) / size * PLACES).astype(int), PLACES - 1)
+    there = np.bincount(bins, weight, PLACES)
+    mean = np.bincount(bins, weight * time, PLACES) / np.where(there > 0.0, there, 1.0)
+    among = float(weight @ (time - mean[bins]) ** 2)
+    return among, float(weight @ (time - (weight @ time) / weight.sum()) ** 2)
 
 
 def started(model: Model, scale: dict[str, float]) -> list[Model]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..effects import depends_on_time
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .candidates import Candidate
@@ -22,7 +23,7 @@ from .decision import (
 from .excerpt import on_windows
 from .fit import Fit
 from .noise_floor import NoiseFloor, noise_floor
-from .outside_tone import Tone, acts_by_the_clock, best_tone
+from .outside_tone import Tone, best_tone
 from .prepare import Prepared, prepare
 from .rank import rank_candidates
 from .ranking import Ranked, Ranking
@@ -166,7 +167,7 @@ def look(
         r
         for r in ranking.ranked
         if is_supported(here, r, floors.allowed, criteria=criteria)
-        and (tone.is_beaten_by(r.fit) or acts_by_the_clock(r.candidate.effect))
+        and (tone.is_beaten_by(r.fit) or depends_on_time(r.candidate.effect))
     )
     if before is None:
         return LadderState(rungs, floors, first, ranking, tone, supported)

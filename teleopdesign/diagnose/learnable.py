@@ -23,6 +23,7 @@ from ..measurement.motion import Motion
 from ..measurement.reversals import near_reversals, since_reversal
 from ..model import Model
 from ..quantity import unit_of
+from .candidates import tells_place_from_time
 from .effort import EFFORTS
 from .error import error_of
 from .fit import estimate
@@ -124,7 +125,8 @@ def learnable(model: Model, prepared: Prepared, *, seed: int = 0) -> Learnable |
     after: list[Array] = []
     alone: list[Array] = []
     for held, there in _turns(model, prepared, stretches):
-        inputs = [_inputs(motion) for _, motion in along_with_offsets(there, stretches)]
+        motions = [motion for _, motion in along_with_offsets(there, stretches)]
+        inputs = [_inputs(m, [o for o in motions if o.body == m.body]) for m in motions]
         left = [r for r, _ in residuals(there, stretches)]
         of_rest = _predicted(stretches, inputs, left, held, seed)
         of_force = _predicted(stretches, inputs, measured, held, seed)
@@ -238,14 +240,20 @@ def _trees(inputs: Array, target: Array, seed: int) -> Any:
     return trees.fit(inputs, target)
 
 
-def _inputs(motion: Motion) -> Array:
-    """What the trees are told of a motion (n, k); NaN before the first motion that can be told."""
+def _inputs(motion: Motion, motions: Sequence[Motion]) -> Array:
+    """What the trees are told of a motion (n, k); NaN before the first motion that can be told.
+
+    motions: all of that body. Where none comes to a place again, or none turns round, place or
+    time since a reversal would tell the clock, and with it the command that was played by it
+    """
     since = since_reversal(
         motion.direction, motion.position, sample_time=motion.sample_time, rest=REST
     )
-    columns: list[Array] = [motion.position, motion.velocity, motion.acceleration]
-    columns.append(motion.direction.astype(float))
-    columns += [np.where(since.known, x, np.nan) for x in (since.time, since.travel)]
+    columns: list[Array] = [motion.velocity, motion.acceleration, motion.direction.astype(float)]
+    if tells_place_from_time(motions):
+        columns.append(motion.position)
+    if any({-1, 1} <= set(m.direction.tolist()) for m in motions):
+        columns += [np.where(since.known, x, np.nan) for x in (since.time, since.travel)]
     return np.column_stack([*columns, *motion.further.values()])
 
 

@@ -18,7 +18,6 @@ import numpy as np
 from scipy import fft
 from scipy.optimize import minimize_scalar
 
-from ..effects import SIGNALS, Effect
 from ..measurement.filtering import Array
 from ..model import Model
 from .criteria import CRITERIA
@@ -27,11 +26,6 @@ from .fit import Fit, estimate
 from .prepare import Prepared, Stretch
 from .residual import residuals
 from .search_plan import PLAN
-
-
-def acts_by_the_clock(effect: Effect) -> bool:
-    """Whether an effect depends on time itself, so that it may describe an outside tone."""
-    return bool(effect.expression().has(SIGNALS["time"]))
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,7 @@ from ._effect import (
     parameter_symbol,
 )
 from ._facts import RecordFacts, repeats_within_travel
-from ._position import depends_on_position, period
+from ._position import depends_on_position, depends_on_time, period
 from ._structure import make_structure, rubbing, touching
 
 __all__ = [
@@ -59,6 +59,7 @@ __all__ = [
     "catalogue",
     "delayed",
     "depends_on_position",
+    "depends_on_time",
     "find_effect",
     "load_effect",
     "make_structure",

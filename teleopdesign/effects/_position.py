@@ -1,4 +1,4 @@
-"""Whether a law depends on where a body is, and whether it repeats along the way."""
+"""Whether a law depends on where a body is, or on time, and whether it repeats along the way."""
 
 from __future__ import annotations
 
@@ -22,6 +22,11 @@ _SAME = sp.Float("1e-20")
 def depends_on_position(effect: Effect) -> bool:
     """Whether the effect is another one elsewhere: its law, with all hidden positions moved too."""
     return not _is_same_at(effect, sp.Rational(41, 43))
+
+
+def depends_on_time(effect: Effect) -> bool:
+    """Whether an effect depends on time itself, and so may describe an outside tone."""
+    return bool(effect.expression().has(SIGNALS["time"]))
 
 
 @lru_cache(maxsize=256)

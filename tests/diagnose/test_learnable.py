@@ -15,6 +15,7 @@ from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.learnable import (
     Learnable,
+    _inputs,
     error_near_reversals,
     learnable,
     learnable_data,
@@ -65,6 +66,16 @@ def test_a_force_that_does_not_repeat_is_not_learned(diagnosis, prepared):
     stretches = tuple(map(noisy, prepared.stretches))
     learned = learnable(diagnosis.after.model, replace(prepared, stretches=stretches))
     assert learned.part < 0.1 * learned.left
+
+
+def test_a_run_that_never_comes_back_tells_the_trees_no_clock(prepared):
+    motion = prepared.stretches[0].motion
+    n = len(motion.time)
+    way = np.linspace(0.0, 1.0, n)
+    once = replace(motion, position=way, direction=np.ones(n, dtype=np.int8))
+    # velocity, acceleration and direction are left: place and time since a start tell the time
+    assert _inputs(once, [once]).shape == (n, 3)
+    assert _inputs(motion, [motion]).shape == (n, 6)
 
 
 def test_the_same_seed_gives_the_same_figure(diagnosis, prepared):

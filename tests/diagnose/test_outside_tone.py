@@ -12,11 +12,11 @@ from teleopdesign.diagnose.decision import is_a_tone
 from teleopdesign.diagnose.evidence import check_squares
 from teleopdesign.diagnose.fit import estimate, weighted
 from teleopdesign.diagnose.noise_floor import NoiseFloor
-from teleopdesign.diagnose.outside_tone import Tone, _tone_squares, acts_by_the_clock, best_tone
+from teleopdesign.diagnose.outside_tone import Tone, _tone_squares, best_tone
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.search import estimate_from_starts
-from teleopdesign.effects import EFFECTS
+from teleopdesign.effects import EFFECTS, depends_on_time
 
 FRICTION = 'coulomb = { level = { value = 1.0, unit = "N*m" } }'
 
@@ -145,9 +145,9 @@ def _off_the_residual(found, prepared):
 
 
 def test_an_effect_that_acts_by_the_clock_may_be_the_tone_itself():
-    assert acts_by_the_clock(EFFECTS["friction_drift"])
-    assert not acts_by_the_clock(EFFECTS["transmission_compliance"])
-    assert not acts_by_the_clock(EFFECTS["torque_ripple"])
+    assert depends_on_time(EFFECTS["friction_drift"])
+    assert not depends_on_time(EFFECTS["transmission_compliance"])
+    assert not depends_on_time(EFFECTS["torque_ripple"])
 
 
 def test_no_pair_is_sought_where_a_tone_leaves_only_noise(rod, monkeypatch):

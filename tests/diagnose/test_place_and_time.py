@@ -9,7 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign import Model, find_missing, load_experiment
-from teleopdesign.diagnose.candidates import candidates, tells_place_from_time
+from teleopdesign.diagnose.candidates import (
+    candidates,
+    tells_place_from_time,
+    tells_speed_from_time,
+)
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.effects import EFFECTS, depends_on_position, load_effect, period
 
@@ -185,3 +189,65 @@ def test_eight_turns_of_a_motor_show_its_cogging(tmp_path):
     assert [str(c) for c in found.missing] == ["cogging at device"]
     period_found = found.model.parameters["device.cogging.period"].value
     assert period_found == pytest.approx(TURN / 6, rel=0.01)
+
+
+# speed and time
+
+
+@dataclass
+class Speed:
+    """A motion of which only speed, time and direction are asked."""
+
+    velocity: np.ndarray
+    time: np.ndarray
+    file: str = "fit.csv"
+    body: str = "device"
+    sample_time: float = 0.01
+    further: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        self.position = np.cumsum(self.velocity) * self.sample_time
+        self.direction = np.sign(self.velocity).astype(np.int8)
+
+
+def speeds(velocity_of, duration=20.0):
+    time = np.arange(0.0, duration, 0.01)
+    return Speed(velocity_of(time), time)
+
+
+def spin_up(final):
+    return speeds(lambda t: final * (1.0 - np.exp(-t / 8.0)) + 1e-6)
+
+
+def test_runs_that_only_grow_faster_tell_no_speed_from_time():
+    assert not tells_speed_from_time([spin_up(200.0)])
+    # runs that end 10 % apart
+    assert not tells_speed_from_time([spin_up(200.0), spin_up(220.0)])
+
+
+@pytest.mark.parametrize(
+    "motions",
+    [
+        [speeds(lambda t: np.sin(2.0 * t))],
+        [speeds(lambda t: np.full(len(t), 3.0))],  # one speed for long: what changes is time
+        [speeds(lambda t: 200.0 * np.minimum(t, 20.0 - t))],  # up and down again
+        [spin_up(50.0), spin_up(200.0)],  # the same speed early and late
+        [speeds(lambda t: np.zeros(len(t)))],  # no motion: nothing is said
+    ],
+)
+def test_speeds_that_come_again_tell_speed_from_time(motions):
+    assert tells_speed_from_time(motions)
+
+
+@given(st.floats(0.1, 1e3), st.floats(-1e3, 1e3))
+def test_neither_unit_of_speed_nor_begin_of_time_matter(scale, begin):
+    for motion in (spin_up(2.0), speeds(lambda t: np.sin(t))):
+        moved = Speed(scale * motion.velocity, motion.time + begin)
+        assert tells_speed_from_time([moved]) == tells_speed_from_time([motion])
+
+
+def test_a_drift_is_no_candidate_where_each_run_only_grows_faster(experiment):
+    model, names = Model.from_experiment(experiment), {"friction_drift", "quadratic_drag"}
+    once = {c.effect.name for c in candidates(model, [spin_up(200.0)])}
+    both = {c.effect.name for c in candidates(model, [speeds(lambda t: np.sin(t))])}
+    assert names & once == {"quadratic_drag"} and names & both == names
