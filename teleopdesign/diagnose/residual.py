@@ -18,6 +18,7 @@ from ..realise.along_motion import residual_along
 from ..realise.traced import Probe
 from .prepare import Stretch
 from .record_offsets import along_offsets, offset_groups
+from .shared_links import clear
 
 
 def residuals(
@@ -37,10 +38,11 @@ def relative_residuals(
 
     A model whose actuator passes next to nothing leaves next to no residual force, nor does one
     whose friction takes up whatever acts; relative to what it lets act on each body, nothing is
-    gained. Equal to `residuals` where nothing stands between command and force.
+    gained. Equal to `residuals` where nothing stands between command and force. What the links of
+    an arm, which all its joints share, can make of a joint's is taken out (`shared_links.clear`).
     """
     parts = _with_acting(model, stretches, wrt)
-    scaled = [(r, d) for r, d, _, _ in parts]
+    scaled = clear(model.links, stretches, [(r, d) for r, d, _, _ in parts])
     for place, body in model.bodies.items():
         mine = [i for i, s in enumerate(stretches) if s.motion.body == place]
         if not mine or not _takes_from_what_acts(body):

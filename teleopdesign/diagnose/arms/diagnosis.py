@@ -1,0 +1,2 @@
+class ArmDiagnosis: pass
+class ArmRung: pass

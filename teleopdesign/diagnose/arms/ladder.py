@@ -1,0 +1,1 @@
+def find_missing_in_arm(): pass
