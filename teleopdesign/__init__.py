@@ -101,11 +101,13 @@ if TYPE_CHECKING:
     from .design import Assumptions, Design
     from .design import design as design_compensation
     from .diagnose import (
+        ArmDiagnosis,
         Comparison,
         Diagnosis,
         Ranking,
         compare,
         find_missing,
+        find_missing_in_arm,
         fit,
         rank,
     )
@@ -177,6 +179,7 @@ __all__ = [
     "experiment",
     "fetch",
     "find_missing",
+    "find_missing_in_arm",
     "fit",
     "from_control",
     "hand",
@@ -235,6 +238,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "compare": "diagnose",
         "rank": "diagnose",
         "find_missing": "diagnose",
+        "find_missing_in_arm": "diagnose",
         "describe": "unexplained",
         "propose_experiment": "next_experiment:propose",
         "Comparison": "diagnose",

@@ -6,12 +6,14 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..errors import ExperimentError
 from ..plain_data import replacing
-from ._diagnosis import add_experiment, diagnosis_of, experiment_of
+from ._diagnosis import add_experiment, diagnosis_of, experiment_of, stated_model
 from ._options import check_output, say
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis
+    from ..measurement import Experiment
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -47,6 +49,8 @@ def run(options: argparse.Namespace) -> int:
     experiment = experiment_of(options.folder)
     print(experiment)
     print()
+    if experiment.arm is not None:
+        return _run_arm(experiment, options)
     diagnosis = diagnosis_of(experiment, options)
     print(diagnosis)
     if options.json is not None:
@@ -60,6 +64,24 @@ def run(options: argparse.Namespace) -> int:
         _write_report(diagnosis, options.report)
     for line in _next_commands(diagnosis, options.folder):
         print(line)
+    return 0
+
+
+def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
+    """The same for an arm: no figure and no page yet."""
+    for path, option in ((options.figure, "--figure"), (options.report, "--report")):
+        if path is not None:
+            raise ExperimentError(f"{option}: not there for an arm: use --json or --predictions")
+    from ..diagnose.arms import find_missing_in_arm
+    from ..diagnose.arms.answer import write_arm_answer, write_arm_predictions
+
+    diagnosis = find_missing_in_arm(experiment, stated_model(experiment, options), progress=say)
+    say("")
+    print(diagnosis)
+    if options.json is not None:
+        write_arm_answer(diagnosis, options.json)
+    if options.predictions is not None:
+        write_arm_predictions(diagnosis, options.predictions)
     return 0
 
 

@@ -68,6 +68,11 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
     bandwidth: Hz; default: the experiment's, or chosen from the record
     raises ExperimentError: bandwidth too high for the sample rate, or no stretch long enough
     """
+    if experiment.arm is not None:
+        raise ExperimentError(
+            f"{experiment.folder.name}/experiment.toml: model.arm: found an arm, expected one body "
+            "or two: only `teleopdesign diagnose` (find_missing_in_arm) compares an arm"
+        )
     chosen = bandwidth or experiment.bandwidth or default_bandwidth(experiment)
     stretches = []
     for record in experiment.records:

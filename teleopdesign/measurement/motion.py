@@ -32,6 +32,7 @@ class LinkForces(ByValue):
 
     given: (n,) by what is known;  columns: (b, n) per unit of each base parameter of the arm
     smooth: the same columns through the comparison's low-pass
+    inertia: part of them that the body itself has, and that is not carried
     drawn: the same forces with the positions of all joints read anew, for the noise floor
     """
 
@@ -39,10 +40,12 @@ class LinkForces(ByValue):
     columns: Array
     smooth: Array
     drawn: tuple[LinkForces, ...] = ()
+    inertia: float = 0.0
 
-    def carried(self, values: Sequence[float]) -> Array:
-        """The force (n,) at these values (b,) of the base parameters."""
-        return self.given + np.asarray(values) @ self.columns if len(values) else self.given
+    def carried(self, values: Sequence[float], acceleration: Array) -> Array:
+        """The force (n,) at these values (b,) of the base parameters; acceleration: (n,)."""
+        force = self.given + np.asarray(values) @ self.columns if len(values) else self.given
+        return force - self.inertia * acceleration
 
 
 @dataclass(frozen=True, eq=False)

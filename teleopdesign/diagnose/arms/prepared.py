@@ -19,6 +19,10 @@ from ..noise_floor import DRAWS, read_again
 from ..prepare import Prepared, Stretch, prepare
 
 
+#: poses of a record over which an inertia is averaged
+POSES = 50
+
+
 @dataclass(frozen=True, eq=False)
 class PreparedArm(ByValue):
     """An experiment on an arm made ready for comparison at one bandwidth (Hz).
@@ -99,3 +103,48 @@ def _forces(arm: Arm, base: BaseParameters | None, motions: Sequence[Motion]) ->
         mine = np.ascontiguousarray(columns[k, base.chosen])
         forces.append(LinkForces(nothing, mine, motion.lowpassed(mine)))
     return forces
+
+
+def with_inertias(prepared: PreparedArm, inertias: Mapping[str, float]) -> PreparedArm:
+    """The records with a part of each joint's links as the inertia of its body.
+
+    inertias: joint -> what its body has, in its model too; the force of its links is less by that
+    """
+    joints = {}
+    for j, one in prepared.joints.items():
+        stretches = []
+        for stretch in one.stretches:
+            links = stretch.motion.links
+            assert links is not None
+            links = replace(
+                links,
+                inertia=inertias[j],
+                drawn=tuple(replace(d, inertia=inertias[j]) for d in links.drawn),
+            )
+            stretches.append(replace(stretch, motion=replace(stretch.motion, links=links)))
+        joints[j] = replace(one, stretches=tuple(stretches))
+    return replace(prepared, joints=joints)
+
+
+def mean_inertias(prepared: PreparedArm, links: tuple[float, ...]) -> dict[str, float]:
+    """Joint -> inertia that the links have about it (kg m^2, or kg), over its first record.
+
+    links: base parameters;  at least a thousandth of the largest, so that each is a body
+    """
+    assert prepared.experiment.arm is not None
+    arm = prepared.experiment.arm.arm.with_gravity((0.0, 0.0, 0.0))
+    motions = [p.stretches[0].motion for p in prepared.joints.values()]
+    places = np.linspace(0, len(motions[0].time) - 1, POSES).astype(int)
+    position = np.array([m.position[places] for m in motions])
+    inertias = {}
+    for k, j in enumerate(prepared.joints):
+        push = np.zeros_like(position)
+        push[k] = 1.0
+        columns = columns_with_motors(arm, position, np.zeros_like(position), push)[k]
+        if prepared.base is None:
+            force = arm.inertial @ columns[: len(arm.inertial)]
+        else:
+            force = np.asarray(links) @ columns[prepared.base.chosen]
+        inertias[j] = float(np.mean(force))
+    least = 1e-3 * max(*inertias.values(), 1e-9)
+    return {j: max(x, least) for j, x in inertias.items()}
