@@ -140,6 +140,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ANY",
+    "ArmDiagnosis",
     "Assumptions",
     "Body",
     "CONTROLLERS",
@@ -244,6 +245,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "Comparison": "diagnose",
         "Ranking": "diagnose",
         "Diagnosis": "diagnose",
+        "ArmDiagnosis": "diagnose",
     },
     "diagrams": {
         "Diagram": "diagrams",

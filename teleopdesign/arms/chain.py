@@ -3,10 +3,10 @@
 Each link has a frame that moves with it. At joint position q, the frame of a link relative to that
 of the link before it (the base for the first) is
 
-    revolute:   rotation R Rot(axis, q), origin p          prismatic:   rotation R, origin p + R axis q
+    revolute: rotation R Rot(axis, q), origin p        prismatic: rotation R, origin p + R axis q
 
-Its ten inertial parameters are mass m, first moments m c, and moments of inertia about the origin of
-its frame, in the axes of its frame. Every force that a motion needs is linear in them.
+Its ten inertial parameters are mass m, first moments m c, and moments of inertia about the origin
+of its frame, in the axes of its frame. Every force that a motion needs is linear in them.
 """
 
 from __future__ import annotations

@@ -194,9 +194,7 @@ def _joint(element: ET.Element, file: str, links: dict[str, Array]) -> _Joint:
 
 
 def _origin(element: ET.Element, where: str) -> tuple[Array, Array]:
-    """Rotation and origin that an element's `origin` says; those of its parent where it has none.
-
-    """
+    """Rotation and origin that an element's `origin` says; none where it has none."""
     origin = element.find("origin")
     if origin is None:
         return np.eye(3), np.zeros(3)

@@ -1,8 +1,8 @@
-"""The links of an arm, seen from one joint: what other joints say of them, and what they leave free.
+"""The links of an arm, seen from one joint: what other joints say of them, and what stays free.
 
-The base parameters b of an arm act at all of its joints, and force is linear in them. What the other
-joints know of b is a quadratic, (b - c)^T H (b - c) with centre c, their own parameters free. So a
-joint can be compared alone: to minimise
+The base parameters b of an arm act at all of its joints, and force is linear in them. What the
+other joints know of b is a quadratic, (b - c)^T H (b - c) with centre c, their own parameters free.
+So a joint can be compared alone: to minimise
 
     |r - Y (b - c)|^2 + (b - c)^T H (b - c)        over b,     Y: force of its links per unit of b
 
@@ -84,9 +84,7 @@ class Shared(ByValue):
     centre: Array
 
 
-def share(
-    stretches: Sequence[Stretch], others: Knowledge, size: float
-) -> tuple[Stretch, ...]:
+def share(stretches: Sequence[Stretch], others: Knowledge, size: float) -> tuple[Stretch, ...]:
     """The stretches of one joint with what takes the freedom of the links out of them.
 
     size: root of the joint's measured squares, by which its force counts among those of others
@@ -114,7 +112,7 @@ def share_again(stretches: Sequence[Stretch]) -> tuple[Stretch, ...]:
 def weighted_columns(stretch: Stretch) -> Array:
     """Low-passed force per base parameter (rows, b), times the root of the rows' weight."""
     assert stretch.motion.links is not None
-    return np.sqrt(stretch.weight) * stretch.motion.links.smooth[:, stretch.keep].T
+    return np.asarray(np.sqrt(stretch.weight) * stretch.motion.links.smooth[:, stretch.keep].T)
 
 
 def clear(

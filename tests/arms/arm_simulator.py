@@ -61,9 +61,7 @@ def random_arm(generator, count, *, prismatic=False):
     axes, origins, angles, masses, centres, moments = [], [], [], [], [], []
     for i in range(count):
         axes.append(np.eye(3)[[2, 1, 1, 0, 1, 2][i % 6]])
-        origins.append(
-            np.array([0.0, generator.uniform(-0.1, 0.1), generator.uniform(0.2, 0.5)])
-        )
+        origins.append(np.array([0.0, generator.uniform(-0.1, 0.1), generator.uniform(0.2, 0.5)]))
         angles.append(generator.uniform(-0.3, 0.3, 3))
         masses.append(float(8.0 * 0.6**i * generator.uniform(0.7, 1.3)))
         centres.append(generator.uniform(-0.05, 0.05, 3) + np.array([0, 0, 0.15]))
@@ -109,9 +107,7 @@ def forces(arm, q, v, a):
             points.append(place)
             arm_of_mass = rotation @ arm.centres[i]
             of_mass = (
-                speed_up
-                + np.cross(turn, arm_of_mass)
-                + np.cross(spin, np.cross(spin, arm_of_mass))
+                speed_up + np.cross(turn, arm_of_mass) + np.cross(spin, np.cross(spin, arm_of_mass))
             )
             force = arm.masses[i] * (of_mass - GRAVITY)
             inertia = rotation @ arm.moments[i] @ rotation.T
@@ -187,15 +183,18 @@ def write_experiment(folder: Path, arm, generator, hidden=None, *, seconds=30.0,
         n = int(seconds * rate)
         fine = (np.arange(n * PARTS) + 0.5) / (rate * PARTS)
         state = generator.bit_generator.state
-        _, v, _ = path(generator, k, fine)
-        generator.bit_generator.state = state
-        q_fine, v_fine, a_fine = path(generator, k, fine)
-        load = np.repeat(_every(arm, q_fine, v_fine, a_fine), 1, axis=1)
+        q_fine, v, a_fine = path(generator, k, fine)
+        load = _every(arm, q_fine, v, a_fine)
         motor = load + arm.coulomb[:, None] * np.sign(v) + arm.viscous[:, None] * v
         if hidden is not None:
             name, j, strength = hidden
             motor[j] += hidden_force(
-                name, strength, q_fine[j], v[j], load[j] + arm.viscous[j] * v[j], arm.coulomb[j],
+                name,
+                strength,
+                q_fine[j],
+                v[j],
+                load[j] + arm.viscous[j] * v[j],
+                arm.coulomb[j],
                 1 / (rate * PARTS),
             )
         command = motor.reshape(k, n, PARTS).mean(axis=2)
@@ -214,7 +213,7 @@ def write_experiment(folder: Path, arm, generator, hidden=None, *, seconds=30.0,
 
 
 def _every(arm, q, v, a):
-    """Forces of the links on the fine grid, computed at every 4th sample and between by a spline."""
+    """Forces of the links on the fine grid: at every 4th sample, between them by a spline."""
     from scipy.interpolate import CubicSpline
 
     n = q.shape[1]

@@ -35,9 +35,7 @@ def arm_of(simulated: SimulatedArm) -> Arm:
             axis=simulated.axes[i],
             rotation=rotation_of(*simulated.angles[i]),
             origin=simulated.origins[i],
-            inertial=inertia_about(
-                simulated.masses[i], simulated.centres[i], simulated.moments[i]
-            ),
+            inertial=inertia_about(simulated.masses[i], simulated.centres[i], simulated.moments[i]),
         )
         for i in range(simulated.count)
     ]
@@ -171,7 +169,9 @@ def test_a_link_that_turns_about_the_vertical_is_told_by_one_parameter():
     arm = Arm((arm_of(random_arm(np.random.default_rng(3), 1)).links[0],))
     upright = Arm(
         tuple(
-            Link(x.name, x.joint, x.kind, np.array([0.0, 0.0, 1.0]), np.eye(3), x.origin, x.inertial)
+            Link(
+                x.name, x.joint, x.kind, np.array([0.0, 0.0, 1.0]), np.eye(3), x.origin, x.inertial
+            )
             for x in arm.links
         )
     )

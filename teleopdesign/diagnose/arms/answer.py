@@ -30,7 +30,7 @@ def arm_answer(diagnosis: ArmDiagnosis) -> dict[str, Any]:
     joints = diagnosis.joints.values()
     candidates = [row for d in joints for row in candidate_rows(d)]
     added = {c.added.key for c in diagnosis.rungs if c.added is not None}
-    shifts = {}
+    shifts: dict[str, Any] = {}
     for d in joints:
         shifts |= shift_data(d.model, d.prepared.stretches)
     return {
@@ -89,9 +89,7 @@ def _joint(diagnosis: Diagnosis) -> dict[str, Any]:
 def _parameters(diagnosis: ArmDiagnosis) -> dict[str, Any]:
     """Parameters of the user's model, and the base parameters of the links."""
     rows: dict[str, Any] = {}
-    added = {
-        f"{r.added.at}.{r.added.effect.name}" for r in diagnosis.rungs if r.added is not None
-    }
+    added = {f"{r.added.at}.{r.added.effect.name}" for r in diagnosis.rungs if r.added is not None}
     for j, fit in diagnosis.after.fits.items():
         rows |= {
             n: row
@@ -134,9 +132,7 @@ def write_arm_predictions(diagnosis: ArmDiagnosis, path: str | Path) -> None:
 
 def _predicted(diagnosis: ArmDiagnosis, joint: str, file: str) -> Sequence[Array]:
     record = next(r for r in diagnosis.experiment.records if r.file == file)
-    stretches = [
-        s for s in diagnosis.before.prepared[joint].stretches if s.motion.file == file
-    ]
+    stretches = [s for s in diagnosis.before.prepared[joint].stretches if s.motion.file == file]
     interaction = record.signals.get(f"{joint}.interaction_force")
     measured = record.signals[f"{joint}.actuator_force"] + (
         0.0 if interaction is None else interaction

@@ -89,8 +89,8 @@ class ArmDiagnosis(ByValue):
         lines.append(f"{'noise floor':<42}{'':>10}{100 * self.floor:>12.2f}%")
         lines += ["", f"{'joint':<20}{'before':>10}{'after':>10}{'floor':>10}"]
         for j, diagnosis in self.joints.items():
-            errors = (self.before.check_errors[j], self.after.check_errors[j])
-            shown = "".join(f"{100 * e:>9.2f}%" for e in (*errors, diagnosis.floor.value))
+            before, after = self.before.check_errors[j], self.after.check_errors[j]
+            shown = "".join(f"{100 * e:>9.2f}%" for e in (before, after, diagnosis.floor.value))
             lines.append(f"{j:<20}{shown}")
         lines.append("")
         for j, diagnosis in self.joints.items():

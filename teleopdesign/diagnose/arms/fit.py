@@ -94,9 +94,7 @@ def agreed(fits: Mapping[str, Fit], own: Mapping[str, Prepared], prepared: Prepa
     """Fits of all joints, held against the records at base parameters that all agree on."""
     links: tuple[float, ...] = ()
     if prepared.base is not None:
-        known = {
-            j: knowledge(f.model, own[j].of("fit"), prepared.size[j]) for j, f in fits.items()
-        }
+        known = {j: knowledge(f.model, own[j].of("fit"), prepared.size[j]) for j, f in fits.items()}
         links = _together(known)
     fits = {j: replace(f, model=f.model.with_links(links)) for j, f in fits.items()}
     checked = bool(prepared.experiment.check_records)

@@ -148,9 +148,7 @@ def with_known(
     """A joint's records with what the other joints say of the links by their fits."""
     if prepared.base is None:
         return own[joint]
-    known = {
-        j: knowledge(f.model, own[j].of("fit"), prepared.size[j]) for j, f in fits.items()
-    }
+    known = {j: knowledge(f.model, own[j].of("fit"), prepared.size[j]) for j, f in fits.items()}
     return with_others(own[joint], known, prepared.size[joint], joint)
 
 
@@ -220,4 +218,3 @@ def _concluded(joint: _Joint, fit: Fit) -> Diagnosis:
     if diagnosis.verdict == "effects_missing" and not named:
         return replace(diagnosis, verdict="undecided")
     return replace(diagnosis, named=named)
-

@@ -18,7 +18,6 @@ from ..bandwidth import default_bandwidth
 from ..noise_floor import DRAWS, read_again
 from ..prepare import Prepared, Stretch, prepare
 
-
 #: poses of a record over which an inertia is averaged
 POSES = 50
 
