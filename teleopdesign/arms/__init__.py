@@ -1,13 +1,13 @@
 """Arms: chains of links on joints, their kinematics, and the forces that their motion needs."""
 
 from .base_parameters import BaseParameters, base_parameters
-from .chain import INERTIAL, Arm, Link, inertia_about, rotation_of
+from .chain import INERTIAL, Chain, Link, inertia_about, rotation_of
 from .regressor import force_columns
 from .urdf import read_urdf
 
 __all__ = [
     "INERTIAL",
-    "Arm",
+    "Chain",
     "BaseParameters",
     "Link",
     "base_parameters",

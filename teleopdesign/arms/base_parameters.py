@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..by_value import ByValue
-from .chain import INERTIAL, UNITS, Arm, Array
+from .chain import INERTIAL, UNITS, Array, Chain
 from .regressor import force_columns
 
 #: random poses per joint: a few times the number of inertial parameters
@@ -42,7 +42,7 @@ class BaseParameters(ByValue):
     given: Array
 
 
-def columns_with_motors(arm: Arm, position: Array, velocity: Array, acceleration: Array) -> Array:
+def columns_with_motors(arm: Chain, position: Array, velocity: Array, acceleration: Array) -> Array:
     """Force at each joint per inertial parameter and per inertia of its motor (k, 11 k, n).
 
     The rotor of joint j needs its inertia times the acceleration of that joint, at that joint.
@@ -52,7 +52,7 @@ def columns_with_motors(arm: Arm, position: Array, velocity: Array, acceleration
     return np.concatenate([columns, motors], axis=1)
 
 
-def base_parameters(arm: Arm, *, seed: int = 0) -> BaseParameters:
+def base_parameters(arm: Chain, *, seed: int = 0) -> BaseParameters:
     """The base parameters of an arm: links that tell first, motors last.
 
     seed: of the random poses; the parameters do not depend on it but for rounding

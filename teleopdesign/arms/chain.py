@@ -48,7 +48,7 @@ class Link(ByValue):
 
 
 @dataclass(frozen=True, eq=False)
-class Arm(ByValue):
+class Chain(ByValue):
     """Links from the base to the tip, and gravity (3,) in the frame of the base, m/s^2."""
 
     links: tuple[Link, ...]
@@ -64,7 +64,7 @@ class Arm(ByValue):
         """Inertial parameters (10 k,) of the k links, one after the other."""
         return np.concatenate([link.inertial for link in self.links])
 
-    def with_gravity(self, gravity: tuple[float, float, float]) -> Arm:
+    def with_gravity(self, gravity: tuple[float, float, float]) -> Chain:
         """The same arm mounted another way; gravity: m/s^2, in the frame of its base."""
         return replace(self, gravity=gravity)
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import ModelError
-from .chain import INERTIAL, Arm, Array, Link
+from .chain import INERTIAL, Array, Chain, Link
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class _Frames:
     lift: Array
 
 
-def force_columns(arm: Arm, position: Array, velocity: Array, acceleration: Array) -> Array:
+def force_columns(arm: Chain, position: Array, velocity: Array, acceleration: Array) -> Array:
     """Force at each joint per unit of each inertial parameter (k, 10 k, n), SI.
 
     position, velocity, acceleration: (k, n) of the k joints, in the order of the arm
@@ -58,7 +58,7 @@ def force_columns(arm: Arm, position: Array, velocity: Array, acceleration: Arra
     return columns
 
 
-def _frames(arm: Arm, position: Array, velocity: Array, acceleration: Array) -> list[_Frames]:
+def _frames(arm: Chain, position: Array, velocity: Array, acceleration: Array) -> list[_Frames]:
     n = position.shape[1]
     here = _Frames(
         np.broadcast_to(np.eye(3), (n, 3, 3)),

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import ExperimentError, did_you_mean, quoted
-from .chain import Arm, Array, Link, inertia_about, rotation_of, seen_from
+from .chain import Array, Chain, Link, inertia_about, rotation_of, seen_from
 
 #: bytes of a file, and its elements and their depth: a hundred times what a large robot needs
 LARGEST, ELEMENTS, DEPTH = 20_000_000, 200_000, 64
@@ -45,7 +45,7 @@ class _Robot:
     joints: tuple[_Joint, ...]
 
 
-def read_urdf(path: Path, file: str, joints: Sequence[str]) -> Arm:
+def read_urdf(path: Path, file: str, joints: Sequence[str]) -> Chain:
     """The arm of a robot's description.
 
     file: its name in messages;  joints: names of those that move, in the order of the answer
@@ -71,7 +71,7 @@ def read_urdf(path: Path, file: str, joints: Sequence[str]) -> Arm:
             )
         )
         before = joint.child
-    return Arm(tuple(links))
+    return Chain(tuple(links))
 
 
 class _Counted(ET.TreeBuilder):

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..arms import Arm, Link, inertia_about, read_urdf, rotation_of
+from ..arms import Chain, Link, inertia_about, read_urdf, rotation_of
 from ..arms.chain import GRAVITY, Array
 from ..by_value import ByValue
 from ..errors import ExperimentError, did_you_mean, quoted
@@ -35,7 +35,7 @@ class ArmDescription(ByValue):
     estimate: "base parameters" are estimated, or inertial parameters are taken "as given"
     """
 
-    arm: Arm
+    arm: Chain
     estimate: str
 
     def __repr__(self) -> str:
@@ -86,7 +86,7 @@ def _joint(name: str, table: Table, link: Link) -> BodyDescription:
     return BodyDescription(name, link.kind, inertia, effects_from(table), table.where())
 
 
-def _kinematics(table: Table, folder: Path, joints: Mapping[str, Table]) -> Arm:
+def _kinematics(table: Table, folder: Path, joints: Mapping[str, Table]) -> Chain:
     if ("urdf" in table.content) == ("links" in table.content):
         found = "both" if "urdf" in table.content else "neither"
         raise ExperimentError(
@@ -111,7 +111,7 @@ def _kinematics(table: Table, folder: Path, joints: Mapping[str, Table]) -> Arm:
     return read_urdf(path, f"{folder.name}/{file}", named)
 
 
-def _own(table: Table, joints: tuple[str, ...]) -> Arm:
+def _own(table: Table, joints: tuple[str, ...]) -> Chain:
     """Kinematics of [[model.arm.links]]: one link a joint, from the base to the tip."""
     links = tuple(_link(entry) for entry in table.tables("links"))
     order = tuple(link.joint for link in links)
@@ -120,7 +120,7 @@ def _own(table: Table, joints: tuple[str, ...]) -> Arm:
             f"{table.where('links')}: found joints {', '.join(order)}, expected those of "
             f"[model.arm.joints] from the base to the tip: {', '.join(joints)}"
         )
-    return Arm(links)
+    return Chain(links)
 
 
 def _link(table: Table) -> Link:

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.arms import (
-    Arm,
+    Chain,
     Link,
     base_parameters,
     force_columns,
@@ -26,7 +26,7 @@ from teleopdesign.errors import ModelError
 ROUNDING = 1e-9
 
 
-def arm_of(simulated: SimulatedArm) -> Arm:
+def arm_of(simulated: SimulatedArm) -> Chain:
     links = [
         Link(
             name=f"link{i + 1}",
@@ -39,7 +39,7 @@ def arm_of(simulated: SimulatedArm) -> Arm:
         )
         for i in range(simulated.count)
     ]
-    return Arm(tuple(links))
+    return Chain(tuple(links))
 
 
 @lru_cache(maxsize=2)
@@ -99,7 +99,7 @@ def lagrangian(spatial: bool):
         )
         for i in range(count)
     ]
-    return sp.lambdify(names, values, "numpy", cse=True), Arm(tuple(links))
+    return sp.lambdify(names, values, "numpy", cse=True), Chain(tuple(links))
 
 
 @pytest.mark.parametrize("spatial", [False, True])
@@ -124,7 +124,7 @@ def test_forces_are_those_of_an_independent_simulator(count, seed, prismatic):
 
 def energy(arm, q, v):
     """Kinetic and potential energy (n,), from forces at rest and from unit accelerations."""
-    still = Arm(arm.links, gravity=(0.0, 0.0, 0.0))
+    still = Chain(arm.links, gravity=(0.0, 0.0, 0.0))
     nothing = np.zeros_like(q)
     kinetic = np.zeros(q.shape[1])
     for j in range(len(arm.links)):
@@ -138,7 +138,7 @@ def energy(arm, q, v):
 @given(count=st.integers(1, 5), seed=st.integers(0, 10_000))
 def test_power_at_the_joints_is_the_rate_of_energy(count, seed):
     generator = np.random.default_rng(seed)
-    arm = Arm(arm_of(random_arm(generator, count, prismatic=True)).links, gravity=(0.0, 0.0, 0.0))
+    arm = Chain(arm_of(random_arm(generator, count, prismatic=True)).links, gravity=(0.0, 0.0, 0.0))
     q, v, a = generator.normal(size=(3, count, 1))
     step = 1e-4
     course = [q + v * h + a * h**2 / 2 for h in (-step, step)]
@@ -166,8 +166,8 @@ def test_base_parameters_say_all_that_the_links_do(count, seed):
 
 
 def test_a_link_that_turns_about_the_vertical_is_told_by_one_parameter():
-    arm = Arm((arm_of(random_arm(np.random.default_rng(3), 1)).links[0],))
-    upright = Arm(
+    arm = Chain((arm_of(random_arm(np.random.default_rng(3), 1)).links[0],))
+    upright = Chain(
         tuple(
             Link(
                 x.name, x.joint, x.kind, np.array([0.0, 0.0, 1.0]), np.eye(3), x.origin, x.inertial

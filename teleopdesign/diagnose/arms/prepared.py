@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...arms import Arm, BaseParameters, base_parameters
+from ...arms import BaseParameters, Chain, base_parameters
 from ...arms.base_parameters import columns_with_motors
 from ...by_value import ByValue
 from ...errors import ExperimentError
@@ -85,7 +85,7 @@ def prepare_arm(experiment: Experiment, *, seed: int = 0) -> PreparedArm:
     return PreparedArm(experiment, bandwidth, base, made, size)
 
 
-def _forces(arm: Arm, base: BaseParameters | None, motions: Sequence[Motion]) -> list[LinkForces]:
+def _forces(arm: Chain, base: BaseParameters | None, motions: Sequence[Motion]) -> list[LinkForces]:
     """The force of the links at each joint along motions of all joints at the same times."""
     position, velocity, acceleration = (
         np.array([getattr(m, name) for m in motions])
