@@ -33,13 +33,13 @@ class BaseParameters(ByValue):
     """What can be told of the p inertial parameters and motor inertias of an arm with k joints.
 
     names: of the b base parameters, "forearm_link.mx" and the like;  units: of each
-    chosen: (b,) columns that stand for them;  given: (b,) their values by the arm's own parameters
+    chosen: (b,) columns that stand for them;  initial: (b,) their values by those of the arm
     """
 
     names: tuple[str, ...]
     units: tuple[str, ...]
     chosen: NDArray[np.intp]
-    given: Array
+    initial: Array
 
 
 def columns_with_motors(arm: Chain, position: Array, velocity: Array, acceleration: Array) -> Array:
@@ -68,9 +68,9 @@ def base_parameters(arm: Chain, *, seed: int = 0) -> BaseParameters:
     motor = ["kg" if link.kind == "prismatic" else "kg*m^2" for link in arm.links]
     units = [*UNITS * k, *motor]
     whole = np.concatenate([arm.inertial, np.zeros(k)])
-    given = np.linalg.lstsq(rows[:, chosen], rows @ whole, rcond=None)[0]
+    initial = np.linalg.lstsq(rows[:, chosen], rows @ whole, rcond=None)[0]
     return BaseParameters(
-        tuple(names[i] for i in chosen), tuple(units[i] for i in chosen), chosen, given
+        tuple(names[i] for i in chosen), tuple(units[i] for i in chosen), chosen, initial
     )
 
 

@@ -89,9 +89,9 @@ def _next(before: _Frames, link: Link, q: Array, v: Array, a: Array) -> _Frames:
     if link.kind == "prismatic":
         lift = lift + 2.0 * np.cross(spin, v[:, None] * axis) + a[:, None] * axis
     else:
-        own = v[:, None] * axis
-        turn = turn + np.cross(spin, own) + a[:, None] * axis
-        spin = spin + own
+        joint_spin = v[:, None] * axis
+        turn = turn + np.cross(spin, joint_spin) + a[:, None] * axis
+        spin = spin + joint_spin
     return _Frames(
         before.rotation @ relative,
         before.origin + np.einsum("nij,nj->ni", before.rotation, offset),

@@ -131,14 +131,14 @@ def _robot(root: ET.Element, file: str) -> _Robot:
         if element.find("parent") is not None or element.find("child") is not None
     ]
     for one in ("name", "child"):
-        seen: set[str] = set()
+        names: set[str] = set()
         for joint in joints:
             word = getattr(joint, one)
-            if word in seen:
+            if word in names:
                 what = "joint" if one == "name" else "link"
                 said = "is given twice" if one == "name" else "hangs on two joints"
                 raise ExperimentError(f"{file}: {what} {quoted(word)} {said}")
-            seen.add(word)
+            names.add(word)
     return _Robot(file, links, tuple(joints))
 
 
@@ -185,8 +185,8 @@ def _joint(element: ET.Element, file: str, links: dict[str, Array]) -> _Joint:
         ends.append(link)
     axis = np.array([1.0, 0.0, 0.0])
     rotation, origin = _origin(element, where)
-    if (given := element.find("axis")) is not None:
-        axis = _numbers(given, "xyz", 3, f"{where}: axis", default="1 0 0")
+    if (axis_element := element.find("axis")) is not None:
+        axis = _numbers(axis_element, "xyz", 3, f"{where}: axis", default="1 0 0")
     size = float(np.linalg.norm(axis))
     if kind in _KINDS and not size > 0:
         raise ExperimentError(f"{where}: axis: found 0 0 0, expected a direction")

@@ -59,8 +59,8 @@ def _parted(knowledge: Knowledge, squares: Array) -> tuple[Array, Array]:
     scaled = knowledge.matrix / np.outer(size, size)
     values, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
     least = UNKNOWN * max(float(values[-1]), 1.0)
-    told = values > least
-    inverse = np.where(told, 1.0 / np.where(told, values, 1.0), 0.0)
+    is_known = values > least
+    inverse = np.where(is_known, 1.0 / np.where(is_known, values, 1.0), 0.0)
     centre = vectors @ (inverse * (vectors.T @ (knowledge.vector / size))) / size
     return centre, (vectors / np.sqrt(np.maximum(values, least))) / size[:, None]
 

@@ -88,9 +88,9 @@ def _joint(name: str, table: Table, link: Link) -> BodyDescription:
 
 def _kinematics(table: Table, folder: Path, joints: Mapping[str, Table]) -> Chain:
     if ("urdf" in table.content) == ("links" in table.content):
-        found = "both" if "urdf" in table.content else "neither"
+        entry = "both" if "urdf" in table.content else "neither"
         raise ExperimentError(
-            f"{table.where()}: found {found} of urdf and [[model.arm.links]], expected one of them"
+            f"{table.where()}: found {entry} of urdf and [[model.arm.links]], expected one of them"
         )
     if "links" in table.content:
         for joint in joints.values():
@@ -98,7 +98,7 @@ def _kinematics(table: Table, folder: Path, joints: Mapping[str, Table]) -> Chai
                 raise ExperimentError(
                     f"{joint.where('urdf_joint')}: found beside [[model.arm.links]], expected urdf"
                 )
-        return _own(table, tuple(joints))
+        return _chain_of_links(table, tuple(joints))
     file = table.text("urdf")
     path = (folder / file).resolve() if "\0" not in file else folder
     if not path.is_relative_to(folder.resolve()) or not path.is_file():
@@ -111,7 +111,7 @@ def _kinematics(table: Table, folder: Path, joints: Mapping[str, Table]) -> Chai
     return read_urdf(path, f"{folder.name}/{file}", named)
 
 
-def _own(table: Table, joints: tuple[str, ...]) -> Chain:
+def _chain_of_links(table: Table, joints: tuple[str, ...]) -> Chain:
     """Kinematics of [[model.arm.links]]: one link a joint, from the base to the tip."""
     links = tuple(_link(entry) for entry in table.tables("links"))
     order = tuple(link.joint for link in links)
@@ -159,14 +159,14 @@ def numbers_from(table: Table, key: str, count: int, default: tuple[float, ...])
     """A list of finite numbers under `key`."""
     if key not in table.content:
         return np.array(default)
-    found = table.content[key]
-    good = isinstance(found, list) and len(found) == count
-    numbers = found if good else []
+    entry = table.content[key]
+    good = isinstance(entry, list) and len(entry) == count
+    numbers = entry if good else []
     if not good or not all(
         isinstance(x, int | float) and not isinstance(x, bool) and abs(x) < 1e12 for x in numbers
     ):
         raise ExperimentError(
-            f"{table.where(key)}: found {described(found)}, expected {count} finite numbers"
+            f"{table.where(key)}: found {described(entry)}, expected {count} finite numbers"
         )
     if not all(math.isfinite(x) for x in numbers):
         raise ExperimentError(f"{table.where(key)}: expected {count} finite numbers")

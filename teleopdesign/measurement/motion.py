@@ -30,13 +30,13 @@ SHORTEST = 0.6
 class LinkForces(ByValue):
     """Force that the links of an arm need at one joint, along a motion of n samples, SI.
 
-    given: (n,) by what is known;  columns: (b, n) per unit of each base parameter of the arm
+    constant: (n,) by what is known;  columns: (b, n) per unit of each base parameter of the arm
     smooth: the same columns through the comparison's low-pass
     inertia: part of them that the body itself has, and that is not carried
     drawn: the same forces with the positions of all joints read anew, for the noise floor
     """
 
-    given: Array
+    constant: Array
     columns: Array
     smooth: Array
     drawn: tuple[LinkForces, ...] = ()
@@ -44,7 +44,7 @@ class LinkForces(ByValue):
 
     def carried(self, values: Sequence[float], acceleration: Array) -> Array:
         """The force (n,) at these values (b,) of the base parameters; acceleration: (n,)."""
-        force = self.given + np.asarray(values) @ self.columns if len(values) else self.given
+        force = self.constant + np.asarray(values) @ self.columns if len(values) else self.constant
         return force - self.inertia * acceleration
 
 

@@ -198,7 +198,8 @@ def write_experiment(folder: Path, arm, generator, hidden=None, *, seconds=30.0,
                 1 / (rate * PARTS),
             )
         command = motor.reshape(k, n, PARTS).mean(axis=2)
-        command += 0.002 * np.std(command, axis=1, keepdims=True) * generator.normal(size=(k, n))
+        noise = 0.01 * np.std(command, axis=1)
+        command += noise[:, None] * generator.normal(size=(k, n))
         time = np.arange(n) / rate
         generator.bit_generator.state = state
         q, _, _ = path(generator, k, time)
@@ -208,7 +209,7 @@ def write_experiment(folder: Path, arm, generator, hidden=None, *, seconds=30.0,
         text = ",".join(names) + "\n" + "\n".join(",".join(f"{x:.9g}" for x in r) for r in rows)
         (folder / f"{use}.csv.gz").write_bytes(gzip.compress((text + "\n").encode(), 4, mtime=0))
     (folder / "arm.urdf").write_text(urdf(arm))
-    (folder / "experiment.toml").write_text(_toml(k))
+    (folder / "experiment.toml").write_text(_toml(noise))
     return folder
 
 
@@ -254,7 +255,8 @@ def _text(vector):
     return " ".join(repr(float(x)) for x in vector)
 
 
-def _toml(k):
+def _toml(noise):
+    k = len(noise)
     lines = ['title = "simulated arm"', "[model.arm]", 'urdf = "arm.urdf"']
     lines += ['estimate = "base parameters"']
     for i in range(1, k + 1):
@@ -264,7 +266,8 @@ def _toml(k):
     for i in range(1, k + 1):
         lines += [
             f'"joint{i}.position" = {{ column = "q{i}", unit = "rad", resolution = 1e-5 }}',
-            f'"joint{i}.actuator_force" = {{ column = "u{i}", unit = "N*m" }}',
+            f'"joint{i}.actuator_force" = {{ column = "u{i}", unit = "N*m", '
+            f"noise = {float(noise[i - 1])!r} }}",
         ]
     lines += ["[comparison]", 'bandwidth = { value = 8, unit = "Hz" }']
     for use in ("fit", "check"):

@@ -160,7 +160,7 @@ def test_base_parameters_say_all_that_the_links_do(count, seed):
     expected = np.einsum("kpn,p->kn", columns, arm.inertial)
     motors = np.eye(count)[:, :, None] * a[:, None, :]
     chosen = np.concatenate([columns, motors], axis=1)[:, base.chosen]
-    got = np.einsum("kbn,b->kn", chosen, base.given)
+    got = np.einsum("kbn,b->kn", chosen, base.initial)
     assert np.allclose(got, expected, rtol=0, atol=1e-7 * max(np.abs(expected).max(), 1.0))
     assert len(base.names) == len(set(base.names)) <= 11 * count
 

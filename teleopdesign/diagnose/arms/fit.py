@@ -72,39 +72,45 @@ def estimate_arm(
 
     models: joint -> the model of that joint alone
     """
-    models, fits, own = dict(models), {}, dict(prepared.joints)
+    models, fits, records = dict(models), {}, dict(prepared.joints)
     for k in range(rounds):
         if prepared.base is not None:
-            known = {j: knowledge(models[j], p.of("fit"), prepared.size[j]) for j, p in own.items()}
+            known = {
+                j: knowledge(models[j], p.of("fit"), prepared.size[j]) for j, p in records.items()
+            }
             common = _together(known)
             models = {j: m.with_links(common) for j, m in models.items()}
-            own = {j: with_others(p, known, prepared.size[j], j) for j, p in own.items()}
+            records = {j: with_others(p, known, prepared.size[j], j) for j, p in records.items()}
         for j, model in models.items():
             start = bool(model.absent) and k == 0
             fits[j] = (
-                estimate_from_starts(model, own[j])
+                estimate_from_starts(model, records[j])
                 if start
-                else estimate(model, own[j], effort=effort)
+                else estimate(model, records[j], effort=effort)
             )
             models[j] = fits[j].model
-    return agreed(fits, own, prepared)
+    return with_common_links(fits, records, prepared)
 
 
-def agreed(fits: Mapping[str, Fit], own: Mapping[str, Prepared], prepared: PreparedArm) -> ArmFit:
+def with_common_links(
+    fits: Mapping[str, Fit], records: Mapping[str, Prepared], prepared: PreparedArm
+) -> ArmFit:
     """Fits of all joints, held against the records at base parameters that all agree on."""
     links: tuple[float, ...] = ()
     if prepared.base is not None:
-        known = {j: knowledge(f.model, own[j].of("fit"), prepared.size[j]) for j, f in fits.items()}
+        known = {
+            j: knowledge(f.model, records[j].of("fit"), prepared.size[j]) for j, f in fits.items()
+        }
         links = _together(known)
     fits = {j: replace(f, model=f.model.with_links(links)) for j, f in fits.items()}
     checked = bool(prepared.experiment.check_records)
     return ArmFit(
         fits=fits,
-        prepared=dict(own),
+        prepared=dict(records),
         links=links,
-        fit_errors={j: force_error(f.model, bare(own[j].of("fit"))) for j, f in fits.items()},
+        fit_errors={j: force_error(f.model, bare(records[j].of("fit"))) for j, f in fits.items()},
         check_errors={
-            j: force_error(f.model, own[j].of("check")) if checked else f.check_error
+            j: force_error(f.model, records[j].of("check")) if checked else f.check_error
             for j, f in fits.items()
         },
     )
@@ -120,8 +126,8 @@ def knowledge(model: Model, stretches: tuple[Stretch, ...], size: float) -> Know
 
     size: root of its measured squares
     """
-    columns, residual, own, _ = _linear(model, stretches)
-    basis = _basis(own)
+    columns, residual, slopes, _ = _linear(model, stretches)
+    basis = _basis(slopes)
     columns, residual = (x - basis @ (basis.T @ x) for x in (columns, residual))
     # residual at b: residual - columns (b - links)
     target = residual + columns @ np.asarray(model.links)
@@ -138,16 +144,16 @@ def _linear(
     parts = relative_residuals(model, plain, (*free, *shifts.names))
     roots = [np.sqrt(s.weight) for s in plain]
     residual = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
-    own = np.concatenate([w * d.T for w, (_, d) in zip(roots, parts, strict=True)])
-    own = own * np.append(np.ones(len(free)), shifts.row)
+    slopes = np.concatenate([w * d.T for w, (_, d) in zip(roots, parts, strict=True)])
+    slopes = slopes * np.append(np.ones(len(free)), shifts.row)
     samples = shifts.start(model)
-    known, slope = shifts.prior(samples, residual, own)
+    known, slope = shifts.prior(samples, residual, slopes)
     columns = np.vstack([weighted_columns(s) for s in plain])
     nothing = np.zeros((len(known), columns.shape[1]))
     return (
         np.vstack([columns, nothing]),
         np.append(residual, known),
-        np.vstack([own, slope]),
+        np.vstack([slopes, slope]),
         plain,
     )
 
@@ -196,8 +202,8 @@ def link_errors(arm: ArmFit, prepared: PreparedArm) -> Array:
     """Standard errors (b,) of the base parameters; NaN where a parameter is not told."""
     rows, left, blocks, first = [], [], [], 0
     for j, fit in arm.fits.items():
-        columns, residual, own, plain = _linear(fit.model, arm.prepared[j].of("fit"))
-        basis, n = _basis(own), len(residual)
+        columns, residual, slopes, plain = _linear(fit.model, arm.prepared[j].of("fit"))
+        basis, n = _basis(slopes), len(residual)
         numbers = block_numbers(plain)
         numbers = np.append(numbers, np.full(n - len(numbers), numbers.max() + 1))
         rows.append((columns - basis @ (basis.T @ columns)) / prepared.size[j])

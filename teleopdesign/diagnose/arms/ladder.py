@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from ...measurement.experiment import Experiment
 from ...model import Model
-from ..decision import moment_above_noise, verdict
+from ..decision import is_better, moment_above_noise, verdict
 from ..diagnosis import Diagnosis
 from ..fit import Fit, estimate, fit_squares
 from ..ladder_state import LadderSearch, LadderState, look
@@ -60,7 +60,7 @@ def find_missing_in_arm(
     said("forces of the links along the measured motion")
     prepared = prepare_arm(experiment, seed=seed)
     models = {
-        j: Model({j: body}, stated.known).with_links(prepared.given)
+        j: Model({j: body}, stated.known).with_links(prepared.initial)
         for j, body in stated.bodies.items()
     }
     said("re-estimating the model")
@@ -118,8 +118,8 @@ def _climb(joints: dict[str, _Joint], prepared: PreparedArm) -> list[tuple[str, 
         j = max(waiting, key=lambda name: joints[name].gain)
         here = joints[j]
         if here.is_stale:
-            own = {n: x.search.prepared for n, x in joints.items()}
-            fresh = with_known(own, {n: x.state.fit for n, x in joints.items()}, prepared, j)
+            records = {n: x.search.prepared for n, x in joints.items()}
+            fresh = with_known(records, {n: x.state.fit for n, x in joints.items()}, prepared, j)
             joints[j] = _begun(here.search, fresh, here.state.fit.model)
             continue
         state = here.state
@@ -143,13 +143,13 @@ def _next(search: LadderSearch, state: LadderState) -> LadderState | None:
 
 
 def with_known(
-    own: dict[str, Prepared], fits: dict[str, Fit], prepared: PreparedArm, joint: str
+    records: dict[str, Prepared], fits: dict[str, Fit], prepared: PreparedArm, joint: str
 ) -> Prepared:
     """A joint's records with what the other joints say of the links by their fits."""
     if prepared.base is None:
-        return own[joint]
-    known = {j: knowledge(f.model, own[j].of("fit"), prepared.size[j]) for j, f in fits.items()}
-    return with_others(own[joint], known, prepared.size[joint], joint)
+        return records[joint]
+    known = {j: knowledge(f.model, records[j].of("fit"), prepared.size[j]) for j, f in fits.items()}
+    return with_others(records[joint], known, prepared.size[joint], joint)
 
 
 def _rungs(
@@ -160,7 +160,8 @@ def _rungs(
 ) -> tuple[ArmRung, ...]:
     """The ladder of the arm: each effect with all joints estimated again; none raises the error.
 
-    joints: an effect that does not lower the error of the whole arm is taken from its ladder
+    joints: an effect that no longer helps beside what was found at other joints, or that raises the
+        error of the whole arm, is taken from its ladder
     """
     rungs = [ArmRung(None, first)]
     stopped: set[str] = set()
@@ -171,7 +172,9 @@ def _rungs(
         models = {n: f.model for n, f in rungs[-1].fit.fits.items()}
         models[j] = rung.fit.model
         fit = estimate_arm(models, prepared, rounds=1)
-        if fit.check_error > rungs[-1].fit.check_error:
+        before, after, state = rungs[-1].fit.fits[j], fit.fits[j], joints[j].state
+        helps = is_better(before, after, state.floor, criteria=joints[j].search.criteria)
+        if fit.check_error > rungs[-1].fit.check_error or not helps:
             stopped.add(j)
             kept = joints[j].state.rungs[:i]
             joints[j] = replace(joints[j], state=joints[j].state.with_rungs(kept))
@@ -188,15 +191,15 @@ def _conclude(
 ) -> ArmDiagnosis:
     """The verdict on each joint with the final links, and on the arm."""
     last = rungs[-1].fit
-    own = {j: _concluded(joints[j], last.fits[j]) for j in prepared.joints}
-    verdicts = {d.verdict for d in own.values()}
+    diagnoses = {j: _concluded(joints[j], last.fits[j]) for j in prepared.joints}
+    verdicts = {d.verdict for d in diagnoses.values()}
     whole = "undecided"
     if "effects_missing" in verdicts:
         whole = "effects_missing"
     elif verdicts == {"model_adequate"}:
         whole = "model_adequate"
     errors = () if prepared.base is None else tuple(link_errors(last, prepared).tolist())
-    return ArmDiagnosis(experiment, prepared, whole, rungs, own, errors)
+    return ArmDiagnosis(experiment, prepared, whole, rungs, diagnoses, errors)
 
 
 def _concluded(joint: _Joint, fit: Fit) -> Diagnosis:

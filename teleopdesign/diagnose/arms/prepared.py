@@ -38,9 +38,9 @@ class PreparedArm(ByValue):
     size: Mapping[str, float]
 
     @property
-    def given(self) -> tuple[float, ...]:
+    def initial(self) -> tuple[float, ...]:
         """Base parameters by the values that the arm's description gives."""
-        return () if self.base is None else tuple(float(x) for x in self.base.given)
+        return () if self.base is None else tuple(float(x) for x in self.base.initial)
 
 
 def alone(experiment: Experiment, joint: str) -> Experiment:
@@ -75,8 +75,8 @@ def prepare_arm(experiment: Experiment, *, seed: int = 0) -> PreparedArm:
                 ]
                 drawn.append(_forces(arm, base, again))
         for k, (j, stretch) in enumerate(zip(joints, together, strict=True)):
-            own = replace(links[k], drawn=tuple(forces[k] for forces in drawn))
-            stretches[j].append(replace(stretch, motion=replace(stretch.motion, links=own)))
+            mine = replace(links[k], drawn=tuple(forces[k] for forces in drawn))
+            stretches[j].append(replace(stretch, motion=replace(stretch.motion, links=mine)))
     made = {j: replace(prepared[j], stretches=tuple(stretches[j])) for j in joints}
     size = {j: float(np.sqrt(sum(s.measured for s in made[j].of("fit")))) for j in joints}
     for j in joints:
@@ -96,8 +96,8 @@ def _forces(arm: Chain, base: BaseParameters | None, motions: Sequence[Motion]) 
     for k, motion in enumerate(motions):
         nothing: Array = np.zeros(len(motion.time))
         if base is None:
-            given = arm.inertial @ columns[k, : len(arm.inertial)]
-            forces.append(LinkForces(given, np.zeros((0, len(given))), np.zeros((0, len(given)))))
+            force = arm.inertial @ columns[k, : len(arm.inertial)]
+            forces.append(LinkForces(force, *np.zeros((2, 0, len(force)))))
             continue
         mine = np.ascontiguousarray(columns[k, base.chosen])
         forces.append(LinkForces(nothing, mine, motion.lowpassed(mine)))
