@@ -8,8 +8,8 @@ So a joint can be compared alone: to minimise
 
 is to minimise |W r|^2 with W = (1 + Y H^-1 Y^T)^(-1/2): directions in which the links could have
 made the residual r count less, and not at all where no other joint knows them. W is the identity
-less as many directions as there are base parameters. All squares are relative to the measured
-force of each joint, so that their sum is that of the arm.
+less as many directions as there are base parameters. Squares of each joint are relative to what its
+model leaves: a joint that lacks an effect says little of the links.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def _parted(knowledge: Knowledge, squares: Array) -> tuple[Array, Array]:
 class Shared(ByValue):
     """What takes the freedom of the links out of the residuals on one stretch.
 
-    others: what the other joints know;  size: root of the joint's measured squares
+    others: what the other joints know;  size: by which the joint's force counts among theirs
     columns: (rows, b) low-passed force per base parameter, times the root of the rows' weight
     basis: (rows, m) of directions common to all stretches;  less: (m,) by which each counts less
     back: (b, m) base parameters per residual in each direction;  centre: (b,)
@@ -87,7 +87,7 @@ class Shared(ByValue):
 def share(stretches: Sequence[Stretch], others: Knowledge, size: float) -> tuple[Stretch, ...]:
     """The stretches of one joint with what takes the freedom of the links out of them.
 
-    size: root of the joint's measured squares, by which its force counts among those of others
+    size: root of the squares that the joint's model leaves, or of those measured
     """
     columns = [weighted_columns(s) for s in stretches]
     all_rows = np.vstack(columns) / size

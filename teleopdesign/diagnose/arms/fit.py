@@ -25,6 +25,8 @@ from ..search import estimate_from_starts
 from ..shared_links import Knowledge, share, weighted_columns
 from .prepared import PreparedArm
 
+#: part of the measured force below which what is left does not make a joint count for more
+LEAST = 1e-4
 #: rounds over all joints for a fit: what a third changes is below 1e-3 of the error
 ROUNDS = 2
 
@@ -75,12 +77,11 @@ def estimate_arm(
     models, fits, records = dict(models), {}, dict(prepared.joints)
     for k in range(rounds):
         if prepared.base is not None:
-            known = {
-                j: knowledge(models[j], p.of("fit"), prepared.size[j]) for j, p in records.items()
-            }
+            sizes = misfits(models, prepared)
+            known = {j: knowledge(models[j], p.of("fit"), sizes[j]) for j, p in records.items()}
             common = _together(known)
             models = {j: m.with_links(common) for j, m in models.items()}
-            records = {j: with_others(p, known, prepared.size[j], j) for j, p in records.items()}
+            records = {j: with_others(p, known, sizes[j], j) for j, p in records.items()}
         for j, model in models.items():
             start = bool(model.absent) and k == 0
             fits[j] = (
@@ -98,9 +99,8 @@ def with_common_links(
     """Fits of all joints, held against the records at base parameters that all agree on."""
     links: tuple[float, ...] = ()
     if prepared.base is not None:
-        known = {
-            j: knowledge(f.model, records[j].of("fit"), prepared.size[j]) for j, f in fits.items()
-        }
+        sizes = misfits({j: f.model for j, f in fits.items()}, prepared)
+        known = {j: knowledge(f.model, records[j].of("fit"), sizes[j]) for j, f in fits.items()}
         links = _together(known)
     fits = {j: replace(f, model=f.model.with_links(links)) for j, f in fits.items()}
     checked = bool(prepared.experiment.check_records)
@@ -116,6 +116,18 @@ def with_common_links(
     )
 
 
+def misfits(models: Mapping[str, Model], prepared: PreparedArm) -> dict[str, float]:
+    """Joint -> root of the squares that its model leaves: by these, joints count as observations.
+
+    So a joint that lacks an effect does not lead the links astray, on which all others depend. As
+    long as an effect still waits for its start, by the measured squares.
+    """
+    if any(m.absent for m in models.values()):
+        return dict(prepared.size)
+    left = {j: force_error(m, bare(prepared.joints[j].of("fit"))) for j, m in models.items()}
+    return {j: max(left[j], LEAST) * size for j, size in prepared.size.items()}
+
+
 def bare(stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
     """Stretches as they were measured, with the links' freedom left in."""
     return tuple(replace(s, shared=None) for s in stretches)
@@ -124,7 +136,7 @@ def bare(stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
 def knowledge(model: Model, stretches: tuple[Stretch, ...], size: float) -> Knowledge:
     """What one joint knows of the base parameters, its own parameters free.
 
-    size: root of its measured squares
+    size: root of the squares that count as one observation's
     """
     columns, residual, slopes, _ = _linear(model, stretches)
     basis = _basis(slopes)
@@ -200,14 +212,15 @@ def with_others(
 
 def link_errors(arm: ArmFit, prepared: PreparedArm) -> Array:
     """Standard errors (b,) of the base parameters; NaN where a parameter is not told."""
+    sizes = misfits({j: f.model for j, f in arm.fits.items()}, prepared)
     rows, left, blocks, first = [], [], [], 0
     for j, fit in arm.fits.items():
         columns, residual, slopes, plain = _linear(fit.model, arm.prepared[j].of("fit"))
         basis, n = _basis(slopes), len(residual)
         numbers = block_numbers(plain)
         numbers = np.append(numbers, np.full(n - len(numbers), numbers.max() + 1))
-        rows.append((columns - basis @ (basis.T @ columns)) / prepared.size[j])
-        left.append((residual - basis @ (basis.T @ residual)) / prepared.size[j])
+        rows.append((columns - basis @ (basis.T @ columns)) / sizes[j])
+        left.append((residual - basis @ (basis.T @ residual)) / sizes[j])
         blocks.append(numbers + first)
         first = int(blocks[-1].max()) + 1
     return standard_errors(np.vstack(rows), np.concatenate(left), np.concatenate(blocks))

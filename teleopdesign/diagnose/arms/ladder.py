@@ -21,7 +21,7 @@ from ..prepare import Prepared
 from ..probability import probable
 from ..rung import Rung
 from .diagnosis import ArmDiagnosis, ArmRung
-from .fit import ArmFit, estimate_arm, knowledge, link_errors, with_others
+from .fit import ArmFit, estimate_arm, knowledge, link_errors, misfits, with_others
 from .prepared import PreparedArm, alone, mean_inertias, prepare_arm, with_inertias
 
 
@@ -148,8 +148,9 @@ def with_known(
     """A joint's records with what the other joints say of the links by their fits."""
     if prepared.base is None:
         return records[joint]
-    known = {j: knowledge(f.model, records[j].of("fit"), prepared.size[j]) for j, f in fits.items()}
-    return with_others(records[joint], known, prepared.size[joint], joint)
+    sizes = misfits({j: f.model for j, f in fits.items()}, prepared)
+    known = {j: knowledge(f.model, records[j].of("fit"), sizes[j]) for j, f in fits.items()}
+    return with_others(records[joint], known, sizes[joint], joint)
 
 
 def _rungs(
