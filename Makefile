@@ -7,6 +7,10 @@ PYTEST_ARGS ?=
 FUZZ ?= 2000
 STUDY_ARGS ?=
 STUDY_OUTPUT ?= studies/output
+# processes at a time, of tests and of studies
+JOBS ?= 2
+# parts in which pages are read: more than cores, for some pages take minutes and others none
+PARTS ?= 4
 PIP := $(BIN)/python -m pip --disable-pip-version-check --no-input
 
 .PHONY: help demo test slow lint types imports docs studies benchmarks fuzz ci clean
@@ -35,13 +39,13 @@ demo: $(VENV)/installed-core  ## diagnose a recording that comes with the packag
 	@echo "== Demo: find the physical effect that a model lacks"
 	@$(BIN)/teleopdesign demo
 
-test: $(VENV)/installed-test  ## plain tests, some two minutes (PYTEST_ARGS adds or overrides)
+test: $(VENV)/installed-test  ## plain tests, some three minutes (PYTEST_ARGS adds or overrides)
 	@echo "== Tests without those marked slow"
-	@$(BIN)/pytest -n 2 $(PYTEST_ARGS)
+	@$(BIN)/pytest -n $(JOBS) $(PYTEST_ARGS)
 
 slow: $(VENV)/installed-test  ## tests marked slow
 	@echo "== Slow tests"
-	@$(BIN)/pytest -n 2 -m slow $(PYTEST_ARGS)
+	@$(BIN)/pytest -n $(JOBS) -m slow $(PYTEST_ARGS)
 
 fuzz: $(VENV)/installed-test  ## spoilt files for every reader, FUZZ of each; failures go to build/fuzz
 	@echo "== $(FUZZ) spoilt files for each reader"
@@ -66,14 +70,13 @@ imports: $(VENV)/installed-test  ## direction of imports between folders
 
 docs: $(VENV)/installed-docs  ## documentation in docs/_build/html, warnings are errors
 	@echo "== Documentation"
-	@$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
+	@$(BIN)/sphinx-build -W --keep-going -q -j $(PARTS) -b html docs docs/_build/html
 	@echo "docs/_build/html/index.html"
 
 studies: $(VENV)/installed-studies  ## every study, figures and numbers into STUDY_OUTPUT (STUDY_ARGS=--quick)
-	@set -e; for study in studies/[!_]*.py; do \
-		echo "== $$study"; \
-		$(BIN)/python "$$study" $(STUDY_ARGS) --output "$(STUDY_OUTPUT)"; \
-	done
+	@printf '%s\n' studies/[!_]*.py | xargs -P $(JOBS) -I {} sh -c \
+		'said=$$($(BIN)/python {} $(STUDY_ARGS) --output "$(STUDY_OUTPUT)" 2>&1); status=$$?; \
+		printf "== %s\n%s\n" {} "$$said"; exit $$status'
 
 ci:  ## everything that must hold, in the order of .ci/run
 	@.ci/run

@@ -88,7 +88,11 @@ def _parser() -> argparse.ArgumentParser:
         command = import_module(f"{commands.__name__}.{module.name}")
         subparser = subparsers.add_parser(module.name.replace("_", "-"), help=command.__doc__)
         command.add(subparser)
-        subparser.set_defaults(run=command.run)
+        if examples := getattr(command, "EXAMPLES", ""):
+            subparser.epilog = f"examples:\n{examples.rstrip().lstrip(chr(10))}"
+            subparser.formatter_class = argparse.RawDescriptionHelpFormatter
+        subparser.description = command.__doc__
+        subparser.set_defaults(run=command.run, parser=parser)
     return parser
 
 

@@ -1,5 +1,7 @@
-"""Under CI the property-based tests draw the same examples each time; elsewhere new ones.
+"""What all tests share: how examples are drawn, one diagnosis of the shipped rod, two test devices.
 
+Under CI the property-based tests draw the same examples each time; elsewhere new ones: fifty where
+a test says no other number. None has a deadline: on a loaded machine it would measure the load.
 The truth simulator of tests/hidden can be imported everywhere.
 """
 
@@ -9,15 +11,44 @@ from pathlib import Path
 
 import pytest
 from devices import CANCELLATION, FEEDBACK, LOOP, LUGRE, body
+from few_effects import FEW
 from hypothesis import settings
 
 from teleopdesign.diagrams import haptic_interface
 
 sys.path.insert(0, str(Path(__file__).parent / "hidden"))
 
-settings.register_profile("ci", derandomize=True, deadline=None)
-if os.environ.get("CI"):
-    settings.load_profile("ci")
+settings.register_profile("ci", derandomize=True, deadline=None, max_examples=50)
+settings.register_profile("here", deadline=None, max_examples=50)
+settings.load_profile("ci" if os.environ.get("CI") else "here")
+
+#: folder of tests -> what it shares with other folders and costs seconds: they stay together
+TOGETHER = {
+    "diagnose": "a diagnosis of a simulated case",
+    "next_experiment": "a diagnosis of a simulated case",
+    "design": "a diagnosis of the rod",
+    "report": "a diagnosis of the rod",
+    "unexplained": "a fit of the rod",
+}
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Tests of one file go to one worker, so that no fixture is made twice; those of some folders.
+
+    Slow tests are single pieces of work: the worker that has none left takes from the other.
+    """
+    from xdist.scheduler import LoadScopeScheduling, WorkStealingScheduling
+
+    if config.option.markexpr == "slow":
+        return WorkStealingScheduling(config, log)
+
+    class ByFile(LoadScopeScheduling):
+        def _split_scope(self, nodeid):
+            file = nodeid.partition("::")[0]
+            return TOGETHER.get(Path(file).parent.name, file)
+
+    return ByFile(config, log)
 
 
 @pytest.fixture
@@ -30,3 +61,48 @@ def hybrid():
         force_feedback=FEEDBACK,
         position_loop=LOOP,
     )
+
+
+@pytest.fixture
+def choose_from(monkeypatch):
+    """choose_from(names): from here on the commands choose from these effects and a user's own."""
+    from teleopdesign import effects
+
+    known = effects.catalogue
+
+    def limit(names):
+        monkeypatch.setattr(
+            effects,
+            "catalogue",
+            lambda extra=(): {
+                n: e for n, e in known(extra).items() if n in names or n not in effects.EFFECTS
+            },
+        )
+
+    return limit
+
+
+@pytest.fixture
+def few(choose_from):
+    """The commands choose from `FEW`: a diagnosis takes a second or two."""
+    choose_from(FEW)
+
+
+@pytest.fixture(scope="session")
+def rod_diagnosis():
+    """The shipped experiment, diagnosed among few effects."""
+    from teleopdesign import EFFECTS, Model, example, find_missing, load_experiment
+
+    experiment = load_experiment(example("rod"))
+    known = {n: EFFECTS[n] for n in FEW}
+    return find_missing(experiment, Model.from_experiment(experiment, known))
+
+
+@pytest.fixture(scope="session")
+def rod_answer(rod_diagnosis, tmp_path_factory):
+    """The answer file of that diagnosis."""
+    from teleopdesign.diagnose.answer import write_answer
+
+    path = tmp_path_factory.mktemp("rod") / "answer.json"
+    write_answer(rod_diagnosis, path)
+    return path

@@ -14,8 +14,6 @@ from teleopdesign import EFFECTS
 from teleopdesign.cli import main
 
 ROD = Path(teleopdesign.__file__).parent / "examples" / "rod"
-FEW = ("coulomb", "viscous", "stribeck", "presliding", "bias", "spring")
-
 OWN = '''"""Own drag: a force in proportion to the square of velocity.
 
     F = D v abs(v)
@@ -42,19 +40,6 @@ EFFECT = Effect(
 def rod(tmp_path):
     """A copy of the experiment that ships with the package."""
     return Path(shutil.copytree(ROD, tmp_path / "rod"))
-
-
-@pytest.fixture
-def few(monkeypatch):
-    """A catalogue of few effects, so that a diagnosis takes a second."""
-    from teleopdesign import effects
-
-    known = effects.catalogue
-    monkeypatch.setattr(
-        effects,
-        "catalogue",
-        lambda extra=(): {n: e for n, e in known(extra).items() if n in FEW or n not in EFFECTS},
-    )
 
 
 def run(*arguments):
@@ -325,6 +310,7 @@ def test_the_demo_names_the_effect_and_writes_its_files(tmp_path, capsys):
     found = json.loads((tmp_path / "demo" / "answer.json").read_text())
     assert violations(found) == []
     assert found["verdict"] == "effects_missing"
+    assert found["missing"] == [{"effect": "stribeck", "at": "device"}]
 
 
 def test_a_reader_that_stops_early_is_no_error():

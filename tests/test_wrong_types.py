@@ -195,11 +195,12 @@ def test_a_method_refuses_what_it_cannot_take(make, name):
             refused_or_taken(method, {**given, one.name: wrong})
 
 
-@pytest.mark.parametrize("function", [*functions()])
-def test_every_public_function_is_checked(function):
-    assert hasattr(function, "_is_checked")
-    parameters = inspect.signature(function).parameters.values()
-    assert all(p.annotation is not p.empty for p in parameters)
+def test_every_public_function_is_checked():
+    for case in functions():
+        (function,) = case.values
+        assert hasattr(function, "_is_checked"), case.id
+        parameters = inspect.signature(function).parameters.values()
+        assert all(p.annotation is not p.empty for p in parameters), case.id
 
 
 def test_a_wrong_call_stays_a_type_error():

@@ -192,10 +192,10 @@ def _outdated(app: Sphinx, env: Any, *_: Any) -> list[str]:
     ]
 
 
-def _clean(*_: Any) -> None:
-    for one in PAGES.values():
-        shutil.rmtree(one.folder, ignore_errors=True)
-    PAGES.clear()
+def _clean(app: Sphinx, *_: Any) -> None:
+    """Where a page was read, in this process or another, its folder is no longer needed."""
+    if done := PAGES.pop(app.env.docname, None):
+        shutil.rmtree(done.folder, ignore_errors=True)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
@@ -206,5 +206,6 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.add_directive("shell", Shell)
     app.add_directive("shown", Shown)
     app.connect("env-get-outdated", _outdated)
-    app.connect("build-finished", _clean)
-    return {"parallel_read_safe": False, "parallel_write_safe": True}
+    app.connect("doctree-read", _clean)
+    # each page has a folder, a namespace and names of figures of its own
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..plot.diagnosis import AFTER, BACKWARD, FORWARD
+from ..plot.diagnosis import AFTER, BACKWARD, BEFORE, FORWARD
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -109,6 +109,44 @@ def _forces(unit: dict[str, str]) -> dict[str, Any]:
             "color": {"field": "force", "type": "nominal", "scale": colours, "legend": _above()},
         },
     }
+
+
+def comparison_chart(
+    one: Dataset, other: Dataset, body: str, use: str, names: tuple[str, str]
+) -> Chart:
+    """The residual of two models over velocity and time, one above the other.
+
+    one, other: as `Comparison.data`;  names: of the two models
+    """
+    rows = [
+        {**row, "of": name}
+        for data, name in zip((one, other), names, strict=True)
+        for row in rows_of(data, body, use)
+    ]
+    unit = one["residual"].attrs["units"]
+    residual = {"field": "residual", "type": "quantitative", "title": f"residual ({unit})"}
+    colours = {"domain": list(names), "range": [BEFORE, AFTER]}
+    of = {"field": "of", "type": "nominal", "scale": colours, "legend": _above()}
+
+    def over(name: str) -> dict[str, Any]:
+        title = f"{name} ({one[name].attrs['units']})"
+        along = {"field": name, "type": "quantitative", "title": title, "scale": {"zero": False}}
+        return {
+            "data": {"name": ROWS},
+            "width": WIDE,
+            "height": HIGH,
+            "mark": {"type": "circle", "size": 9, "opacity": 0.6},
+            "encoding": {"x": along, "y": residual, "color": of, "tooltip": _tip()},
+        }
+
+    return Chart(
+        {
+            "$schema": "https://vega.github.io/schema/vega-lite/v5.json",
+            "datasets": {ROWS: rows},
+            "vconcat": [over("velocity"), over("time")],
+            "config": {"axis": {"grid": False}},
+        }
+    )
 
 
 def _by_direction() -> dict[str, Any]:

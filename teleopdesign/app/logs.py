@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError
-from ..measurement.new_folder import make_folder
-from ..measurement.survey import Choices, Survey, survey_log
+from ..measurement.new_folder import FitAndCheck, check_spans, make_folder
+from ..measurement.survey import Choices, Survey, spans_of, survey_log
 from ..measurement.tables import open_log
 from .files import inside
 
@@ -48,9 +49,19 @@ class Preview:
             )
         return "\n".join(lines)
 
-    def plot(self) -> Figure:
-        """The columns that were taken, over time, as they are written in the log."""
+    def spans(self) -> FitAndCheck:
+        """The fit and check spans that are proposed, s from the first row, within the log."""
+        (begin, cut), (after, _) = spans_of(self.survey.duration)
+        return (begin, cut), (after, self.survey.duration)
+
+    def plot(self, spans: FitAndCheck | None = None) -> Figure:
+        """The columns that were taken, over time, as they are written in the log.
+
+        spans: drawn over them: what is fitted, and what is checked
+        """
         from matplotlib.figure import Figure
+
+        from ..plot.log import shade_spans
 
         shown = [
             (key, entry)
@@ -64,6 +75,8 @@ class Preview:
             values = self.survey.columns[entry["column"]].values
             axes.plot(self.survey.time[some], values[some], lw=0.8)
             axes.set_ylabel(f"{key.replace('_', ' ')}\n({entry.get('unit', '')})")
+        if spans is not None:
+            shade_spans(panels, spans)
         panels[-1].set_xlabel("time (s)")
         return figure
 
@@ -79,17 +92,25 @@ def preview(folder: Path, name: str, choices: Choices | None = None) -> Preview:
     return Preview(name, tuple(log.names), survey_log(log, path.name, choices or Choices()))
 
 
-def make_experiment(folder: Path, shown: Preview) -> str:
+def spans_of_sliders(fit: Sequence[float], check: Sequence[float], shown: Preview) -> FitAndCheck:
+    """What two sliders say; raises ExperimentError where the spans overlap or are empty."""
+    spans = (fit[0], fit[1]), (check[0], check[1])
+    check_spans(spans, shown.survey.duration, [Path(shown.name).name])
+    return spans
+
+
+def make_experiment(folder: Path, shown: Preview, spans: FitAndCheck | None = None) -> str:
     """Make the experiment's folder beside the log; its name relative to the page's folder.
 
-    raises ExperimentError: the folder is there already, or cannot be written
+    spans: of the fit and the check record; default: those that are proposed
+    raises ExperimentError: the folder is there already, or cannot be written; spans that overlap
     """
     log = inside(folder, shown.name)
     stem = log.name.split(".")[0] or "experiment"
     target = inside(folder, f"{stem}_experiment")
     if target.exists():
         raise ExperimentError(f"{target.name}: is there already: rename it or the log")
-    make_folder(shown.survey, [log], target, title=stem)
+    make_folder(shown.survey, [log], target, title=stem, spans=spans)
     return str(target.relative_to(folder))
 
 

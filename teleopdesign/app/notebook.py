@@ -15,10 +15,12 @@ def _():
     from teleopdesign.errors import TeleopDesignError
 
     folder = settings.folder(mo.cli_args().to_dict())
+    among = settings.effects(mo.cli_args().to_dict())
     return (
         BackgroundTask,
         TeleopDesignError,
         Workbench,
+        among,
         charts,
         export,
         files,
@@ -63,7 +65,7 @@ def _(files, folder, get_names, mo):
 
 
 @app.cell
-def _(BackgroundTask, Workbench, choice, files, folder, mo, set_note, set_task):
+def _(BackgroundTask, Workbench, among, choice, files, folder, mo, set_note, set_task):
     def start_opening(_):
         if choice.value is None:
             set_note("choose an experiment first")
@@ -72,7 +74,8 @@ def _(BackgroundTask, Workbench, choice, files, folder, mo, set_note, set_task):
         set_note("")
         set_task(
             BackgroundTask(
-                f"opening {choice.value}", lambda say: Workbench.of_folder(path, progress=say)
+                f"opening {choice.value}",
+                lambda say: Workbench.of_folder(path, among=among, progress=say),
             )
         )
 
@@ -92,12 +95,29 @@ def _(files, folder, get_names, mo):
 
 @app.cell
 def _(TeleopDesignError, folder, log, logs, mo):
-    columns, trouble = (), ""
+    columns, trouble, duration = (), "", 1.0
+    proposed = ((0.0, 0.7), (0.7, 1.0))
     if log.value is not None:
         try:
-            columns = logs.preview(folder, log.value).columns
+            first_look = logs.preview(folder, log.value)
         except TeleopDesignError as error:
             trouble = str(error)
+        else:
+            columns, duration = first_look.columns, first_look.survey.duration
+            proposed = first_look.spans()
+    fit_span, check_span = (
+        mo.ui.range_slider(
+            start=0.0,
+            stop=duration,
+            step=duration / 500,
+            value=list(span),
+            show_value=True,
+            debounce=True,
+            full_width=True,
+            label=f"{use} span (s)",
+        )
+        for use, span in zip(("fit", "check"), proposed, strict=True)
+    )
     form = mo.ui.dictionary(
         {
             "axis": mo.ui.dropdown(["prismatic", "revolute"], label="axis"),
@@ -106,24 +126,40 @@ def _(TeleopDesignError, folder, log, logs, mo):
             "gear ratio": mo.ui.text(label="gear ratio"),
         }
     )
-    return columns, form, trouble
+    return check_span, columns, fit_span, form, trouble
 
 
 @app.cell
-def _(TeleopDesignError, columns, drop, folder, form, log, logs, mo, set_names, set_note, trouble):
+def _(
+    TeleopDesignError,
+    check_span,
+    columns,
+    drop,
+    fit_span,
+    folder,
+    form,
+    log,
+    logs,
+    mo,
+    set_names,
+    set_note,
+    trouble,
+):
     parts = [drop]
     if log.value is not None:
         parts.append(log)
     if columns:
         try:
             understood = logs.preview(folder, log.value, logs.choices_of(form.value))
+            spans = logs.spans_of_sliders(fit_span.value, check_span.value, understood)
         except TeleopDesignError as error:
-            parts += [form, mo.callout(str(error), kind="warn")]
+            parts += [form, fit_span, check_span, mo.callout(str(error), kind="warn")]
         else:
 
             def make(_):
                 try:
-                    set_note(f"{logs.make_experiment(folder, understood)} is made: open it above")
+                    made = logs.make_experiment(folder, understood, spans)
+                    set_note(f"{made} is made: open it above")
                 except TeleopDesignError as error:
                     set_note(str(error))
                 set_names(lambda n: n + 1)
@@ -132,7 +168,10 @@ def _(TeleopDesignError, columns, drop, folder, form, log, logs, mo, set_names, 
                 mo.md("What is left empty is found. Choose what was found wrongly:"),
                 mo.hstack(list(form.elements.values()), wrap=True, justify="start"),
                 mo.md(understood.table()),
-                understood.plot(),
+                mo.md("What is fitted, and what is checked:"),
+                fit_span,
+                check_span,
+                understood.plot(spans),
                 mo.ui.button(label="Make the experiment", on_click=make, kind="success"),
             ]
     elif trouble:
@@ -207,6 +246,36 @@ def _(bench, body, charts, mo, pages, rung, use):
         ]
     )
     return (residual_view,)
+
+
+@app.cell
+def _(bench, mo, pages):
+    several = list(pages.rung_options(bench).items())
+    one_model = mo.ui.dropdown(options=dict(several), value=several[0][0], label="One model")
+    other_model = mo.ui.dropdown(options=dict(several), value=several[-1][0], label="Another")
+    return one_model, other_model
+
+
+@app.cell
+def _(bench, body, charts, mo, one_model, other_model, pages, use):
+    pair = one_model.value, other_model.value
+    compare_parts = [mo.hstack([one_model, other_model], justify="start")]
+    if pair[0] == pair[1]:
+        compare_parts.append(mo.md("Choose two models of the ladder; *Add* makes another one."))
+    else:
+        names_of_pair = (one_model.selected_key, other_model.selected_key)
+        compare_parts += [
+            mo.md(pages.compared(bench, *pair)),
+            charts.comparison_chart(
+                pages.residuals(bench, pair[0]),
+                pages.residuals(bench, pair[1]),
+                body.value,
+                use.value,
+                names_of_pair,
+            ),
+        ]
+    compare_view = mo.vstack(compare_parts)
+    return (compare_view,)
 
 
 @app.cell
@@ -323,13 +392,24 @@ def _(bench, export, folder, mo, set_note):
 
 
 @app.cell
-def _(design_view, export_view, ladder_view, left_view, mo, next_view, residual_view, slider_view):
+def _(
+    compare_view,
+    design_view,
+    export_view,
+    ladder_view,
+    left_view,
+    mo,
+    next_view,
+    residual_view,
+    slider_view,
+):
     mo.vstack(
         [
             ladder_view,
             mo.ui.tabs(
                 {
                     "Residual": residual_view,
+                    "Compare": compare_view,
                     "Parameters": slider_view,
                     "What is left": left_view,
                     "Next experiment": next_view,

@@ -66,6 +66,31 @@ def candidate_rows(bench: Workbench) -> list[dict[str, str]]:
     ]
 
 
+def compared(bench: Workbench, one: int, other: int) -> str:
+    """Errors and parameters of two rungs side by side, as a Markdown table."""
+    first, second = bench.rungs[one].fit, bench.rungs[other].fit
+    lines = [
+        f"| | {_name(bench.rungs[one])} | {_name(bench.rungs[other])} |",
+        "|---|---:|---:|",
+        f"| fit error | {_percent(first.fit_error)} | {_percent(second.fit_error)} |",
+        f"| check error | {_percent(first.check_error)} | {_percent(second.check_error)} |",
+    ]
+    names = dict.fromkeys([*first.model.parameters, *second.model.parameters])
+    for name in names:
+        cells = [_estimate(fit.model, name) for fit in (first, second)]
+        lines.append(f"| `{name}` | {cells[0]} | {cells[1]} |")
+    return "\n".join(lines)
+
+
+def _estimate(model: Model, name: str) -> str:
+    """A parameter with its standard error and unit; "-" where the model has none of that name."""
+    if name not in model.parameters:
+        return "-"
+    value = model.parameters[name]
+    sure = f" ± {value.stderr:.2g}" if value.stderr == value.stderr else ""
+    return f"{value.value:.4g}{sure} {model.unit(name)}"
+
+
 def moved(bench: Workbench, parameter: str, factor: float) -> str:
     """What the errors become where one parameter is `factor` times its value."""
     value = bench.model.parameters[parameter]

@@ -5,7 +5,7 @@ Frozen: each step gives a new workbench, and the one before it is the way back.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -41,22 +41,30 @@ class Workbench:
         experiment: Experiment,
         *,
         known: Mapping[str, Effect] = EFFECTS,
+        among: Collection[str] | None = None,
         progress: Callable[[str], None] | None = None,
     ) -> Workbench:
         """The user's model re-estimated, and every candidate beside it; takes some seconds.
 
+        known: effects by name, which a description may use;  among: names of those that are tried
         raises ExperimentError: the experiment lacks what the comparison needs
         """
         model = Model.from_experiment(experiment, known)
+        if among is not None:
+            model = replace(model, known={n: e for n, e in known.items() if n in among})
         search = search_for(experiment, model, progress=progress)
         return cls(search, (begin(search),))
 
     @classmethod
     def of_folder(
-        cls, folder: str | Path, *, progress: Callable[[str], None] | None = None
+        cls,
+        folder: str | Path,
+        *,
+        among: Collection[str] | None = None,
+        progress: Callable[[str], None] | None = None,
     ) -> Workbench:
         """As `of`, of the experiment of a folder."""
-        return cls.of(load_experiment(folder), progress=progress)
+        return cls.of(load_experiment(folder), among=among, progress=progress)
 
     @property
     def experiment(self) -> Experiment:

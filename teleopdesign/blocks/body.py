@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import sympy as sp
 
@@ -148,12 +149,16 @@ class Body:
     def lacks(self, effect: Effect) -> tuple[str, ...]:
         """Names of what an effect needs beside it and the body has not, sorted.
 
-        Of a role that one effect of a body can have, another one of that role will do.
+        Of a role that one effect of a body can have, another one of that role will do; so will an
+        effect that counts as the one needed, where the law holds no parameter of that one.
         """
         roles = {e.role for e in self.effects} & set(ONE_ONLY)
         known = {n: EFFECTS[n].role for n in effect.needs if n in EFFECTS}
+        counted = {n for e in self.effects for n in e.counts_as} - effect.parameters_of_others()
         return tuple(
-            n for n in sorted(effect.needs) if not self.has(n) and known.get(n) not in roles
+            n
+            for n in sorted(effect.needs)
+            if not (self.has(n) or n in counted or known.get(n) in roles)
         )
 
     @checked
@@ -231,8 +236,7 @@ class Body:
 
     def symbols(self) -> dict[str, sp.Symbol]:
         """Parameter name -> sympy symbol of the equation: "coulomb.level" -> coulomb_level."""
-        of_effects = {f"{e.name}.{n}": s for e in self.effects for n, s in e.symbols().items()}
-        return {"inertia": sp.Symbol("inertia", real=True), **of_effects}
+        return dict(_symbols(self.effects))
 
     def numbers(self) -> dict[sp.Symbol, float]:
         """Parameter symbol -> value, to substitute in the equation."""
@@ -243,16 +247,7 @@ class Body:
 
         A factor scales the levels that it needs ("coulomb"), all of them where it needs none.
         """
-        factors = ordered(self.effects, "friction_factor")
-        level = sp.S(0)
-        for effect in ordered(self.effects, "friction_level"):
-            of_this_level = [
-                f.expression() for f in factors if not f.needs or effect.name in f.needs
-            ]
-            level += effect.expression() * sp.Mul(*of_this_level)
-        for effect in ordered(self.effects, "friction_speed"):
-            level = level.subs(SIGNALS["velocity"], effect.expression())
-        return level
+        return _level(self.effects)
 
     def tip_level(self) -> sp.Expr:
         """Level of the dry friction that holds the tip of a structure."""
@@ -369,3 +364,24 @@ def _effects(effects: object) -> tuple[Effect, ...]:
 
 
 __all__ = ["INERTIA", "Body", "BodyEquation", "Value"]
+
+
+# laws on symbols are asked for at every evaluation of a residual: they are built once
+
+
+@lru_cache(maxsize=256)
+def _symbols(effects: tuple[Effect, ...]) -> dict[str, sp.Symbol]:
+    of_effects = {f"{e.name}.{n}": s for e in effects for n, s in e.symbols().items()}
+    return {"inertia": sp.Symbol("inertia", real=True), **of_effects}
+
+
+@lru_cache(maxsize=256)
+def _level(effects: tuple[Effect, ...]) -> sp.Expr:
+    factors = ordered(effects, "friction_factor")
+    level = sp.S(0)
+    for effect in ordered(effects, "friction_level"):
+        of_this_level = [f.expression() for f in factors if not f.needs or effect.name in f.needs]
+        level += effect.expression() * sp.Mul(*of_this_level)
+    for effect in ordered(effects, "friction_speed"):
+        level = level.subs(SIGNALS["velocity"], effect.expression())
+    return level

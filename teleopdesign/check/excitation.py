@@ -9,7 +9,7 @@ from itertools import combinations
 
 import numpy as np
 
-from ..diagnose.candidates import Candidate, candidates
+from ..diagnose.candidates import Candidate, candidates, measured_at
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.effort import EFFORTS
 from ..diagnose.fit import Fit, estimate
@@ -36,8 +36,9 @@ def check_excitation(
     base = estimate(model, _unfolded(prepared), effort=EFFORTS.rough)
     floor = noise_floor(base.model, prepared, generator, use="fit")
     motions = [s.motion for s in prepared.of("fit")]
-    every = candidates(base.model)
-    judged = candidates(base.model, motions)
+    measured = measured_at(prepared.experiment)
+    every = candidates(base.model, measured=measured)
+    judged = candidates(base.model, motions, measured=measured)
     visible_effects = visibilities(base, prepared, judged, floor.value)
     findings: list[Finding] = []
     for place in base.model.places:

@@ -1,18 +1,21 @@
 """The experiment of a command, and its diagnosis: made now, or read from an answer.
 
-Every command that needs one comes by it here: from the experiment's folder, with `--answer F` from
-what `teleopdesign diagnose --json F` has written of it.
+Every command that needs one comes by it here: from the experiment's folder; with `--answer F` from
+what `teleopdesign diagnose --json F` has written of it; or from an answer alone, which says where
+its experiment is, and from a folder that holds `answer.json` and no experiment.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import ExperimentError, did_you_mean
-from ._options import add_effect_files, add_folder, say
+from ..errors import ExperimentError, ModelError, did_you_mean
+from ._options import add_effect_files, add_folder
+from ._progress import Reporter
+from ._terminal import print_styled
 
 if TYPE_CHECKING:
     from ..blocks import Body
@@ -25,10 +28,16 @@ if TYPE_CHECKING:
 
 def add_experiment(parser: argparse.ArgumentParser, *, answer: bool = True) -> None:
     """Arguments: the experiment's folder, the user's effects, and an answer to continue from."""
-    add_folder(parser)
     if answer:
+        parser.add_argument(
+            "folder",
+            type=Path,
+            help="folder with experiment.toml and its records, or an answer of `teleopdesign "
+            "diagnose --json`",
+        )
         add_answer(parser)
     else:
+        add_folder(parser)
         parser.set_defaults(answer=None)
     add_effect_files(parser)
 
@@ -43,11 +52,56 @@ def add_answer(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_search(parser: argparse.ArgumentParser) -> None:
+    """What a diagnosis searches."""
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help="a first look: two effects at most, no pairs, no exchanges, windows of long records; "
+        "what was left out is printed",
+    )
+    add_tried(parser)
+
+
+def add_tried(parser: argparse.ArgumentParser) -> None:
+    """Which effects are tried."""
+    for option, text in (
+        ("--only", "the effects that are tried (all that the model could take)"),
+        ("--exclude", "effects that are not tried"),
+    ):
+        parser.add_argument(
+            option, action="extend", nargs="+", default=[], metavar="EFFECT", help=text
+        )
+
+
 def known_of(options: argparse.Namespace) -> Mapping[str, Effect]:
     """The effects by name, the user's own among them."""
     from ..effects import catalogue
 
     return catalogue(options.effect)
+
+
+def tried_effects(
+    known: Mapping[str, Effect], only: Sequence[str], exclude: Sequence[str]
+) -> tuple[str, ...] | None:
+    """Names of the effects that a diagnosis tries; None where neither list has one: all.
+
+    only: names, all where empty;  exclude: names
+    raises ModelError: an unknown name, or none is left
+    """
+    from ..effects import find_effect
+
+    if not only and not exclude:
+        return None
+    for option, names in (("--only", only), ("--exclude", exclude)):
+        for name in names:
+            if name not in known and Path(name).exists():
+                raise ModelError(f'{option}: "{name}" is a file or folder: put it before {option}')
+            find_effect(name, known, option)
+    remaining = tuple(n for n in known if (not only or n in only) and n not in exclude)
+    if not remaining:
+        raise ModelError("--exclude: leaves no effect to try")
+    return remaining
 
 
 def experiment_of(folder: Path) -> Experiment:
@@ -59,6 +113,29 @@ def experiment_of(folder: Path) -> Experiment:
             f"{folder}: holds no records: give the folder of its experiment, and --answer {folder}"
         )
     return load_experiment(folder)
+
+
+def experiment_and_answer(options: argparse.Namespace) -> Experiment:
+    """The experiment of a folder, or of an answer, which then stands in `options.answer`."""
+    answer = _answer_in(options.folder)
+    if answer is None:
+        return experiment_of(options.folder)
+    if options.answer is not None:
+        raise ExperimentError(f"--answer: found beside {answer}, which is an answer itself")
+    from ..diagnose.answers import load_answer
+
+    options.answer, options.folder = answer, load_answer(answer).folder
+    return experiment_of(options.folder)
+
+
+def _answer_in(path: Path) -> Path | None:
+    """The answer that a path is, or that a folder without an experiment holds; None: none."""
+    if path.suffix == ".json" and path.is_file():
+        return path
+    saved = path / "answer.json"
+    if saved.is_file() and not (path / "experiment.toml").exists():
+        return saved
+    return None
 
 
 def stated_model(experiment: Experiment, options: argparse.Namespace) -> Model:
@@ -74,11 +151,60 @@ def diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> Diagnos
         from ..diagnose.answers import load_answer, restored
 
         return restored(load_answer(options.answer), experiment, known_of(options))
-    from ..diagnose import find_missing
+    return diagnosed(experiment, options)
 
-    diagnosis = find_missing(experiment, stated_model(experiment, options), progress=say)
-    say("")
+
+def diagnosed(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
+    """The diagnosis of an experiment, made now, with progress said."""
+    from ..diagnose import find_missing
+    from ..diagnose.search_plan import PLAN, QUICK
+
+    among = tried_effects(
+        known_of(options), getattr(options, "only", ()), getattr(options, "exclude", ())
+    )
+    model = stated_model(experiment, options)
+    plan = QUICK if getattr(options, "quick", False) else PLAN
+    reporter = Reporter()
+    diagnosis = find_missing(experiment, model, progress=reporter, plan=plan, among=among)
+    reporter.clear()
     return diagnosis
+
+
+#: beginning of a line of a diagnosis -> its style on a terminal
+_STYLES = {
+    "verdict: model_adequate": "good",
+    "verdict: undecided": "warning",
+    "verdict: effects_missing": "strong",
+    "+ ": "strong",
+    "noise floor": "faint",
+    "refused: ": "faint",
+    "left out: ": "warning",
+}
+
+
+def print_diagnosis(diagnosis: Diagnosis) -> None:
+    """Print the ladder and the verdict, in colours on a terminal."""
+
+    def style(line: str) -> str:
+        return next((s for begin, s in _STYLES.items() if line.startswith(begin)), "")
+
+    print_styled(str(diagnosis), style)
+
+
+def model_of_source(options: argparse.Namespace) -> tuple[Model, Path]:
+    """The diagnosed model, and the answer or folder that it comes from.
+
+    Of an answer alone (.json) it needs no records; of a folder without one it is diagnosed now.
+    """
+    from ..diagnose.answers import load_answer
+
+    alone = _answer_in(options.folder)
+    if alone is not None and options.answer is None:
+        return load_answer(alone).model(known_of(options)), alone
+    experiment = experiment_and_answer(options)
+    if options.answer is not None:
+        return load_answer(options.answer).model(known_of(options), experiment), options.answer
+    return diagnosed(experiment, options).model, options.folder
 
 
 def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Reach | None]:
@@ -101,7 +227,7 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
         model = load_answer(options.answer).model(known_of(options), experiment)
     else:
         diagnosis = diagnosis_of(experiment, options)
-        print(diagnosis)
+        print_diagnosis(diagnosis)
         print()
         model = diagnosis.model
     return model.bodies[place], reach_of(experiment, place)

@@ -38,6 +38,17 @@ def check_output(path: Path, endings: tuple[str, ...]) -> None:
     check_writable(path)
 
 
+def count_argument(text: str) -> int:
+    """A whole number from 1, as the type of an argument."""
+    try:
+        number = int(text)
+    except ValueError:
+        number = 0
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"found {text!r}, expected a whole number from 1")
+    return number
+
+
 def make_folder(path: Path) -> Path:
     """The folder, made where it is not there; raises ExperimentError where nothing can be written.
 

@@ -6,8 +6,9 @@ terminal may know ASCII alone. Everything that commands print goes through here.
 
 from __future__ import annotations
 
+import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, TextIO
 
@@ -58,3 +59,32 @@ def replace_line(text: str) -> None:
     terminal = getattr(sys.stderr, "stream", sys.stderr)
     terminal.write("\r\033[K")
     print(printable(text), end="", file=sys.stderr, flush=True)
+
+
+#: style -> its code (SGR) on a terminal
+STYLES = {"strong": "1", "faint": "2", "good": "32", "warning": "33", "bad": "31"}
+
+
+def shows_colours() -> bool:
+    """Whether standard output is a terminal whose user has not switched colours off (NO_COLOR)."""
+    off = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
+    return sys.stdout is not None and sys.stdout.isatty() and not off
+
+
+def print_styled(text: str, style_of: Callable[[str], str]) -> None:
+    """Print lines, each in its style on a terminal that shows colours; elsewhere plain.
+
+    style_of: of a line, a key of `STYLES`, or "" for none
+    """
+    if not shows_colours():
+        print(text)
+        return
+    terminal = getattr(sys.stdout, "stream", sys.stdout)  # codes go past what escapes them
+    for line in text.split("\n"):
+        code = STYLES.get(style_of(line))
+        if code is None:
+            print(line)
+            continue
+        terminal.write(f"\033[{code}m")
+        sys.stdout.write(line)
+        terminal.write("\033[0m\n")

@@ -8,9 +8,17 @@ import secrets
 from pathlib import Path
 
 from ..errors import ExperimentError
+from ._diagnosis import add_tried, tried_effects
 
 #: the machine itself: the page runs code, nobody else may reach it
 LOOPBACK = "127.0.0.1"
+
+
+EXAMPLES = """
+  teleopdesign app
+  teleopdesign app recordings --no-browser --port 8080
+  teleopdesign app recordings --exclude cogging torque_ripple
+"""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -22,6 +30,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         default=Path(),
         help="folder of experiments or logs (the present one); no file outside of it is opened",
     )
+    add_tried(parser)
     parser.add_argument("--port", type=int, default=0, metavar="N", help="port (a free one)")
     parser.add_argument(
         "--no-browser", action="store_true", help="print the address, open no browser"
@@ -41,9 +50,12 @@ def run(options: argparse.Namespace) -> int:
         raise ExperimentError(
             f'app: needs marimo, found none ({error}): pip install "teleopdesign[app]"'
         ) from error
-    from ..app.settings import FOLDER
+    from ..app.settings import EFFECTS, FOLDER
+    from ..effects import EFFECTS as KNOWN
 
+    among = tried_effects(KNOWN, options.only, options.exclude)
     os.environ[FOLDER] = str(folder.resolve())
+    os.environ[EFFECTS] = ",".join(among or ())
     token = secrets.token_urlsafe(24)
     server.serve(LOOPBACK, options.port, token, open_browser=not options.no_browser)
     return 0

@@ -22,6 +22,12 @@ if TYPE_CHECKING:
 WIDTH, INDENT = 100, 9
 
 
+EXAMPLES = """
+  teleopdesign check rod
+  teleopdesign check rod --json findings.json
+"""
+
+
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser, answer=False)

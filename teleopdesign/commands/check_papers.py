@@ -16,6 +16,12 @@ if TYPE_CHECKING:
     from ..papers import Result, Statement
 
 
+EXAMPLES = """
+  teleopdesign check-papers
+  teleopdesign check-papers P12 P34
+"""
+
+
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(

@@ -8,6 +8,11 @@ from pathlib import Path
 from . import diagnose
 from ._options import make_folder
 
+EXAMPLES = """
+  teleopdesign demo
+  teleopdesign demo --output first_look
+"""
+
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""

@@ -16,6 +16,12 @@ if TYPE_CHECKING:
     from ..diagrams import Diagram
 
 
+EXAMPLES = """
+  teleopdesign derive haptic-interface
+  teleopdesign derive interface.toml --latex --figure interface.svg
+"""
+
+
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(

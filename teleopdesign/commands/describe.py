@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import ModelError
 from ..plain_data import replacing, write_json
-from ._diagnosis import add_experiment, diagnosis_of, experiment_of, stated_model
+from ._diagnosis import add_experiment, diagnosis_of, experiment_and_answer, stated_model
 from ._options import check_output
 
 if TYPE_CHECKING:
@@ -16,6 +16,13 @@ if TYPE_CHECKING:
     from ..diagnose.noise_floor import NoiseFloor
     from ..diagnose.prepare import Prepared
     from ..unexplained import ResidualDescription
+
+
+EXAMPLES = """
+  teleopdesign describe answer.json
+  teleopdesign describe rod --as-is --figure left.png
+  teleopdesign describe rod --effect-file own_drag.py
+"""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -70,7 +77,7 @@ def _fit_model(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor |
     from ..diagnose.prepare import prepare
     from ..diagnose.search import estimate_from_starts
 
-    experiment = experiment_of(options.folder)
+    experiment = experiment_and_answer(options)
     if options.as_is and options.answer is None:
         model = stated_model(experiment, options)
         prepared = prepare(experiment)

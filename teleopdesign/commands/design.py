@@ -9,7 +9,13 @@ from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError, did_you_mean
 from ..plain_data import write_json, write_text
-from ._diagnosis import add_experiment, diagnosis_of, experiment_of, known_of
+from ._diagnosis import (
+    add_experiment,
+    diagnosis_of,
+    experiment_and_answer,
+    known_of,
+    print_diagnosis,
+)
 from ._options import check_output, make_folder, say
 
 if TYPE_CHECKING:
@@ -29,6 +35,12 @@ STATED = {
     "amplitude": ("m or rad", "of the motion that is predicted (a quarter of the travel)"),
     "frequency": ("Hz", "of that motion (so that its rms speed is the recorded one)"),
 }
+
+
+EXAMPLES = """
+  teleopdesign design answer.json --output design
+  teleopdesign design rod --answer answer.json --load 0.5 --delay 0.001
+"""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -59,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
     if options.output is not None:
         make_folder(options.output)
     assumptions = _assumptions(options)
-    experiment = experiment_of(options.folder)
+    experiment = experiment_and_answer(options)
     places = _places(options, experiment)
     diagnosis = _read_or_diagnose(experiment, options)
     designs = {}
@@ -101,7 +113,7 @@ def _read_or_diagnose(experiment: Experiment, options: argparse.Namespace) -> Di
     if options.answer is not None:
         return read_answer(options.answer, experiment, known_of(options))
     diagnosis = diagnosis_of(experiment, options)
-    print(diagnosis)
+    print_diagnosis(diagnosis)
     print()
     return diagnosed_model(diagnosis)
 

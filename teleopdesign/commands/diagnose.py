@@ -6,19 +6,34 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import ExperimentError
+from ..errors import ExperimentError, ModelError
 from ..plain_data import replacing
-from ._diagnosis import add_experiment, diagnosis_of, experiment_of, stated_model
-from ._options import check_output, say
+from ._diagnosis import add_search, diagnosed, experiment_of, print_diagnosis, stated_model
+from ._folders import diagnose_all
+from ._options import add_effect_files, check_output, count_argument, say
+from ._report import write_page
 
 if TYPE_CHECKING:
-    from ..diagnose import Diagnosis
+    from ..diagnose import Diagnosis, SimulationComparison
     from ..measurement import Experiment
+
+EXAMPLES = """
+  teleopdesign diagnose rod
+  teleopdesign diagnose rod --json answer.json --report report.html
+  teleopdesign diagnose rod --quick --exclude cogging backlash
+  teleopdesign diagnose runs/* --output answers --workers 2
+"""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    add_experiment(parser, answer=False)
+    parser.add_argument(
+        "folder",
+        type=Path,
+        nargs="+",
+        help="folder with experiment.toml and its records; several with --output",
+    )
+    parser.set_defaults(answer=None)
     parser.add_argument("--json", type=Path, metavar="F", help="write the answer there")
     parser.add_argument(
         "--predictions",
@@ -30,12 +45,46 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
     )
     parser.add_argument(
+        "--simulate",
+        action="store_true",
+        help="also drive the final model by the recorded command alone",
+    )
+    parser.add_argument(
+        "--loop",
+        type=float,
+        nargs=2,
+        metavar=("K", "B"),
+        help="with --simulate: stiffness and damping (SI) of the loop that held the device",
+    )
+    parser.add_argument(
         "--report", type=Path, metavar="F", help="write a page with everything (.html)"
     )
+    add_search(parser)
+    parser.add_argument(
+        "--output",
+        type=Path,
+        metavar="DIR",
+        help="write an answer for each folder there, and table.csv; what is there already and has "
+        "not changed is not diagnosed again",
+    )
+    parser.add_argument(
+        "--workers",
+        type=count_argument,
+        metavar="N",
+        help="processes for several folders (default: one for each core)",
+    )
+    add_effect_files(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the ladder; write what was asked for."""
+    """Print the ladder; write what was asked for.
+
+    Of several folders: 0 where all were diagnosed, whatever the verdicts; 2 where one was not.
+    """
+    if options.loop is not None and not options.simulate:
+        raise ModelError("--loop: found without --simulate, which it belongs to")
+    if len(options.folder) > 1 or options.output is not None:
+        return diagnose_all(options)
     for path, endings in (
         (options.json, (".json",)),
         (options.predictions, (".csv", ".csv.gz")),
@@ -46,23 +95,25 @@ def run(options: argparse.Namespace) -> int:
             check_output(path, endings)
     from ..diagnose.answer import write_answer, write_predictions
 
-    experiment = experiment_of(options.folder)
+    (folder,) = options.folder
+    experiment = experiment_of(folder)
     print(experiment)
     print()
     if experiment.arm is not None:
         return _run_arm(experiment, options)
-    diagnosis = diagnosis_of(experiment, options)
-    print(diagnosis)
+    diagnosis = diagnosed(experiment, options)
+    print_diagnosis(diagnosis)
+    simulation = _simulation(diagnosis, options)
     if options.json is not None:
-        write_answer(diagnosis, options.json)
+        write_answer(diagnosis, options.json, simulation=simulation)
     if options.predictions is not None:
         write_predictions(diagnosis, options.predictions)
     if options.figure is not None:
         with replacing(options.figure) as part:
             diagnosis.plot().savefig(part)
     if options.report is not None:
-        _write_report(diagnosis, options.report)
-    for line in _next_commands(diagnosis, options.folder):
+        write_page(diagnosis, options.report)
+    for line in _next_commands(diagnosis, folder):
         print(line)
     return 0
 
@@ -85,21 +136,19 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
     return 0
 
 
-def _write_report(diagnosis: Diagnosis, path: Path) -> None:
-    """The page, with what was found about the recording, what is left, and what to measure next."""
-    from ..check import check_experiment
-    from ..next_experiment import propose
-    from ..report import write_report
-    from ..unexplained import where_it_fails
+def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> SimulationComparison | None:
+    """The final model driven by the recorded command, printed; None: it was not asked for."""
+    if not options.simulate:
+        return None
+    from ..diagnose import RecordedLoop
+    from ..diagnose.by_simulation import compare_by_simulation
 
-    say("checking the recording")
-    soundness = check_experiment(diagnosis.experiment, diagnosis.before.model)
-    say("describing what is left")
-    left = where_it_fails(diagnosis.after, diagnosis.prepared, diagnosis.floor)
-    open_questions = diagnosis.verdict == "undecided" or bool(diagnosis.groups)
-    steps = propose(diagnosis, progress=say).findings() if open_questions else ()
+    loop = None if options.loop is None else RecordedLoop(*options.loop)
+    say("simulating the final model")
+    comparison = compare_by_simulation(diagnosis.model, diagnosis.prepared, loop=loop)
     say("")
-    write_report(diagnosis, path, soundness=soundness, unexplained=left, next_steps=steps)
+    print(f"\n{comparison}")
+    return comparison
 
 
 def _next_commands(diagnosis: Diagnosis, folder: Path) -> list[str]:

@@ -6,6 +6,11 @@ import argparse
 
 from ._options import add_effect_files
 
+EXAMPLES = """
+  teleopdesign effects
+  teleopdesign effects stribeck
+"""
+
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""

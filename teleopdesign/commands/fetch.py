@@ -5,6 +5,11 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+EXAMPLES = """
+  teleopdesign fetch emps
+  teleopdesign fetch emps --folder recordings
+"""
+
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""

@@ -14,20 +14,20 @@ from ..errors import ExperimentError
 from ..plain_data import replacing
 
 if TYPE_CHECKING:
+    from ..measurement.new_folder import FitAndCheck
     from ..measurement.survey import Choices, Survey
 
-_EXAMPLES = """examples:
+EXAMPLES = """
   teleopdesign new log.csv                          looks, asks, writes log/experiment.toml
   teleopdesign new log.csv --yes                    takes every guess
   teleopdesign new a.mat b.mat --output arm         fits on a.mat, checks on b.mat
+  teleopdesign new log.csv --fit-span 5 40 --check-span 45 60
   teleopdesign new log.csv --torque-constant "0.037 N*m/A" --gear-ratio 50
 """
 
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.epilog = _EXAMPLES
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.add_argument(
         "logs",
         nargs="+",
@@ -61,6 +61,14 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--counts-per-turn", type=float, metavar="N", help="of the encoder")
     parser.add_argument("--sample-rate", type=float, metavar="HZ", help="where there is no time")
     parser.add_argument("--inertia", type=float, help="if it is known: kg or kg*m^2")
+    for use, text in (("fit", "that is fitted"), ("check", "that errors are told of")):
+        parser.add_argument(
+            f"--{use}-span",
+            nargs=2,
+            type=float,
+            metavar=("BEGIN", "END"),
+            help=f"s from the first row: the part of a single log {text}",
+        )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -92,6 +100,7 @@ def run(options: argparse.Namespace) -> int:
         folder,
         title=options.title or stem,
         inertia=options.inertia,
+        spans=_spans(options),
     )
     experiment = load_experiment(folder)
     print()
@@ -105,6 +114,17 @@ def run(options: argparse.Namespace) -> int:
     print(f"next: teleopdesign check {folder}")
     print(f"      teleopdesign diagnose {folder} --report report.html")
     return 0
+
+
+def _spans(options: argparse.Namespace) -> FitAndCheck | None:
+    """Both spans, or none."""
+    fit, check = options.fit_span, options.check_span
+    if fit is None and check is None:
+        return None
+    if fit is None or check is None:
+        present, lacking = ("--check-span", "--fit-span")[:: 1 if fit is None else -1]
+        raise ExperimentError(f"{present}: found it alone, expected {lacking} beside it")
+    return (fit[0], fit[1]), (check[0], check[1])
 
 
 def survey_text(survey: Survey, name: str) -> str:

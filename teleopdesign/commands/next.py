@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import ExperimentError, did_you_mean
 from ..plain_data import replacing, write_json
-from ._diagnosis import add_experiment, diagnosis_of, experiment_of
+from ._diagnosis import add_experiment, diagnosis_of, experiment_and_answer, print_diagnosis
 from ._options import check_output, say
 
 if TYPE_CHECKING:
@@ -30,6 +30,12 @@ QUANTITY = {
     "jerk": "dimensionless",
     "force": "force",
 }
+
+
+EXAMPLES = """
+  teleopdesign next answer.json --output next.csv
+  teleopdesign next rod --limit speed=0.2m/s --limit force=3N --duration 30
+"""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -76,12 +82,12 @@ def run(options: argparse.Namespace) -> int:
         raise ExperimentError(f"--duration: found {options.duration:g}, expected more than 0 s")
     from ..next_experiment import propose, show_in_simulation, write_reference
 
-    experiment = experiment_of(options.folder)
+    experiment = experiment_and_answer(options)
     limits = _limits(_read_limits(options.limit, experiment), experiment)
     diagnosis = diagnosis_of(experiment, options)
     proposal = propose(diagnosis, duration=options.duration, limits=limits, progress=say)
     say("")
-    print(diagnosis)
+    print_diagnosis(diagnosis)
     print()
     print(_wrap(repr(proposal)))
     shown: Sequence[SimulatedDiagnosis] = ()

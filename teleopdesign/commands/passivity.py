@@ -24,6 +24,13 @@ if TYPE_CHECKING:
     from ..simulate import Sampling
 
 
+EXAMPLES = """
+  teleopdesign passivity answer.json --dahl 0.8 20000 --period 0.001
+  teleopdesign passivity interface.toml --json claims.json
+  teleopdesign passivity --check claims.json
+"""
+
+
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(

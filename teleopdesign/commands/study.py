@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import argparse
 import sys
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ExperimentError, did_you_mean
-from ._options import add_effect_files, check_output, say
+from ._options import add_effect_files, check_output, count_argument, say
+from ._progress import PointReporter
 
 if TYPE_CHECKING:
-    from ..studies import Progress, Study
+    from ..studies import Study
 
 #: name that a file of Python gives its study
 _NAME = "STUDY"
-#: s between two lines of progress where no terminal shows them
-_BETWEEN_LINES = 10.0
 _MOST_REASONS = 5
+
+
+EXAMPLES = """
+  teleopdesign study swing.toml --out swing.nc --figure swing.png
+  teleopdesign study sweep.py --workers 4
+"""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -30,7 +34,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         f"it does, and sets {_NAME} to the arguments of td.study",
     )
     parser.add_argument(
-        "--workers", type=_count, metavar="N", help="processes (default: one for each core)"
+        "--workers", type=count_argument, metavar="N", help="processes (default: one for each core)"
     )
     parser.add_argument(
         "--scheduler", default="", metavar="A", help="a Dask cluster: tcp://ADDRESS:PORT"
@@ -57,7 +61,7 @@ def run(options: argparse.Namespace) -> int:
     arguments = _arguments(options)
     from ..studies import study
 
-    reporter = _Reporter()
+    reporter = PointReporter()
     try:
         result = study(
             **arguments,
@@ -68,7 +72,7 @@ def run(options: argparse.Namespace) -> int:
         )
     except KeyboardInterrupt:
         say("")
-        print(f"teleopdesign: stopped{_kept(options.out, reporter.last)}", file=sys.stderr)
+        print(f"teleopdesign: stopped{_kept(options.out, reporter)}", file=sys.stderr)
         return 130
     say("")
     print(result)
@@ -132,31 +136,10 @@ def _run_file(path: Path) -> dict[str, Any]:
     return arguments
 
 
-class _Reporter:
-    """Progress: one line that changes on a terminal, else a line now and then."""
-
-    def __init__(self) -> None:
-        self.last: Progress | None = None
-        self._shown = time.monotonic()
-
-    def __call__(self, progress: Progress) -> None:
-        if self.last is None and progress.kept:
-            print(f"goes on after {progress.kept} points", file=sys.stderr)
-        self.last = progress
-        if sys.stderr.isatty():
-            say(str(progress))
-        elif (now := time.monotonic()) - self._shown > _BETWEEN_LINES or (
-            progress.done == progress.total
-        ):
-            self._shown = now
-            print(progress, file=sys.stderr, flush=True)
-
-
-def _kept(out: Path | None, last: Progress | None) -> str:
+def _kept(out: Path | None, reporter: PointReporter) -> str:
     if out is None:
         return "; nothing is kept: give --out F to keep what is finished"
-    count = f"{last.done} of {last.total} points are" if last is not None else "finished points are"
-    return f"; {count} kept in {out}.part, the same command goes on from there"
+    return f"; {reporter.kept()} kept in {out}.part, the same command goes on from there"
 
 
 def _print_failures(result: Study) -> None:
@@ -165,13 +148,3 @@ def _print_failures(result: Study) -> None:
         print(f"  {count} failed: {reason}")
     if len(reasons) > _MOST_REASONS:
         print(f"  and {len(reasons) - _MOST_REASONS} other reasons")
-
-
-def _count(text: str) -> int:
-    try:
-        number = int(text)
-    except ValueError:
-        number = 0
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"found {text!r}, expected a whole number from 1")
-    return number

@@ -28,7 +28,7 @@ from ._exact import as_written
 _MOST_SHOWN = 8  # parameters of a law that one line shows
 
 #: what a law may declare that it can do, by a field of `ControlLaw`
-Ability = Literal["bound", "bristle_stiffness", "smoothing", "filter_bandwidth"]
+Ability = Literal["bound", "bristle_stiffness", "smoothing", "filter_bandwidth", "dead_time"]
 
 SIGNALS = {
     name: sp.Symbol(name, real=True)
@@ -78,6 +78,7 @@ class ControlLaw:
     bristle_stiffness: its force is that of a Dahl bristle of that stiffness, level `bound`
     smoothing: its force is bound v/(a + abs(v)) with that a
     filter_bandwidth: its output follows its input through a low-pass of first order
+    dead_time: its output is its input, late by that
     """
 
     law: Callable[[Any, Any], sp.Expr]
@@ -93,6 +94,7 @@ class ControlLaw:
     bristle_stiffness: str = ""
     smoothing: str = ""
     filter_bandwidth: str = ""
+    dead_time: str = ""
     source: str = ""
     name: str = ""
     text: str = ""
@@ -206,6 +208,13 @@ class Controller:
     def then(self, other: Controller) -> Controller:
         """This controller with another one behind it."""
         return Controller((*self.stages, *other.stages))
+
+    @property
+    def dead_time(self) -> float | None:
+        """Time (s) by which it is late, where it does nothing else; None of any other."""
+        times = [stage.value_of("dead_time") for stage in self.stages]
+        known = [t for t in times if t is not None]
+        return sum(known) if known and len(known) == len(times) else None
 
     def names(self) -> dict[str, float]:
         """Every parameter as "law.parameter" -> value (SI)."""

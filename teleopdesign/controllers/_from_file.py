@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 import importlib.util
 from pathlib import Path
 from weakref import WeakValueDictionary
 
 from ..errors import ModelError, TeleopDesignError
 from ..names import check_name
-from ..recipes import remember
+from ..recipes import file_digest, remember
 from ._controller import ControlLaw
 
 _LOADED: WeakValueDictionary[tuple[Path, str], ControlLaw] = WeakValueDictionary()
@@ -35,12 +34,7 @@ def _of_file(path: Path, written: Path, expected: str = "") -> ControlLaw:
 
     written: the path as the user wrote it;  expected: digest that the file must have
     """
-    try:
-        digest = hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError as problem:
-        raise ModelError(f"{written}: cannot be read: {problem.strerror or problem}") from None
-    if expected and digest != expected:
-        raise ModelError(f"{written}: the file of the control law has changed since it was used")
+    digest = file_digest(path, written, "control law", expected)
     law = _LOADED.get((path, digest))
     if law is None:
         law = remember(_read(written), _of_file, path, written, digest)

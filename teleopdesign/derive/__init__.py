@@ -2,6 +2,7 @@
 
 from ..arguments import check_arguments
 from .all_transfers import Transfer, Transfers, all_transfers
+from .conventions import hybrid_from_impedance, impedance_from_hybrid, in_convention
 from .elimination import has_actuation, transfer
 from .noncommutative import counterexample, on_matrices, proved_equal
 from .printing import as_latex, as_text, block_symbol
@@ -11,7 +12,7 @@ from .transfer_functions import (
     transfer_functions,
 )
 from .two_port import two_port_functions
-from .with_values import transfer_function, with_values
+from .with_values import symbol_values, transfer_function, with_values
 
 __all__ = [
     "Transfer",
@@ -23,9 +24,13 @@ __all__ = [
     "block_symbol",
     "counterexample",
     "has_actuation",
+    "hybrid_from_impedance",
+    "impedance_from_hybrid",
+    "in_convention",
     "on_matrices",
     "proved_equal",
     "return_difference",
+    "symbol_values",
     "transfer",
     "transfer_function",
     "transfer_functions",

@@ -14,7 +14,7 @@ from ..errors import ModelError, did_you_mean
 from ..frozen import Frozen
 from .printing import as_latex, as_text, block_symbol, name_as_latex, with_gamma
 from .transfer_functions import Case, named_cases
-from .two_port import two_port_cases
+from .two_port import has_two_sides, two_port_cases
 from .with_values import transfer_function
 
 if TYPE_CHECKING:
@@ -141,16 +141,19 @@ def all_transfers(diagram: Diagram, *, seconds: float = SECONDS) -> Transfers:
 
     From each outside signal to each measured signal and to each force of an attached body.
 
-    Of a haptic interface or teleoperator first those that have a name (`transfer_functions`,
+    Of a haptic interface, or with two sides, first those that have a name (`transfer_functions`,
     `two_port_functions`). Blocks need not commute. What takes longer than `seconds`, or has no
     solution, is named in `undone`.
     """
     transfers: dict[str, Transfer] = {}
     undone: dict[str, str] = {}
-    named = {"haptic interface": named_cases, "teleoperator": two_port_cases}
-    if (kind := kind_of(diagram)) is not None:
-        for name, case in named[kind](diagram).items():
-            _derive(name, case, transfers, undone, seconds)
+    named: Mapping[str, Case] = {}
+    if kind_of(diagram) == "haptic interface":
+        named = named_cases(diagram)
+    elif has_two_sides(diagram):
+        named = two_port_cases(diagram)
+    for name, case in named.items():
+        _derive(name, case, transfers, undone, seconds)
     outputs = [*diagram.measured]
     outputs += [b.force for b in diagram.blocks if isinstance(b, Attached)]
     for output in dict.fromkeys(outputs):

@@ -15,7 +15,7 @@ from ..diagrams import Attached, Control, Diagram, Kinematics, Linked, Moving, p
 from ..errors import ModelError
 from .loops import loop_of
 from .noncommutative import counterexample
-from .printing import block_symbol
+from .printing import block_symbol, late
 
 #: signal -> coefficient, acting from the left; the sum over all is zero
 Row = dict[str, sp.Expr]
@@ -36,7 +36,8 @@ def rows(diagram: Diagram) -> list[Row]:
             equations += _linked(part)
             continue
         elif isinstance(part, Control):
-            terms = [(part.output, sp.S(1)), (part.input, -block_symbol(part.name))]
+            law = block_symbol(part.name) if part.dead_time is None else late(part.name)
+            terms = [(part.output, sp.S(1)), (part.input, -law)]
         elif isinstance(part, Kinematics):
             slopes = {s: sp.diff(part.expression, position_symbol(s)) for s in part.inputs}
             terms = [(part.output, sp.S(1)), *((s, -diagram.here(g)) for s, g in slopes.items())]

@@ -21,6 +21,7 @@ from random import Random
 import sympy as sp
 
 from ..errors import ModelError
+from ..realise.lti import S
 
 Word = tuple[str, ...]
 Polynomial = dict[Word, Fraction]
@@ -165,7 +166,8 @@ def on_matrices(
 ) -> sp.Matrix:
     """The expression with matrices in place of its symbols, exact where they are rational.
 
-    Floating numbers in it count as the fractions that they are, so that what is zero stays so.
+    Floating numbers in it count as the fractions that they are, so that what is zero stays so. A
+    dead time is a number: the first entry of its symbol's matrix, and 15.
 
     size: rows of each matrix; default: as the first of the blocks
     raises ModelError: there is no block, and no size
@@ -179,6 +181,8 @@ def on_matrices(
         return exact * sp.eye(size)
     if expression.is_Symbol:
         return blocks[expression]
+    if isinstance(expression, sp.exp):
+        return _scalar(expression, blocks) * sp.eye(size)
     if expression.is_Pow:
         return on_matrices(expression.base, blocks, size=size) ** int(expression.exp)
     parts = [on_matrices(a, blocks, size=size) for a in expression.args]
@@ -188,6 +192,13 @@ def on_matrices(
     for part in parts:
         product = product * part
     return product
+
+
+def _scalar(late: sp.Expr, blocks: dict[sp.Symbol, sp.Matrix]) -> sp.Expr:
+    """A dead time e^(-s T) as a number that any e^(-s T) could be; a sum of T as a product."""
+    times = sp.Poly(-late.args[0] / S, *(late.free_symbols - {S}))
+    factors = ((15 + blocks[t][0, 0]) ** n for t, n in zip(times.gens, times.coeffs(), strict=True))
+    return sp.Mul(*factors)
 
 
 def counterexample(
@@ -200,6 +211,7 @@ def counterexample(
         blocks = {
             s: sp.Matrix(size, size, lambda *_: sp.Rational(random.randint(-99, 99), 7))
             for s in symbols
+            if s != S
         }
         if on_matrices(left, blocks, size=size) != on_matrices(right, blocks, size=size):
             return blocks

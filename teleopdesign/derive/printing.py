@@ -10,10 +10,22 @@ from sympy.printing.latex import LatexPrinter
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.str import StrPrinter
 
+from ..realise.lti import S
+
 
 def block_symbol(name: str) -> sp.Symbol:
     """The block of that name, as a symbol that commutes with no other block."""
     return sp.Symbol(name, commutative=False)
+
+
+def late(name: str) -> sp.Expr:
+    """A delay block of that name, e^(-s T) with its name for T: it commutes with every block."""
+    return sp.exp(-S * dead_time_symbol(name))
+
+
+def dead_time_symbol(name: str) -> sp.Symbol:
+    """Dead time (s) of the delay block of that name."""
+    return sp.Symbol(name, positive=True)
 
 
 def with_gamma(expression: sp.Expr) -> sp.Expr:

@@ -11,12 +11,15 @@ the place of velocities and the force on the slave in the place of its reaction.
 
 from __future__ import annotations
 
+from ..arguments import checked
 from ..diagrams import Diagram
 from ..errors import ModelError
 from ..frozen import Frozen
+from .conventions import VELOCITY_TEXTS, Convention, check_convention, in_convention
 from .printing import block_symbol
 from .transfer_functions import Case, TransferFunctions
 
+_SIGNALS = ("X_m", "X_s", "F_m", "F_s")
 _TEXTS = {
     "Z_mm": "X_m to F_m, slave held",
     "Z_ms": "X_s to F_m, master held",
@@ -31,12 +34,18 @@ _TEXTS = {
 }
 
 
+def has_two_sides(diagram: Diagram) -> bool:
+    """Whether it has the motions, forces and outside forces of a teleoperator's two sides."""
+    outside = {"F_u", "F_d"} <= set(diagram.outside)
+    return outside and set(_SIGNALS) <= set(diagram.signals)
+
+
 def two_port_cases(diagram: Diagram) -> dict[str, Case]:
     """Input and output of each function of a teleoperator, without the transparency error.
 
     raises ModelError: the diagram has no master's X_m, F_m or no slave's X_s, F_s
     """
-    for name in ("X_m", "X_s", "F_m", "F_s"):
+    for name in _SIGNALS:
         if name not in diagram.signals:
             raise ModelError(f'{diagram.name}: no teleoperator: it has no signal "{name}"')
     ports = diagram.without("Z_H", "Z_E")
@@ -52,13 +61,21 @@ def two_port_cases(diagram: Diagram) -> dict[str, Case]:
     return cases
 
 
-def two_port_functions(diagram: Diagram) -> TransferFunctions:
+@checked
+def two_port_functions(
+    diagram: Diagram, *, convention: Convention = "position"
+) -> TransferFunctions:
     """Every function of a teleoperator; the last two where it has an environment Z_E.
 
-    raises ModelError: the diagram has no master's X_m, F_m or no slave's X_s, F_s
+    convention: "position": as above;  "velocity": Hannaford's, see `conventions`
+    raises ModelError: the diagram has no master's X_m, F_m or no slave's X_s, F_s; no convention
     """
+    check_convention(convention)
     expressions = {name: case.derived() for name, case in two_port_cases(diagram).items()}
     if "Z_t" in expressions:
         expressions["Z_t - Z_E"] = expressions["Z_t"] - block_symbol("Z_E")
     texts = {name: _TEXTS[name] for name in expressions}
+    if convention == "velocity":
+        expressions = {n: in_convention(n, e, convention) for n, e in expressions.items()}
+        texts = {name: VELOCITY_TEXTS[name] for name in expressions}
     return TransferFunctions(diagram, Frozen(expressions), Frozen(texts))

@@ -10,7 +10,7 @@ from ..diagrams import Diagram
 from ..realise.lti import LinearBlocks, as_transfer_function, linear_blocks
 from ..realise.parted import linear_parted
 from .elimination import transfer
-from .printing import block_symbol
+from .printing import block_symbol, dead_time_symbol
 
 if TYPE_CHECKING:
     import control
@@ -36,9 +36,14 @@ def with_values(
     output, input = tips.get(output, output), tips.get(input, input)
     linear = linear_blocks(diagram, speed=speed, held=held)
     form = transfer(diagram, output, (input,), given=tuple(tips.values()))[input]
+    return sp.sympify(form).subs(symbol_values(linear)), linear
+
+
+def symbol_values(linear: LinearBlocks) -> dict[sp.Symbol, sp.Expr]:
+    """What each symbol of a derived expression is: a block, a stage of an actuator, a dead time."""
     values = {block_symbol(n): e for n, e in linear.blocks.items()}
     values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
-    return sp.sympify(form).subs(values), linear
+    return values | {dead_time_symbol(n): t for n, t in linear.dead_times.items()}
 
 
 def transfer_function(

@@ -6,6 +6,7 @@ from ..arguments import check_arguments
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .arms import ArmDiagnosis, find_missing_in_arm
+from .by_simulation import HorizonError, RecordedLoop, SimulationComparison
 from .comparison import Comparison, compare
 from .corrected_fit import corrected_fit
 from .diagnosis import Diagnosis
@@ -23,9 +24,12 @@ __all__ = [
     "Comparison",
     "Diagnosis",
     "Fit",
+    "HorizonError",
     "Ranked",
     "Ranking",
+    "RecordedLoop",
     "Rung",
+    "SimulationComparison",
     "compare",
     "find_missing",
     "find_missing_in_arm",

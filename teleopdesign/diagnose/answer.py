@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import gzip
+import os
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from io import TextIOWrapper
@@ -18,9 +19,11 @@ from ..plain_data import harmless_cell, plain, replacing, write_json
 from ..realise.along_motion import residual_along
 from .answers.bodies import model_data
 from .answers.fingerprint import experiment_data
+from .by_simulation import SimulationComparison, simulation_data
 from .diagnosis import Diagnosis
 from .fit import Fit
 from .ladder_text import offset_rows
+from .learnable import learnable_data
 from .one_moment import Moment
 from .open_questions import open_questions
 from .probability import CandidateEvidence, evidence_of
@@ -31,7 +34,7 @@ from .rung import Rung
 
 def answer(diagnosis: Diagnosis) -> dict[str, Any]:
     """The answer as plain data: verdict, ladder, candidates, parameters; SI units."""
-    checked = bool(diagnosis.experiment.check_records)
+    checked, recorded = bool(diagnosis.experiment.check_records), diagnosis.recorded
     return {
         "verdict": diagnosis.verdict,
         "missing": [_missing_place(r) for r in diagnosis.rungs if r.added in diagnosis.missing],
@@ -52,15 +55,20 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "noise_floor_source": diagnosis.floor.source,
         "check": "records" if checked else "blocks of fit",
         "bandwidth": {"value": diagnosis.prepared.bandwidth, "unit": "Hz"},
-        "candidates": candidate_rows(diagnosis),
+        "candidates": candidate_rows(diagnosis) if recorded is None else recorded["candidates"],
         "indistinguishable": [[place_data(c.key) for c in g] for g in diagnosis.groups],
         "own": offset_rows(diagnosis),
         "record_shift": shift_data(diagnosis.model, diagnosis.prepared.stretches),
         "model_parameters": parameter_rows(diagnosis.after, _added(diagnosis)),
         "left_over_noise_floors": plain(diagnosis.left),
+        **learnable_data(diagnosis.learnable, diagnosis.near_reversals),
         "one_moment": _moment(diagnosis.moment),
         "at_bound": list(diagnosis.after.at_bound),
-        "evidence": [_evidence(one) for one in evidence_of(diagnosis) if one.share > 0],
+        "evidence": (
+            [_evidence(one) for one in evidence_of(diagnosis) if one.share > 0]
+            if recorded is None
+            else recorded.get("evidence", [])
+        ),
         "experiment": experiment_data(diagnosis.experiment),
         "reading": reading_data(diagnosis.experiment.reading),
         "models": {
@@ -69,7 +77,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         },
         "floor": {"drawn": diagnosis.floor.drawn, "held": diagnosis.floor.held},
         "open": _open(diagnosis),
-    }
+    } | ({"left_out": list(diagnosis.left_out)} if diagnosis.left_out else {})
 
 
 def _open(diagnosis: Diagnosis) -> list[dict[str, Any]]:
@@ -178,9 +186,20 @@ def _row(diagnosis: Diagnosis, one: CandidateEvidence) -> dict[str, Any]:
     }
 
 
-def write_answer(diagnosis: Diagnosis, path: str | Path) -> None:
-    """Write the answer as JSON."""
-    write_json(path, answer(diagnosis))
+def write_answer(
+    diagnosis: Diagnosis, path: str | Path, *, simulation: SimulationComparison | None = None
+) -> None:
+    """Write the answer as JSON, with where its experiment is, as seen from the answer.
+
+    simulation: a comparison by simulation, where one was made
+    """
+    content, folder = answer(diagnosis), diagnosis.experiment.folder
+    if folder.is_dir():  # an experiment of arrays has none
+        place = os.path.relpath(folder.resolve(), Path(path).resolve().parent)
+        content["experiment"] = content["experiment"] | {"folder": Path(place).as_posix()}
+    if simulation is not None:
+        content["simulation"] = simulation_data(simulation)
+    write_json(path, content)
 
 
 def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:

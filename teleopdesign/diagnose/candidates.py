@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import product
 
 import numpy as np
+import sympy as sp
 
 from ..blocks.body import ONE_ONLY
-from ..effects import CONTACT_ROLES, Effect, depends_on_position, period
+from ..effects import CONTACT_ROLES, SIGNALS, Effect, delayed, depends_on_position, period
+from ..measurement.experiment import Experiment
 from ..measurement.motion import Motion
 from ..model import Model
 
@@ -39,7 +42,11 @@ PLACES = 50
 
 
 def candidates(
-    model: Model, motions: Sequence[Motion] = (), *, own_zero: Collection[str] = ()
+    model: Model,
+    motions: Sequence[Motion] = (),
+    *,
+    own_zero: Collection[str] = (),
+    measured: Collection[str] = (),
 ) -> tuple[Candidate, ...]:
     """Effects that the model lacks and could take, at each of its places.
 
@@ -48,6 +55,8 @@ def candidates(
         uses a channel that they have not. What repeats along the way comes back to the same place
         of its period
     own_zero: files whose positions cannot be compared with those of others
+    measured: bodies whose actuator's force was measured, not commanded: a limit, a lag or a delay
+        has acted already, and is no candidate; its scale may still be wrong, or vary
     """
     possible = []
     for place in model.places:
@@ -56,6 +65,8 @@ def candidates(
         motions_here = [m for m in motions if m.body == model.holder(place)]
         for effect in model.known.values():
             if (place in model.bodies) == (effect.role in CONTACT_ROLES):
+                continue
+            if model.holder(place) in measured and _acts_before_what_is_measured(effect):
                 continue
             if body.has(effect.name) or effect.role in roles or body.axis in effect.elsewhere:
                 continue
@@ -66,6 +77,21 @@ def candidates(
             if _is_seen_in_place(effect, motions_here, own_zero):
                 possible.append(Candidate(effect, place))
     return tuple(possible)
+
+
+def measured_at(experiment: Experiment) -> set[str]:
+    """Bodies whose actuator's force was measured, as their channels say."""
+    return {c.body for c in experiment.channels.values() if c.measured and c.body is not None}
+
+
+@lru_cache(maxsize=256)
+def _acts_before_what_is_measured(effect: Effect) -> bool:
+    """Whether an actuation does more to a command than to scale it."""
+    if effect.role != "actuation":
+        return False
+    law = effect.expression()
+    scale = sp.diff(law, SIGNALS["command"])
+    return bool(effect.states) or law.has(delayed) or scale.has(SIGNALS["command"])
 
 
 def _is_seen_in_place(effect: Effect, motions: Sequence[Motion], own_zero: Collection[str]) -> bool:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
 from ..by_value import ByValue
+from ..errors import ModelError
 from ..measurement.experiment import Experiment
 from ..model import Model
 from ..notebook import html_table
 from ..quantity import unit_of
 from ..realise.along_motion import residual_along
+from .by_simulation import RecordedLoop, SimulationComparison, compare_by_simulation
 from .error import force_error
 from .noise_floor import NoiseFloor, noise_floor
 from .prepare import Prepared, prepare
@@ -67,12 +69,43 @@ class Comparison(ByValue):
         return "\n".join(lines)
 
 
-def compare(model: Model, experiment: Experiment, *, seed: int = 0) -> Comparison:
+@overload
+def compare(
+    model: Model, experiment: Experiment, *, by: Literal["force"] = "force", seed: int = 0
+) -> Comparison: ...
+
+
+@overload
+def compare(
+    model: Model,
+    experiment: Experiment,
+    *,
+    by: Literal["simulation"],
+    loop: RecordedLoop | None = None,
+) -> SimulationComparison: ...
+
+
+def compare(
+    model: Model,
+    experiment: Experiment,
+    *,
+    by: Literal["force", "simulation"] = "force",
+    loop: RecordedLoop | None = None,
+    seed: int = 0,
+) -> Comparison | SimulationComparison:
     """Compare the model with every record of the experiment, without estimation.
 
+    by: "force": what the model leaves of the force along the measured motion; "simulation": how far
+        the model moves away when the recorded forces drive it
+    loop: of a simulation, the controller that held the device; None: nothing holds the model
     seed: of the draws for the noise floor
     raises ExperimentError: the experiment lacks what the comparison needs
+    raises ModelError: a loop without a simulation, a model that cannot be simulated
     """
+    if by == "simulation":
+        return compare_by_simulation(model, experiment, loop=loop)
+    if loop is not None:
+        raise ModelError('compare: a loop is simulated: found by="force", expected "simulation"')
     prepared = prepare(experiment)
     return Comparison(
         model=model,

@@ -11,6 +11,7 @@ from .error import force_error
 from .error_at_command import at_command
 from .fit import Fit
 from .ladder_state import LadderSearch, LadderState
+from .learnable import error_near_reversals, learnable
 from .prepare import Prepared
 from .probability import probable
 from .rung import Rung
@@ -28,6 +29,8 @@ def conclude(search: LadderSearch, state: LadderState) -> Diagnosis:
         rungs = tuple(replace(r, fit=_on_all(r.fit, search.whole)) for r in rungs)
         if len(steady := without_rise(rungs)) < len(rungs):
             rungs, estimated = steady, steady[-1].fit
+    search.progress("what could be learned")
+    model = rungs[-1].fit.model
     diagnosis = Diagnosis(
         experiment=search.experiment,
         prepared=search.whole,
@@ -37,6 +40,9 @@ def conclude(search: LadderSearch, state: LadderState) -> Diagnosis:
         estimated=estimated,
         floor=floor,
         moment=moment,
+        learnable=learnable(model, search.whole, seed=search.seed),
+        near_reversals=error_near_reversals(model, search.whole),
+        left_out=search.plan.omissions(),
     )
     named = probable(diagnosis, criteria=criteria)
     if diagnosis.verdict == "effects_missing" and not named:

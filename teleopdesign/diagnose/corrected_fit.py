@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .clock import with_paying_shift
 from .decision import bounded_by_what_is_left, is_adequate
 from .fit import Fit
 from .ladder_state import LadderSearch
@@ -14,6 +15,7 @@ from .search import estimate_from_starts
 def corrected_fit(search: LadderSearch) -> Fit:
     """The fit of the stated model as a diagnosis that adds nothing to it reports it."""
     fit = estimate_from_starts(search.stated, search.prepared)
+    fit = with_paying_shift(fit, search.prepared)
     drawn = noise_floor(fit.model, search.prepared, search.generator())
     return corrected(search, fit, bounded_by_what_is_left(drawn, fit, Ranking(fit, ())))
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..by_value import ByValue
 from ..measurement.experiment import Experiment
@@ -13,6 +14,7 @@ from .candidates import Candidate
 from .decision import floors_left, is_adequate, verdict
 from .fit import Fit
 from .ladder_text import ladder_text, sentence
+from .learnable import Learnable, NearReversals
 from .noise_floor import NoiseFloor
 from .one_moment import Moment
 from .prepare import Prepared
@@ -46,6 +48,10 @@ class Diagnosis(ByValue):
     moment: the one moment that holds all that is left above noise; None where there is none
     open: what the records leave open, of a diagnosis that was read back: it has no rankings
     named: accepted effects that are probable enough to be said missing
+    learnable: what a black box learns of what is left; None without the extra `learn`
+    near_reversals: the check error near reversals; None where there are none
+    left_out: what was not searched though it usually is, in words
+    recorded: the answer that a diagnosis was read back from, which has its candidates; else None
     """
 
     experiment: Experiment
@@ -58,6 +64,10 @@ class Diagnosis(ByValue):
     moment: Moment | None = None
     open: tuple[OpenQuestion, ...] | None = None
     named: tuple[Candidate, ...] = ()
+    learnable: Learnable | None = None
+    near_reversals: NearReversals | None = None
+    left_out: tuple[str, ...] = ()
+    recorded: Mapping[str, Any] | None = None
 
     @property
     def before(self) -> Fit:

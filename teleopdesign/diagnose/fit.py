@@ -13,12 +13,12 @@ from ..by_value import ByValue
 from ..measurement.filtering import Array
 from ..model import Model
 from .effort import EFFORTS, Effort
-from .error import force_error
+from .error import error_of, force_error
 from .error_at_command import AtCommand, at_command
 from .least_squares import minimise
 from .prepare import Prepared, Stretch, folds
 from .record_shift import LARGEST, RecordShifts, record_shifts
-from .residual import relative_residuals, residuals
+from .residual import both_residuals, relative_residuals, residuals
 from .scales import scales
 from .shared_links import best_links
 
@@ -141,8 +141,8 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine)
     fitted = with_errors(solution, free, blocks).canonical()
     check = prepared.of("check")
     if check:
-        parts = [v for v, _ in relative_residuals(fitted, check)]
-        check_error = force_error(fitted, check)
+        absolute, parts = both_residuals(fitted, check)
+        check_error = error_of(check, absolute)
         command_error = command_error_of(fitted, check)
     else:
         check, parts, check_error, command_error = _held_out(fitted, free, prepared)
@@ -271,7 +271,7 @@ def solve(
     """Bounded least squares on the relative residuals of these stretches, by shifts as well."""
     space = _search_space(model, free, prepared)
     p, lasts = len(free), sum(s.weight * len(s.keep) * s.motion.sample_time for s in stretches)
-    shifts = record_shifts(stretches, round(lasts / BLOCK))
+    shifts = record_shifts(stretches, round(lasts / BLOCK), model)
     lower = np.append(space.lower, np.full(len(shifts.bodies), -LARGEST))
     upper = np.append(space.upper, np.full(len(shifts.bodies), LARGEST))
     start = np.append(space.start, shifts.start(model))
@@ -289,12 +289,12 @@ def solve(
 
     def with_prior(x: Array) -> tuple[Array, Array]:
         r, j = both(x)
+        j[:, p:][:, shifts.held] = 0.0
         known, slope = shifts.prior(x[p:], r, j)
         return np.append(r, known), np.vstack([j, slope])
 
-    best = start
     if len(start):
-        best = minimise(
+        minimum = minimise(
             with_prior,
             start,
             lower,
@@ -302,9 +302,14 @@ def solve(
             tolerance=effort.tolerance,
             evaluations=effort.evaluations,
         )
+        best, rows = minimum.values, len(minimum.residual) - len(shifts.bodies)
+        residual, jacobian = minimum.residual[:rows], minimum.jacobian[:rows]
+    else:
+        best = start
+        residual, jacobian = both(start)
     if any(s.shared is not None for s in stretches):
         model = settle_links(there(best), stretches)
-    residual, jacobian = both(best)
+        residual, jacobian = both(best)
     at_bound = (best - lower < AT_BOUND) | (upper - best < AT_BOUND)
     return Solution(
         model=there(best),

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
+from dataclasses import replace
 
+from ..effects import find_effect
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .conclusion import conclude
@@ -13,6 +15,7 @@ from .exchange import exchange
 from .ladder_state import LadderSearch, LadderState, begin, look, search_for
 from .moves import add, remove
 from .pairs import add_pair, replace_by_pair
+from .search_plan import PLAN, SearchPlan
 
 
 def find_missing(
@@ -21,6 +24,8 @@ def find_missing(
     *,
     progress: Callable[[str], None] | None = None,
     seed: int = 0,
+    plan: SearchPlan = PLAN,
+    among: Collection[str] | None = None,
 ) -> Diagnosis:
     """Compare a model with an experiment and add the effects that its check records support.
 
@@ -28,14 +33,27 @@ def find_missing(
     Of more than `SearchPlan.long` samples, effects are sought and parameters estimated on
     `SearchPlan.windows` samples in windows spread evenly over the records; errors are those of the
     whole records.
-    progress: called with a line of text at each step;  seed: of the draws for the noise floor
+    progress: called with a line of text at each step (a `ProgressLine` while candidates are tried)
+    seed: of the draws for the noise floor;  plan: how much is searched, such as `QUICK`
+    among: names of the effects that are tried; default: all that the model knows
     raises ExperimentError: the experiment lacks what the comparison needs
     """
-    search = search_for(experiment, model, progress=progress, seed=seed)
+    if among is not None:
+        model = _trying(among, model or Model.from_experiment(experiment))
+    search = search_for(experiment, model, progress=progress, seed=seed, plan=plan)
     state = begin(search)
     while (moved := next_move(search, state)) is not None:
         state = look(search, moved.rungs, moved)
-    return conclude(search, state)
+    diagnosis = conclude(search, state)
+    if among is None:
+        return diagnosis
+    words = f"only these effects were tried: {', '.join(sorted(among))}"
+    return replace(diagnosis, left_out=(*diagnosis.left_out, words))
+
+
+def _trying(among: Collection[str], model: Model) -> Model:
+    """The model to which only these effects may be added; raises ModelError: an unknown name."""
+    return replace(model, known={n: find_effect(n, model.known, "among") for n in among})
 
 
 def next_move(search: LadderSearch, state: LadderState) -> LadderState | None:

@@ -10,6 +10,7 @@ import numpy as np
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .candidates import Candidate
+from .clock import with_paying_shift
 from .criteria import CRITERIA, Criteria
 from .decision import (
     Floors,
@@ -68,7 +69,7 @@ class LadderSearch:
             stated=self.stated,
             worth=worth,
             criteria=self.criteria,
-            progress=lambda text: self.progress(f"step {step}: {text}"),
+            progress=lambda line: self.progress(line.within(f"step {step}")),
         )
 
 
@@ -123,15 +124,17 @@ def search_for(
     *,
     progress: Callable[[str], None] | None = None,
     seed: int = 0,
+    plan: SearchPlan = PLAN,
 ) -> LadderSearch:
     """The search for what a model lacks (default: the model that the experiment describes)."""
     whole = prepare(experiment)
     return LadderSearch(
         experiment=experiment,
         whole=whole,
-        prepared=on_windows(whole),
+        prepared=on_windows(whole, plan),
         stated=model or Model.from_experiment(experiment),
         seed=seed,
+        plan=plan,
         progress=progress or (lambda _: None),
     )
 
@@ -149,7 +152,9 @@ def look(
 
     before: the state that a move led to; None: the ladder begins
     """
-    here, prepared, criteria = rungs[-1].fit, search.prepared, search.criteria
+    prepared, criteria = search.prepared, search.criteria
+    here = with_paying_shift(rungs[-1].fit, prepared)
+    rungs = (*rungs[:-1], replace(rungs[-1], fit=here))
     drawn = noise_floor(here.model, prepared, search.generator())
     worth = worth_pursuing(here, drawn, criteria=criteria)
     ranking = search.rank(here, step=len(rungs), worth=worth)

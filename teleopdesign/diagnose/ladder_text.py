@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from ..blocks import Value
 from ..quantity import unit_of
 from .decision import helps_but_is_barred
 from .fit import Fit
@@ -37,6 +38,14 @@ def _number(value: float, error: float, unit: str) -> str:
     if math.isfinite(error) and error > 0:
         return f"{value:.4g} +- {error:.1g} {unit}"
     return f"{value:.4g} {unit}"
+
+
+def _estimate_text(value: Value, unit: str) -> str:
+    """A value with its error; one that was estimated without an error is not determined."""
+    text = _number(value.value, value.stderr, unit)
+    if value.fixed or math.isfinite(value.stderr):
+        return text
+    return f"{text}, not determined by these records"
 
 
 #: part of the error from which the one seen at the command is told beside it
@@ -101,9 +110,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
             full = f"{rung.added.at}.{rung.added.effect.name}.{p}"
             value = model.parameters[full]
             bound = "  at its bound" if full in diagnosis.after.at_bound else ""
-            lines.append(
-                f"      {p} = {_number(value.value, value.stderr, model.unit(full))}{bound}"
-            )
+            lines.append(f"      {p} = {_estimate_text(value, model.unit(full))}{bound}")
         if (text := command_error_text(rung.fit)) is not None:
             lines.append(f"      {text}")
         if rung.alternatives:
@@ -120,7 +127,12 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
         f"  ({diagnosis.floor.source})"
     )
+    if (near := diagnosis.near_reversals) is not None:
+        lines.append(f"check error {near}")
+    if diagnosis.learnable is not None:
+        lines.append(f"black box: {diagnosis.learnable}")
     lines += refused_lines(diagnosis)
+    lines += [f"left out: {words}" for words in diagnosis.left_out]
     lines.append("")
     lines.append(sentence(diagnosis))
     return "\n".join(lines)

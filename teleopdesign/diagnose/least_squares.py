@@ -8,11 +8,21 @@ as many unknowns as there are parameters, by scipy's `lsq_linear`: a bound is re
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import lsq_linear
 
 from ..measurement.filtering import Array
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """Parameters (p,) of the least sum of squares, with the residual (n,) and jacobian there."""
+
+    values: Array
+    residual: Array
+    jacobian: Array
 
 
 def minimise(
@@ -23,7 +33,7 @@ def minimise(
     *,
     tolerance: float,
     evaluations: int,
-) -> Array:
+) -> Minimum:
     """Parameters that minimise the sum of squares of the residual, from a start within the bounds.
 
     function: x (p,) -> residual (n,), jacobian (n, p);  tolerance: relative change of squares
@@ -52,7 +62,7 @@ def minimise(
         x, residual, jacobian, squares = trial, new_residual, new_jacobian, new
         if quiet >= 2:
             break
-    return np.asarray(x)
+    return Minimum(np.asarray(x), residual, jacobian)
 
 
 def _step(jacobian: Array, residual: Array, below: Array, above: Array, damping: float) -> Array:

@@ -84,9 +84,8 @@ def linear_starts(
 def _others(
     model: Model, effect: Effect, at: str, symbols: dict[str, sp.Symbol], phase: float
 ) -> dict[sp.Symbol, float]:
-    values = {
-        symbols[n]: model.parameters[f"{at}.{effect.name}.{n}"].value for n in effect.parameters
-    }
+    known = model.parameters
+    values = {symbols[n]: known[f"{at}.{effect.name}.{n}"].value for n in effect.parameters}
     if effect.phase:
         values[symbols[effect.phase]] = phase
     return values

@@ -3,7 +3,7 @@
 It moves the machine a little, at its own frequency. A body with a lightly damped tip that resonates
 there moves so without any force, and effects that are not there can stand in for the tone. So an
 effect counts only if it leaves surely less than a plain tone does, where motion holds next to
-nothing at the tone's frequency that could have brought it about.
+nothing at the tone's frequency that could have brought it about, nor its direction or its size.
 
 A body that sticks shows nothing of the tone, for its friction balances it: so the tone is taken
 both off the residual and as a force on the body, whichever leaves less.
@@ -165,10 +165,19 @@ def _without(stretch: Stretch, residual: Array, frequency: float) -> Array:
 
 
 def _share(stretch: Stretch, frequency: float) -> float:
-    """Part of the squares of the body's velocity within two lines of that frequency."""
-    velocity = stretch.motion.velocity
-    line = 1.0 / (len(velocity) * stretch.motion.sample_time)
-    power = np.abs(np.fft.rfft(velocity * np.hanning(len(velocity)))) ** 2
-    near = np.abs(np.fft.rfftfreq(len(velocity), stretch.motion.sample_time) - frequency)
-    whole = float(power.sum())
-    return float(power[near <= 3 * line].sum()) / whole if whole > 0 else 0.0
+    """Largest part of the squares of what the motion may bring about near that frequency.
+
+    Of the velocity; and of its direction and its size, for friction of a periodic motion has odd
+    and even harmonics that the motion itself lacks.
+    """
+    motion = stretch.motion
+    n = len(motion.velocity)
+    line = 1.0 / (n * motion.sample_time)
+    near = np.abs(np.fft.rfftfreq(n, motion.sample_time) - frequency) <= 3 * line
+    size = np.abs(motion.velocity)
+    parts = []
+    for signal in (motion.velocity, np.sign(motion.velocity), size - size.mean()):
+        power = np.abs(np.fft.rfft(signal * np.hanning(n))) ** 2
+        whole = float(power.sum())
+        parts.append(float(power[near].sum()) / whole if whole > 0 else 0.0)
+    return max(parts)

@@ -7,7 +7,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from ..effects import CONTACT_ROLES, Effect, RecordFacts
+from ..blocks import Body
+from ..effects import CONTACT_ROLES, SIGNALS, Effect, RecordFacts
 from ..errors import ModelError
 from ..model import Model
 from .prepare import Prepared, Stretch
@@ -56,18 +57,37 @@ def record_facts(
     numbers: the body's own, by their names; default: those of the model
     """
     stretches = [s for s in prepared.stretches if s.motion.body == place]
+    motions = [s.motion for s in stretches]
     body = model.bodies[place]
     if numbers is None:
         numbers = {n: v.value for n, v in body.parameters.items()}
     measured = [np.abs(s.motion.command + s.motion.interaction).max() for s in stretches]
+    speed = max(float(np.abs(s.motion.velocity[s.keep]).max()) for s in stretches)
     return RecordFacts(
         axis=body.axis,
         travel=max(float(np.ptp(x)) for x in _comparable_positions(stretches)),
         step=min(float(s.motion.step) for s in stretches),
         stroke=_stroke(stretches),
         force=float(max(measured)),
+        speed=speed,
+        film=_film(body, speed, numbers),
         body=numbers,
+        places=np.concatenate([m.position[m.direction != 0] for m in motions]),
+        speeds=np.concatenate([m.velocity[m.direction != 0] for m in motions]),
     )
+
+
+def _film(body: Body, speed: float, numbers: Mapping[str, float]) -> float:
+    """Friction at a speed by the effects of a body that depend on the velocity alone."""
+    at = {s: numbers[n] for n, s in body.symbols().items()} | {SIGNALS["velocity"]: speed}
+    signals = set(SIGNALS.values())
+    laws = (
+        e.expression()
+        for e in body.effects
+        if e.role == "force" and e.energy == "dissipates" and not e.states
+    )
+    of_speed = (law for law in laws if law.free_symbols & signals == {SIGNALS["velocity"]})
+    return sum(float(law.subs(at)) for law in of_speed)
 
 
 def _comparable_positions(stretches: Sequence[Stretch]) -> list[np.ndarray]:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from dataclasses import replace
+from itertools import count
 
 from ..errors import ModelError
 from ..model import Model
-from .candidates import Candidate, candidates
+from .candidates import Candidate, candidates, measured_at
 from .criteria import CRITERIA, Criteria
 from .decision import rank_key, refusal, superfluous_beside
 from .effort import EFFORTS
@@ -16,6 +17,7 @@ from .fit import Fit, estimate, fit_squares
 from .identifiability import is_identifiable
 from .plausibility import implausible_effects
 from .prepare import Prepared
+from .progress import ProgressLine
 from .ranking import Ranked, Ranking
 from .search import at_stated, estimate_from_starts
 from .search_plan import PLAN
@@ -85,7 +87,7 @@ def rank_candidates(
     stated: Model | None = None,
     worth: float | None = None,
     criteria: Criteria = CRITERIA,
-    progress: Callable[[str], None] | None = None,
+    progress: Callable[[ProgressLine], None] | None = None,
 ) -> Ranking:
     """Try every candidate on top of a fitted model.
 
@@ -94,13 +96,15 @@ def rank_candidates(
     stated: the model as its user gave it; its values are starts too
     worth: part of the base's squares on the fit records below which a gain is not pursued; default:
         that of the criteria
-    progress: called with a line of text before each candidate
+    progress: called before each candidate
     """
     worth = criteria.worth if worth is None else worth
+    begun = count(1)
 
     def fit_candidate(candidate: Candidate) -> tuple[Candidate, Fit]:
         if progress is not None:
-            progress(str(candidate))
+            line = ProgressLine(str(candidate), begun=next(begun), total=len(possible))
+            progress(line)
         added = base.model.with_effect(candidate.effect, at=candidate.at)
         return candidate, estimate_from_starts(added, prepared, base, stated, worth=worth)
 
@@ -108,6 +112,7 @@ def rank_candidates(
         base.model,
         [s.motion for s in prepared.stretches],
         own_zero={s.motion.file for s in prepared.stretches if s.has_zero_offset},
+        measured=measured_at(prepared.experiment),
     )
     if among is not None:
         wanted = {c.key for c in among}

@@ -28,7 +28,7 @@ from .fit import Fit, estimate, over_decades, solve
 from .noise_floor import read_again
 from .prepare import Prepared, Stretch, stretch_of
 from .record_offsets import along_with_offsets
-from .simulated_course import as_led, dead_times, grid, simulated_course
+from .simulated_course import as_led, dead_times, simulated_course, with_whole_dead_times
 from .threads import in_threads
 
 #: gives of an ideal friction, in encoder steps, and damping ratios of what gives: none can be read,
@@ -98,10 +98,10 @@ def reading_error(
 def _with_whole_dead_times(model: Model, prepared: Prepared) -> Model:
     """The model with its dead times rounded to the grid of the simulation."""
     for stretch in prepared.of("fit"):
-        place, step = stretch.motion.body, grid(stretch.motion)
-        late = {f"{place}.{n}" for n in dead_times(model.body(place))}
-        times = {n: step * round(model.parameters[n].value / step) for n in late}
-        model = model.with_values(times)
+        place = stretch.motion.body
+        rounded = with_whole_dead_times(model.body(place), stretch.motion).parameters
+        late = dead_times(model.body(place))
+        model = model.with_values({f"{place}.{n}": rounded[n].value for n in late})
     return model
 
 

@@ -5,6 +5,9 @@ to one row, either way, belongs to the record. It is no physics, but what is not
 like some: a delay, a lag, the lead of a compliant transmission. So it is estimated with every
 model, one shift for each body, common to all its records.
 
+A shift that raises the error on the check records is held at none (`clock.py`): beside a model that
+lacks much it may take up a part of what is missing.
+
 Where records hardly tell it (a delay does the same to them, a spring and damper of the controller
 make viscous friction of it), what is known beforehand decides: most loggers are right, none is off
 by much more than a row. Normally distributed, the shift adds a row to the residual r of each body,
@@ -45,11 +48,13 @@ class RecordShifts:
     """The shifts that are estimated with a model on some stretches.
 
     bodies: those with a command that changes;  row: s between samples, of each;  count: n above
+    held: (k,) whether the shift is held at none; what is left open of it stays in standard errors
     """
 
     bodies: tuple[str, ...]
     row: Array
     count: int
+    held: NDArray[np.bool_]
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -57,16 +62,19 @@ class RecordShifts:
         return tuple(f"{body}.{RECORD_SHIFT}" for body in self.bodies)
 
     def start(self, model: Model) -> Array:
-        """The model's shifts, in samples (k,)."""
+        """The model's shifts, in samples (k,); none where one is held."""
         late = np.array([model.command_late(body) for body in self.bodies])
+        late = np.where(self.held, 0.0, late)
         return np.clip(late / self.row, -LARGEST, LARGEST)
 
     def beside(self, model: Model, samples: Array, errors: Array | None = None) -> Model:
         """The model with these shifts, in samples, and their standard errors."""
         stderr = np.full(len(samples), np.nan) if errors is None else errors
         shifts = {
-            body: Value(float(x * row), False, float(e * row))
-            for body, x, row, e in zip(self.bodies, samples, self.row, stderr, strict=True)
+            body: Value(float(x * row), bool(held), float(e * row))
+            for body, x, row, e, held in zip(
+                self.bodies, samples, self.row, stderr, self.held, strict=True
+            )
         }
         return model.with_record_shift({**model.record_shift, **shifts})
 
@@ -100,13 +108,20 @@ class RecordShifts:
         )
 
 
-def record_shifts(stretches: Sequence[Stretch], count: int) -> RecordShifts:
-    """The shifts to estimate on these stretches; count: independent observations that they hold."""
+def record_shifts(
+    stretches: Sequence[Stretch], count: int, model: Model | None = None
+) -> RecordShifts:
+    """The shifts to estimate on these stretches; count: independent observations that they hold.
+
+    model: whose shifts that are fixed are held at none
+    """
     row: dict[str, float] = {}
     for s in stretches:
         if np.ptp(s.motion.command) > 0.0:
             row[s.motion.body] = min(s.motion.sample_time, row.get(s.motion.body, np.inf))
-    return RecordShifts(tuple(row), np.array(list(row.values())), max(count, 1))
+    late = {} if model is None else model.record_shift
+    held = np.array([body in late and late[body].fixed for body in row], dtype=bool)
+    return RecordShifts(tuple(row), np.array(list(row.values())), max(count, 1), held)
 
 
 #: rows and standard errors from which a command that acts late is said to be like a delay
@@ -151,7 +166,7 @@ class RecordShift:
 
 
 def shifts_of(model: Model, stretches: Sequence[Stretch]) -> tuple[RecordShift, ...]:
-    """The shift of each body's records that a fitted model has, of those on these stretches."""
+    """The shift of each body's records that a fitted model has, but for those held at none."""
     bodies = record_shifts(stretches, 1)
     return tuple(
         RecordShift(
@@ -162,7 +177,7 @@ def shifts_of(model: Model, stretches: Sequence[Stretch]) -> tuple[RecordShift, 
             may_delay=bool(dead_times(model.body(body))),
         )
         for body, row in zip(bodies.bodies, bodies.row, strict=True)
-        if body in model.record_shift
+        if body in model.record_shift and not model.record_shift[body].fixed
     )
 
 

@@ -6,7 +6,7 @@ for the model first, and taken out.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..model import Model
 from ..realise.along_motion import residual_along
-from ..realise.traced import Probe
+from ..realise.traced import Probe, Traced, constant, through
 from .prepare import Stretch
 from .record_offsets import along_offsets, offset_groups
 from .shared_links import clear
@@ -28,7 +28,7 @@ def residuals(
 
     wrt: full parameter names ("device.coulomb.level"), "device.record_shift", or probes
     """
-    return [(r, d) for r, d, _, _ in _with_acting(model, stretches, wrt)]
+    return [(r.value, r.tangent) for r, _ in _along(model, stretches, wrt)]
 
 
 def relative_residuals(
@@ -41,23 +41,50 @@ def relative_residuals(
     gained. Equal to `residuals` where nothing stands between command and force. What the links of
     an arm, which all its joints share, can make of a joint's is taken out (`shared_links.clear`).
     """
-    parts = _with_acting(model, stretches, wrt)
-    scaled = clear(model.links, stretches, [(r, d) for r, d, _, _ in parts])
-    for place, body in model.bodies.items():
-        mine = [i for i, s in enumerate(stretches) if s.motion.body == place]
-        if not mine or not _takes_from_what_acts(body):
+    parts = _along(model, stretches, wrt, _taking(model))
+    return _relative(model, stretches, parts, len(wrt))
+
+
+def both_residuals(model: Model, stretches: Sequence[Stretch]) -> tuple[list[Array], list[Array]]:
+    """`residuals` and `relative_residuals` per stretch, without tangents."""
+    parts = _along(model, stretches, (), _taking(model))
+    relative = _relative(model, stretches, parts, 0)
+    return [r.value for r, _ in parts], [r for r, _ in relative]
+
+
+def _relative(
+    model: Model,
+    stretches: Sequence[Stretch],
+    parts: Sequence[tuple[Traced, Traced | None]],
+    parameters: int,
+) -> list[tuple[Array, Array]]:
+    """Residuals and tangents at the scale of the measured force, from those of `_along`."""
+    scaled = clear(model.links, stretches, [(r.value, r.tangent) for r, _ in parts])
+    for place in _taking(model):
+        moving = {
+            i: signal
+            for i, (s, (_, signal)) in enumerate(zip(stretches, parts, strict=True))
+            if signal is not None and s.motion.body == place
+        }
+        if not moving:
             continue
-        whole = sum(stretches[i].measured for i in mine)
-        acting = sum(stretches[i].weight * float(parts[i][2] @ parts[i][2]) for i in mine)
+        whole = sum(stretches[i].measured for i in moving)
+        acting = sum(stretches[i].weight * float(m.value @ m.value) for i, m in moving.items())
         acting = max(acting, 1e-12 * whole)
         slope = sum(
-            (stretches[i].weight * (parts[i][3] @ parts[i][2]) for i in mine), np.zeros(len(wrt))
+            (stretches[i].weight * (m.tangent @ m.value) for i, m in moving.items()),
+            np.zeros(parameters),
         )
         factor = float(np.sqrt(whole / acting))
-        for i in mine:
+        for i in moving:
             r, d = scaled[i]
             scaled[i] = factor * r, factor * (d - np.outer(slope / acting, r))
     return scaled
+
+
+def _taking(model: Model) -> set[str]:
+    """Bodies that an actuator's stage, or friction under load, takes from what moves them."""
+    return {place for place, body in model.bodies.items() if _takes_from_what_acts(body)}
 
 
 def _takes_from_what_acts(body: Body) -> bool:
@@ -66,34 +93,38 @@ def _takes_from_what_acts(body: Body) -> bool:
     return stages or body.level().has(SIGNALS["acting_force"])
 
 
-def _with_acting(
-    model: Model, stretches: Sequence[Stretch], wrt: Sequence[str | Probe]
-) -> list[tuple[Array, Array, Array, Array]]:
-    """Residual and acting plus interaction force, low-passed, on the rows that count; tangents."""
-    signals_of_stretches = []
+def _along(
+    model: Model,
+    stretches: Sequence[Stretch],
+    wrt: Sequence[str | Probe],
+    taking: Collection[str] = (),
+) -> list[tuple[Traced, Traced | None]]:
+    """Residual per stretch, low-passed on the rows that count, with its tangents (p, rows).
+
+    taking: bodies of which the acting plus interaction force is wanted too, low-passed likewise
+    """
+    located = [_located(model, name) for name in wrt]
     groups = offset_groups(model, stretches)
-    for stretch, (body, there) in zip(
+    signals: list[tuple[Traced, Traced | None]] = []
+    for stretch, (body, motion) in zip(
         stretches, along_offsets(model, stretches, groups), strict=True
     ):
-        motion, rows = stretch.motion, stretch.keep
-        located = [_located(model, name) for name in wrt]
         mine = [i for i, (place, _) in enumerate(located) if place == motion.body]
-        parameters = [located[i][1] for i in mine]
-        along = residual_along(body, there, parameters)
-        signals = []
-        for traced, offset in ((along.residual, 0.0), (along.moving, motion.interaction)):
-            value = motion.lowpassed(traced.value + offset)[rows]
-            tangent = np.zeros((len(wrt), len(rows)))
-            moving = traced.tangent.any(axis=1)
-            if moving.any():
-                tangent[np.array(mine)[moving]] = motion.lowpassed(traced.tangent[moving])[:, rows]
-            signals += [value, tangent]
-        signals_of_stretches.append((signals[0], signals[1], signals[2], signals[3]))
+        along = residual_along(body, motion, [located[i][1] for i in mine])
+
+        def shown(traced: Traced, s: Stretch = stretch, places: list[int] = mine) -> Traced:
+            here = through(lambda y: s.motion.lowpassed(y, s.keep), traced)
+            tangent = np.zeros((len(wrt), len(s.keep)))
+            tangent[places] = here.tangent
+            return Traced(here.value, tangent)
+
+        acting = along.moving + constant(stretch.motion.interaction, len(mine))
+        signals.append((shown(along.residual), shown(acting) if motion.body in taking else None))
     for group, offsets in groups:
-        cleared = offsets.cleared([signals_of_stretches[i][:2] for i in group])
-        for i, (residual, tangent) in zip(group, cleared, strict=True):
-            signals_of_stretches[i] = (residual, tangent, *signals_of_stretches[i][2:])
-    return signals_of_stretches
+        bare = [(signals[i][0].value, signals[i][0].tangent) for i in group]
+        for i, (residual, tangent) in zip(group, offsets.cleared(bare), strict=True):
+            signals[i] = (Traced(residual, tangent), signals[i][1])
+    return signals
 
 
 def _located(model: Model, name: str | Probe) -> tuple[str, str | Probe]:

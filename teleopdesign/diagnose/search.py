@@ -136,12 +136,9 @@ def _with_strength(model: Model, base: Fit) -> tuple[Effect, str] | None:
 
 def _moved(base: Fit, stated: Model) -> bool:
     """Whether the base moved a parameter further from the user's value than users usually err."""
-    pairs = [
-        (base.model.parameters[n].value, stated.parameters[n].value)
-        for n in base.free
-        if n in stated.parameters
-    ]
-    return any(abs(fitted - value) > PLAN.moved * abs(value) for fitted, value in pairs)
+    here, there = base.model.parameters, stated.parameters
+    pairs = [(here[n].value, there[n].value) for n in base.free if n in there]
+    return any(abs(value - before) > PLAN.moved * abs(before) for value, before in pairs)
 
 
 def _by_strength(
@@ -162,7 +159,8 @@ def _by_strength(
 def _promise(model: Model, prepared: Prepared, base: Fit, unit: dict[str, float]) -> float:
     """Sum of squares after one linear step from this start, by all parameters."""
     stretches = prepared.of("fit")
-    same = all(model.parameters[n].value == base.model.parameters[n].value for n in base.free)
+    values, before = model.parameters, base.model.parameters
+    same = all(values[n].value == before[n].value for n in base.free)
     wanted = [n for n in free_parameters(model) if not (same and n in base.free)]
     parts = relative_residuals(model, stretches, wanted)
     roots = [np.sqrt(s.weight) for s in stretches]

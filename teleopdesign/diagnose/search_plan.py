@@ -57,6 +57,24 @@ class SearchPlan:
     #: most models that one open question holds: each is told from the others by an experiment
     rivals: int = 4
 
+    def omissions(self) -> tuple[str, ...]:
+        """What it leaves out of the search with `PLAN`, in words; none where it is that one."""
+        words = []
+        if self.most_effects < PLAN.most_effects:
+            words.append(f"no more than {self.most_effects} effects were added")
+        if self.trials < PLAN.trials:
+            words.append("pairs of effects that mask each other were not sought")
+        if self.exchanges < PLAN.exchanges:
+            words.append("no accepted effect was held against its rivals again")
+        if self.long < PLAN.long:
+            words.append(
+                f"of more than {self.long} samples, {self.windows} in windows were searched"
+            )
+        return tuple(words)
+
 
 #: the sizes in use
 PLAN = SearchPlan()
+#: those of a first look. A weak effect, the third and later ones, and two that mask each other may
+#: be missed
+QUICK = SearchPlan(most_effects=2, long=8_000, windows=8_000, trials=0, exchanges=0)

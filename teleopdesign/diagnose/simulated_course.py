@@ -29,10 +29,21 @@ STEPS, MOST_STEPS = 20, 400
 
 @dataclass(frozen=True)
 class Course:
-    """True position and command (n,) of a simulated body."""
+    """True position, velocity and command (n,) of a simulated body."""
 
     position: Array
+    velocity: Array
     command: Array
+
+
+@dataclass(frozen=True)
+class LedBody:
+    """A body on X with its command U = F_led - (stiffness + damping s) X, ready to simulate."""
+
+    diagram: Diagram
+    stiffness: float
+    damping: float
+    has_tip: bool
 
 
 def grid(motion: Motion) -> float:
@@ -49,22 +60,53 @@ def simulated_course(
     damping_ratio: of the inertia on what gives
     raises ModelError: the body cannot be simulated, a dead time is no multiple of `grid`
     """
-    step = grid(motion)
-    body = with_give(without_absent(body), deflection * motion.step, damping_ratio=damping_ratio)
     frequency = 2.0 * np.pi * LEADS * motion.bandwidth
     inertia = body.parameters["inertia"].value
-    stiffness, damping = inertia * frequency**2, 2.0 * inertia * frequency
-    time = motion.time - motion.time[0]
-    led = motion.command + stiffness * motion.position + damping * motion.velocity
-    start = {"X": float(motion.position[0]), "X_velocity": float(motion.velocity[0])}
-    if any(e.role == "structure" for e in body.effects):
+    led = led_body(
+        body,
+        bristle=deflection * motion.step,
+        damping_ratio=damping_ratio,
+        stiffness=inertia * frequency**2,
+        damping=2.0 * inertia * frequency,
+    )
+    return course_of(led, motion)
+
+
+def led_body(
+    body: Body, *, bristle: float, damping_ratio: float = 0.0, stiffness: float, damping: float
+) -> LedBody:
+    """The body with what leads it; none leads it where stiffness and damping are zero.
+
+    bristle: way that an ideal friction gives before it slides (m or rad)
+    damping_ratio: of the inertia on that bristle
+    """
+    body = with_give(without_absent(body), bristle, damping_ratio=damping_ratio)
+    has_tip = any(e.role == "structure" for e in body.effects)
+    return LedBody(_wired(body, stiffness, damping), stiffness, damping, has_tip)
+
+
+def course_of(led: LedBody, motion: Motion, rows: slice = slice(None)) -> Course:
+    """The course that a body takes under a record's forces, from the motion at the first row on.
+
+    rows: of the motion;  hidden states begin at zero
+    """
+    step, time = grid(motion), motion.time[rows] - motion.time[rows][0]
+    # what a row holds on average where the log of the command is late
+    command = motion.command
+    if motion.command_late:
+        command = np.interp(motion.time + motion.command_late, motion.time, command)
+    position, velocity = motion.position[rows], motion.velocity[rows]
+    force = command[rows] + led.stiffness * position + led.damping * velocity
+    interaction = motion.interaction[rows]
+    start = {"X": float(position[0]), "X_velocity": float(velocity[0])}
+    if led.has_tip:
         start |= {"X_tip": start["X"], "X_tip_velocity": start["X_velocity"]}
     prepared = prepare(
-        _wired(body, stiffness, damping),
+        led.diagram,
         duration=float(time[-1]),
         inputs={
-            "F_led": lambda t: np.interp(t, time, led),
-            "F": lambda t: np.interp(t, time, motion.interaction),
+            "F_led": lambda t: np.interp(t, time, force),
+            "F": lambda t: np.interp(t, time, interaction),
         },
         initial=start,
         computer=Sampling(period=motion.sample_time),
@@ -73,10 +115,10 @@ def simulated_course(
     rate, _ = fastest_rate(prepared.program, prepared.diagram.values)
     finer = int(np.ceil(rate * step / FASTEST))
     # what a bristle's reload asks for is far below what sensors see
-    rows, _ = prepared.run(prepared.timing(STEPS * min(max(finer, 1), MOST_STEPS // STEPS)))
+    kept, _ = prepared.run(prepared.timing(STEPS * min(max(finer, 1), MOST_STEPS // STEPS)))
     columns = list(prepared.program.layout.columns)
     n = len(time)
-    return Course(rows[:n, columns.index("X")], rows[:n, columns.index("U")])
+    return Course(*(kept[:n, columns.index(name)] for name in ("X", "X_velocity", "U")))
 
 
 def _wired(body: Body, stiffness: float, damping: float) -> Diagram:
@@ -113,3 +155,10 @@ def as_led(motion: Motion, course: Course) -> Motion:
         position=course.position,
         command=course.command,
     )
+
+
+def with_whole_dead_times(body: Body, motion: Motion) -> Body:
+    """The body with its dead times rounded to the grid of the simulation along that motion."""
+    step = grid(motion)
+    times = {n: step * round(body.parameters[n].value / step) for n in dead_times(body)}
+    return body.with_values(times)

@@ -4,6 +4,7 @@ from ..arguments import check_arguments
 from .arms import Arm, by_jacobian, joint, teleoperator_of_arms
 from .control_parts import controller_parts, plant_parts
 from .felt_friction import FeltFriction, felt_friction
+from .four_channel import four_channel
 from .haptic_interface import four_cases, haptic_interface
 from .parallel_rods import parallel_rods
 from .parts import (
@@ -47,6 +48,7 @@ __all__ = [
     "controller_parts",
     "felt_friction",
     "four_cases",
+    "four_channel",
     "haptic_interface",
     "joint",
     "parallel_rods",

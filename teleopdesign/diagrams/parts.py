@@ -157,7 +157,7 @@ class Linked:
 class Control:
     """A controller:  output = controller(input), along the velocity of `motion`.
 
-    motion: of a body, or a junction or kinematics of motions
+    motion: of a body, or a junction or kinematics of motions; blank: its law sees no velocity
     analog: realised by electronics that no computer samples
     """
 
@@ -165,12 +165,14 @@ class Control:
     controller: Controller | AnyBlock
     input: str
     output: str
-    motion: str
+    motion: str = ""
     analog: bool = False
 
     def __post_init__(self) -> None:
         check_name(self.name, where="block")
-        _check_names(f"block {self.name}", self.input, self.output, self.motion)
+        _check_names(f"block {self.name}", self.input, self.output)
+        if self.motion:  # blank: none
+            check_name(self.motion, where=f"block {self.name}: motion")
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -178,7 +180,12 @@ class Control:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        return (self.input, self.motion)
+        return (self.input, self.motion) if self.motion else (self.input,)
+
+    @property
+    def dead_time(self) -> float | None:
+        """Time (s) by which the block is late, where it is a delay and nothing else; else None."""
+        return self.controller.dead_time if isinstance(self.controller, Controller) else None
 
 
 @checked

@@ -111,7 +111,8 @@ def _block(name: str, table: Table, effects: Mapping[str, Effect]) -> Block:
     content = {"control": LAW, "linked": MATRICES}.get(kind, BODY)
     table.allow(("kind", *WIRING[kind], *content))
     if kind == "control":
-        source, made, along = (_string(table, key) for key in ("input", "output", "motion"))
+        source, made = (_string(table, key) for key in ("input", "output"))
+        along = _string(table, "motion") if "motion" in table.content else ""
         return Control(name, _controller(table), source, made, along, table.flag("analog", False))
     if kind == "linked":
         motions, forces = (tuple(_strings(table, key)) for key in ("motions", "forces"))

@@ -100,7 +100,7 @@ def _wiring(block: Block) -> list[str]:
     else:
         assert isinstance(block, Control)
         keys = {"kind": "control", "input": block.input, "output": block.output}
-        keys |= {"motion": block.motion}
+        keys |= {"motion": block.motion} if block.motion else {}
     return [f"{k} = {_value(v)}" for k, v in keys.items()]
 
 

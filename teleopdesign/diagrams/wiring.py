@@ -285,7 +285,8 @@ def _line(part: Part) -> str:
         sign = "-" if part.sign < 0 else ""
         return f"({', '.join(part.forces)}) = {sign}{part.name} ({', '.join(part.motions)})"
     if isinstance(part, Control):
-        return f"{part.output} = {part.name} {part.input}"
+        law = part.name if part.dead_time is None else f"exp(-s {part.name})"
+        return f"{part.output} = {law} {part.input}"
     if isinstance(part, Kinematics):
         return f"{part.output} = {part.expression}"
     return f"{part.output} = {_sum(part.terms.items())}"

@@ -9,7 +9,6 @@ The file name is the effect's name, its docstring the effect's page. A user's ow
 
 from __future__ import annotations
 
-import hashlib
 import importlib.util
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
@@ -23,7 +22,7 @@ from ..arguments import check_arguments
 from ..errors import ModelError, TeleopDesignError, did_you_mean
 from ..frozen import Catalogue
 from ..names import check_name
-from ..recipes import remember
+from ..recipes import file_digest, remember
 from ._effect import (
     CONTACT_ROLES,
     FURTHER,
@@ -92,12 +91,7 @@ _LOADED: WeakValueDictionary[tuple[Path, str], Effect] = WeakValueDictionary()
 
 def _of_file(path: Path, said: Path, expected: str = "") -> Effect:
     """The effect of a file; said: as the user wrote its path;  expected: digest it must have."""
-    try:
-        digest = hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError as problem:
-        raise ModelError(f"{said}: cannot be read: {problem.strerror or problem}") from None
-    if expected and digest != expected:
-        raise ModelError(f"{said}: the effect file has changed since it was used")
+    digest = file_digest(path, said, "effect", expected)
     effect = _LOADED.get((path, digest))
     if effect is None:
         effect = _LOADED[path, digest] = remember(_read(said), _of_file, path, said, digest)

@@ -225,6 +225,8 @@ class Effect:
     canonical: of parameter values that mean the same, those to report.
     needs: effects that the model must have for this one to mean anything; where a body has one of a
         role at most, another of that role will do.
+    counts_as: effects that it takes the place of for those that need them, where their laws hold
+        none of these effects' own parameters
     elsewhere: an axis that the law does not hold on ("prismatic" or "revolute") -> the effect that
         says the same there
     coupling: of a structure, coupling(now, p), which its law and states are made from
@@ -245,6 +247,7 @@ class Effect:
     states: Mapping[str, State] = field(default_factory=dict)
     linear: bool = False
     needs: frozenset[str] = frozenset()
+    counts_as: frozenset[str] = frozenset()
     elsewhere: Mapping[str, str] = field(default_factory=dict)
     always: frozenset[str] = frozenset()
     canonical: Callable[[Mapping[str, float]], dict[str, float]] = dict
@@ -294,6 +297,13 @@ class Effect:
     def phase(self) -> str | None:
         """Name of the angle phi in a law strength * sin(... + phi); None for other laws."""
         return _phase(self)
+
+    def parameters_of_others(self) -> frozenset[str]:
+        """Names of the needed effects whose own parameters its laws hold."""
+        laws = (self.expression(), *self.rates().values())
+        ours = set(self.symbols().values()) | set(self.state_symbols().values())
+        symbols = {s.name for law in laws for s in law.free_symbols - ours}
+        return frozenset(n for n in self.needs if any(s.startswith(f"{n}_") for s in symbols))
 
     def channels(self) -> frozenset[str]:
         """Further channels of a record that its laws need: "temperature", "other_position"."""

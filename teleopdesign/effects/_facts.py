@@ -7,12 +7,19 @@ file, as `plausible(p, facts)`: None, or one sentence that says what the values 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ..quantity import unit_of
 
+Array = NDArray[np.float64]
+
+#: classes of equal size into which samples are sorted by speed, and samples that each must have
+SPEEDS, SAMPLES = 40, 10
 #: travels per period from which something is seen to repeat. One and a half: half of it comes
 #: twice. Fewer: any slow force of the position fits; more: long true periods lose their name
 REPEATS = 1.5
@@ -26,7 +33,10 @@ class RecordFacts:
     step: what one reading leaves open of the position
     stroke: mean time of motion between two reversals (s); inf: the motion never turns round
     force: largest size of the measured force, actuator and interaction together
+    speed: largest speed;  film: friction (N or N m) at that speed by those effects of the body that
+        follow from the velocity alone and dissipate, such as `viscous`
     body: its other numbers by their names, such as "inertia" and "coulomb.level"
+    places, speeds: (n,) of the samples in which the body slides, over all records
     """
 
     axis: str
@@ -34,7 +44,25 @@ class RecordFacts:
     step: float
     stroke: float
     force: float
+    speed: float
+    film: float
     body: Mapping[str, float]
+    places: Array = field(default_factory=lambda: np.zeros(0))
+    speeds: Array = field(default_factory=lambda: np.zeros(0))
+
+    def apart_from_speed(self, pattern: Callable[[Array], Array]) -> float:
+        """Share of the variance of a function of the place that is no function of the speed.
+
+        Near 0: each place was passed at one speed, as by a single sine; 1 without samples
+        """
+        if len(self.places) < SPEEDS * SAMPLES:
+            return 1.0
+        values = pattern(self.places)
+        order = np.argsort(np.abs(self.speeds), kind="stable")
+        groups = np.array_split(values[order], SPEEDS)
+        within = sum(len(g) * float(np.var(g)) for g in groups)
+        whole = len(values) * float(np.var(values))
+        return within / whole if whole > 0.0 else 1.0
 
     def text(self, value: float, quantity: str) -> str:
         """A value of that quantity with its unit on the body's axis."""

@@ -49,6 +49,8 @@ def _is_same_at(effect: Effect, offset: sp.Expr) -> bool:
 
 
 def _is_same(one: sp.Expr, other: sp.Expr) -> bool:
+    if one == other:
+        return True
     symbols = sorted(one.free_symbols | other.free_symbols, key=str)
     for first, step in _POINTS:
         # parameters may be bounded from below by zero: all points but signals' are positive

@@ -3,6 +3,8 @@
     acting force = command, but no more than F_max either way
 
 Supply voltage, current limits. Nothing is seen of it in records whose command stays below F_max.
+Friction that flattens with speed is mistaken for it. A force that was measured (`measured = true`
+of the channel) has passed all limits.
 """
 
 from sympy import Max, Min

@@ -16,6 +16,16 @@ def law(now, p):
     return p.amplitude * sin(now.position + p.phase)
 
 
+def plausible(p, facts):
+    if abs(p.amplitude) <= facts.force:
+        return None
+    return (
+        f"a torque of {facts.text(abs(p.amplitude), 'force')} where the link lies level is more "
+        f"than any measured, {facts.text(facts.force, 'force')}: over a travel of "
+        f"{facts.text(facts.travel, 'position')} it stands for a constant force and a spring"
+    )
+
+
 EFFECT = Effect(
     role="force",
     energy="stores",
@@ -29,6 +39,7 @@ EFFECT = Effect(
     },
     absent={"amplitude": 0.0},
     canonical=positive_amplitude,
+    plausible=plausible,
     source="equation of the pendulum; Spong, Hutchinson, Vidyasagar, Robot Modeling and Control "
     "(2006), section 6.3",
 )

@@ -35,6 +35,20 @@ def of_element(i, quantity, meaning, *starts):
     return Parameter(quantity, f"{meaning} of element {i}", optional=i > 2, search=search)
 
 
+def plausible(p, facts):
+    slips = {i: getattr(p, f"level_{i}") for i in MORE}
+    slips[1] = facts.body["coulomb.level"] - sum(slips.values())
+    gives = [slips[i] / getattr(p, f"stiffness_{i}") for i in slips if slips[i] > 0.0]
+    # what gives by less than half a step is never read; what never slips is a spring
+    if any(0.5 * facts.step < way < facts.travel for way in gives):
+        return None
+    if gives and max(gives) >= facts.travel:
+        travel = facts.text(facts.travel, "position")
+        return f"no element slips within the travel of {travel}: it stands for a spring"
+    step = facts.text(facts.step, "position")
+    return f"every element gives by less than steps of {step} show: it stands for sgn friction"
+
+
 EFFECT = Effect(
     role="friction_shape",
     energy="dissipates",
@@ -50,6 +64,7 @@ EFFECT = Effect(
         "level_4": of_element(4, "force", "W_4: slip level", 0.03),
     },
     absent={"stiffness_1": float("inf"), "stiffness_2": float("inf")},
+    plausible=plausible,
     needs=frozenset({"coulomb"}),
     source="Al-Bender, Lampaert, Swevers, IEEE TAC 50 (2005) 1883; Iwan, J. Appl. Mech. 33 "
     "(1966) 893",

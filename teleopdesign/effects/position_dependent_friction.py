@@ -9,6 +9,7 @@ level stays as it is.
 
 from dataclasses import replace
 
+import numpy as np
 from sympy import pi, sin
 
 from ._effect import PERIOD, Effect, FitSearch, Parameter, positive_amplitude
@@ -16,6 +17,24 @@ from ._effect import PERIOD, Effect, FitSearch, Parameter, positive_amplitude
 
 def law(now, p):
     return 1 + p.amplitude * sin(2 * pi * now.position / p.period + p.phase)
+
+
+#: share of the pattern's variance that must be no function of the speed. A sine of one amplitude
+#: leaves next to none, two of different amplitudes over one path 0.2 and more. Lower: friction of
+#: the speed is named for one of the place; higher: sweeps that hardly differ in speed say nothing
+APART = 0.1
+
+
+def plausible(p, facts):
+    def pattern(x):
+        return np.sin(2 * np.pi * x / p.period + p.phase)
+
+    if p.period == 0.0 or facts.apart_from_speed(pattern) >= APART:
+        return None
+    return (
+        "each place was passed at one speed only, so what varies along the travel varies with the "
+        "speed as well: it stands for a friction that depends on the speed"
+    )
 
 
 EFFECT = Effect(
@@ -41,6 +60,7 @@ EFFECT = Effect(
     },
     absent={"amplitude": 0.0},
     canonical=positive_amplitude,
+    plausible=plausible,
     needs=frozenset({"coulomb"}),
     always=frozenset({"even in velocity", "non-negative"}),
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",

@@ -18,6 +18,16 @@ def law(now, p):
     return p.drag * now.velocity * (now.velocity**2 + STRAIGHT**2) ** ((p.exponent - 1) / 2)
 
 
+def plausible(p, facts):
+    most = p.drag * facts.speed ** min(p.exponent, 1.0)
+    if most <= facts.force:
+        return None
+    return (
+        f"{facts.text(most, 'force')} at the largest speed is more than any force measured, "
+        f"{facts.text(facts.force, 'force')}: it stands for a constant force beside friction"
+    )
+
+
 EFFECT = Effect(
     role="force",
     energy="dissipates",
@@ -32,6 +42,8 @@ EFFECT = Effect(
         ),
     },
     absent={"drag": 0.0},
+    counts_as=frozenset({"viscous"}),
+    plausible=plausible,
     source="power law of a lubricant in gears and bearings; Waiboer, Aarts, Jonker, Multibody "
     "Dynamics (ECCOMAS, Madrid 2005)",
 )

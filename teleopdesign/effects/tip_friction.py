@@ -9,9 +9,29 @@ stiffness K that is mistaken for `presliding`, and for `backlash` where K is hig
 
 from ._effect import Effect, FitSearch, Parameter
 
+#: the stiffness that the tip hangs on, of either structure
+JOINED = ("transmission_compliance.stiffness", "backlash.stiffness")
+
 
 def law(now, p):
     return p.level
+
+
+def plausible(p, facts):
+    stiffness = [v for n, v in facts.body.items() if n in JOINED]
+    if not stiffness:
+        return None
+    # at a reversal the transmission is wound from one side to the other
+    wound = 2.0 * p.level / max(stiffness)
+    said = f"a friction of {facts.text(p.level, 'force')} winds the transmission up by "
+    said += facts.text(wound, "position")
+    if wound < 0.5 * facts.step:
+        step = facts.text(facts.step, "position")
+        return f"{said}, less than steps of {step} show: it stands for friction of the actuator"
+    if wound > facts.travel:
+        travel = facts.text(facts.travel, "position")
+        return f"{said}, and never slides within the travel of {travel}: it stands for a spring"
+    return None
 
 
 EFFECT = Effect(
@@ -24,6 +44,7 @@ EFFECT = Effect(
         )
     },
     absent={"level": 0.0},
+    plausible=plausible,
     needs=frozenset({"transmission_compliance"}),
     always=frozenset({"even in velocity", "non-negative"}),
     source="two masses on a spring with friction on both; Spong, J. Dyn. Sys. Meas. Control 109 "

@@ -2,7 +2,8 @@
 
     F = (B + d sgn(v)) v,   d = (B+ - B-)/2
 
-Check valves, lip seals and tensioned cables do this. Unlike a `bias` it grows with speed.
+Check valves, lip seals and tensioned cables do this. Unlike a `bias` it grows with speed. It may
+stand beside `shear_thinning` as well, whose friction then differs by as much.
 """
 
 from ._effect import Effect, Parameter
@@ -13,13 +14,13 @@ def law(now, p):
 
 
 def plausible(p, facts):
-    damping = facts.body["viscous.damping"]
-    if abs(p.half_difference) <= damping:
+    if abs(p.half_difference) * facts.speed <= facts.film:
         return None
     return (
-        f"half of the difference, {facts.text(abs(p.half_difference), 'damping')}, is more than "
-        f"the damping of {facts.text(damping, 'damping')}: one way it would drive the motion; it "
-        "stands for another force that depends on the direction"
+        f"half of the difference, {facts.text(abs(p.half_difference), 'damping')}, makes more of "
+        f"a force at {facts.text(facts.speed, 'velocity')} than the friction of speed there, "
+        f"{facts.text(facts.film, 'force')}: one way it would drive the motion; it stands for "
+        "another force that depends on the direction"
     )
 
 

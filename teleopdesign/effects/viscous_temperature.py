@@ -20,6 +20,15 @@ def law(now, p):
     return damping * now.velocity * change
 
 
+def plausible(p, facts):
+    if p.coefficient >= 0.0:
+        return None
+    return (
+        f"damping that grows by {-p.coefficient:.2g} per kelvin is no lubricant's: it stands for "
+        "friction that grows with temperature, as a preload of parts that expand"
+    )
+
+
 EFFECT = Effect(
     role="force",
     energy="supplies",
@@ -34,6 +43,7 @@ EFFECT = Effect(
         )
     },
     absent={"coefficient": 0.0},
+    plausible=plausible,
     needs=frozenset({"viscous"}),
     source="Bittencourt, Gunnarsson, J. Dyn. Sys. Meas. Control 134 (2012) 051013, with the "
     "exponential law of a lubricant's viscosity",

@@ -14,7 +14,7 @@ import sympy as sp
 from ..blocks import Body
 from ..controllers import SIGNALS as CONTROL_SIGNALS
 from ..controllers import Controller, parameter_symbol
-from ..effects import SIGNALS
+from ..effects import SIGNALS, delayed
 from ..errors import ModelError
 from ..realise.simulated import without_absent
 from .one_cycle import LawExpressions, first_harmonic, middles
@@ -124,4 +124,6 @@ def controller_law(of: Controller) -> LawExpressions:
     numbers = {parameter_symbol("controller", n): v for n, v in of.names().items()}
     rates = {s: r.subs(numbers) for s, r in equation.rates.items()}
     names = ", ".join(stage.law.name for stage in of.stages)
+    if any(e.has(delayed) for e in (equation.output, *equation.rates.values())):
+        raise ModelError(f"describing function: controller {names}: give the delay its own block")
     return LawExpressions(equation.output.subs(numbers), rates, f"controller {names}")

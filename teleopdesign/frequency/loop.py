@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 
 from ..controllers import Controller
-from ..derive import block_symbol, transfer
+from ..derive import block_symbol, symbol_values, transfer
 from ..diagrams import Control, Diagram
 from ..errors import ModelError
 from ..realise.lti import as_transfer_function, linear_blocks, numerical
@@ -82,8 +82,7 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
         )
     opened = diagram.opened(controller)
     path = sp.sympify(transfer(opened, part.input, (part.output,))[part.output])
-    values = {block_symbol(n): e for n, e in linear.blocks.items()}
-    values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
+    values = symbol_values(linear)
     gain = -(path * block_symbol(controller)).subs(values)
     kept = {c.name: c for c in diagram.controls if c.name in linear.held}
     periods = [g.values["period"] for c in kept.values() for g in _stages(c) if g.law.shift]

@@ -15,7 +15,7 @@ import sympy as sp
 
 from ..by_value import ByValue
 from ..derive.elimination import rows
-from ..derive.printing import block_symbol
+from ..derive.with_values import symbol_values
 from ..diagrams import Diagram, Moving
 from ..errors import ModelError
 from ..realise.lti import linear_blocks, numerical
@@ -81,8 +81,7 @@ def matrix_response(
         raise ModelError(f'{diagram.name}: signal "{bound[0]}" is not from outside')
     unknown = [s for s in diagram.signals if s not in free]
     form = linear_blocks(diagram, speed=speed, held=True)
-    values = {block_symbol(n): z for n, z in form.blocks.items()}
-    values |= {block_symbol(f"A_{n}"): z for n, z in form.actuation.items()}
+    values = symbol_values(form)
     s = 2j * np.pi * np.asarray(frequency, dtype=float)
     system = rows(diagram)
     matrix = np.zeros((len(s), len(system), len(unknown)), dtype=complex)

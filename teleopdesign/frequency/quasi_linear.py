@@ -16,6 +16,7 @@ import sympy as sp
 from ..blocks import Body
 from ..controllers import Controller
 from ..derive import block_symbol, transfer
+from ..derive.printing import dead_time_symbol
 from ..diagrams import Control, Diagram
 from ..errors import ModelError
 from ..quantity import unit_of
@@ -65,6 +66,8 @@ class _Form:
         self.force = transfer(diagram, force, (motion,), given=motion)[motion]
         self.controls: dict[str, tuple[Controller, sp.Expr | None]] = {}
         for part in diagram.controls:
+            if part.dead_time is not None:
+                continue
             if not isinstance(part.controller, Controller):
                 raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no laws")
             self.controls[part.name] = (part.controller, self._drive(part))
@@ -82,6 +85,8 @@ class _Form:
         values = {
             block_symbol(f"A_{n}"): complex(e.subs(S, s)) for n, e in self.linear.actuation.items()
         }
+        values |= {dead_time_symbol(n): complex(t) for n, t in self.linear.dead_times.items()}
+        values[S] = s
         for part in self.diagram.bodies:
             assert isinstance(part.body, Body)
             if part.motion == self.motion:

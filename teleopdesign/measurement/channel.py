@@ -35,6 +35,7 @@ class Channel:
     resolution: step of the encoder or converter, SI; None: not stated
     noise: rms, SI; None: not stated
     conversion: how the columns become the signal; None: one column times the unit's factor
+    measured: of an actuator's force: fed back, as by a motor's current, not commanded
     """
 
     quantity: str
@@ -44,6 +45,7 @@ class Channel:
     resolution: float | None
     noise: float | None
     conversion: Conversion | None = None
+    measured: bool = False
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -163,7 +165,8 @@ def _channel(table: Table, name: str, bodies: Mapping[str, BodyDescription]) -> 
         written = Channel(quantity, None, table.text("column"), unit, None, None)
         factor_of(written, bodies, table.where("unit"))
         return written
-    table.allow(("column", "unit", "resolution", "noise", *KEYS))
+    actuator = ("measured",) if quantity == "actuator_force" else ()
+    table.allow(("column", "unit", "resolution", "noise", *KEYS, *actuator))
     unit = table.text("unit")
     conversion, count = conversion_of(
         table,
@@ -184,6 +187,7 @@ def _channel(table: Table, name: str, bodies: Mapping[str, BodyDescription]) -> 
         count if resolution is None else resolution * factor,
         None if noise is None else noise * factor,
         None if plain else conversion,
+        table.flag("measured", False),
     )
 
 

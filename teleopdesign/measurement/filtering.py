@@ -78,12 +78,19 @@ class Spectrum:
 
         parts, which: the values are held only over that one of so many equal parts of a row
         """
-        x = np.pi * self.frequency * self.sample_time / parts
-        held = np.sinc(x / np.pi) * np.exp(-1j * (1 + 2 * which) * x) / parts
-        return np.asarray(held, dtype=np.complex128)
+        return _hold(self.n, self.sample_time, parts, which)
 
 
 @lru_cache(maxsize=64)
 def spectrum(n: int, sample_time: float) -> Spectrum:
     """The Spectrum for that grid, made once."""
     return Spectrum(n, sample_time)
+
+
+@lru_cache(maxsize=32)
+def _hold(n: int, sample_time: float, parts: int, which: int) -> NDArray[np.complex128]:
+    """`Spectrum.hold` on that grid, made once: every evaluation of an actuation asks for it."""
+    x = np.pi * spectrum(n, sample_time).frequency * sample_time / parts
+    held = np.sinc(x / np.pi) * np.exp(-1j * (1 + 2 * which) * x) / parts
+    held.setflags(write=False)
+    return np.asarray(held, dtype=np.complex128)

@@ -102,11 +102,11 @@ class Motion(ByValue):
         )
         return np.asarray(sum(held))
 
-    def lowpassed(self, y: Array) -> Array:
-        """Signals (..., n) through the comparison's zero-phase low-pass."""
+    def lowpassed(self, y: Array, at: NDArray[np.intp] | None = None) -> Array:
+        """Signals (..., n) through the comparison's zero-phase low-pass;  at: these rows of it."""
         from .zero_phase import zero_phase  # numba: only where something is filtered
 
-        return zero_phase(y, self.bandwidth, self.sample_time)
+        return zero_phase(y, self.bandwidth, self.sample_time, at)
 
 
 def direction_of(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:

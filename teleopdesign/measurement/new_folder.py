@@ -16,6 +16,9 @@ from .record import read_record
 from .survey import Survey, spans_of
 from .toml_table import Table
 
+#: (begin, end) of the fit record and of the check record, s from the first row of a log
+FitAndCheck = tuple[tuple[float, float], tuple[float, float]]
+
 #: digits of first values: they are starts, not results
 _DIGITS = 3
 _FILE = "experiment.toml"
@@ -29,12 +32,18 @@ def make_folder(
     title: str,
     inertia: float | None = None,
     effects: Sequence[str] = ("coulomb", "viscous"),
+    spans: FitAndCheck | None = None,
 ) -> Path:
     """Copy the logs into a folder and write experiment.toml beside them.
 
-    One log is cut into a fit and a check record; of several the last is the check record.
-    raises ExperimentError: the folder holds an experiment already, or cannot be written
+    One log is cut into a fit and a check record, at `spans` (s from its first row) where they are
+    given; of several the last is the check record.
+    raises ExperimentError: the folder holds an experiment already, or cannot be written; spans that
+        overlap, lie outside of the log or belong to several logs
     """
+    names = [log.name for log in logs]
+    if spans is not None:
+        check_spans(spans, survey.duration, names)
     if (folder / _FILE).exists():
         raise ExperimentError(f"{folder.name}/{_FILE}: is there already: choose another --output")
     try:
@@ -45,7 +54,7 @@ def make_folder(
                 (shutil.copytree if log.is_dir() else shutil.copyfile)(log, target)
     except OSError as problem:
         raise ExperimentError(f"{folder.name}: cannot be written: {problem.strerror}") from None
-    records = _records(survey, [log.name for log in logs])
+    records = _records(survey, names, spans)
     first = _first_values(survey, folder, records) if inertia is None else None
     if first is not None and not first.inertia > 0:
         survey.guesses["model.device.inertia"] = (
@@ -58,10 +67,33 @@ def make_folder(
     return folder
 
 
-def _records(survey: Survey, names: Sequence[str]) -> list[dict[str, Any]]:
+def check_spans(spans: FitAndCheck, duration: float, names: Sequence[str]) -> None:
+    """Refuse spans that overlap, lie outside of the log, or belong to several logs."""
+    if len(names) > 1:
+        raise ExperimentError(
+            f"{names[0]}: spans: found {len(names)} logs, expected one that is cut; of several the "
+            "last is the check record"
+        )
+    for use, (begin, end) in zip(("fit", "check"), spans, strict=True):
+        if not 0 <= begin < end or begin >= duration:
+            raise ExperimentError(
+                f"{names[0]}: {use} span: found {begin:g} to {end:g} s, expected two instants in "
+                f"order within the log's {duration:.4g} s"
+            )
+    (fit_begin, fit_end), (check_begin, check_end) = spans
+    if max(fit_begin, check_begin) < min(fit_end, check_end):
+        raise ExperimentError(
+            f"{names[0]}: spans: found fit {fit_begin:g} to {fit_end:g} s and check "
+            f"{check_begin:g} to {check_end:g} s, expected spans that do not overlap"
+        )
+
+
+def _records(
+    survey: Survey, names: Sequence[str], spans: FitAndCheck | None
+) -> list[dict[str, Any]]:
     if len(names) > 1:
         return [{"file": n, "use": "check" if n == names[-1] else "fit"} for n in names]
-    fit, check = spans_of(survey.duration)
+    fit, check = spans_of(survey.duration) if spans is None else spans
     return [
         {"file": names[0], "use": "fit", "span": fit},
         {"file": names[0], "use": "check", "span": check},

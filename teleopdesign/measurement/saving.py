@@ -86,6 +86,8 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
             entry["resolution"] = repr(channel.resolution)
         if channel.noise is not None:
             entry["noise"] = repr(channel.noise)
+        if channel.measured:
+            entry["measured"] = "true"
         name = key.removeprefix("device.") if one else f'"{key}"'
         lines.append(f"{name} = {_inline(entry)}")
     if any(len(r.segments) > 1 for r in experiment.records):

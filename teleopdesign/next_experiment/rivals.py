@@ -57,14 +57,16 @@ def _of_question(diagnosis: Diagnosis, question: OpenQuestion, number: int) -> l
     assert question.added is not None
     rivals = [Rival(question.added, diagnosis.estimated, number)]
     for candidate, other_fit in question.others:
-        fit = _instead(diagnosis, question.added, candidate, other_fit)
+        fit = rival_instead(diagnosis, question.added, candidate, other_fit)
         if fit is not None:
             rivals.append(Rival(candidate, fit, number))
     return rivals if len(rivals) > 1 else []
 
 
-def _instead(diagnosis: Diagnosis, added: Candidate, other: Candidate, fit: Fit) -> Fit | None:
+def rival_instead(diagnosis: Diagnosis, added: Candidate, other: Candidate, fit: Fit) -> Fit | None:
     """The final model with another effect in the place of an accepted one; None if it has none.
+
+    What the accepted one replaced is back, unless the other was compared without it as well.
 
     fit: the fit that the other was compared by
     """
@@ -74,8 +76,12 @@ def _instead(diagnosis: Diagnosis, added: Candidate, other: Candidate, fit: Fit)
     model = diagnosis.estimated.model
     if model.body(at).has(effect.name):
         return None  # a later rung has added it beside
+    rung = next(r for r in diagnosis.rungs if r.added == added)
+    gone = rung.instead_of
     try:
-        model = model.without_effect(added.effect.name, at=added.at)
+        model = rung.taken_from(model)
+        if gone is not None and not fit.model.body(gone.at).has(gone.effect.name):
+            model = model.without_effect(gone.effect.name, at=gone.at)  # the other needs it no more
         return estimate(model.with_effect(effect, at=at, values=values), diagnosis.prepared)
     except ModelError:
         return None  # a later effect needs the one that would go

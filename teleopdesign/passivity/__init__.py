@@ -65,6 +65,7 @@ from .theorems.sampled_compensation import Trembling, sampled_compensation
 from .theorems.sampled_data import required_damping, sampled_coupling, sampled_passivity
 from .theorems.velocity_compensation import SteadyStrokes, velocity_compensation
 from .two_port.claims import absolutely_stable, passive
+from .two_port.margin_map import MarginMap, margin_map
 from .two_port.two_port import (
     FrequencyMargins,
     TwoPort,
@@ -91,6 +92,7 @@ __all__ = [
     "Given",
     "Impedance",
     "Kyp",
+    "MarginMap",
     "PassivityControlled",
     "Port",
     "PortEnergy",
@@ -132,6 +134,7 @@ __all__ = [
     "largest_passive_level",
     "largest_ratio",
     "lugre_passivity",
+    "margin_map",
     "mobility_excess",
     "observe",
     "observe_record",
@@ -147,8 +150,8 @@ __all__ = [
     "read_record",
     "region",
     "required_damping",
-    "sampled_coupling",
     "sampled_compensation",
+    "sampled_coupling",
     "sampled_passivity",
     "search_counterexample",
     "second_opinion",

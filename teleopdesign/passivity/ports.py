@@ -14,7 +14,8 @@ import sympy as sp
 
 from ..blocks import Body
 from ..controllers import Controller
-from ..derive import block_symbol, transfer
+from ..derive import symbol_values, transfer
+from ..derive.printing import dead_time_symbol
 from ..diagrams import Diagram, Moving
 from ..errors import ModelError
 from ..realise.lti import S, linear_blocks
@@ -122,14 +123,18 @@ def impedance_matrix(diagram: Diagram, at: Sequence[Port]) -> sp.Matrix:
     """
     diagram = with_tips(diagram)
     linear = linear_blocks(diagram)
-    values = {block_symbol(n): e for n, e in linear.blocks.items()}
-    values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
+    values = symbol_values(linear)
+    # a dead time is a symbol of its own until the matrix is inverted: it commutes, and stays short
+    late = {dead_time_symbol(n): sp.Dummy(n) for n in linear.dead_times}
+    times = {late[dead_time_symbol(n)]: sp.exp(-S * t) for n, t in linear.dead_times.items()}
     forces = tuple(p.force for p in at)
     motions = {m: transfer(diagram, m, forces) for p in at for m in p.weights}
     mobility = sp.Matrix(
         [
             [
-                sp.Add(*(exact(w) * S * motions[m][f] for m, w in port.weights.items()))
+                sp.Add(
+                    *(exact(w) * S * _marked(motions[m][f], late) for m, w in port.weights.items())
+                )
                 for f in forces
             ]
             for port in at
@@ -139,7 +144,17 @@ def impedance_matrix(diagram: Diagram, at: Sequence[Port]) -> sp.Matrix:
     mobility = mobility.applyfunc(lambda e: sp.cancel(sp.together(e)))
     if sp.cancel(mobility.det()) == 0:
         raise ModelError(f"{diagram.name}: its ports do not move apart: they have no impedance")
-    return mobility.inv().applyfunc(lambda e: sp.cancel(sp.together(e)))
+    impedance = mobility.inv().applyfunc(lambda e: sp.cancel(sp.together(e)))
+    return impedance.xreplace(times)
+
+
+def _marked(form: sp.Expr, late: Mapping[sp.Symbol, sp.Symbol]) -> sp.Expr:
+    """The form with a symbol for each e^(-s T), also within one of a sum of dead times."""
+
+    def product(power: sp.Expr) -> sp.Expr:
+        return sp.Mul(*(mark ** -(power.coeff(S).coeff(t)) for t, mark in late.items()))
+
+    return sp.sympify(form).replace(sp.exp, lambda power: product(sp.expand(power)))
 
 
 def without_holding(diagram: Diagram, motion: str = "") -> Diagram:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..measurement.experiment import Experiment
@@ -12,6 +15,8 @@ from ..quantity import unit_of
 
 #: points of a line: more are not seen
 _POINTS = 4000
+#: colours of what is fitted and of what is checked
+_SHADES = {"fit": "tab:blue", "check": "tab:orange"}
 _KINDS = {"actuator_force": "force", "interaction_force": "force"}
 
 
@@ -28,7 +33,7 @@ def draw_survey(survey: Survey, experiment: Experiment) -> Figure:
         kind = _KINDS.get(channel.quantity, channel.quantity)
         for record in experiment.records:
             some = slice(None, None, max(1, len(record.time) // _POINTS))
-            shade = "tab:blue" if record.use == "fit" else "tab:orange"
+            shade = _SHADES[record.use]
             axes.plot(record.time[some], record.signals[key][some], lw=0.7, color=shade)
         axes.set_ylabel(f"{channel.quantity.replace('_', ' ')}\n({unit_of(kind, survey.axis)})")
         axes.set_title(f'column "{channel.column}" in {channel.unit}', fontsize=9, loc="left")
@@ -50,3 +55,12 @@ def draw_survey(survey: Survey, experiment: Experiment) -> Figure:
     axes.set_xlabel(f"velocity ({unit_of('velocity', survey.axis)})")
     axes.set_ylabel(f"actuator force ({unit_of('force', survey.axis)})")
     return figure
+
+
+def shade_spans(panels: Iterable[Axes], spans: Sequence[tuple[float, float]]) -> None:
+    """Shade the fit and the check span in every panel, and name them in the first."""
+    for k, axes in enumerate(panels):
+        for (use, shade), (begin, end) in zip(_SHADES.items(), spans, strict=True):
+            axes.axvspan(begin, end, color=shade, alpha=0.15, lw=0, label=use)
+        if k == 0:
+            axes.legend(frameon=False, fontsize=8, ncols=2, loc="upper right")

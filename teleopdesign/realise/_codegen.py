@@ -140,6 +140,7 @@ class Generator:
         self.motions = [*e.motions, *e.prescribed]
         self.commands = list(e.commands)
         self.late = list(e.late)
+        self.sampled_late = list(e.computer.late) if e.commands else []
         self.sampled_inputs = [signal(s) for s in e.sampled_inputs] if e.commands else []
         used = set().union(*(x.free_symbols for x in self._expressions()))
         self.parameters = sorted(used & set(e.parameters), key=str)
@@ -156,6 +157,7 @@ class Generator:
         """Variable of the source for each quantity by its name; no such name begins another one."""
         e = self.equations
         symbols = [*self.states, *self.computer_states, *e.inputs, *self.late, *self.sensors]
+        symbols += self.sampled_late
         symbols += [f(m) for m in self.motions for f in (travel_rate, estimate)]
         symbols += [*self.sampled_inputs, *self.motion_signals]
         names = [*map(str, symbols), *self.commands, *e.signals, *e.computer.signals]
@@ -168,14 +170,15 @@ class Generator:
         names |= {s: f"j{i}_" for i, s in enumerate(e.joined)} | {TIME: "time", PERIOD: "period"}
         used = set().union(*(x.free_symbols for x in self._expressions()))
         used |= {*self.states, *self.computer_states, *e.inputs, *e.commands.values(), *self.late}
-        used |= {*self.sensors, *self.sampled_inputs, *self.motion_signals}
+        used |= {*self.sensors, *self.sampled_inputs, *self.motion_signals, *self.sampled_late}
         used |= {f(m) for m in self.motions for f in (travel_rate, estimate)}
         return names | {s: self.variables[s.name] for s in used if s not in names}
 
     def _computer_expressions(self) -> list[sp.Expr]:
         computer = self.equations.computer
         steps = computer.steps.values()
-        return [*computer.rates.values(), *steps, *computer.signals.values()]
+        late = (expression for expression, _ in computer.late.values())
+        return [*computer.rates.values(), *steps, *computer.signals.values(), *late]
 
     def _expressions(self) -> list[sp.Expr]:
         e = self.equations
@@ -209,7 +212,7 @@ class Generator:
         """First row of the loop's memory for each group of quantities, and their numbers."""
         motions = len(self.motions) if self.commands else 0
         states, bristles, late = len(self.moving), len(self.bristles), len(self.late)
-        commands = len(self.commands)
+        commands, sampled_late = len(self.commands), len(self.sampled_late)
         rows = {
             "STATES": states,
             "BRISTLES": bristles,
@@ -220,6 +223,8 @@ class Generator:
             "LATE_MIDDLE": late,
             "LATE_END": late,
             "LATE_VALUES": late,
+            "SAMPLED_LATE": sampled_late,
+            "SAMPLED_LATE_VALUES": sampled_late,
             "STAGE_STATES": states,
             "STAGE_BRISTLES": bristles,
             "FIRST_BRISTLES": bristles,
@@ -240,7 +245,8 @@ class Generator:
             lines.append(f"{name} = {first} * LANES")
             first += count
         counted = {"MOTIONS": motions} | {
-            name: rows[name] for name in ("STATES", "BRISTLES", "COMMANDS", "LATE", "COLUMNS")
+            name: rows[name]
+            for name in ("STATES", "BRISTLES", "COMMANDS", "LATE", "SAMPLED_LATE", "COLUMNS")
         }
         lines += [f"MANY_{name} = {count}" for name, count in counted.items()]
         lines.append(f"ROWS = {first}")
@@ -252,9 +258,12 @@ class Generator:
     def _smooth(self) -> list[bool]:
         """Whether a late signal changes within a step, in place of being held over it."""
         e = self.equations
-        moving = {*e.rates, *e.joined}
-        late = (expression for expression, _ in e.late.values())
-        return [bool(x.free_symbols & moving) or not self.commands for x in late]
+        moving = {*e.rates, *e.joined, *e.inputs}
+        if not self.commands:
+            return [True] * len(e.late)
+        for _ in e.late:  # a late signal that is late once more
+            moving |= {s for s, (x, _) in e.late.items() if x.free_symbols & moving}
+        return [bool(x.free_symbols & moving) for x, _ in e.late.values()]
 
     def _now(self) -> dict[sp.Symbol, sp.Expr]:
         """Accelerations and signals of continuous time, by their symbols."""
@@ -318,7 +327,9 @@ class Generator:
             "TRAVEL": [travel_rate(m) for m in motions],
             "KNOWN": [estimate(m) for m in motions],
             "COMPUTER_STATES": self.computer_states,
+            "SAMPLED_LATE": self.sampled_late,
         }
+        kept = (x for x, _ in self.equations.computer.late.values()) if self.commands else ()
         read = {x: f"sampled[{i}, n]" for i, x in enumerate(self.sampled_inputs)}
         places = _places(rows) | read | self._parameter_places()
         writer = _Writer(tuple(DIGITAL), places, self.names)
@@ -328,6 +339,7 @@ class Generator:
         parts = [
             self._stepped(writer, "computer_before", True),
             writer.function("computer_signals", to=made.values()),
+            writer.function("computer_late", to=kept),
             self._stepped(writer, "computer_after", False),
             _function("held_commands", ["n", "sampled", "memory", "to"], commands),
         ]

@@ -92,6 +92,8 @@ LATE = 4
 LATE_MIDDLE = 4
 LATE_END = 4
 LATE_VALUES = 4
+SAMPLED_LATE = 4
+SAMPLED_LATE_VALUES = 4
 STAGE_STATES = 4
 STAGE_BRISTLES = 6
 FIRST_BRISTLES = 6
@@ -128,6 +130,7 @@ MANY_STATES = 2
 MANY_BRISTLES = 0
 MANY_COMMANDS = 1
 MANY_LATE = 0
+MANY_SAMPLED_LATE = 0
 MANY_COLUMNS = 6
 ROWS = 32
 SMOOTH = (True,)
@@ -199,6 +202,11 @@ def computer_signals(n, period, sampled, parameters, memory, to, lane):
     v3_ = sampled[0, n]
     out0 = v3_
     memory[to + lane] = out0
+
+
+@jitted
+def computer_late(n, period, sampled, parameters, memory, to, lane):
+    pass
 
 
 @jitted

@@ -1,18 +1,23 @@
 """A controller as difference equations in a C header: what runs on a robot is what was judged.
 
 The steps are those of the simulation's computer: a state is carried over a sample exactly for its
-rate, all else held, or as its law says itself. Double precision, no memory but the struct, C99.
+rate, all else held, or as its law says itself; what is delayed waits in a ring of samples. Double
+precision, no memory but the struct, C99.
 """
 
 from __future__ import annotations
 
 import math
 import re
+from dataclasses import dataclass
 
 import sympy as sp
 
 from ..controllers import SIGNALS, Controller, parameter_symbol
 from ..errors import ModelError
+from .delays import late_samples
+from .equations import LateSignals, without_delays
+from .simulated import without_no_delay
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 _SIGNALS = ("input", "velocity", "travel_rate")
@@ -50,23 +55,61 @@ static inline double {name}_step(
 """
 
 
+@dataclass(frozen=True)
+class _Ring:
+    """Samples of a signal that is late;  kept: the signal;  samples: by how many it is late."""
+
+    number: int
+    kept: sp.Expr
+    samples: float
+
+    @property
+    def size(self) -> int:
+        return int(self.samples) + 2
+
+    def field(self) -> str:
+        return f"    double d{self.number}[{self.size}]; int at{self.number}; /* what is late */"
+
+    def zeros(self) -> str:
+        i = self.number
+        return f"    s->at{i} = 0;\n    for (int k = 0; k < {self.size}; k++) s->d{i}[k] = 0.0;"
+
+    def recall(self) -> str:
+        i, whole = self.number, int(self.samples)
+        part = self.samples - whole
+        ends = (f"s->d{i}[(s->at{i} + {self.size - n}) % {self.size}]" for n in (whole, whole + 1))
+        first, second = ends
+        return f"    const double late{i} = {1.0 - part!r} * {first} + {part!r} * {second};"
+
+    def retain(self, code: str) -> str:
+        i = self.number
+        return f"    s->d{i}[s->at{i}] = {code};\n    s->at{i} = (s->at{i} + 1) % {self.size};"
+
+
 def as_c_header(controller: Controller, *, period: float, name: str = "controller") -> str:
     """The controller's difference equations in a computer of that period, as text of a C header.
 
     period: s;  name: begins every name in it: lower case letters, digits, underscores
     Values are constants of the text. States start at zero, as in the simulation.
-    raises ModelError: a name that is none, a period that is not positive, a law known as code only
+    raises ModelError: a name that is none, a period that is not positive, a law known as code only,
+        a dead time below the period
     """
     if not _NAME.fullmatch(name):
         raise ModelError(f'as_c_header: name: found "{name}", expected such as "observer_2"')
     if not 0 < period < float("inf"):
         raise ModelError(f"as_c_header: period: expected a time > 0 s, found {period:g}")
-    made = controller.sampled(period)
+    made = without_no_delay(controller).sampled(period)
     signals = {n: SIGNALS[n] for n in SIGNALS} | {"period": sp.Float(period)}
-    equation = made.equation("law", signals)
+    late: LateSignals = {}
+    equation = without_delays(made.equation("law", signals), "law", late)
     values = {parameter_symbol("law", n): sp.Float(v) for n, v in made.names().items()}
     states = sorted({*equation.rates, *equation.steps}, key=str)
     fields = {x: sp.Symbol(f"s->x{i}") for i, x in enumerate(states)}
+    fields |= {x: sp.Symbol(f"late{i}") for i, x in enumerate(late)}
+    rings = [
+        _Ring(i, code_of, late_samples(float(delay.subs(values)), period, what="as_c_header"))
+        for i, (code_of, delay) in enumerate(late.values())
+    ]
 
     def code(expression: sp.Expr) -> str:
         numbers = sp.sympify(expression).subs(values).xreplace({sp.pi: sp.Float(math.pi)})
@@ -88,17 +131,18 @@ def as_c_header(controller: Controller, *, period: float, name: str = "controlle
 
     ahead = [x for x in states if x in equation.before]
     later = [x for x in states if x not in equation.before]
-    body = [f"    const double T = {period!r};", "    (void)T;", *stepped(ahead)]
-    body += [f"    const double output = {code(equation.output)};", *stepped(later)]
+    body = [f"    const double T = {period!r};", "    (void)T;"]
+    body += [*(ring.recall() for ring in rings), *stepped(ahead)]
+    body += [f"    const double output = {code(equation.output)};"]
+    body += [*(ring.retain(code(ring.kept)) for ring in rings), *stepped(later)]
     rows = [f"    double x{i}; /* {x} */" for i, x in enumerate(states)]
+    zeros = [f"    s->x{i} = 0.0;" for i in range(len(states))] + [r.zeros() for r in rings]
     return _TEXT.format(
         title=re.sub(r"[^ -~]|\*/", " ", repr(controller)),
         period=period,
         name=name,
         guard=f"{name.upper()}_H",
-        fields="\n".join(rows or ["    char none; /* no state */"]),
-        zeros="\n".join(
-            [f"    s->x{i} = 0.0;" for i in range(len(states))] or ["    s->none = 0;"]
-        ),
+        fields="\n".join([*rows, *(r.field() for r in rings)] or ["    char none; /* no state */"]),
+        zeros="\n".join(zeros or ["    s->none = 0;"]),
         body="\n".join([*body, "    return output;"]),
     )

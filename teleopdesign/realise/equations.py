@@ -8,7 +8,7 @@ same set of equations. All equations are linear in accelerations and forces and 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import sympy as sp
 
@@ -25,8 +25,11 @@ from ._linear import Steps, solve_linear
 _Reader = Callable[[str], sp.Symbol]
 #: state -> rate, or value at the next sample
 _Changes = dict[sp.Symbol, sp.Expr]
+#: late signal -> what it was, and how much earlier
+LateSignals = dict[sp.Symbol, tuple[sp.Expr, sp.Expr]]
 TIME = sp.Symbol("time", real=True)
 _NO_COMMAND = sp.Symbol("no_command", real=True)
+_NO_VELOCITY = sp.Symbol("no_velocity", real=True)
 #: duration of a sample, in the laws of what is sampled
 PERIOD = CONTROL_SIGNALS["period"]
 
@@ -37,12 +40,14 @@ class Computer:
 
     rates: continuous rates, inputs held over a sample;  before: states stepped ahead of the output
     steps: value at the next sample, for states that state it in place of a rate
+    late: symbol -> (expression, delay), of what it keeps for later samples
     """
 
     rates: Mapping[sp.Symbol, sp.Expr]
     steps: Mapping[sp.Symbol, sp.Expr]
     before: frozenset[sp.Symbol]
     signals: Mapping[str, sp.Expr]
+    late: Mapping[sp.Symbol, tuple[sp.Expr, sp.Expr]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -68,6 +73,11 @@ class Equations:
     prescribed: tuple[str, ...]
     parameters: Mapping[sp.Symbol, str]
     joined: Mapping[sp.Symbol, sp.Expr]
+
+    @property
+    def delays(self) -> tuple[sp.Expr, ...]:
+        """Delay of each late signal on parameters, s: of the analog ones, then the computer's."""
+        return tuple(d for _, d in (*self.late.values(), *self.computer.late.values()))
 
 
 def signal(name: str) -> sp.Symbol:
@@ -139,7 +149,7 @@ class _Builder:
         self.outside = [s for s in diagram.outside if s not in driven]
         self.digital, self.sampled_inputs = self._computers_signals()
         self.rates: dict[sp.Symbol, sp.Expr] = {}
-        self.late: dict[sp.Symbol, tuple[sp.Expr, sp.Expr]] = {}
+        self.late: LateSignals = {}
         self.friction: dict[str, sp.Expr] = {}
         self.acting: dict[sp.Symbol, sp.Expr] = {}
 
@@ -204,7 +214,7 @@ class _Builder:
             commands = {s: signal(s) for s in self._held()}
             computer = self._computer()
         else:
-            more, names = self._computer_rows(signal, velocity, velocity)
+            more, names = self._computer_rows(signal, velocity, velocity, self.late)
             rows += more[0]
             self.rates |= more[1]
             unknown += [signal(s) for s in names]
@@ -265,10 +275,10 @@ class _Builder:
                 rows += self._linked(part)
                 unknown += [signal(s) for s in part.forces]
             elif isinstance(part, Control) and part.analog:
-                _, v, _ = motion_of(self.diagram, part.motion)
+                v = motion_of(self.diagram, part.motion)[1] if part.motion else _NO_VELOCITY
                 known = self.diagram.is_position(part.input)
                 source = self.diagram.position(part.input) if known else signal(part.input)
-                equation = _placed(part, source, v, v)
+                equation = _placed(part, source, v, v, late=self.late)
                 rows.append(signal(part.output) - equation.output)
                 unknown.append(signal(part.output))
                 self.rates |= equation.rates
@@ -312,30 +322,25 @@ class _Builder:
             SIGNALS["time"]: TIME,
             SIGNALS["command"]: command,
         }
-        acting = self._undelayed(part.name, equation.acting.xreplace(here))
+        acting = undelayed(part.name, equation.acting.xreplace(here), self.late)
         if sp.diff(acting, command).has(command):  # found once the command is known
             force = sp.Symbol(f"{part.name}_acting", real=True)
             self.acting[force], acting = acting, force
         here[SIGNALS["acting_force"]] = acting
         total = equation.inertia * SIGNALS["acceleration"] + equation.force + equation.friction
         for state, rate in equation.rates.items():
-            self.rates[hidden[state]] = self._undelayed(part.name, rate.xreplace(here))
+            self.rates[hidden[state]] = undelayed(part.name, rate.xreplace(here), self.late)
         if equation.friction != 0:
             self.friction[f"{part.name}_friction"] = equation.friction.xreplace(here)
         return (total.xreplace(here) - acting).xreplace({_NO_COMMAND: sp.S(0)})
 
-    def _undelayed(self, name: str, expression: sp.Expr) -> sp.Expr:
-        """delayed(x, tau) replaced by a symbol that the simulation looks up in its history."""
-        for call in sorted(expression.atoms(delayed), key=str):
-            symbol = sp.Symbol(f"{name}_late_{len(self.late)}", real=True)
-            known = {c: s for s, c in self.late.items()}
-            symbol = known.get(call.args, symbol)
-            self.late[symbol] = call.args
-            expression = expression.xreplace({call: symbol})
-        return expression
-
     def _computer_rows(
-        self, of: _Reader, rate: _Reader, speed: _Reader, period: sp.Expr = sp.S.Zero
+        self,
+        of: _Reader,
+        rate: _Reader,
+        speed: _Reader,
+        late: LateSignals,
+        period: sp.Expr = sp.S.Zero,
     ) -> tuple[tuple[list[sp.Expr], _Changes, _Changes, set[sp.Symbol]], list[str]]:
         rows: list[sp.Expr] = []
         rates: _Changes = {}
@@ -346,10 +351,12 @@ class _Builder:
             if isinstance(part, Control):
                 if part.analog:
                     continue
-                moved = self.diagram.position(part.motion)
-                readings = {x: of(x.name) for x in moved.free_symbols}
-                travel, known = (rate_of(moved, f).xreplace(readings) for f in (rate, speed))
-                equation = _placed(part, of(part.input), travel, known, period)
+                travel = known = _NO_VELOCITY
+                if part.motion:
+                    moved = self.diagram.position(part.motion)
+                    readings = {x: of(x.name) for x in moved.free_symbols}
+                    travel, known = (rate_of(moved, f).xreplace(readings) for f in (rate, speed))
+                equation = _placed(part, of(part.input), travel, known, period, late=late)
                 rows.append(signal(part.output) - equation.output)
                 rates |= equation.rates
                 steps |= equation.steps
@@ -367,7 +374,8 @@ class _Builder:
         def of(name: str) -> sp.Symbol:
             return measured(name) if name in sensors else signal(name)
 
-        listed, names = self._computer_rows(of, travel_rate, estimate, PERIOD)
+        late: LateSignals = {}
+        listed, names = self._computer_rows(of, travel_rate, estimate, late, PERIOD)
         rows, rates, steps, before = listed
         solved, _ = solve_linear(rows, [signal(s) for s in names], self.diagram.name)
         return Computer(
@@ -375,6 +383,7 @@ class _Builder:
             {x: r.xreplace(solved) for x, r in steps.items()},
             frozenset(before),
             {s.name: e for s, e in solved.items()},
+            {s: (e.xreplace(solved), d) for s, (e, d) in late.items()},
         )
 
 
@@ -389,12 +398,56 @@ def _check_inputs(diagram: Diagram, motions: list[str]) -> None:
 
 
 def _placed(
-    part: Control, input: sp.Expr, rate: sp.Expr, speed: sp.Expr, period: sp.Expr = sp.S.Zero
+    part: Control,
+    input: sp.Expr,
+    rate: sp.Expr,
+    speed: sp.Expr,
+    period: sp.Expr = sp.S.Zero,
+    *,
+    late: LateSignals,
 ) -> ControllerEquation:
+    """The equation of a controller on signals; what it delays is put into `late`."""
     assert isinstance(part.controller, Controller)
     signals = {"input": input, "velocity": speed, "speed": sp.Abs(speed), "travel_rate": rate}
     signals["period"] = period
-    return part.controller.equation(part.name, signals)
+    made = part.controller.equation(part.name, signals)
+
+    equation = without_delays(made, part.name, late)
+    kept = [*equation.rates.values(), *equation.steps.values(), *(e for e, _ in late.values())]
+    if any(e.has(_NO_VELOCITY) for e in (equation.output, *kept)):
+        raise ModelError(
+            f"{part.name}: its law sees a velocity, and no motion is wired: "
+            'motion="X" says along which'
+        )
+    return equation
+
+
+def without_delays(
+    equation: ControllerEquation, name: str, late: LateSignals
+) -> ControllerEquation:
+    """The equation with a symbol for each signal that is late, which is put into `late`."""
+
+    def replaced(changes: Mapping[sp.Symbol, sp.Expr]) -> _Changes:
+        return {x: undelayed(name, change, late) for x, change in changes.items()}
+
+    return ControllerEquation(
+        undelayed(name, equation.output, late),
+        replaced(equation.rates),
+        replaced(equation.steps),
+        equation.before,
+    )
+
+
+def undelayed(name: str, expression: sp.Expr, late: LateSignals) -> sp.Expr:
+    """delayed(x, tau) replaced by a symbol that the simulation looks up in its history."""
+    while calls := expression.atoms(delayed):
+        innermost = (c for c in calls if not any(x.has(delayed) for x in c.args))
+        for call in sorted(innermost, key=str):
+            symbol = sp.Symbol(f"{name}_late_{len(late)}", real=True)
+            symbol = {c: s for s, c in late.items()}.get(call.args, symbol)
+            late[symbol] = call.args
+            expression = expression.xreplace({call: symbol})
+    return expression
 
 
 def summed(part: Junction | Kinematics, of: _Reader) -> sp.Expr:

@@ -70,14 +70,8 @@ def balance_friction(motion: Motion, needed: Traced, low: Traced, high: Traced) 
     """Friction within its bounds that balances what is needed."""
     if low is high:
         return low
-    both = balanced(
-        needed.rows(),
-        low.rows(),
-        high.rows(),
-        bandwidth=motion.bandwidth,
-        sample_time=motion.sample_time,
-    )
-    return Traced(both[0], both[1:])
+    bandwidth, sample_time = motion.bandwidth, motion.sample_time
+    return balanced(needed, low, high, bandwidth=bandwidth, sample_time=sample_time)
 
 
 def friction_of_acting_force(level: sp.Expr, friction: Traced, along: Along) -> Traced:

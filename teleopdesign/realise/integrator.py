@@ -54,9 +54,6 @@ def prepare_step(first, time, h, inputs, column, parameters, memory, lane):
         memory[WEIGHT_0 + at] = w0
         memory[WEIGHT_1 + at] = w1
         memory[WEIGHT_3 + at] = w3
-    for i in range(MANY_LATE):
-        at = i * LANES + lane
-        memory[LATE_MIDDLE + at] = 0.5 * (memory[LATE + at] + memory[LATE_END + at])
 
 
 @jitted
@@ -186,10 +183,42 @@ def read_sensors(n, encoder_step, period, smoothing, inputs, column, memory, lan
 
 
 @jitted
+def recall(n, samples, past, slots, memory, lane):
+    """Late signals of the computer: between two samples, on the line that joins them.
+
+    samples: by how many each is late;  past: ring of what they were, `slots` samples long
+    """
+    width = MANY_SAMPLED_LATE * LANES
+    for i in range(MANY_SAMPLED_LATE):
+        at = i * LANES + lane
+        whole = int(samples[i])
+        part = samples[i] - whole
+        then = n - whole
+        value = 0.0
+        if then >= 0:
+            value = (1.0 - part) * past[(then % slots) * width + at]
+        if then >= 1:
+            value += part * past[((then - 1) % slots) * width + at]
+        memory[SAMPLED_LATE + at] = value
+
+
+@jitted
+def retain(n, period, sampled, past, slots, parameters, memory, lane):
+    """Keep what the computer has now for later samples."""
+    computer_late(n, period, sampled, parameters, memory, SAMPLED_LATE_VALUES, lane)
+    for i in range(MANY_SAMPLED_LATE):
+        at = i * LANES + lane
+        entry = (n % slots) * MANY_SAMPLED_LATE * LANES + at
+        past[entry] = memory[SAMPLED_LATE_VALUES + at]
+
+
+@jitted
 def sample(
-    n, time, period, encoder_step, smoothing, inputs, column, sampled, parameters, memory, lane
-):
+    n, time, period, encoder_step, smoothing, inputs, column, sampled, late_samples, past, slots,
+    parameters, memory, lane,
+):  # fmt: skip
     """The computer reads its sensors, makes its signals and steps its states."""
+    recall(n, late_samples, past, slots, memory, lane)
     # what sensors see: just before the new command
     signals(time, STATES, BRISTLES, inputs, column, LATE, parameters, memory, NOW, lane)
     read_sensors(n, encoder_step, period, smoothing, inputs, column, memory, lane)
@@ -197,6 +226,7 @@ def sample(
         computer_before(n, period, sampled, parameters, memory, lane)
     computer_signals(n, period, sampled, parameters, memory, MADE, lane)
     held_commands(n, sampled, memory, NEW_COMMANDS, lane)
+    retain(n, period, sampled, past, slots, parameters, memory, lane)
     computer_after(n, period, sampled, parameters, memory, lane)
 
 
@@ -217,27 +247,68 @@ def release(slot, held, memory, lane):
 
 
 @jitted
-def delay(j, time, inputs, column, late_steps, history, slots, parameters, memory, lane):
-    """Late signals at the start and at the end of the step that begins.
+def earlier(at, node, part, before, after, slots):
+    """A signal `part` of a step behind a node, 0 to 1: through four nodes, never across a jump.
 
-    history: ring of what they were, `slots` nodes long
+    before, after: rings of the signal at the nodes, on either side of a jump; `slots` nodes long
     """
+    if node < 0:
+        return 0.0
+    width = MANY_LATE * LANES
+    now = after[(node % slots) * width + at]
+    if part == 0.0:
+        return now
+    end = before[((node + 1) % slots) * width + at]
+    if node < 1 or before[(node % slots) * width + at] != now:
+        return now + part * (end - now)
+    last = after[((node - 1) % slots) * width + at]
+    if node < 2 or before[((node - 1) % slots) * width + at] != last:
+        outer = 0.5 * part * ((part - 1.0) * last + (part + 1.0) * end)
+        return outer + (1.0 - part * part) * now
+    first = after[((node - 2) % slots) * width + at]
+    outer = (part + 1.0) * part * ((part + 2.0) * end - (part - 1.0) * first) / 6.0
+    inner = 0.5 * (part + 2.0) * (part - 1.0)
+    return outer + inner * (part * last - (part + 1.0) * now)
+
+
+@jitted
+def keep_late(j, time, inputs, column, ring, slots, parameters, memory, lane):
+    """What is late some time later, as it is at this node, into a ring."""
     late_values(time, STATES, BRISTLES, inputs, column, LATE, parameters, memory, LATE_VALUES, lane)
     for i in range(MANY_LATE):
         at = i * LANES + lane
-        value = memory[LATE_VALUES + at]
-        history[(j % slots) * MANY_LATE * LANES + at] = value
+        ring[(j % slots) * MANY_LATE * LANES + at] = memory[LATE_VALUES + at]
+
+
+@jitted
+def delay(j, time, inputs, column, late_steps, before, after, slots, parameters, memory, lane):
+    """Late signals at the start, in the middle and at the end of the step that begins.
+
+    late_steps: by how many steps each is late;  before, after: rings, as of `earlier`
+    """
+    if j > 0:  # before the start all is zero, so that what is not jumps there
+        keep_late(j, time, inputs, column, before, slots, parameters, memory, lane)
     for i in range(MANY_LATE):
         at = i * LANES + lane
-        now, end = 0.0, 0.0
-        then = j - late_steps[i]
-        if then >= 0:
-            now = history[(then % slots) * MANY_LATE * LANES + at]
-        if not SMOOTH[i]:
-            end = now  # what is held over a step stays
-        elif then >= -1:
-            end = history[((then + 1) % slots) * MANY_LATE * LANES + at]
-        memory[LATE + at] = now
+        whole = int(np.ceil(late_steps[i]))
+        memory[LATE + at] = earlier(at, j - whole, whole - late_steps[i], before, after, slots)
+    keep_late(j, time, inputs, column, after, slots, parameters, memory, lane)
+    for i in range(MANY_LATE):
+        at = i * LANES + lane
+        whole = int(np.ceil(late_steps[i]))
+        node, part = j - whole, whole - late_steps[i]
+        now = memory[LATE + at]
+        middle, end = now, now  # what is held over a step stays
+        if SMOOTH[i]:
+            if part < 0.5:
+                middle = earlier(at, node, part + 0.5, before, after, slots)
+            else:
+                middle = earlier(at, node + 1, part - 0.5, before, after, slots)
+            if part > 0.0:
+                end = earlier(at, node + 1, part, before, after, slots)
+            elif node >= -1:
+                end = before[((node + 1) % slots) * MANY_LATE * LANES + at]
+        memory[LATE_MIDDLE + at] = middle
         memory[LATE_END + at] = end
 
 
@@ -320,7 +391,8 @@ def differentiate_at_rest(inputs, parameters, memory, small, slopes_of):
 @entry
 def run(
     samples, inner, h, period, lag, late_steps, encoder_step, smoothing,
-    held, held_slots, history, late_slots, every_step, parameters, inputs, sampled,
+    held, held_slots, before, after, late_slots, late_samples, past, past_slots,
+    every_step, parameters, inputs, sampled,
     memory, kept, out, begin, kinds, columns, others, results,
 ):  # fmt: skip
     """Advance all lanes over samples of `inner` steps of h; see `kernel.execute` for the arrays."""
@@ -331,7 +403,8 @@ def run(
             for lane in range(LANES):
                 sample(
                     j // inner, time, period, encoder_step, smoothing,
-                    inputs, 2 * j, sampled, parameters, memory, lane,
+                    inputs, 2 * j, sampled, late_samples, past, past_slots,
+                    parameters, memory, lane,
                 )  # fmt: skip
                 hold(j // inner % held_slots, memory, held, lane)
         if COMPUTER and j >= lag and (j - lag) % inner == 0:
@@ -340,7 +413,7 @@ def run(
         if MANY_LATE > 0:
             for lane in range(LANES):
                 delay(
-                    j, time, inputs, 2 * j, late_steps, history, late_slots,
+                    j, time, inputs, 2 * j, late_steps, before, after, late_slots,
                     parameters, memory, lane,
                 )  # fmt: skip
         if every_step or now:

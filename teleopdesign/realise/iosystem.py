@@ -16,7 +16,7 @@ import numpy as np
 import sympy as sp
 
 from ..arguments import checked
-from ..controllers import Controller
+from ..controllers import Controller, Stage, from_control
 from ..diagrams import Control, Diagram, Junction, Kinematics
 from ..errors import ModelError
 from ._codegen import needed_steps
@@ -40,24 +40,54 @@ class SymbolValues:
 
 @checked
 def to_iosystem(
-    diagram: Diagram, *, prescribed: tuple[str, ...] = (), give: float = 1e-5
+    diagram: Diagram,
+    *,
+    prescribed: tuple[str, ...] = (),
+    give: float = 1e-5,
+    delay_order: int | None = None,
 ) -> control.InterconnectedSystem:
     """The diagram as a python-control system.
 
     prescribed: motions that are inputs ("L", "L_velocity", "L_acceleration") instead of results
     give: m or rad, as in `simulate`
+    delay_order: of the Pade approximation in the place of each delay block, which python-control
+        cannot hold as it is; `simulate` and all responses have them exactly
     Inputs are the signals from outside, outputs all others; states are those of `simulate`.
     Parameters are its `params`, by their names in `Diagram.values`: with other values it need not
     be built anew, `input_output_response(..., params={"Z_M.inertia": 0.2})`.
-    raises ModelError: a block without laws, or a dead time, which python-control cannot hold
+    raises ModelError: a block without laws, a delay block without `delay_order`, or a dead time of
+        an actuator
     """
-    diagram = simulated(diagram, give, prescribed)
+    diagram = _approximated(simulated(diagram, give, prescribed), delay_order)
     blocks = tuple(
         replace(b, analog=False) if isinstance(b, Control) else b for b in diagram.blocks
     )
     names = private_names(replace(diagram, blocks=blocks))
     with names.in_errors():
         return _joined(names, tuple(names.private.get(motion, motion) for motion in prescribed))
+
+
+def _approximated(diagram: Diagram, order: int | None) -> Diagram:
+    """The diagram with a Pade approximation of that order in the place of each dead time."""
+    import control
+
+    for part in diagram.controls:
+        assert isinstance(part.controller, Controller)
+        stages: list[Stage] = []
+        for stage in part.controller.stages:
+            time = stage.value_of("dead_time")
+            if time is None:
+                stages.append(stage)
+                continue
+            if order is None or order < 1:
+                raise ModelError(
+                    f"{diagram.name}: {part.name}: python-control holds no dead time: "
+                    "delay_order=4 puts a Pade approximation in its place, `simulate` is exact"
+                )
+            stages += from_control(control.tf(*control.pade(time, order)), name="pade").stages
+        if stages != list(part.controller.stages):
+            diagram = diagram.with_block(part.name, Controller(tuple(stages)))
+    return diagram
 
 
 def _joined(names: PrivateNames, prescribed: tuple[str, ...]) -> control.InterconnectedSystem:
@@ -136,7 +166,7 @@ def _controller(part: Control, numbers: SymbolValues, names: PrivateNames) -> An
     if (system := _code(part)) is not None:
         return _renamed(system, part, names)
     assert isinstance(part.controller, Controller)
-    _, v, _ = motion_of(names.diagram, part.motion)
+    v = motion_of(names.diagram, part.motion)[1] if part.motion else sp.S(0)
     signals = {"input": signal(part.input), "velocity": v, "speed": sp.Abs(v), "travel_rate": v}
     signals["period"] = sp.S(0)
     equation = part.controller.equation(part.name, signals)

@@ -72,17 +72,19 @@ class Timing:
     """Grid and sampling of one run.
 
     step: inner step, s;  inner: steps a sample;  lag: delay of commands in steps
-    late: delay of each late signal in steps
+    late: delay of each late signal in steps, no whole number where it falls between them
     smoothing: factor of the velocity filter a sample, the pole of an observer
+    late_samples: delay of each late signal of the computer in samples
     """
 
     step: float
     inner: int
     samples: int
     lag: int
-    late: tuple[int, ...]
+    late: tuple[float, ...]
     encoder_step: float
     smoothing: float
+    late_samples: tuple[float, ...] = ()
 
     @property
     def period(self) -> float:
@@ -293,20 +295,27 @@ def first_memory(made: Program, lanes: int, start: Mapping[str, float]) -> np.nd
 def grid(made: Program, timing: Timing, lanes: int) -> tuple[Any, ...]:
     """The first arguments of the loop: its grid, and rings for what is delayed."""
     held = timing.lag // timing.inner + 2
-    late = max(timing.late, default=0) + 1
+    # three nodes before the one that is looked up, and that of the running step
+    late = math.ceil(max(timing.late, default=0)) + 4
+    past = int(max(timing.late_samples, default=0)) + 2
+    nodes, samples = (n * lanes for n in (len(made.layout.late), len(timing.late_samples)))
     return (
         timing.samples,
         timing.inner,
         timing.step,
         timing.period,
         timing.lag,
-        np.array(timing.late, dtype=np.int64),
+        np.array(timing.late, dtype=float),
         float(timing.encoder_step),
         float(timing.smoothing),
         np.zeros(held * len(made.layout.commands) * lanes),
         held,
-        np.zeros(late * len(made.layout.late) * lanes),
+        np.zeros(late * nodes),
+        np.zeros(late * nodes),
         late,
+        np.array(timing.late_samples, dtype=float),
+        np.zeros(past * samples),
+        past,
     )
 
 

@@ -8,7 +8,7 @@ paper does so here.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,6 +32,7 @@ class LinearBlocks:
     actuation: name of a body -> transfer function from its command to its acting force
     left_out: "block.effect" or "block" for what has no linear form;  speed: frozen, m/s or rad/s
     held: controllers in discrete time, which are there as their samples are held
+    dead_times: of delay blocks, s
     """
 
     blocks: Mapping[str, sp.Expr]
@@ -39,11 +40,15 @@ class LinearBlocks:
     left_out: tuple[str, ...]
     speed: float
     held: tuple[str, ...] = ()
+    dead_times: Mapping[str, sp.Expr] = field(default_factory=dict)
 
 
-def linear_blocks(diagram: Diagram, *, speed: float = 0.0, held: bool = False) -> LinearBlocks:
+def linear_blocks(
+    diagram: Diagram, *, speed: float = 0.0, held: bool = False, only: str = ""
+) -> LinearBlocks:
     """Linear forms of all blocks with their values in place, which are exact numbers.
 
+    only: name of the one block that is asked for; blank: all
     speed: at which smoothed friction and schedules are frozen
     held: whether controllers in discrete time take part, as H(e^(s T)) (1 - e^(-s T))/(s T); that
         is a frequency response below half the sampling rate, and no ground for a proof
@@ -53,7 +58,8 @@ def linear_blocks(diagram: Diagram, *, speed: float = 0.0, held: bool = False) -
     actuation: dict[str, sp.Expr] = {}
     left_out: list[str] = []
     sampled: list[str] = []
-    for part in diagram.blocks:
+    times = {c.name: as_written(c.dead_time) for c in diagram.controls if c.dead_time is not None}
+    for part in diagram.blocks if not only else (diagram.block(only),):
         if isinstance(part, Control):
             if not isinstance(part.controller, Controller):
                 raise ModelError(
@@ -82,7 +88,7 @@ def linear_blocks(diagram: Diagram, *, speed: float = 0.0, held: bool = False) -
             stage, gone = part.body.actuation(S)
             actuation[part.name] = _numbered(stage, part.body.numbers())
             left_out += [f"{part.name}.{name}" for name in gone]
-    return LinearBlocks(blocks, actuation, tuple(left_out), abs(speed), tuple(sampled))
+    return LinearBlocks(blocks, actuation, tuple(left_out), abs(speed), tuple(sampled), times)
 
 
 def _numbered(form: sp.Expr, numbers: Mapping[sp.Symbol, float]) -> sp.Expr:

@@ -71,7 +71,7 @@ def _slopes(
     """Code of a law's tangents: slopes once for all columns, then what each column makes of them.
 
     name: of the law in the code
-    returns: lines that compute slopes; the sum over states in column c, from theirs, d[j, c]; place
+    returns: lines that compute slopes; the sum over states in one column, from theirs, d_j; place
         of a parameter -> its slope
     """
     lines, terms, by_parameter = [], [], {}
@@ -81,7 +81,7 @@ def _slopes(
             continue
         lines += assignments({f"{name}_{j}": slope}, names)
         if j < len(states):
-            terms.append(f"{name}_{j} * d[{j}, c]")
+            terms.append(f"{name}_{j} * d_{j}")
         else:
             by_parameter[j - len(states)] = f"{name}_{j}"
     return lines, " + ".join(terms) or "0.0", by_parameter
@@ -92,51 +92,80 @@ _LEFT = "left"
 
 
 def _names(effect: Effect) -> dict[sp.Symbol, str]:
-    """States, parameters and signals as the entries of the arrays that hold them."""
-    states = {s: f"z[{i}]" for i, s in enumerate(effect.state_symbols().values())}
-    parameters = {s: f"p[{i}]" for i, s in enumerate(_parameters(effect))}
-    signals = {SIGNALS[d]: f"u[{i}]" for i, d in enumerate(_drivers(effect))}
+    """States, parameters and signals as local numbers: what does not change is computed once."""
+    states = {s: f"z_{i}" for i, s in enumerate(effect.state_symbols().values())}
+    parameters = {s: f"p_{i}" for i, s in enumerate(_parameters(effect))}
+    signals = {SIGNALS[d]: f"u_{i}" for i, d in enumerate(_drivers(effect))}
     return states | parameters | signals | {UNEXPLAINED: _LEFT}
 
 
+def _here_lines(effect: Effect) -> list[str]:
+    """Code of the signals u and the states z in a stage; those of corrections after the drivers."""
+    drivers = len(_drivers(effect)) + (3 if effect.corrections() else 0)
+    lines = []
+    for i in range(drivers):
+        lines += [
+            f"bend = (1.0 - here) * bends[0, {i}, k] - here * bends[1, {i}, k]",
+            f"chord = drive[{i}, k + 1] - drive[{i}, k]",
+            f"u_{i} = drive[{i}, k] + here * (chord + (1.0 - here) * bend)",
+        ]
+    return [
+        *lines,
+        *(f"z_{i} = z[{i}] + ahead * f[before, {i}]" for i in range(len(effect.states))),
+    ]
+
+
+def _left_lines(effect: Effect) -> list[str]:
+    """Code of what is left unexplained beyond the bounds of friction.
+
+    bound: 1 or 2 for the one that it is beyond, 0 for neither
+    """
+    law, names, first = effect.expression(), _names(effect), len(_drivers(effect))
+    needed, low, high = (f"u_{first + i}" for i in range(3))
+    return [
+        f"{_LEFT} = {needed} - ({source_of(law, names)})",
+        f"bound = 1 if {_LEFT} < {low} else 2 if {_LEFT} > {high} else 0",
+        f"{_LEFT} = {_LEFT} - ({low} if bound == 1 else {high}) if bound else 0.0",
+    ]
+
+
 def _rate_lines(effect: Effect) -> list[str]:
-    """Code of f, the rates of the states z, and of g, their tangents."""
+    """Code of f, the rates of the states, and of g, their tangents, in one stage."""
     states = list(effect.state_symbols().values())
-    parameters = _parameters(effect)
+    parameters, names = _parameters(effect), _names(effect)
     corrections = effect.corrections()
-    names, left = _names(effect), _LEFT
     lines: list[str] = []
-    each: list[str] = []
+    each = [f"d_{i} = d[{i}, c] + ahead * g[before, {i}, c]" for i in range(len(states))]
     ends: list[str] = []
     if corrections:
-        law = effect.expression()
-        lines += [
-            f"{left} = u[-3] - ({source_of(law, names)})",
-            f"bound = -2 if {left} < u[-2] else -1 if {left} > u[-1] else 0",
-            f"{left} = {left} - u[bound] if bound else 0.0",
+        before, moved, law_own = _slopes("by_law", effect.expression(), states, parameters, names)
+        lines += [*_left_lines(effect), *before]
+        each += [
+            f"d{_LEFT} = 0.0",
+            "if bound:",
+            "    needed = ddrive[0, k, c] + here * (ddrive[0, k + 1, c] - ddrive[0, k, c])",
+            "    step_of = ddrive[bound, k + 1, c] - ddrive[bound, k, c]",
+            f"    d{_LEFT} = needed - (ddrive[bound, k, c] + here * step_of) - ({moved})",
         ]
-        before, moved, law_own = _slopes("by_law", law, states, parameters, names)
-        lines += before
-        each.append(f"d{left} = v[-3, c] - v[bound, c] - ({moved}) if bound else 0.0")
     for i, (name, rate) in enumerate(effect.rates().items()):
         whole = rate + corrections.get(name, sp.S(0))
-        lines += assignments({f"f[{i}]": whole}, names)
+        lines += assignments({f"f[stage, {i}]": whole}, names)
         before, moved, by_parameter = _slopes(f"by_{i}", whole, states, parameters, names)
         lines += before
         by_left = sp.diff(whole, UNEXPLAINED)
-        ends += [
-            f"if columns[{j}] >= 0:\n    g[{i}, columns[{j}]] += {k}"
-            for j, k in by_parameter.items()
-        ]
+        here = f"g[stage, {i}, columns"
+        ends += [f"if columns[{j}] >= 0:\n    {here}[{j}]] += {k}" for j, k in by_parameter.items()]
         if by_left != 0:
             lines += assignments({f"by_{i}_left": by_left}, names)
-            moved += f" + by_{i}_left * d{left}"
+            moved += f" + by_{i}_left * d{_LEFT}"
             ends += [
-                f"if bound and columns[{j}] >= 0:\n    g[{i}, columns[{j}]] -= by_{i}_left * {k}"
+                f"if bound and columns[{j}] >= 0:\n    {here}[{j}]] -= by_{i}_left * {k}"
                 for j, k in law_own.items()
             ]
-        each.append(f"g[{i}, c] = {moved}")
-    lines.append("for c in range(d.shape[1]):")
+        each.append(f"g_{i} = {moved}")
+    # a stage may follow itself, so slopes are stored when all of them are known
+    each += [f"g[stage, {i}, c] = g_{i}" for i in range(len(states))]
+    lines.append("for c in range(q + 1):")
     lines += [f"    {line}" for line in each]
     return [*lines, *(line for end in ends for line in end.split("\n"))]
 
@@ -153,12 +182,13 @@ def _dry_lines(effect: Effect) -> list[str]:
         lines += [*assignments({f"most_{i}": bound}, names), *before]
         lines += [
             # half a step on, for what drives it changes on the way: else a stuck state creeps
-            f"wanted = z[{i}] / w + 1.5 * f[0, {i}] - 0.5 * before_f[{i}]",
+            f"wanted = z_{i} / w + 1.5 * f[0, {i}] - 0.5 * before_f[{i}]",
             f"within = abs(wanted) <= most_{i}",
             f"hold[{i}] = wanted if within else copysign(most_{i}, wanted)",
             "for c in range(q + 1):",
+            *(f"    d_{j} = d[{j}, c]" for j in range(len(states))),
             "    if within:",
-            f"        dhold[{i}, c] = d[{i}, c] / w + 1.5 * g[0, {i}, c] - 0.5 * before_g[{i}, c]",
+            f"        dhold[{i}, c] = d_{i} / w + 1.5 * g[0, {i}, c] - 0.5 * before_g[{i}, c]",
             "    else:",
             f"        dhold[{i}, c] = copysign(1.0, wanted) * ({moved})",
         ]
@@ -186,39 +216,31 @@ def _held_lines(effect: Effect) -> list[str]:
     return [*first, "f[stage] -= hold", "g[stage] -= dhold"]
 
 
-def _rate_source(effect: Effect) -> str:
+@lru_cache(maxsize=32)
+def _source(effect: Effect) -> str:
+    parameters = [f"p_{i} = p[{i}]" for i in range(len(_parameters(effect)))]
+    stage = [*_here_lines(effect), *_rate_lines(effect), *_held_lines(effect)]
     return f"""{head("Generated from an effect's rates; do not edit.")}
 
 @jitted
-def rate(z, d, u, v, p, columns, f, g):
-{indented(_rate_lines(effect), 4)}
-
-"""
-
-
-@lru_cache(maxsize=32)
-def _source(effect: Effect) -> str:
-    return f"""{_rate_source(effect)}
-@jitted
 def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout):
-    m, n = drive.shape
-    s, q, t = len(z), dout.shape[1], len(ddrive)
+    n = drive.shape[1]
+    s, q = {len(effect.states)}, dout.shape[1]
+{indented(parameters, 4)}
     # the last column is a difference that nothing drives: how much it grows
     d = np.zeros((s, q + 1))
     d[:, q] = size
     f = np.zeros((4, s))
     g = np.zeros((4, s, q + 1))
-    u = np.zeros(m)
-    v = np.zeros((t, q + 1))
     w = h / steps
-    zs = np.zeros(s)
-    ds = np.zeros((s, q + 1))
     hold = np.zeros(s)
     dhold = np.zeros((s, q + 1))
     before_f = np.zeros(s)
     before_g = np.zeros((s, q + 1))
     for k in range(n):
-        grown = np.abs(d[:, q] / size).max()
+        grown = 0.0
+        for i in range(s):
+            grown = max(grown, abs(d[i, q] / size[i]))
         if grown > growth:
             d[:] = 0.0
             d[:, q] = size
@@ -234,20 +256,9 @@ def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout)
             for stage in range(4):
                 part = 0.0 if stage == 0 else 1.0 if stage == 3 else 0.5
                 here = (step + part) / steps
-                for i in range(m):
-                    chord = drive[i, k + 1] - drive[i, k]
-                    bend = (1.0 - here) * bends[0, i, k] - here * bends[1, i, k]
-                    u[i] = drive[i, k] + here * (chord + (1.0 - here) * bend)
-                for i in range(t):
-                    for c in range(q):
-                        v[i, c] = ddrive[i, k, c] + here * (ddrive[i, k + 1, c] - ddrive[i, k, c])
+                ahead = part * w
                 before = max(stage - 1, 0)
-                for i in range(s):
-                    zs[i] = z[i] + part * w * f[before, i]
-                    for c in range(q + 1):
-                        ds[i, c] = d[i, c] + part * w * g[before, i, c]
-                rate(zs, ds, u, v, p, columns, f[stage], g[stage])
-{indented(_held_lines(effect), 16)}
+{indented(stage, 16)}
             for i in range(s):
                 z[i] += w / 6 * (f[0, i] + 2 * f[1, i] + 2 * f[2, i] + f[3, i])
                 for c in range(q + 1):
@@ -339,19 +350,28 @@ def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[
     drive = np.ascontiguousarray([*drivers, *(r.value for r in corrected)])
     bends = _bends(drive, [_slope_of(n, along) for n in _drivers(effect)], step)
     n, count = drive.shape[1], len(effect.states)
-    moving = np.zeros((len(corrected), n, len(columns)))
+    # without corrections nothing but the parameters of the rates moves the states
+    mine = np.arange(len(columns)) if corrected else np.unique(places[places >= 0])
+    places = np.where(places >= 0, np.searchsorted(mine, places), -1)
+    moving = np.zeros((len(corrected), n, len(mine) + 1))
     for i, r in enumerate(corrected):
-        moving[i] = r.tangent.T
+        moving[i, :, :-1] = r.tangent.T
     start = np.array(
         [signals[SIGNALS[s.start]].value[0] if s.start else 0.0 for s in effect.states.values()]
     )
-    out, tangent = np.empty((count, n)), np.empty((count, len(columns), n))
-    # a difference of one in position goes with one of the fastest mode's rate in velocity
-    rate = max(fastest, 1e-300)
-    size = np.array([rate if s.quantity == "velocity" else 1.0 for s in effect.states.values()])
-    growth = GROWTH if effect.corrections() and not effect.linear else np.inf
-    scan = compiled(_source(effect), "scan")
-    scan(step, steps, parameters, places, drive, bends, moving, size, growth, start, out, tangent)
+    out, tangent = np.empty((count, n)), np.zeros((count, len(columns), n))
+    if covered <= STABLE * MOST_STEPS:
+        # a difference of one in position goes with one of the fastest mode's rate in velocity
+        rate = max(fastest, 1e-300)
+        states = effect.states.values()
+        size = np.array([rate if s.quantity == "velocity" else 1.0 for s in states])
+        growth = GROWTH if effect.corrections() and not effect.linear else np.inf
+        by_mine = tangent if len(mine) == len(columns) else np.empty((count, len(mine), n))
+        scan = compiled(_source(effect), "scan")
+        known = (step, steps, parameters, places, drive, bends, moving)
+        scan(*known, size, growth, start, out, by_mine)
+        if by_mine is not tangent:
+            tangent[:, mine] = by_mine
     if covered > STABLE * MOST_STEPS or not np.isfinite(out).all():
         # too fast for the record's rate: no number at all rather than a wrong one
         out[:], tangent[:] = np.nan, np.nan

@@ -127,5 +127,5 @@ def _renamed(block: Block, name: str, signals: Mapping[str, str]) -> Block:
         motions, forces = (tuple(signals[s] for s in x) for x in (block.motions, block.forces))
         return replace(block, name=name, motions=motions, forces=forces)
     assert isinstance(block, Control)
-    source, made, along = (signals[s] for s in (block.input, block.output, block.motion))
+    source, made, along = signals[block.input], signals[block.output], signals.get(block.motion, "")
     return replace(block, name=name, input=source, output=made, motion=along)

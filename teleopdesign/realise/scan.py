@@ -138,14 +138,15 @@ def driven_scan(effect: Effect, along: Along) -> dict[sp.Symbol, Traced]:
 def _advanced(effect: Effect, along: Along, command: Traced) -> tuple[Traced, Traced]:
     """The effect's state at the rows and its average over the hold of each."""
     scan = compiled(_stage_source(effect), "stage")
-    end, dend = np.empty_like(command.value), np.empty_like(command.tangent)
-    mean, dmean = np.empty_like(command.value), np.empty_like(command.tangent)
+    tangent = np.ascontiguousarray(command.tangent)
+    end, dend = np.empty_like(command.value), np.empty_like(tangent)
+    mean, dmean = np.empty_like(command.value), np.empty_like(tangent)
     scan(
         along.step,
         columns_of(effect, along.columns),
         *[along.values[s] for s in effect.symbols().values()],
         *[along.signals[SIGNALS[n]].value for n in _used(effect)],
-        command.tangent,
+        tangent,
         end,
         dend,
         mean,
@@ -159,37 +160,42 @@ def _used_by_shape(effect: Effect) -> list[str]:
     return [n for n in _used(effect) if n not in ("velocity", "level")]
 
 
-@lru_cache(maxsize=64)
-def _shape_source(effect: Effect) -> str:
-    z, a, b = _affine(effect)
-    law = effect.expression()
-    slope = sp.diff(law, z)
-    used, names = _used_by_shape(effect), _names(effect)
+def _shape_module(
+    effect: Effect,
+    names: Names,
+    *,
+    start: list[str],
+    advance: list[str],
+    slope: sp.Expr,
+    weights: list[str],
+    tangents: list[str],
+    moved: str,
+) -> str:
+    """Source of the bounds of a shape's friction, and of their tangents, at each sample.
+
+    start: its states at rest;  advance: how a sample moves them on;  slope: force by position
+    weights: slopes of the force by the states, once for all columns
+    tangents: how column j of the states' tangents moves on;  moved: what they change of the force
+    """
+    law, used = effect.expression(), _used_by_shape(effect)
     by = _slopes_by(effect, "level")
-    parameters = [names[s] for s in effect.symbols().values()]
-    arguments = [*parameters, *(f"{n}_" for n in used)]
+    arguments = [*(names[s] for s in effect.symbols().values()), *(f"{n}_" for n in used)]
     return f"""{_HEAD}
 
 @jitted
 def shape(h, half_step, columns, position, velocity, direction, {", ".join(arguments)},
           forward, dforward, backward, dbackward, low, dlow, high, dhigh):
     p, n = dforward.shape
-    dz = np.zeros(p)
-    z = 0.0
+{indented(start, 4)}
     for k in range(n):
         u_velocity = (position[k] - position[max(k - 1, 0)]) / h
         ahead = u_velocity >= 0.0
         u_level = max(forward[k] if ahead else backward[k], 1e-12)
 {indented([f"u_{n} = {n}_[k]" for n in used], 8)}
-{indented(assignments({"a": a, "b": b}, names), 8)}
-{indented(_lines("a", a, by, names) + _lines("b", b, by, names), 8)}
-        e, p1, p2, p3 = phi(a * h)
-        s1 = p1 - p2
-        before = z
-        z = before * e + b * h * p1
-        {_STATE} = z
+{indented(advance, 8)}
         u_velocity = velocity[k]
 {indented(assignments({"force": law, "slope": slope}, names), 8)}
+{indented(weights, 8)}
 {indented(_lines("f", law, by, names) + _lines("g", slope, by, names), 8)}
         # where the reading cannot tell a motion, the position is open by half a step
         free = half_step if direction[k] == 0 else 0.0
@@ -199,14 +205,42 @@ def shape(h, half_step, columns, position, velocity, direction, {", ".join(argum
         high[k] = above if direction[k] != 0 else min(above, forward[k])
         for j in range(p):
             dlevel = dforward[j, k] if ahead else dbackward[j, k]
-            da = a_level * dlevel + {_by_parameter(effect, "a")}
-            db = b_level * dlevel + {_by_parameter(effect, "b")}
-            dz[j] = dz[j] * e + before * e * h * da + h * p1 * db + b * h * s1 * h * da
-            df = slope * dz[j] + f_level * dlevel + {_by_parameter(effect, "f")}
+{indented(tangents, 12)}
+            df = {moved} + f_level * dlevel + {_by_parameter(effect, "f")}
             dg = free * copysign(1.0, slope) * (g_level * dlevel + {_by_parameter(effect, "g")})
             dlow[j, k] = df - dg if low[k] == below else -dbackward[j, k]
             dhigh[j, k] = df + dg if high[k] == above else dforward[j, k]
 """
+
+
+@lru_cache(maxsize=64)
+def _shape_source(effect: Effect) -> str:
+    """Of a shape with one state, whose rate is affine in it: exact over each sample."""
+    state, a, b = _affine(effect)
+    names, by = _names(effect), _slopes_by(effect, "level")
+    return _shape_module(
+        effect,
+        names,
+        start=["dz = np.zeros(p)", "z = 0.0"],
+        advance=[
+            *assignments({"a": a, "b": b}, names),
+            *_lines("a", a, by, names),
+            *_lines("b", b, by, names),
+            "e, p1, p2, p3 = phi(a * h)",
+            "s1 = p1 - p2",
+            "before = z",
+            "z = before * e + b * h * p1",
+            f"{_STATE} = z",
+        ],
+        slope=sp.diff(effect.expression(), state),
+        weights=[],
+        tangents=[
+            f"da = a_level * dlevel + {_by_parameter(effect, 'a')}",
+            f"db = b_level * dlevel + {_by_parameter(effect, 'b')}",
+            "dz[j] = dz[j] * e + before * e * h * da + h * p1 * db + b * h * s1 * h * da",
+        ],
+        moved="slope * dz[j]",
+    )
 
 
 def _stop_lines(count: int) -> list[str]:
@@ -244,52 +278,24 @@ def _stopped_source(effect: Effect) -> str:
     if len(stops) < len(states) or any(r.has(*states) or s.has(*states) for r, s in stops.values()):
         raise ModelError(f"{effect.name}: states with a stop beside others, or that need others")
     law, m = effect.expression(), len(states)
-    used = _used_by_shape(effect)
     names = {**_names(effect), **{z: f"z_{i}" for i, z in enumerate(states)}}
     by = _slopes_by(effect, "level")
     laws = {f"r{i}": rate for i, (rate, _) in enumerate(stops.values())}
     laws |= {f"s{i}": stop for i, (_, stop) in enumerate(stops.values())}
     velocity = SIGNALS["velocity"]
-    stiffness = sp.Add(
-        *(sp.diff(law, z) * sp.diff(laws[f"r{i}"], velocity) for i, z in enumerate(states))
-    )
-    parameters = [names[s] for s in effect.symbols().values()]
-    arguments = [*parameters, *(f"{n}_" for n in used)]
-    moved = " + ".join(f"w{i} * dz[{i}, j]" for i in range(m))
     slopes = [line for name, one in laws.items() for line in _lines(name, one, by, names)]
-    return f"""{_HEAD}
-
-@jitted
-def shape(h, half_step, columns, position, velocity, direction, {", ".join(arguments)},
-          forward, dforward, backward, dbackward, low, dlow, high, dhigh):
-    p, n = dforward.shape
-    dz = np.zeros(({m}, p))
-{indented([f"z_{i} = 0.0" for i in range(m)], 4)}
-    for k in range(n):
-        u_velocity = (position[k] - position[max(k - 1, 0)]) / h
-        ahead = u_velocity >= 0.0
-        u_level = max(forward[k] if ahead else backward[k], 1e-12)
-{indented([f"u_{n} = {n}_[k]" for n in used], 8)}
-{indented(assignments(laws, names), 8)}
-{indented(slopes, 8)}
-{indented(_stop_lines(m), 8)}
-        u_velocity = velocity[k]
-{indented(assignments({"force": law, "slope": stiffness}, names), 8)}
-{indented(assignments({f"w{i}": sp.diff(law, z) for i, z in enumerate(states)}, names), 8)}
-{indented(_lines("f", law, by, names) + _lines("g", stiffness, by, names), 8)}
-        free = half_step if direction[k] == 0 else 0.0
-        below = force - free * abs(slope)
-        above = force + free * abs(slope)
-        low[k] = below if direction[k] != 0 else max(below, -backward[k])
-        high[k] = above if direction[k] != 0 else min(above, forward[k])
-        for j in range(p):
-            dlevel = dforward[j, k] if ahead else dbackward[j, k]
-{indented(_stop_tangents(effect), 12)}
-            df = {moved} + f_level * dlevel + {_by_parameter(effect, "f")}
-            dg = free * copysign(1.0, slope) * (g_level * dlevel + {_by_parameter(effect, "g")})
-            dlow[j, k] = df - dg if low[k] == below else -dbackward[j, k]
-            dhigh[j, k] = df + dg if high[k] == above else dforward[j, k]
-"""
+    return _shape_module(
+        effect,
+        names,
+        start=[f"dz = np.zeros(({m}, p))", *(f"z_{i} = 0.0" for i in range(m))],
+        advance=[*assignments(laws, names), *slopes, *_stop_lines(m)],
+        slope=sp.Add(
+            *(sp.diff(law, z) * sp.diff(laws[f"r{i}"], velocity) for i, z in enumerate(states))
+        ),
+        weights=assignments({f"w{i}": sp.diff(law, z) for i, z in enumerate(states)}, names),
+        tangents=_stop_tangents(effect),
+        moved=" + ".join(f"w{i} * dz[{i}, j]" for i in range(m)),
+    )
 
 
 def shape_bounds(

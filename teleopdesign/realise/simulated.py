@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import sympy as sp
 
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
@@ -13,6 +17,9 @@ from ..diagrams import Attached, Block, Control, Diagram, Moving
 from ..effects import EFFECTS, SIGNALS, Effect
 from ..errors import ModelError
 from .tips import with_tips
+
+#: m/s or rad/s: beyond the velocities at which friction levels change
+_FAST = 1e6
 
 
 def without_absent(body: Body, *, surely: bool = False) -> Body:
@@ -79,6 +86,45 @@ def with_give(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> B
     return body.with_effect(lugre, {"stiffness": stiffness, "bristle_damping": damping})
 
 
+def check_levels(body: Body, where: str) -> None:
+    """ModelError where friction is below zero in a direction of motion, at rest or in fast sliding.
+
+    A bristle of such friction grows without bound while it slides, and the force with it.
+    """
+    levels = least_levels(body, body.numbers().get) if may_be_negative(body) else {}
+    for way, level in levels.items():
+        if level < 0:
+            names = ", ".join(e.name for e in body.effects if e.role == "friction_level")
+            raise ModelError(
+                f"{where}: friction of {float(level):g} {body.unit('coulomb.level')} {way} "
+                f"({names}): expected no less than 0"
+            )
+
+
+def may_be_negative(body: Body) -> bool:
+    """Whether an effect that sets the friction level does not declare that it is non-negative."""
+    levels = (e for e in body.effects if e.role == "friction_level")
+    return not all("non-negative" in e.always for e in levels)
+
+
+def least_levels(body: Body, value: Callable[[sp.Symbol], Any]) -> dict[str, Any]:
+    """Direction -> least friction level of the body, at rest and in fast sliding.
+
+    value: of a parameter's symbol, a number or an array: levels have its shape
+    """
+    equation = body.equation()
+    at_rest = dict.fromkeys(SIGNALS.values(), 0) | dict.fromkeys(equation.rates, 0)
+    levels = {}
+    for way, direction in (("forward", 1), ("backward", -1)):
+        speeds = (0.0, direction * _FAST)
+        now = {SIGNALS["direction"]: direction}
+        at = [equation.level.subs(at_rest | now | {SIGNALS["velocity"]: v}) for v in speeds]
+        symbols = sorted(set().union(*(x.free_symbols for x in at)), key=str)
+        call = sp.lambdify(symbols, at, "numpy")
+        levels[way] = np.minimum(*call(*map(value, symbols)))
+    return levels
+
+
 def in_computer(diagram: Diagram, period: float) -> Diagram:
     """The diagram with controllers as a computer of that period (s) realises them."""
     realised = {
@@ -87,6 +133,12 @@ def in_computer(diagram: Diagram, period: float) -> Diagram:
         if isinstance(part.controller, Controller) and not part.analog
     }
     return _with_blocks(diagram, realised)
+
+
+def without_no_delay(controller: Controller) -> Controller:
+    """The controller without dead times that are zero."""
+    stages = tuple(g for g in controller.stages if g.value_of("dead_time") != 0.0)
+    return controller if len(stages) == len(controller.stages) else Controller(stages)
 
 
 def _with_blocks(diagram: Diagram, contents: Mapping[str, Body | Controller]) -> Diagram:
@@ -117,8 +169,12 @@ def simulated(diagram: Diagram, deflection: float, prescribed: Iterable[str] = (
         content = part.controller if isinstance(part, Control) else part.body
         if not isinstance(content, Body | MatrixImpedance | Controller):
             raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no equations")
+        if isinstance(content, Controller):
+            bodies[part.name] = without_no_delay(content)
         if isinstance(content, Body):
-            bodies[part.name] = with_give(without_absent(content), deflection)
+            there = without_absent(content)
+            check_levels(there, f"{diagram.name}: {part.name}")
+            bodies[part.name] = with_give(there, deflection)
     apart = with_tips(_with_blocks(diagram, bodies), prescribed=prescribed)
     # of a tip that dry friction holds
     tips = {b.name: with_give(b.body, deflection) for b in apart.bodies if isinstance(b.body, Body)}

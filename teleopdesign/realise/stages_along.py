@@ -51,7 +51,9 @@ def acting_along(body: Body, motion: Motion, along: Along) -> Traced:
     acting = through(motion.at_rows, stages[-1].output if stages else along.signals[_COMMAND])
     if COMMAND_LATE in along.columns:
         slope = motion.spectrum.multiply(acting.value, motion.spectrum.derivative(1))
-        acting.tangent[along.columns.index(COMMAND_LATE)] += slope
+        tangent = acting.tangent.copy()
+        tangent[along.columns.index(COMMAND_LATE)] += slope
+        acting = replace(acting, tangent=tangent)
     return acting
 
 
@@ -62,8 +64,7 @@ def stages_along(body: Body, motion: Motion, along: Along) -> list[ActuationStag
     """
     effects = along.present(body.effects, "actuation")
     parts = PARTS if any(e.states or e.expression().has(delayed) for e in effects) else 1
-    command = along.signals[_COMMAND]
-    signal = Traced(np.repeat(command.value, parts), np.repeat(command.tangent, parts, axis=1))
+    signal = through(lambda y: np.repeat(y, parts, axis=-1), along.signals[_COMMAND])
     signals = {
         SIGNALS[name]: along.constant(np.repeat(getattr(motion, name), parts)) for name in _MOTION
     }
@@ -99,10 +100,10 @@ def _shift(along: Along, delay: sp.Expr) -> Traced:
     n = signal.value.shape[-1]
     late = np.clip(np.arange(n) - int(whole), 0, None)
     later = np.clip(late - 1, 0, None)
-    value = (1 - part) * signal.value[late] + part * signal.value[later]
-    tangent = (1 - part) * signal.tangent[:, late] + part * signal.tangent[:, later]
+    shifted = through(lambda y: (1 - part) * y[..., late] + part * y[..., later], signal)
+    tangent = shifted.tangent.copy()
     slope = (signal.value[later] - signal.value[late]) / step
     for i, column in enumerate(along.columns):
         if isinstance(column, sp.Symbol) and delay.has(column):
             tangent[i] += slope * float(sp.diff(delay, column).subs(along.values))
-    return Traced(value, tangent)
+    return replace(shifted, tangent=tangent)

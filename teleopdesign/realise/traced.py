@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
 from ..effects import SIGNALS, Effect, Role, ordered
 from ..measurement.filtering import Array
@@ -24,19 +25,38 @@ class Traced:
     value: Array
     tangent: Array
 
-    def rows(self) -> Array:
-        """Value and tangents as rows of one array (1 + p, n)."""
-        return np.vstack([self.value[None], self.tangent])
+    def rows(self, at: slice | NDArray[np.intp] = slice(None)) -> Array:
+        """Value and tangents as rows of one array (1 + p, n);  at: of some samples only."""
+        return np.vstack([self.value[at][None], self.tangent[:, at]])
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether no parameter changes the signal."""
+        return self.tangent.strides == (0, 0) or not self.tangent.any()
 
     def __add__(self, other: Traced) -> Traced:
-        return Traced(self.value + other.value, self.tangent + other.tangent)
+        tangent = self.tangent if other.is_constant else self.tangent + other.tangent
+        return Traced(self.value + other.value, tangent)
 
     def __sub__(self, other: Traced) -> Traced:
-        return Traced(self.value - other.value, self.tangent - other.tangent)
+        tangent = self.tangent if other.is_constant else self.tangent - other.tangent
+        return Traced(self.value - other.value, tangent)
+
+
+def constant(value: Array, parameters: int) -> Traced:
+    """A signal (n,) that none of so many parameters changes: its tangents take no memory."""
+    return Traced(value, _nothing(parameters, len(value)))
+
+
+@lru_cache(maxsize=256)
+def _nothing(parameters: int, n: int) -> Array:
+    return np.broadcast_to(0.0, (parameters, n))
 
 
 def through(filtered: Callable[[Array], Array], signal: Traced) -> Traced:
     """A signal and its tangents through a linear filter; tangents that are zero stay so."""
+    if signal.is_constant:
+        return constant(filtered(signal.value), len(signal.tangent))
     moving = signal.tangent.any(axis=1)
     both = filtered(np.vstack([signal.value[None], signal.tangent[moving]]))
     tangent = np.zeros((len(signal.tangent), both.shape[-1]))
@@ -75,7 +95,7 @@ class Along:
 
     def constant(self, signal: Array) -> Traced:
         """A signal (n,) that no parameter changes."""
-        return Traced(signal, np.zeros((len(self.columns), len(signal))))
+        return constant(signal, len(self.columns))
 
     def evaluate(self, law: sp.Expr) -> Traced:
         """A law on these signals and values; hidden states carry tangents besides `TRACED`."""
@@ -105,14 +125,15 @@ class NumericLaw:
             out = self.call(*arrays, *[np.float64(values[p]) for p in self.parameters])
         value = np.broadcast_to(np.asarray(out[0], dtype=float), (n,))
         tangent = np.zeros((len(columns), n))
+        places = {column: j for j, column in enumerate(columns)}
         for p, d in zip(self.parameters, out[1 + len(arrays) :], strict=True):
-            if p in columns:
-                tangent[columns.index(p)] += d
+            if p in places:
+                tangent[places[p]] += d
         for j, column in enumerate(columns):
             if isinstance(column, Probe) and column.symbol in self.parameters:
                 tangent[j] += self._slope(column, arrays, values)
         for s, d in zip(self.signals, out[1 : 1 + len(arrays)], strict=True):
-            if signals[s].tangent.any():
+            if not signals[s].is_constant:
                 tangent += d * signals[s].tangent
         return Traced(value.copy(), tangent)
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from ..diagnose import Diagnosis
 from ..diagnose.answer import answer
 from ..diagnose.ladder_text import command_error_text
-from ..diagnose.ranking import Ranked, Ranking
+from ..diagnose.ranking import REFUSALS, Ranked, Ranking
 from ..diagnose.rung import Rung
 from .words import step_name
 
@@ -38,6 +41,14 @@ class CandidateScore:
 
 
 @dataclass(frozen=True)
+class CandidateStep:
+    """A column of the table of candidates: its heading, and the check error with nothing added."""
+
+    heading: str
+    check_error: float
+
+
+@dataclass(frozen=True)
 class CandidateRow:
     """A candidate with its probability, and how it did on each step (None: not tried there)."""
 
@@ -64,8 +75,21 @@ def ladder_rows(diagnosis: Diagnosis) -> tuple[LadderRow, ...]:
     )
 
 
+def candidate_steps(diagnosis: Diagnosis) -> tuple[CandidateStep, ...]:
+    """The steps that candidates were tried on; of an answer that was read back, the best alone."""
+    ladder = ladder_rows(diagnosis)
+    if diagnosis.recorded is not None:
+        return (CandidateStep("at its best step", ladder[0].check_error),)
+    return tuple(
+        CandidateStep(f"with {row.brief}" if i else "on your model", row.check_error)
+        for i, row in enumerate(ladder)
+    )
+
+
 def candidate_rows(diagnosis: Diagnosis) -> tuple[CandidateRow, ...]:
     """Every effect tried, with its check error on each step: those added, then by probability."""
+    if diagnosis.recorded is not None:
+        return tuple(_recorded_row(diagnosis, row) for row in diagnosis.recorded["candidates"])
     steps = [(r, r.ranking) for r in diagnosis.rungs if r.ranking is not None]
     rankings = [*((r, k) for r, k in steps), (None, diagnosis.last)]
     done: dict[tuple[str, str], list[CandidateScore | None]] = {}
@@ -89,6 +113,21 @@ def candidate_rows(diagnosis: Diagnosis) -> tuple[CandidateRow, ...]:
         return order, -round(row.probability, 2), best
 
     return tuple(sorted(rows, key=place))
+
+
+def _recorded_row(diagnosis: Diagnosis, row: Mapping[str, Any]) -> CandidateRow:
+    """A candidate as an answer tells of it: at the step that accepted it, or at its best."""
+    key = (row["effect"], row["at"])
+    if key in {r.added.key for r in diagnosis.rungs if r.added is not None}:
+        outcome = "added"
+    elif key in {c.key for group in diagnosis.groups for c in group}:
+        outcome = "as good"
+    else:
+        refused = row.get("refused") or ""
+        outcome = refused if refused in ("", *REFUSALS) else "implausible"
+    error = row["check_error"]
+    score = CandidateScore(math.nan if error is None else float(error), math.nan, outcome)
+    return CandidateRow(*key, float(row["probability"]), (score,))
 
 
 def _outcome(rung: Rung | None, ranking: Ranking, ranked: Ranked) -> str:

@@ -34,6 +34,7 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
         *_together(diagnosis.after),
         *_open_candidates(diagnosis),
         *_not_tried(diagnosis),
+        *_left_out(diagnosis),
         *_unchecked(diagnosis),
     ]
     return (*groups, *rest)
@@ -54,7 +55,14 @@ def _clock(diagnosis: Diagnosis) -> list[Finding]:
 
 
 def _group(rung: Rung) -> Finding:
-    assert rung.added is not None and rung.ranking is not None
+    assert rung.added is not None
+    if rung.ranking is None:  # of an answer that was read back
+        return Finding(
+            topic="effects that look alike",
+            concern="warning",
+            sentence=f"{listed([str(c) for c in (rung.added, *rung.alternatives)])} explain these "
+            "records equally well, as the answer says.",
+        )
     ranked = {r.candidate.key: r for r in rung.ranking.ranked}
     names = [str(c) for c in (rung.added, *rung.alternatives)]
     group = [ranked[c.key] for c in (rung.added, *rung.alternatives)]
@@ -181,6 +189,8 @@ def _not_tried(diagnosis: Diagnosis) -> list[Finding]:
     """Effects of the catalogue that could not be candidates on the last step."""
     model = diagnosis.model
     fitted = {r.candidate.key for r in diagnosis.last.ranked}
+    if diagnosis.recorded is not None:
+        fitted = {(row["effect"], row["at"]) for row in diagnosis.recorded["candidates"]}
     reasons = []
     for place in model.places:
         body = model.body(place)
@@ -204,6 +214,14 @@ def _not_tried(diagnosis: Diagnosis) -> list[Finding]:
             ),
         )
     ]
+
+
+def _left_out(diagnosis: Diagnosis) -> list[Finding]:
+    """What the user kept from being searched."""
+    if not diagnosis.left_out:
+        return []
+    said = "; ".join(diagnosis.left_out)
+    return [Finding("left out of the search", "warning", f"{said[0].upper()}{said[1:]}.")]
 
 
 def _unchecked(diagnosis: Diagnosis) -> list[Finding]:

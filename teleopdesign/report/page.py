@@ -14,12 +14,19 @@ from ..finding import Finding, Graph
 from ..measurement.reading import ReadingStep
 from ..plain_data import plain
 from ..plot.graph import thin_series
-from .candidate_table import CandidateRow, LadderRow, candidate_rows, ladder_rows
+from .candidate_table import (
+    CandidateRow,
+    CandidateStep,
+    LadderRow,
+    candidate_rows,
+    candidate_steps,
+    ladder_rows,
+)
 from .cannot_tell import cannot_tell
 from .parameter_table import AddedEffect, ParameterRow, added_effects, parameter_rows
 from .provenance import ChannelRow, RecordRow, channel_rows, record_rows
 from .residuals import BodyView, body_views
-from .words import judged_on, verdict
+from .words import judged_on, sentence_of, verdict
 
 #: most points of one series of a finding's graph, drawn and in the page's data
 POINTS = 400
@@ -41,10 +48,13 @@ class Page:
     floor: float
     floor_source: str
     left: float
+    learnable: str
+    near_reversals: str
     ladder: tuple[LadderRow, ...]
     added: tuple[AddedEffect, ...]
     views: tuple[BodyView, ...]
     parameters: tuple[ParameterRow, ...]
+    candidate_steps: tuple[CandidateStep, ...]
     candidates: tuple[CandidateRow, ...]
     cannot_tell: tuple[Finding, ...]
     soundness: tuple[Finding, ...]
@@ -83,10 +93,13 @@ def page_of(
         floor=diagnosis.floor.value,
         floor_source=diagnosis.floor.source,
         left=diagnosis.left,
+        learnable=sentence_of(diagnosis.learnable),
+        near_reversals=sentence_of(diagnosis.near_reversals),
         ladder=ladder,
         added=added_effects(diagnosis, rows),
         views=body_views(diagnosis, tuple(r.name for r in ladder)),
         parameters=rows,
+        candidate_steps=candidate_steps(diagnosis),
         candidates=candidate_rows(diagnosis),
         cannot_tell=cannot_tell(diagnosis),
         soundness=_bounded(soundness),

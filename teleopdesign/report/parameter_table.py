@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..blocks import CONTACT, NINETY_FIVE, Value
@@ -17,6 +18,7 @@ class ParameterRow:
     """A parameter in SI: as written in the experiment, re-estimated before, and after.
 
     stated: None where the experiment leaves it open;  before: None where its effect was added
+    after: None where its effect gave way to another;  gave_way_to: the name of that, else ""
     low, high: 95 % interval, cut at the physical bounds
     """
 
@@ -29,13 +31,14 @@ class ParameterRow:
     stated: float | None
     before: float | None
     before_stderr: float | None
-    after: float
+    after: float | None
     stderr: float | None
     low: float | None
     high: float | None
     fixed: bool
     at_bound: bool
     added: bool
+    gave_way_to: str = ""
 
 
 @dataclass(frozen=True)
@@ -52,13 +55,12 @@ class AddedEffect:
 
 
 def parameter_rows(diagnosis: Diagnosis) -> tuple[ParameterRow, ...]:
-    """Every parameter of the model that the diagnosis ends with."""
+    """Every parameter of the user's model and of the one that the diagnosis ends with."""
     stated, before = _stated(diagnosis), diagnosis.before.model.parameters
     added = {r.added.key for r in diagnosis.rungs if r.added is not None}
     rows = []
     for name, value in diagnosis.model.parameters.items():
-        place, _, local = name.partition(".")
-        effect, _, parameter = local.rpartition(".")
+        place, effect, parameter = _parts(name)
         declared = diagnosis.model.declared(name)
         first = before.get(name)
         low, high = _interval(value, declared.lower, declared.upper)
@@ -82,7 +84,48 @@ def parameter_rows(diagnosis: Diagnosis) -> tuple[ParameterRow, ...]:
                 added=(effect, place) in added,
             )
         )
-    return tuple(rows)
+    return (*rows, *_rows_given_up(diagnosis, stated))
+
+
+def _rows_given_up(diagnosis: Diagnosis, stated: Mapping[str, float]) -> list[ParameterRow]:
+    """The parameters of effects of the user's model that gave way to others."""
+    model, there = diagnosis.before.model, diagnosis.model.parameters
+    instead = {r.instead_of.key: r.added for r in diagnosis.rungs if r.added and r.instead_of}
+    rows = []
+    for name, value in model.parameters.items():
+        place, effect, parameter = _parts(name)
+        by = instead.get((effect, place))
+        if name in there or by is None:
+            continue
+        rows.append(
+            ParameterRow(
+                name=name,
+                at=place,
+                effect=effect,
+                parameter=parameter,
+                meaning=model.declared(name).meaning,
+                unit=model.unit(name),
+                stated=stated.get(name),
+                before=value.value,
+                before_stderr=plain(value.stderr),
+                after=None,
+                stderr=None,
+                low=None,
+                high=None,
+                fixed=value.fixed,
+                at_bound=False,
+                added=False,
+                gave_way_to=by.effect.name,
+            )
+        )
+    return rows
+
+
+def _parts(name: str) -> tuple[str, str, str]:
+    """Place, effect ("" for the body's own) and parameter of a full name."""
+    place, _, local = name.partition(".")
+    effect, _, parameter = local.rpartition(".")
+    return place, effect, parameter
 
 
 def added_effects(diagnosis: Diagnosis, rows: tuple[ParameterRow, ...]) -> tuple[AddedEffect, ...]:

@@ -52,6 +52,12 @@ def percent(value: float | None) -> str:
     return f"{100 * value:.2f}\u202f%"
 
 
+def sentence_of(entry: object | None) -> str:
+    """What an entry of a diagnosis says of itself, as a sentence; nothing where there is none."""
+    text = "" if entry is None else str(entry)
+    return f"{text[:1].upper()}{text[1:]}." if text else ""
+
+
 def unit_text(unit: str) -> str:
     """An SI unit as printed: N*s/m as N·s/m, m^2 as m²; nothing for a plain number."""
     if unit == "1":

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 import re
+from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -57,7 +59,26 @@ def write_report(
 def render(page: Page, figures: Figures, data: dict[str, Any]) -> str:
     """The page as HTML; every text of it is escaped."""
     template = _environment().get_template("report.html.jinja")
-    return template.render(page=page, figures=figures, data=embedded_json(data)) + "\n"
+    script = figure_script()
+    text = template.render(
+        page=page,
+        figures=figures,
+        data=embedded_json(data),
+        script=script,
+        script_digest=_digest_of(script),
+    )
+    return text + "\n"
+
+
+def figure_script() -> Markup:
+    """The page's only script: it opens figures. It is the package's, no text of a file is in it."""
+    return Markup((TEMPLATES / "figures.js.jinja").read_text(encoding="utf-8"))
+
+
+def _digest_of(script: str) -> str:
+    """What the page's policy allows to run: this text alone, whatever else got into the page."""
+    digest = b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii")
+    return f"sha256-{digest}"
 
 
 def embedded_json(data: dict[str, Any]) -> Markup:

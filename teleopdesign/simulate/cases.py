@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +18,7 @@ from ..blocks import Body
 from ..controllers import Controller
 from ..diagrams import Control, Diagram
 from ..errors import ModelError, did_you_mean
+from ..realise.simulated import check_levels, least_levels, may_be_negative
 
 #: relative change of a value that shows which simulated numbers follow from it
 _CHANGE = 1e-3
@@ -71,13 +73,33 @@ def refused(diagram: Diagram, columns: Mapping[str, np.ndarray]) -> dict[int, st
     for name, column in columns.items():
         lower, upper = _bounds(diagram, name)
         suspect |= ~((column >= lower) & (column <= upper))
+    suspect |= _slides_by_itself(diagram, columns)
     reasons = {}
     for case in np.flatnonzero(suspect):
         try:
-            at_case(diagram, columns, int(case))
+            for part in at_case(diagram, columns, int(case)).bodies:
+                if isinstance(part.body, Body):
+                    check_levels(part.body, f"{diagram.name}: {part.name}")
         except ModelError as error:
             reasons[int(case)] = str(error)
     return reasons
+
+
+def _slides_by_itself(diagram: Diagram, columns: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Of each case, whether a friction level is below zero in a direction (`check_levels`)."""
+    below = np.zeros(_cases(columns), dtype=bool)
+    for part in diagram.bodies:
+        body = part.body
+        if not isinstance(body, Body) or not may_be_negative(body):
+            continue
+        of = {symbol: f"{part.name}.{name}" for name, symbol in body.symbols().items()}
+
+        def value(symbol: Any, of: Mapping[Any, str] = of) -> Any:
+            return columns.get(of[symbol], diagram.values[of[symbol]])
+
+        for level in least_levels(body, value).values():
+            below |= np.asarray(level < 0)
+    return below
 
 
 def at_case(diagram: Diagram, columns: Mapping[str, np.ndarray], case: int) -> Diagram:
@@ -179,7 +201,11 @@ def _bounds(diagram: Diagram, name: str) -> tuple[float, float]:
 def _off(diagram: Diagram, name: str) -> list[float]:
     """Values of a parameter at which something is left out of the equations."""
     block_name, _, within = name.partition(".")
-    body = getattr(diagram.block(block_name), "body", None)
+    block = diagram.block(block_name)
+    stages = getattr(getattr(block, "controller", None), "stages", ())
+    if any(within == f"{g.name}.{g.law.dead_time}" for g in stages):
+        return [0.0]
+    body = getattr(block, "body", None)
     if not isinstance(body, Body):
         return []
     effect_name, _, parameter = within.partition(".")

@@ -125,7 +125,7 @@ class _Study:
         setup = prepare(group.diagram, **self.arguments)
         layout, equations = setup.program.layout, setup.program.equations
         kept, reductions = self._columns(setup)
-        free = {x for _, delay in equations.late.values() for x in delay.free_symbols}
+        free = {x for delay in equations.delays for x in delay.free_symbols}
         late = tuple(equations.parameters[x] for x in sorted(free, key=str))
         numbers, reasons = simulated_values(
             group, self.columns, self._form, layout.parameters + late
@@ -140,7 +140,7 @@ class _Study:
                 continue
             state = layout.states[states[k]] if layout.states else ""
             try:
-                inner = setup.first_inner(float(rates[k]), state, self.long_step)
+                inner = setup.first_inner(float(rates[k]), state, self.long_step, delays[k])
                 setup.timing(inner, delays[k])
             except ModelError as error:
                 result.refuse({int(case): str(error)})
@@ -279,14 +279,14 @@ def _reduction(name: str, what: Any) -> tuple[Any, str]:
 def _delays(setup: Setup, names: tuple[str, ...], numbers: np.ndarray) -> list[tuple[float, ...]]:
     """Delay of each late signal in each case, s."""
     equations = setup.program.equations
-    if not equations.late:
+    if not equations.delays:
         return [()] * len(numbers)
     symbols = {name: x for x, name in equations.parameters.items()}
     different, which = np.unique(numbers, axis=0, return_inverse=True)
     delays = []
     for row in different:
         at = {symbols[name]: float(x) for name, x in zip(names, row, strict=True)}
-        delays.append(tuple(float(delay.subs(at)) for _, delay in equations.late.values()))
+        delays.append(tuple(float(delay.subs(at)) for delay in equations.delays))
     return [delays[i] for i in which.reshape(-1)]
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..diagrams import Diagram
 from ..errors import GrowsWithoutBound, ModelError, did_you_mean
+from ..realise.delays import is_whole, late_samples
 from ..realise.simulated import in_computer, simulated
 from .sampling import SAMPLED, Sampling
 from .trajectory import Trajectory
@@ -22,6 +23,8 @@ Input = float | np.ndarray | Callable[[np.ndarray], np.ndarray]
 #: most numbers that one simulation may hold, 2 GB
 MOST_NUMBERS = 250_000_000
 _MOST_REFINED = 200  # inner steps a default one may become
+#: by how much the step may be divided so that every delay is a whole number of steps
+_MOST_DIVIDED = 20
 
 
 def prepare(
@@ -117,15 +120,30 @@ class Setup:
 
     @property
     def delays(self) -> list[float]:
-        """Delay of each late signal, s."""
+        """Delay of each late signal, s: of the analog ones, then of the computer's."""
         values, parameters = self.diagram.values, self.program.equations.parameters
-        late = self.program.equations.late.values()
-        return [float(d.subs({x: values[n] for x, n in parameters.items()})) for _, d in late]
+        at = {x: values[n] for x, n in parameters.items()}
+        return [float(d.subs(at)) for d in self.program.equations.delays]
 
     @property
-    def inner(self) -> int:
-        """Steps a sample, as asked for."""
-        return max(-int(-self.sampling.period * (1 - 1e-9) // self.step), 1)
+    def _of_blocks(self) -> list[bool]:
+        """Whether each analog late signal is that of a delay block, in place of an actuator."""
+        e, names = self.program.equations, {c.name for c in self.diagram.controls}
+        late = (d.free_symbols for _, d in e.late.values())
+        return [any(e.parameters[x].partition(".")[0] in names for x in d) for d in late]
+
+    def inner(self, delays: Sequence[float] | None = None) -> int:
+        """Steps a sample: as asked for, or the next number at which delay blocks are whole steps.
+
+        Where no number up to `_MOST_DIVIDED` times as many is such: delays are interpolated.
+        """
+        least = max(-int(-self.sampling.period * (1 - 1e-9) // self.step), 1)
+        delays = self.delays if delays is None else delays
+        late = [d for d, of_block in zip(delays, self._of_blocks, strict=False) if of_block]
+        for inner in range(least, _MOST_DIVIDED * least + 1):
+            if all(is_whole(d * inner / self.sampling.period) for d in late):
+                return inner
+        return least
 
     def timing(self, inner: int, delays: Sequence[float] | None = None) -> Timing:
         """The grid with that many inner steps a sample;  delays: default `delays`, s."""
@@ -134,11 +152,12 @@ class Setup:
         s = self.sampling
         step = s.period / inner
         delays = self.delays if delays is None else delays
-        late = [_steps(d, step, "an actuation delay") for d in delays]
-        if min(late, default=1) < 1:
-            raise ModelError(
-                f"simulate: a delay of {min(delays):g} s is below the step, {step:g} s"
-            )
+        of_blocks, smooth = self._of_blocks, self.program.functions["SMOOTH"]
+        analog = len(of_blocks)
+        late = [
+            _late_steps(d, step, can_be_between=of_block and is_smooth)
+            for d, of_block, is_smooth in zip(delays, of_blocks, smooth, strict=False)
+        ]
         return Timing(
             step,
             inner,
@@ -147,6 +166,7 @@ class Setup:
             tuple(late),
             s.encoder_step,
             velocity_smoothing(s.velocity_bandwidth, s.period),
+            tuple(late_samples(d, s.period, what="simulate") for d in delays[analog:]),
         )
 
     def arguments(self, timing: Timing) -> dict[str, Any]:
@@ -204,10 +224,15 @@ class Setup:
             inner = finer
 
     def first_inner(
-        self, rate: float, state: str, long_step: Literal["refine", "refuse"] = "refine"
+        self,
+        rate: float,
+        state: str,
+        long_step: Literal["refine", "refuse"] = "refine",
+        delays: Sequence[float] | None = None,
     ) -> int:
         """Steps a sample that resolve this rate, 1/s, in which the state takes part most.
 
+        delays: default `delays`, s
         raises ModelError: the step is refused, or none would do
         """
         from ..realise.kernel import FASTEST, JUMP, refine_factor, too_long
@@ -217,7 +242,7 @@ class Setup:
                 f"simulate: a force on {state} jumps with the sign of a velocity: no step resolves "
                 "that in continuous time; sample the controller, or take a law that is rounded off"
             )
-        inner = self.inner
+        inner = self.inner(delays)
         step = self.sampling.period / inner
         if rate * step > FASTEST:
             if long_step == "refuse":
@@ -258,13 +283,23 @@ class Setup:
     def _check_refined(self, inner: int) -> None:
         from ..realise.kernel import too_long
 
-        if inner > self.inner * _MOST_REFINED:
+        if inner > self.inner() * _MOST_REFINED:
             raise too_long(self.step, self.sampling.period / inner, "is far too long")
 
 
 def samples_of(duration: float, period: float) -> int:
     """Samples of a run, at least one; both in s."""
     return max(round(duration / period), 1) if 0 < duration < float("inf") else 1
+
+
+def _late_steps(delay: float, step: float, *, can_be_between: bool) -> float:
+    """The delay of an analog signal in steps; between two where the signal changes within them."""
+    count = delay / step
+    if not can_be_between or is_whole(count):
+        count = float(_steps(delay, step, "a delay of an actuator or of a held command"))
+    if count < 1:
+        raise ModelError(f"simulate: a delay of {delay:g} s is below the step, {step:g} s")
+    return count
 
 
 def _steps(delay: float, step: float, what: str) -> int:

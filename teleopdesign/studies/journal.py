@@ -108,7 +108,7 @@ class Journal:
         outcome = PointOutcome(
             index, form, _tuples(content.get("values", ())), content.get("reason", "")
         )
-        self.outcomes.setdefault(index, outcome)
+        self.outcomes[index] = outcome  # a failure that was forgotten may have a later line
 
     def add(self, outcome: PointOutcome) -> None:
         """Keep an outcome; raises ExperimentError where the disk refuses."""
@@ -143,6 +143,10 @@ class Journal:
                 f"{self.path}: cannot be written: {error.strerror}; {len(self.outcomes)} of "
                 f"{self.points} points are kept: the same study goes on from there"
             ) from error
+
+    def forget_failures(self) -> None:
+        """Take failed points as not done: they may be tried again."""
+        self.outcomes = {i: o for i, o in self.outcomes.items() if not o.reason}
 
     def close(self) -> None:
         """Close the file; what it holds stays."""

@@ -20,6 +20,7 @@ class Progress:
     """Points done of all, failed among them; kept: done by an earlier run; rate: points a second.
 
     left: s until the end at that rate, NaN where no rate is known yet
+    things: what the points are
     """
 
     done: int
@@ -28,9 +29,10 @@ class Progress:
     kept: int
     rate: float
     left: float
+    things: str = "points"
 
     def __str__(self) -> str:
-        text = f"{self.done} of {self.total} points"
+        text = f"{self.done} of {self.total} {self.things}"
         if self.failed:
             text += f", {self.failed} failed"
         if self.rate > 0:
@@ -43,7 +45,14 @@ class Progress:
 class Clock:
     """Counts outcomes, and tells the caller now and then."""
 
-    def __init__(self, total: int, kept: int, tell: Callable[[Progress], object] | None) -> None:
+    def __init__(
+        self,
+        total: int,
+        kept: int,
+        tell: Callable[[Progress], object] | None,
+        things: str = "points",
+    ) -> None:
+        self.things = things
         self.total, self.kept, self.tell = total, kept, tell
         self.done, self.failed = kept, 0
         self.last = time.monotonic()
@@ -67,7 +76,7 @@ class Clock:
         passed, fresh = time.monotonic() - start, self.done - before
         rate = fresh / passed if passed > 0 else 0.0
         left = (self.total - self.done) / rate if rate > 0 else float("nan")
-        return Progress(self.done, self.total, self.failed, self.kept, rate, left)
+        return Progress(self.done, self.total, self.failed, self.kept, rate, left, self.things)
 
 
 def duration_text(seconds: float) -> str:

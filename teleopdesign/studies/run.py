@@ -6,11 +6,12 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any, Literal
 
 from ..diagrams import Diagram
 from ..errors import ExperimentError, ModelError, did_you_mean
+from ..measurement.files import content_digest, is_experiment
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from .case import SimulatedCase
@@ -18,7 +19,7 @@ from .evaluate import StudyTask, check_parameters
 from .fingerprint import fingerprint
 from .journal import Journal, PointOutcome
 from .measures import measures_of
-from .points import points_of
+from .points import Points, points_of
 from .processes import run_on_this_machine
 from .progress import Clock, Progress
 from .result import Study, check_netcdf, labelled, read_study
@@ -219,7 +220,7 @@ def _attributes(task: StudyTask, words: _Words) -> dict[str, Any]:
         name, settings = getattr(model, "__name__", "model"), dict(task.case)
     made_with = versions()
     model_hash = fingerprint(model, task.case)
-    samples = points.samples
+    samples, contents = points.samples, _contents(points)
     return {
         "model": name,
         "model_hash": model_hash,
@@ -232,7 +233,9 @@ def _attributes(task: StudyTask, words: _Words) -> dict[str, Any]:
             task.seed,
             words,
             made_with,
+            contents,
         ),
+        "contents": json.dumps(contents),
         "axes": json.dumps(list(points.columns)),
         "fixed": json.dumps({n: v for n, v in values.items() if isinstance(v, int | float | str)}),
         "settings": json.dumps({k: str(v) for k, v in settings.items()}),
@@ -244,3 +247,13 @@ def _attributes(task: StudyTask, words: _Words) -> dict[str, Any]:
         "sampling_seed": samples.seed if samples is not None else 0,
         "versions": json.dumps(made_with),
     }
+
+
+def _contents(points: Points) -> dict[str, str]:
+    """Digest of every experiment that a parameter names: a record that has changed counts."""
+    texts = [v for v in points.fixed.values() if isinstance(v, str | PurePath)]
+    for column in points.columns.values():
+        if column.values.dtype.kind in "UO":
+            texts += [v for v in column.values.tolist() if isinstance(v, str | PurePath)]
+    folders = {str(t): Path(t) for t in texts if is_experiment(Path(t))}
+    return {text: content_digest(folder) for text, folder in folders.items()}

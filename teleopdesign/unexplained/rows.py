@@ -19,9 +19,9 @@ from ..diagnose.record_offsets import as_logged
 from ..diagnose.residual import residuals
 from ..effects import Effect, Parameter
 from ..measurement.filtering import Array
+from ..measurement.reversals import since_reversal
 from ..model import Model
 from ..realise.along_motion import residual_along
-from .reversals import since_reversal
 
 #: s without a told motion after which a body counts as having rested: above the quarter of a period
 #: at a hertz that a hand takes to turn round, below the half second that experimenters wait

@@ -5,32 +5,18 @@ import tomllib
 
 import numpy as np
 import pytest
+from few_effects import FEW
 from shared_data import shared_folder
 
 import teleopdesign as td
 from teleopdesign.cli import main
-from teleopdesign.effects import EFFECTS
 
 
-@pytest.fixture(scope="module")
-def answer(tmp_path_factory):
-    """The answer file of a diagnosis of the rod among few effects."""
-    from teleopdesign.diagnose.answer import write_answer
-
-    names = ("coulomb", "viscous", "stribeck", "bias", "spring")
-    rod = td.load_experiment(td.example("rod"))
-    model = td.Model.from_experiment(rod, {n: EFFECTS[n] for n in names})
-    path = tmp_path_factory.mktemp("rod") / "answer.json"
-    write_answer(td.find_missing(rod, model), path)
-    return path
-
-
-def test_a_folder_that_cannot_be_made_is_one_line(answer, tmp_path, capsys):
+def test_a_folder_that_cannot_be_made_is_one_line(rod_answer, tmp_path, capsys):
     (tmp_path / "file").write_text("")
     out = tmp_path / "file" / "out"
-    assert (
-        main(["design", str(td.example("rod")), "--answer", str(answer), "--output", str(out)]) == 2
-    )
+    arguments = ["design", str(td.example("rod")), "--answer", str(rod_answer)]
+    assert main([*arguments, "--output", str(out)]) == 2
     assert capsys.readouterr().err == f"teleopdesign: {out}: Not a directory\n"
 
 
@@ -38,9 +24,9 @@ def designs(path):
     return json.loads(path.read_text())["bodies"]
 
 
-def test_an_answer_leads_to_a_design_and_its_files(answer, tmp_path, capsys):
+def test_an_answer_leads_to_a_design_and_its_files(rod_answer, tmp_path, capsys):
     out = tmp_path / "out"
-    arguments = ["design", str(td.example("rod")), "--answer", str(answer)]
+    arguments = ["design", str(td.example("rod")), "--answer", str(rod_answer)]
     assert main([*arguments, "--json", str(tmp_path / "d.json"), "--output", str(out)]) == 0
     assert "MBC: proved: Coulomb friction" in capsys.readouterr().out
     assert {p.name for p in out.iterdir()} == {
@@ -53,14 +39,12 @@ def test_an_answer_leads_to_a_design_and_its_files(answer, tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_the_rod_from_folder_to_controllers(tmp_path, capsys):
+def test_the_rod_from_folder_to_controllers(rod_answer, few, tmp_path, capsys):
     """The diagnosis finds Stribeck friction; its answer file leads to the same design."""
     folder = td.example("rod")
     assert main(["design", str(folder), "--json", str(tmp_path / "d.json")]) == 0
     assert "verdict: effects_missing: stribeck" in capsys.readouterr().out
-    answer = tmp_path / "answer.json"
-    assert main(["diagnose", str(folder), "--json", str(answer)]) == 0
-    again = ["--answer", str(answer), "--json", str(tmp_path / "again.json")]
+    again = ["--answer", str(rod_answer), "--json", str(tmp_path / "again.json")]
     assert main(["design", str(folder), *again]) == 0
     first, second = designs(tmp_path / "d.json"), designs(tmp_path / "again.json")
     assert first["device"]["cancellation"] == second["device"]["cancellation"]
@@ -91,7 +75,8 @@ def written_case(folder, effect, kind="device"):
 
 
 @pytest.mark.slow
-def test_a_simulated_device_with_a_hidden_effect(tmp_path):
+def test_a_simulated_device_with_a_hidden_effect(choose_from, tmp_path):
+    choose_from((*FEW, "coulomb_asymmetry", "bias"))
     truth = written_case(tmp_path / "case", "coulomb_asymmetry")
     assert main(["design", str(tmp_path / "case"), "--json", str(tmp_path / "d.json")]) == 0
     made = designs(tmp_path / "d.json")["device"]
@@ -104,7 +89,7 @@ def test_a_simulated_device_with_a_hidden_effect(tmp_path):
 
 
 @pytest.mark.slow
-def test_each_body_of_a_teleoperator_is_a_device_of_its_own(tmp_path):
+def test_each_body_of_a_teleoperator_is_a_device_of_its_own(few, tmp_path):
     written_case(tmp_path / "case", "stribeck", "teleoperator")
     assert main(["design", str(tmp_path / "case"), "--json", str(tmp_path / "d.json")]) == 0
     made = designs(tmp_path / "d.json")
@@ -116,7 +101,9 @@ def test_each_body_of_a_teleoperator_is_a_device_of_its_own(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["emps", "hsm150", "mtm_wrist", "psm_insertion"])
-def test_a_real_recording_leads_to_a_design(name, tmp_path):
+def test_a_real_recording_leads_to_a_design(name, choose_from, tmp_path):
+    """Among effects that a drive may have; tests of `diagnose` choose from all."""
+    choose_from((*FEW, "presliding", "bias", "coulomb_asymmetry"))
     folder = shared_folder("data") / name
     assert main(["design", str(folder), "--json", str(tmp_path / "d.json")]) == 0
     made = designs(tmp_path / "d.json")["device"]

@@ -1,18 +1,21 @@
 """Which effects are tried, where their search starts, and what a bound means."""
 
+import shutil
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from diagnose.own_cases import FEW
 
-from teleopdesign import Model
-from teleopdesign.diagnose.candidates import candidates, started
+from teleopdesign import Model, load_experiment
+from teleopdesign.diagnose.candidates import candidates, measured_at, started
 from teleopdesign.diagnose.fit import estimate, free_parameters
 from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.scales import scales
-from teleopdesign.effects import CONTACT_ROLES, EFFECTS
+from teleopdesign.effects import CONTACT_ROLES, EFFECTS, catalogue
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.saving import write_experiment
 
 
 @pytest.fixture(scope="module")
@@ -40,6 +43,48 @@ def test_an_effect_that_needs_another_waits_for_it(model):
     assert needing
     assert needing.isdisjoint(names(bare))
     assert "coulomb" in names(bare)
+
+
+LATE = '''"""Acts late, and weaker the more is asked for."""
+from sympy import tanh
+from teleopdesign.effects import Effect, Parameter
+
+def law(now, p):
+    return p.limit * tanh(now.command / p.limit)
+
+EFFECT = Effect(
+    role="actuation", law=law, absent={"limit": float("inf")},
+    parameters={"limit": Parameter("force", "F")},
+)
+'''
+
+
+def test_no_limit_lag_or_delay_is_sought_in_a_force_that_was_measured(model, tmp_path):
+    """Nor a user's own: only the scale of what was measured may be wrong."""
+    path = tmp_path / "soft_limit.py"
+    path.write_text(LATE)
+    model = replace(model, known=catalogue([path]))
+    measured = {c.effect.name for c in candidates(model, measured={"device"})}
+    stages = {n for n, e in model.known.items() if e.role == "actuation"}
+    scales_only = {"actuator_gain", "torque_ripple"}
+    assert stages - measured == stages - scales_only and "soft_limit" in stages - measured
+    assert names(model) - measured == stages - scales_only
+
+
+def test_a_channel_says_that_its_force_was_measured(experiment, tmp_path):
+    shutil.copytree(experiment.folder, tmp_path / "case")
+    path = tmp_path / "case" / "experiment.toml"
+    lines = path.read_text().splitlines()
+    (n,) = (i for i, line in enumerate(lines) if line.startswith("actuator_force"))
+    lines[n] = lines[n].replace("{", "{ measured = true,", 1)
+    path.write_text("\n".join(lines))
+    read = load_experiment(path.parent)
+    assert measured_at(read) == {"device"} and measured_at(experiment) == set()
+    saved = write_experiment(read, tmp_path / "saved")
+    assert measured_at(load_experiment(saved)) == {"device"}
+    path.write_text(path.read_text().replace("measured = true", 'measured = "yes"'))
+    with pytest.raises(ExperimentError, match="measured.*expected true or false"):
+        load_experiment(path.parent)
 
 
 def test_a_second_shape_of_friction_is_no_candidate(model):

@@ -14,9 +14,12 @@ from diagnose.made_records import dahl, write_made
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.answer import answer, write_answer
 from teleopdesign.diagnose.answers import load_answer, restored
+from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.search import at_stated
 from teleopdesign.effects import EFFECTS
+from teleopdesign.next_experiment.rivals import rival_instead
+from teleopdesign.report.parameter_table import parameter_rows
 
 KNOWN = {n: EFFECTS[n] for n in ("coulomb", "viscous", "presliding", "spring", "bias", "stribeck")}
 MODEL = """coulomb = { level = { value = 1.0, unit = "N*m" } }
@@ -68,6 +71,30 @@ def test_a_damper_that_stood_in_for_hysteresis_gives_way_to_the_bristle(found):
     assert diagnosis.after.check_error < 0.3 * diagnosis.before.check_error
     stiffness = diagnosis.model.parameters["device.presliding.stiffness"]
     assert stiffness.value == pytest.approx(4e3, rel=0.1)
+
+
+def test_the_table_of_parameters_holds_what_gave_way(found):
+    _, diagnosis = found
+    rows = {r.name: r for r in parameter_rows(diagnosis)}
+    assert set(diagnosis.before.model.parameters) <= set(rows)
+    gone = rows["device.viscous.damping"]
+    assert gone.gave_way_to == "presliding" and gone.after is None
+    assert gone.before == diagnosis.before.model.parameters["device.viscous.damping"].value
+    assert [r.name for r in rows.values() if r.gave_way_to] == ["device.viscous.damping"]
+
+
+def test_a_rival_of_what_took_another_place_has_that_other_back(found):
+    """Unless the rival, too, was compared without it."""
+    _, diagnosis = found
+    rung = diagnosis.rungs[1]
+    spring = next(r for r in rung.ranking.ranked if r.candidate.effect.name == "spring")
+    assert spring.fit.model.body("device").has("viscous")
+    fit = rival_instead(diagnosis, rung.added, spring.candidate, spring.fit)
+    assert [e.name for e in fit.model.body("device").effects] == ["coulomb", "viscous", "spring"]
+    assert fit.check_error == pytest.approx(spring.fit.check_error, rel=0.01)
+    without = estimate(spring.fit.model.without_effect("viscous", at="device"), diagnosis.prepared)
+    fit = rival_instead(diagnosis, rung.added, spring.candidate, without)
+    assert not fit.model.body("device").has("viscous")
 
 
 def test_the_answer_says_what_it_takes_the_place_of(found):

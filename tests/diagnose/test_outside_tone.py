@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from diagnose.made_records import write_made
 
 import teleopdesign as td
 from teleopdesign.diagnose import ladder, ladder_state
@@ -16,6 +17,8 @@ from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
+
+FRICTION = 'coulomb = { level = { value = 1.0, unit = "N*m" } }'
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +66,25 @@ def test_what_repeats_with_the_motion_is_no_tone_from_outside(rod):
     own = np.fft.rfftfreq(len(motion.velocity), motion.sample_time)[int(np.argmax(power))]
     swing = with_residual(found, prepared, lambda t: np.sin(2 * np.pi * own * t))
     assert best_tone(swing, prepared).squares == float("inf")
+
+
+@pytest.mark.parametrize("harmonic", [2, 3, 4, 5])
+def test_harmonics_of_a_periodic_motion_are_no_tone_from_outside(tmp_path, harmonic):
+    """Friction makes them of one sine: of its direction the odd ones, of its size the even ones."""
+
+    def sine(t):
+        return 0.1 * np.sin(2 * np.pi * 0.5 * t)
+
+    runs = {"fit": [(40.0, sine)], "check": [(40.0, sine)]}
+    how = {"effects": FRICTION, "step": 1e-5, "noise": 1e-3}
+    folder = write_made(tmp_path / "case", runs, lambda t, x, v: np.sign(v), **how)
+    experiment = td.load_experiment(folder)
+    prepared = prepare(experiment)
+    fit = estimate(td.Model.from_experiment(experiment), prepared)
+    left = with_residual(fit, prepared, lambda t: np.sin(2 * np.pi * 0.5 * harmonic * t))
+    assert best_tone(left, prepared).residual is None
+    beside = with_residual(fit, prepared, lambda t: np.sin(2 * np.pi * 0.5 * (harmonic + 0.5) * t))
+    assert best_tone(beside, prepared).residual is not None
 
 
 def test_the_effect_that_is_missing_leaves_less_than_a_tone(rod):

@@ -3,7 +3,10 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from teleopdesign import Model, find_missing
 from teleopdesign.diagnose.answer import answer
@@ -17,14 +20,26 @@ from teleopdesign.diagnose.rank import rank_candidates
 from teleopdesign.effects import EFFECTS, RecordFacts, load_effect
 from teleopdesign.errors import ModelError
 
+TIME = np.linspace(0.0, 3.0, 3000)
 FACTS = RecordFacts(
     axis="revolute",
     travel=1.0,
     step=1e-4,
     stroke=0.5,
     force=3.0,
-    body={"inertia": 0.1, "coulomb.level": 0.5, "viscous.damping": 0.2},
+    speed=np.pi,
+    film=0.2 * np.pi,
+    body={
+        "inertia": 0.1,
+        "coulomb.level": 0.5,
+        "viscous.damping": 0.2,
+        "transmission_compliance.stiffness": 10.0,
+    },
+    # three turns of one sine about zero
+    places=0.5 * np.sin(2 * np.pi * TIME),
+    speeds=np.pi * np.cos(2 * np.pi * TIME),
 )
+ELEMENTS = {"level_2": 0.1, "level_3": 0.1, "level_4": 0.0, "stiffness_3": 3e6, "stiffness_4": 1.0}
 #: effect -> (parameters that deserve its name, those that do not, what these stand for)
 SAID = {
     "cogging": ({"period": 0.6}, {"period": 0.8}, "gravity"),
@@ -35,6 +50,24 @@ SAID = {
     "coulomb_asymmetry": ({"half_difference": -0.1}, {"half_difference": -0.6}, "a constant force"),
     "transmission_compliance": ({"tip_inertia": 0.05}, {"tip_inertia": 0.2}, "late"),
     "backlash": ({"tip_inertia": 0.05}, {"tip_inertia": 0.2}, "late"),
+    "maxwell_slip": (
+        {**ELEMENTS, "stiffness_1": 50.0, "stiffness_2": 9.0},
+        {**ELEMENTS, "stiffness_1": 3e6, "stiffness_2": 3e6},
+        "sgn friction",
+    ),
+    "shear_thinning": (
+        {"drag": 1.0, "exponent": 0.5},
+        {"drag": 9.0, "exponent": 0.5},
+        "a constant force",
+    ),
+    "gravity": ({"amplitude": 2.0}, {"amplitude": -40.0}, "a spring"),
+    "tip_friction": ({"level": 0.1}, {"level": 1e-5}, "friction of the actuator"),
+    "viscous_temperature": ({"coefficient": 0.01}, {"coefficient": -0.01}, "a preload"),
+    "position_dependent_friction": (
+        {"period": 1.0, "phase": 0.0},
+        {"period": 2.0, "phase": 0.5 * np.pi},
+        "depends on the speed",
+    ),
 }
 
 
@@ -57,6 +90,38 @@ def test_every_check_answers_for_values_of_any_size(name):
             p = SimpleNamespace(**dict.fromkeys(effect.parameters, size))
             said = effect.plausible(p, replace(facts, stroke=stroke))
             assert said is None or (isinstance(said, str) and said.strip())
+
+
+def test_every_effect_with_a_check_is_tried_on_both_sides():
+    assert {n for n, e in EFFECTS.items() if e.plausible} == set(SAID)
+
+
+def test_a_slip_element_that_is_rigid_beside_one_that_gives_is_no_fault():
+    plausible = EFFECTS["maxwell_slip"].plausible
+    one_gives = {**ELEMENTS, "stiffness_1": 3e6, "stiffness_2": 9.0}
+    assert plausible(SimpleNamespace(**one_gives), FACTS) is None
+    none_slips = {**ELEMENTS, "stiffness_1": 0.01, "stiffness_2": 0.01}
+    assert "a spring" in plausible(SimpleNamespace(**none_slips), FACTS)
+
+
+def test_tip_friction_that_never_lets_the_tip_go_is_a_spring():
+    assert "a spring" in EFFECTS["tip_friction"].plausible(SimpleNamespace(level=20.0), FACTS)
+
+
+@given(amplitude=st.floats(0.01, 10.0), centre=st.floats(-3.0, 3.0), turns=st.integers(1, 9))
+def test_one_sine_tells_no_pattern_about_its_centre_from_a_speed(amplitude, centre, turns):
+    """What is symmetrical about the centre: at each speed one value. A slope has two."""
+    angle = np.linspace(0.0, 2 * np.pi * turns, 4000)
+    facts = replace(FACTS, places=centre + amplitude * np.sin(angle), speeds=np.cos(angle))
+    assert facts.apart_from_speed(lambda x: np.cos((x - centre) / amplitude)) < 0.02
+    assert facts.apart_from_speed(lambda x: x) > 0.9
+    # the same path at another speed as well
+    twice = replace(
+        facts,
+        places=np.concatenate([facts.places, facts.places]),
+        speeds=np.concatenate([facts.speeds, 0.4 * facts.speeds]),
+    )
+    assert twice.apart_from_speed(lambda x: np.cos((x - centre) / amplitude)) > 0.1
 
 
 def test_a_bristle_that_no_step_of_the_encoder_shows_is_coulomb_friction():
@@ -104,6 +169,20 @@ def test_the_facts_are_those_of_all_records(case):
     assert facts.travel == pytest.approx(high - low)
     assert facts.body == {"inertia": model.parameters["device.inertia"].value}
     assert 0.0 < facts.stroke < 3.0 and facts.step > 0.0 and facts.force > 0.0
+
+
+@pytest.mark.parametrize("friction", ["viscous", "shear_thinning", "quadratic_drag"])
+def test_the_friction_of_speed_is_that_of_every_law_of_speed(case, friction):
+    model, prepared = case
+    values = dict.fromkeys(EFFECTS[friction].parameters, 0.5)
+    body = model.with_effect(EFFECTS[friction], values=values)
+    facts = record_facts(body, "device", prepared)
+    law = EFFECTS[friction].expression({"velocity": facts.speed}, values)
+    assert facts.speed > 0.0 and facts.film == pytest.approx(float(law))
+    # a force of the position, or a dry level, is none
+    other = body.with_effect(EFFECTS["spring"], values={"stiffness": 3.0})
+    other = other.with_effect(EFFECTS["coulomb"])
+    assert record_facts(other, "device", prepared).film == facts.film
 
 
 def test_an_effect_that_its_own_file_does_not_believe_is_not_supported(case, tmp_path):

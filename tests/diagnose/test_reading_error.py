@@ -95,6 +95,7 @@ def test_a_coarse_encoder_makes_friction_look_higher_and_damping_lower(rod):
 LOG = {"device.inertia", "device.stribeck.stribeck_velocity"}
 
 
+@pytest.mark.slow
 def test_a_second_simulation_predicts_by_how_much_estimates_miss(rod):
     """Records of a simulated rod, its truth known, each corrected by a simulation of its own."""
     found, prepared = rod

@@ -11,6 +11,7 @@ import teleopdesign as td
 from teleopdesign.check import check_experiment
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.answers.bodies import model_data, model_from
+from teleopdesign.diagnose.clock import with_paying_shift
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.prepare import prepare
@@ -61,9 +62,28 @@ def adequate(tmp_path_factory):
     return td.load_experiment(write_own(tmp_path_factory.mktemp("own") / "null", None))
 
 
-@pytest.mark.parametrize("rows", [-1.0, -0.3, 0.0, 0.3, 1.0])
-def test_a_shift_of_up_to_a_row_is_found_and_costs_nothing(adequate, rows):
-    plain, late = fitted(adequate), fitted(shifted(adequate, rows))
+@pytest.fixture(scope="module")
+def plain(adequate):
+    """Its model, estimated."""
+    return fitted(adequate)
+
+
+@pytest.fixture(scope="module")
+def a_row_late(adequate):
+    """Its model, estimated where the logger was a row late."""
+    return fitted(shifted(adequate, 1.0))
+
+
+def test_a_shift_of_a_row_is_found_and_costs_nothing(adequate, plain, a_row_late):
+    check_shift_is_found(adequate, plain, a_row_late, 1.0)
+
+
+@pytest.mark.parametrize("rows", [-1.0, -0.3, 0.0, 0.3])
+def test_a_shift_of_less_than_a_row_or_the_other_way_is_found(adequate, plain, rows):
+    check_shift_is_found(adequate, plain, fitted(shifted(adequate, rows)), rows)
+
+
+def check_shift_is_found(adequate, plain, late, rows):
     found, error = rows_late(late, adequate)
     before, _ = rows_late(plain, adequate)
     # the simulated actuator holds its command without any delay, so the clock is right
@@ -74,11 +94,10 @@ def test_a_shift_of_up_to_a_row_is_found_and_costs_nothing(adequate, rows):
     assert late.check_error == pytest.approx(plain.check_error, rel=0.02)
 
 
-def test_estimates_do_not_depend_on_the_clock(adequate):
-    plain, late = fitted(adequate).model, fitted(shifted(adequate, 1.0)).model
-    for name, value in plain.parameters.items():
+def test_estimates_do_not_depend_on_the_clock(plain, a_row_late):
+    for name, value in plain.model.parameters.items():
         if not value.fixed:
-            assert late.parameters[name].value == pytest.approx(
+            assert a_row_late.model.parameters[name].value == pytest.approx(
                 value.value, abs=max(value.stderr, 1e-3 * abs(value.value))
             )
 
@@ -163,8 +182,48 @@ def test_what_a_controller_makes_of_a_shift_is_left_open(adequate):
     )
 
 
-def test_a_model_with_a_shift_is_written_and_read(adequate):
-    model = fitted(adequate).model
+def only_late(experiment, rows, use):
+    """The experiment with the records of one use late by so many rows."""
+    late = shifted(experiment, rows).records
+    pairs = zip(experiment.records, late, strict=True)
+    return replace(experiment, records=tuple(b if a.use == use else a for a, b in pairs))
+
+
+@pytest.mark.parametrize("rows", [-1.0, 1.0])
+def test_a_shift_that_raises_the_error_on_unseen_records_is_held_at_none(adequate, rows):
+    """What only the fit records have: to take up a part of what is missing there looks the same."""
+    experiment = only_late(adequate, rows, "fit")
+    prepared = prepare(experiment)
+    free = fitted(experiment)
+    assert abs(rows_late(free, experiment)[0]) > 0.9
+    held = with_paying_shift(free, prepared)
+    assert held.check_error < free.check_error
+    assert rows_late(held, experiment)[0] == 0.0
+    # what is left open of the clock stays in all standard errors
+    assert rows_late(held, experiment)[1] > 0.0 and held.by_shift.shape == free.by_shift.shape
+    # and it stays so with what is added
+    (place,) = held.model.bodies
+    beside = estimate(held.model.with_effect("bias", at=place), prepared)
+    assert rows_late(beside, experiment)[0] == 0.0
+    data = json.loads(json.dumps(model_data(held.model)))
+    back = model_from(data, EFFECTS, file="answer.json", key="models")
+    assert back.record_shift[place] == held.model.record_shift[place]
+
+
+def test_a_shift_that_was_held_is_estimated_again_where_it_pays(adequate):
+    experiment = shifted(adequate, 1.0)
+    free = fitted(experiment)
+    (place,) = free.model.bodies
+    none = free.model.with_record_shift({place: td.Value(0.0, fixed=True)})
+    held = estimate(none, prepare(experiment))
+    assert held.check_error > free.check_error
+    again = with_paying_shift(held, prepare(experiment))
+    assert again.check_error == pytest.approx(free.check_error, rel=1e-3)
+    assert rows_late(again, experiment)[0] == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_model_with_a_shift_is_written_and_read(plain):
+    model = plain.model
     data = json.loads(json.dumps(model_data(model)))
     back = model_from(data, EFFECTS, file="answer.json", key="models")
     for place, late in model.record_shift.items():
@@ -196,7 +255,8 @@ def test_no_effect_is_named_for_a_logger_that_is_off(tmp_path, seed, rows):
 )
 def test_an_effect_keeps_its_name_under_a_shift(tmp_path, effect, rows):
     folder = write_own(tmp_path / effect, effect)
-    diagnosis = td.find_missing(shifted(td.load_experiment(folder), rows))
+    late = shifted(td.load_experiment(folder), rows)
+    diagnosis = td.find_missing(late, td.Model.from_experiment(late, FEW))
     named = [c.effect.name for c in diagnosis.missing]
     assert named == [e["effect"] for e in truth_of(folder)["effects"]]
 

@@ -263,7 +263,7 @@ ANYTHING = st.recursive(
 
 
 # 250 answers in about 3 s: most places of the format are hit
-@settings(max_examples=250, deadline=None)
+@settings(max_examples=250)
 @given(data=st.data())
 def test_a_spoilt_answer_is_read_or_refused_in_one_line(
     data, content, experiment, tmp_path_factory
@@ -297,7 +297,9 @@ def test_a_spoilt_answer_is_read_or_refused_in_one_line(
 
 
 def test_what_a_diagnosis_says_is_what_its_answer_says_again(path, diagnosis):
-    assert json.loads(path.read_text()) == json.loads(json.dumps(answer(diagnosis)))
+    written = json.loads(path.read_text())
+    written["experiment"].pop("folder", None)  # as seen from the file
+    assert written == json.loads(json.dumps(answer(diagnosis)))
 
 
 @pytest.mark.parametrize("command", ["design", "describe", "next", "passivity"])
@@ -308,7 +310,7 @@ def test_every_command_refuses_the_answer_to_another_experiment(command, path, c
     assert error.count("\n") == 1
 
 
-@pytest.mark.parametrize("command", ["design", "describe", "next", "check", "diagnose"])
+@pytest.mark.parametrize("command", ["check", "diagnose"])
 def test_an_answer_in_the_place_of_a_folder_is_told_where_it_goes(command, path, capsys):
     assert main([command, str(path)]) == 2
     error = capsys.readouterr().err

@@ -118,7 +118,7 @@ def test_a_give_of_less_than_the_travel_tells_no_motion():
     assert not told(x).any()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(seed=st.integers(0, 2**31), speed=st.floats(0.01, 30.0))
 def test_the_direction_never_contradicts_the_readings(seed, speed):
     """Every change of the reading within a told motion goes the told way."""
@@ -137,7 +137,7 @@ def test_the_direction_never_contradicts_the_readings(seed, speed):
             assert abs(x[end] - x[start - 1]) > (TRAVEL - 0.6) * STEP
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seed=st.integers(0, 2**31), width=st.floats(0.1, 5.0))
 def test_play_follows_within_half_its_width_and_ignores_less(seed, width):
     x = np.cumsum(np.random.default_rng(seed).normal(size=200))

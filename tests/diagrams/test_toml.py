@@ -135,7 +135,7 @@ def reading(tmp_path):
 
 
 # 40 wirings in about 3 s: every part and most forms of weights occur
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(diagram=diagrams(geometry=True))
 def test_what_is_written_is_read_as_the_same_diagram(tmp_path_factory, diagram):
     file = tmp_path_factory.getbasetemp() / "random.toml"

@@ -133,7 +133,7 @@ def values_of(draw, name):
 @pytest.mark.parametrize(
     "name", [n for n in declaring("dissipates") if n not in CONTACTS + STRUCTURES + AT_TIPS]
 )
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(data=st.data(), seed=st.integers(0, 2**31))
 def test_the_work_done_against_it_never_falls_below_zero(name, data, seed):
     """From a start at rest no energy comes back that was not put in, hidden states included.
@@ -177,7 +177,7 @@ def coupling(effect):
 
 
 @pytest.mark.parametrize("name", STRUCTURES)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(data=st.data(), seed=st.integers(0, 2**31))
 def test_a_structure_takes_energy_around_a_closed_path(name, data, seed):
     drawn = data.draw(values_of(name))
@@ -188,7 +188,7 @@ def test_a_structure_takes_energy_around_a_closed_path(name, data, seed):
 
 
 @pytest.mark.parametrize("name", CONTACTS)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(data=st.data(), seed=st.integers(0, 2**31))
 def test_a_contact_takes_no_less_than_it_declares(name, data, seed):
     drawn = data.draw(values_of(name)) | {"environment.damping": 0.0}

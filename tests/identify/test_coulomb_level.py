@@ -98,6 +98,7 @@ def test_results_are_written_with_units(found, tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_the_diagnosis_of_the_same_record_agrees(found, tmp_path):
     experiment = td.load_experiment(write(tmp_path / "same", SPEEDS))
     fitted = td.fit(td.Model.from_experiment(experiment), experiment)

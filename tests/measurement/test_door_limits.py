@@ -99,7 +99,7 @@ def test_dates_and_times_of_day_are_seconds(cells):
 
 
 @given(content=st.binary(max_size=300))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_any_bytes_named_csv_are_read_or_refused_in_one_line(tmp_path_factory, content):
     path = tmp_path_factory.getbasetemp() / "any.csv"
     path.write_bytes(content)

@@ -101,7 +101,7 @@ def test_steps_and_kinks_are_no_outliers():
         assert len(lone_samples((shape + noise)[inside], 1e-4)[0]) == 0
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seed=st.integers(0, 2**31), row=st.integers(50, 11_900), size=st.floats(8.0, 1e4))
 def test_every_lone_sample_is_found_and_nothing_else(seed, row, size):
     rng = np.random.default_rng(seed)

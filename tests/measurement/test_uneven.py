@@ -30,7 +30,7 @@ def record_of(t, q, u, **more):
 
 
 @given(seed=st.integers(0, 2**32 - 1), part=st.floats(0.001, 0.05))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_lost_rows_are_filled_where_they_were(seed, part):
     t = np.arange(2000) / RATE
     keep = np.random.default_rng(seed).random(2000) > part

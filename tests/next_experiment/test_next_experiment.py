@@ -80,7 +80,7 @@ def test_the_motion_keeps_within_the_limits_that_the_records_have_shown(one_spee
     acceleration=st.floats(0.1, 50.0),
     jerk=st.floats(1.0, 5e3),
 )
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_a_rounded_line_never_exceeds_its_limits(time, speed, acceleration, jerk):
     limits, reach, step = Limits(-3.0, 3.0, 1.0, acceleration, jerk, 1.0), speed * time, 2e-3
     assume(20 * step < window_length(2 * speed, limits) < 4.0)
@@ -176,6 +176,7 @@ def test_the_predicted_separation_is_found_on_an_independent_simulator(one_speed
     assert after.separation(truth=other, other=truth) == 0.0
 
 
+@pytest.mark.slow
 def test_two_laws_that_need_the_same_force_are_said_to_be_told_by_nothing(tmp_path):
     _, experiment = POOR["one place"].experiment(tmp_path / "bias", 1)
     proposal = propose(diagnosed(experiment, FEW))
@@ -254,10 +255,19 @@ def test_the_command_says_in_one_line_what_is_wrong(one_speed, capsys, arguments
 # the proof: many cases, all rivals, the whole diagnosis
 
 
+def known_of(poor, number):
+    """Effects to choose from: all of `MOST` for the first of two truths, then the usual ones.
+
+    The time of a search grows with the square of their number.
+    """
+    usual = {"coulomb", "viscous", "quadratic_drag", "bias", "spring", *poor.rivals}
+    return MOST if number == 0 else {n: e for n, e in MOST.items() if n in usual}
+
+
 def proposed(case, number, folder):
     poor = POOR[case]
     rod, experiment = poor.experiment(folder, number)
-    found = diagnosed(experiment, MOST)
+    found = diagnosed(experiment, known_of(poor, number))
     wider = {b: own.widened(poor.wider) for b, own in shown_limits(found.prepared).items()}
     return poor, rod, experiment, propose(found, limits=wider)
 
@@ -280,7 +290,7 @@ def test_what_is_predicted_is_found_and_then_named(case, number, tmp_path):
     found = after.separation(truth=truth, other=other)
     # found over predicted lay between 0.4 and 1.1 when this was written; the servo is not known
     assert 0.3 * predicted < found < 2.0 * predicted
-    again = diagnosed(with_records(experiment, new), MOST)
+    again = diagnosed(with_records(experiment, new), known_of(poor, number))
     named = {c.effect.name for c in (*again.missing, *(c for g in again.groups for c in g))}
     if predicted >= 1.0:
         assert poor.rivals[number] in named and poor.rivals[1 - number] not in named

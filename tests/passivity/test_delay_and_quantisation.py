@@ -147,7 +147,7 @@ def test_a_quantised_spring_is_passive_up_to_its_limit(stiffness, changes, statu
         assert read_record(tmp_path / "motion.json").replay() > 0
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.lists(st.floats(-3, 3), min_size=1, max_size=40), st.floats(-0.5, 0.5))
 def test_no_motion_takes_energy_out_of_the_limiting_spring(steps, start):
     """Both limits met at once, 4000 N/m: positions in encoder steps, from any start.

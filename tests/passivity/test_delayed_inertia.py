@@ -18,7 +18,6 @@ times = st.floats(1e-4, 1e-1)
 orders = st.sampled_from([1, 2])
 
 
-@settings(deadline=None)
 @given(frequency=st.floats(0.1, 1e3), delay=times)
 def test_without_low_pass_it_is_the_energy_of_p48(frequency, delay):
     amplitude, inertia = 2e-3, 0.1
@@ -32,7 +31,7 @@ def test_without_low_pass_it_is_the_energy_of_p48(frequency, delay):
     assert inertia * np.pi * amplitude**2 * w * g == pytest.approx(expected, abs=1e-12 * scale)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(delay=times, time_constant=times, order=orders)
 def test_damping_pays_for_no_less_than_the_bound_of_any_delay(delay, time_constant, order):
     given_ = {"delay": delay, "time_constant": time_constant, "order": order}
@@ -44,7 +43,7 @@ def test_damping_pays_for_no_less_than_the_bound_of_any_delay(delay, time_consta
     assert limit * g.max() <= 1 + 1e-9
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(delay=times, time_constant=times, order=orders)
 def test_a_proof_within_the_bound_and_a_wave_beyond_the_limit(delay, time_constant, order):
     given_ = {"delay": delay, "time_constant": time_constant, "order": order}

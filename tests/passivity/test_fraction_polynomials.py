@@ -52,7 +52,6 @@ def of_pairs(given_pairs):
     return multiply(*map(polynomial, factors))
 
 
-@settings(deadline=None)
 @given(rows, rows.filter(bool))
 def test_quotient_and_remainder_make_up_the_whole(p, q):
     quotient, rest = divide(p, q)
@@ -60,7 +59,6 @@ def test_quotient_and_remainder_make_up_the_whole(p, q):
     assert len(rest) < len(q)
 
 
-@settings(deadline=None)
 @given(rows.filter(bool), rows.filter(bool), rows.filter(bool))
 def test_what_two_products_share_divides_both(p, q, shared):
     common = greatest_common_divisor(multiply(p, shared), multiply(q, shared))
@@ -68,7 +66,6 @@ def test_what_two_products_share_divides_both(p, q, shared):
     assert divide(multiply(p, shared), common)[1] == []
 
 
-@settings(deadline=None)
 @given(roots, rows)
 def test_signs_at_positive_roots_are_those_of_the_values(given_roots, f):
     """Each positive root once, whatever its multiplicity; f may vanish at some."""
@@ -96,7 +93,6 @@ def test_a_root_at_which_the_other_polynomial_vanishes_is_not_taken_for_the_next
     assert first_root([Fraction(2), Fraction(-2)], g) == pytest.approx(2.0, rel=1e-3)
 
 
-@settings(deadline=None)
 @given(roots, rows)
 def test_the_first_root_with_a_negative_value_is_located(given_roots, f):
     places = [r for r, _ in given_roots if r > 0 and value(f, r) < 0]
@@ -107,7 +103,6 @@ def test_the_first_root_with_a_negative_value_is_located(given_roots, f):
         assert found != found
 
 
-@settings(deadline=None)
 @given(roots, st.sampled_from([1, -2]))
 def test_a_sign_changes_at_roots_of_odd_multiplicity(given_roots, lead):
     p = of_roots(given_roots, lead)
@@ -115,7 +110,6 @@ def test_a_sign_changes_at_roots_of_odd_multiplicity(given_roots, lead):
     assert is_non_negative(p) == by_sympy.is_non_negative(x)
 
 
-@settings(deadline=None)
 @given(pairs)
 def test_decay_and_growth_are_those_of_the_roots(given_pairs):
     """Hurwitz: all a < 0; free of growth: no a > 0, multiple and on the axis as well."""
@@ -124,7 +118,7 @@ def test_decay_and_growth_are_those_of_the_roots(given_pairs):
     assert is_free_of_growth(p) == all(a <= 0 for a, _ in given_pairs)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(rows, rows.filter(bool))
 def test_positive_real_agrees_with_the_test_in_sympy(p, q):
     s = by_sympy.sp.Symbol("s")
@@ -135,7 +129,6 @@ def test_positive_real_agrees_with_the_test_in_sympy(p, q):
     assert is_positive_real(rising(z.p), rising(z.q)) == is_positive_real_by_sympy(z)
 
 
-@settings(deadline=None)
 @given(rows, rows, small)
 def test_the_real_part_on_the_axis_is_that_of_complex_numbers(p, q, w):
     def at(r):
@@ -146,7 +139,6 @@ def test_the_real_part_on_the_axis_is_that_of_complex_numbers(p, q, w):
     assert float(value(real_part(p, q), w * w)) == pytest.approx(product.real, abs=1e-7)
 
 
-@settings(deadline=None)
 @given(roots)
 def test_a_square_free_polynomial_has_each_root_once(given_roots):
     plain = square_free(of_roots(given_roots))

@@ -71,7 +71,7 @@ def test_a_record_whose_energy_is_not_confirmed_is_refused(tmp_path):
         read_record(file)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.floats(0.1, 1.0),
     st.floats(1.0, 1e6),
@@ -226,7 +226,7 @@ def test_the_region_is_the_wedge_of_the_formula():
     assert np.array_equal(found.status == "refuted", ~expected)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(
     st.floats(0.05, 1.0),
     st.floats(0.05, 1.0),
@@ -241,7 +241,7 @@ def test_no_closed_path_takes_energy_out_inside_the_wedge(share, softness, point
     assert cycle.energy <= 1e-12
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.lists(st.tuples(st.floats(-2, 2), st.floats(0.5, 0.8)), min_size=1, max_size=25),
     st.floats(0.05, 1.0),
@@ -361,7 +361,7 @@ def test_without_bristle_damping_lugre_is_always_passive():
     assert claim.status == "proved"
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(
     u=st.floats(0.05, 4.0),
     points=st.lists(st.floats(-1.0, 1.0), min_size=2, max_size=12),

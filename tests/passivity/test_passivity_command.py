@@ -159,6 +159,7 @@ def test_a_level_that_may_be_zero_covers_no_compensation():
         identified(body_with(viscous__damping=1.0))
 
 
+@pytest.mark.slow
 def test_damping_covers_what_the_lowest_level_does_not():
     """Stribeck friction at low speed, viscous damping at high speed: 0.5 N alone never acts."""
     body = body_with(
@@ -204,8 +205,6 @@ def test_levels_of_an_answer_alone_are_bounded_over_every_motion(answer, capsys)
 
 
 @pytest.mark.slow
-def test_levels_of_an_answer_with_its_folder_are_bounded_over_the_reach(tmp_path, capsys):
-    answer = tmp_path / "answer.json"
-    assert main(["diagnose", str(td.example("rod")), "--json", str(answer)]) == 0
-    assert main(["passivity", str(td.example("rod")), "--answer", str(answer)]) == 0
+def test_levels_of_an_answer_with_its_folder_are_bounded_over_the_reach(rod_answer, capsys):
+    assert main(["passivity", str(td.example("rod")), "--answer", str(rod_answer)]) == 0
     assert "over speed 0 to " in capsys.readouterr().out

@@ -21,7 +21,7 @@ small = st.integers(-6, 6).map(lambda k: sp.Rational(k, 2))
 positive = st.integers(1, 12).map(lambda k: sp.Rational(k, 4))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(st.tuples(small, positive), min_size=1, max_size=4), st.sampled_from([1, -2]))
 def test_hurwitz_is_that_of_the_roots(pairs, sign):
     """Products of (s + a)^2 + b^2, with a known by construction."""
@@ -29,7 +29,7 @@ def test_hurwitz_is_that_of_the_roots(pairs, sign):
     assert is_hurwitz(p) == all(a > 0 for a, _ in pairs)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(st.tuples(small, st.integers(1, 3)), min_size=1, max_size=4), st.booleans())
 def test_sign_changes_are_found_where_roots_are_odd(roots, negative):
     """Products of (x - r)^k: negative somewhere on x > 0 as counted by hand."""
@@ -43,7 +43,7 @@ def test_sign_changes_are_found_where_roots_are_odd(roots, negative):
     assert all(x > 0 and value(p, x) < 0 for x in below)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(small, min_size=1, max_size=5), positive)
 def test_positive_roots_are_found_once_each(roots, b):
     p = sp.Poly(sp.prod([X - r for r in roots]) * (X**2 + b), X, domain="QQ")

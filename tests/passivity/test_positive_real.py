@@ -175,7 +175,7 @@ def test_modes_that_the_port_does_not_see_drop_out():
     assert str(impedance(space)) == "1/(s + 1)"
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.lists(st.floats(-10, 10).map(lambda x: round(x, 2)), min_size=9, max_size=9))
 def test_state_space_and_transfer_function_agree(entries):
     """C (s I - A)^-1 B at one point, in floating point, for any matrices."""

@@ -1,7 +1,7 @@
 """A Dahl compensator in a computer: ideal friction keeps its bound, Dahl friction has none."""
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
@@ -64,6 +64,7 @@ def test_the_sum_is_that_of_every_stroke(own, stiffness, path, drift, damping, s
     assert record.replay() == pytest.approx(stroke_by_stroke(record), abs=1e-12 * turned)
 
 
+@settings(max_examples=25)
 @given(own=st.floats(-1, 0.5).map(lambda x: 10**x), soft=sizes, damping=st.floats(0, 5))
 def test_beside_a_contact_that_gives_no_numbers_are_passive(own, soft, damping):
     claim = sampled_compensation(

@@ -86,7 +86,7 @@ def test_the_motion_gives_out_what_a_plain_simulation_finds():
     assert -taken == pytest.approx(claim.record.energy, rel=1e-9)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     st.integers(1, 400).map(lambda x: sp.Rational(x, 10)),
     st.integers(0, 3),

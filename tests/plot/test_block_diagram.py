@@ -125,8 +125,8 @@ def test_a_known_diagram_is_drawn_with_every_text_in_the_clear(name):
         assert not [p for p in pieces(drawing) if runs_through(p, text)], text.plain
 
 
-# 12 wirings in about 3 s, no search for a smaller one; deadline: the first one imports
-@settings(max_examples=12, deadline=None, phases=[Phase.generate])
+# 12 wirings in about 3 s, no search for a smaller one
+@settings(max_examples=12, phases=[Phase.generate])
 @given(diagrams(geometry=True))
 def test_in_any_drawing_everything_is_there_once_and_wires_keep_clear(diagram):
     check(diagram)

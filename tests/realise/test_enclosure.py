@@ -45,7 +45,7 @@ def exact(law, x, y):
         return call(mpmath.mpf(x), mpmath.mpf(y))
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150)
 @given(law=laws, x=ranges, y=ranges, shares=shares)
 def test_no_value_of_a_law_leaves_its_interval(law, x, y, shares):
     low, high = ends(enclosure_of(law, [X, Y])([interval(*x), interval(*y)]))
@@ -59,7 +59,7 @@ def test_no_value_of_a_law_leaves_its_interval(law, x, y, shares):
         assert low <= value <= high
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=50)
 @given(law=laws, x=ranges, y=ranges, shares=shares)
 def test_no_value_is_below_the_least_and_the_least_is_met(law, x, y, shares):
     found = least_value(law, {X: tuple(x), Y: tuple(y)})

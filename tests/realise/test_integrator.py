@@ -44,8 +44,9 @@ def advance(force, command, *, samples=20, inner=5, period=1e-3, lag=0, reductio
     kept = mass.COLUMNS + np.arange(mass.MANY_COLUMNS)
     out, results = np.zeros((samples + 1) * len(kept)), np.zeros(len(kinds))
     integrator.run(
-        samples, inner, h, period, lag, np.zeros(0, dtype=int), 0.0, 0.0,
-        np.zeros(lag // inner + 2), lag // inner + 2, np.zeros(0), 1, False,
+        samples, inner, h, period, lag, np.zeros(0), 0.0, 0.0,
+        np.zeros(lag // inner + 2), lag // inner + 2, np.zeros(0), np.zeros(0), 1,
+        np.zeros(0), np.zeros(0), 2, False,
         np.array([2.0]), np.array([force(half), 0.0 * half]), np.full((1, samples + 1), command),
         memory, kept, out, 0, kinds, mass.COLUMNS + columns, mass.COLUMNS + others, results,
     )  # fmt: skip

@@ -147,7 +147,7 @@ def other_names(draw, diagram):
 
 @pytest.mark.parametrize("name", DIAGRAMS)
 @pytest.mark.parametrize("continuous", [False, True], ids=["sampled", "continuous"])
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(data=st.data())
 def test_a_diagram_with_other_names_gives_the_same_numbers_to_the_last_bit(
     before, name, continuous, data

@@ -230,7 +230,10 @@ def probe(law):
     return Controller((Stage(law, values),))
 
 
-SMOOTH = [n for n, law in CONTROLLERS.items() if law.linear and n != "model_inverse"]
+#: a dead time is approximated there
+SMOOTH = [
+    n for n, law in CONTROLLERS.items() if law.linear and n != "model_inverse" and not law.dead_time
+]
 
 
 @pytest.mark.slow

@@ -47,7 +47,7 @@ class HtmlPage(HTMLParser):
 
     @property
     def data(self):
-        (script,) = self.all("script")
+        (script,) = [e for e in self.all("script") if e.attributes.get("type")]
         return json.loads(script.text)
 
     @property

@@ -23,7 +23,7 @@ from teleopdesign.plain_data import plain
 from teleopdesign.report import write_report
 from teleopdesign.report.figures import graph_figure
 from teleopdesign.report.page import page_of
-from teleopdesign.report.write import Figures, embedded_json, render
+from teleopdesign.report.write import Figures, embedded_json, figure_script, render
 
 HOSTILE = (
     '</script><script>alert(1)</script>"><img src=x onerror=alert(1)>',
@@ -58,7 +58,9 @@ def test_nothing_is_loaded_from_elsewhere(written, html):
                 assert value.startswith(("#", "data:image/svg+xml;base64,")), value[:80]
     assert "@import" not in written
     assert all(target.startswith("#") for target in re.findall(r"url\(([^)]*)", written))
-    assert [e.attributes["type"] for e in html.all("script")] == ["application/json"]
+    kinds = [e.attributes.get("type") for e in html.all("script")]
+    assert kinds == ["application/json", None]
+    assert html.all("script")[1].text == figure_script()
 
 
 def test_a_page_has_one_title_headings_in_order_and_unlike_identifiers(html):
@@ -207,7 +209,7 @@ def test_a_hostile_text_is_shown_and_adds_no_element(text, page_with, harmless):
 TEXTS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0\r"), min_size=1)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(text=TEXTS)
 def test_no_text_changes_the_elements_of_the_page(text, page_with, harmless):
     read = page_with(text)
@@ -223,7 +225,8 @@ def test_findings_are_escaped_in_text_names_and_figures(text, page, bare):
     drawn = {("next", 0): graph_figure(graph, text)}
     figures = dataclasses.replace(bare, findings=drawn)
     read = HtmlPage(render(full, figures, {"report": plain(full)}))
-    assert len(read.all("script")) == 1
+    assert [e.attributes.get("type") for e in read.all("script")] == ["application/json", None]
+    assert read.all("script")[1].text == figure_script()
     (shown,) = read.all("img")
     assert shown.attributes["alt"] == text
     assert read.data["report"]["soundness"][0]["numbers"] == {text: 1.5}

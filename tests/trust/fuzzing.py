@@ -13,7 +13,8 @@ import h5py
 import numpy as np
 from hypothesis import strategies as st
 from measurement.rod_example import ROD, rod_columns, rows
-from security.test_files_run_nothing import diagram_file
+from passivity.small_certificates import storage
+from security.diagram_file import diagram_file
 
 from teleopdesign.check import check_experiment
 from teleopdesign.cli import main
@@ -49,27 +50,9 @@ EFFECT = Effect(
 )
 '''
 
+#: a file of claims with one certificate, that of a spring and a damper
 CLAIMS = {
-    "claims": [
-        {
-            "statement": "a spring and a damper are passive",
-            "certificates": [
-                {
-                    "kind": "storage",
-                    "title": "spring and damper",
-                    "constants": ["k"],
-                    "signals": ["b", "v"],
-                    "rates": {"p": "k*v"},
-                    "signs": ["v"],
-                    "positive": {"k": "k"},
-                    "nonnegative": {"b": "b"},
-                    "invariant": {},
-                    "supply": "p*v + b*v**2",
-                    "storage": "p**2/(2*k)",
-                }
-            ],
-        }
-    ]
+    "claims": [{"statement": "a spring and a damper are passive", "certificates": [storage()]}]
 }
 
 STUDY = """\

@@ -1,5 +1,6 @@
 """Odd places to run in: nothing can be written, a terminal knows ASCII, a reader stops early."""
 
+import json
 import os
 import shutil
 import stat
@@ -26,6 +27,34 @@ sos, state = zero_phase.sections(20.0, 1e-3)
 y = np.ones((50, 1))
 zero_phase.one_way(y, sos, state, False)
 print(f(21), round(float(y[-1, 0]), 6), sum(f.stats.cache_hits.values()))
+"""
+
+
+#: imports what KERNEL needs, once; for each line that it reads, a fork runs KERNEL in another
+#: environment and writes what it prints into a folder
+FORKED = f"""
+import json, os, sys, traceback
+import numba, numpy
+from teleopdesign.measurement import zero_phase
+from teleopdesign.realise import compiled
+for line in sys.stdin:
+    env, folder = json.loads(line)
+    child = os.fork()
+    if child == 0:
+        for stream, name in ((1, "out"), (2, "err")):
+            file = os.open(f"{{folder}}/{{name}}", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+            os.dup2(file, stream)
+        os.environ.clear()
+        os.environ.update(env)
+        try:
+            exec({KERNEL!r}, {{"__name__": "__main__"}})
+        except BaseException:
+            traceback.print_exc()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(0)
+    os.waitpid(child, 0)
+    print("done", flush=True)
 """
 
 
@@ -62,6 +91,32 @@ def command(*arguments, **options):
     )
 
 
+@pytest.fixture(scope="module")
+def run_kernel(tmp_path_factory):
+    """run_kernel(XDG_CACHE_HOME=...): what KERNEL prints there, and says on stderr.
+
+    Each run is a process that has compiled nothing; only the imports are shared.
+    """
+    folder = tmp_path_factory.mktemp("forked")
+    with subprocess.Popen(
+        [sys.executable, "-c", FORKED],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        env=environment(),
+    ) as process:
+
+        def run(**changed):
+            process.stdin.write(json.dumps([environment(**changed), str(folder)]) + "\n")
+            process.stdin.flush()
+            assert process.stdout.readline() == "done\n"
+            return (folder / "out").read_text(), (folder / "err").read_text()
+
+        yield run
+        process.stdin.close()
+        assert process.wait(20) == 0
+
+
 UNWRITABLE = {
     "no cache folder": {"TELEOPDESIGN_CACHE": NOWHERE},
     "a file for a cache folder": {"TELEOPDESIGN_CACHE": __file__},
@@ -94,7 +149,7 @@ def test_laws_are_compiled_from_a_package_that_cannot_be_written(tmp_path):
 
 @posix
 def test_machine_code_is_kept_for_the_user_alone_and_used_again(tmp_path):
-    place = {"XDG_CACHE_HOME": str(tmp_path)}
+    place = {"XDG_CACHE_HOME": str(tmp_path)}  # two processes from their very start
     assert [python(KERNEL, env=place).stdout.split()[-1] for _ in range(2)] == ["0", "1"]
     folder = tmp_path / "teleopdesign" / "machine_code"
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
@@ -102,9 +157,8 @@ def test_machine_code_is_kept_for_the_user_alone_and_used_again(tmp_path):
 
 @posix
 @pytest.mark.parametrize("damage", ["another source", "a short index", "short code", "a folder"])
-def test_what_is_kept_is_not_run_where_it_is_not_what_was_kept(damage, tmp_path):
-    place = {"XDG_CACHE_HOME": str(tmp_path)}
-    python(KERNEL, env=place)
+def test_what_is_kept_is_not_run_where_it_is_not_what_was_kept(damage, run_kernel, tmp_path):
+    run_kernel(XDG_CACHE_HOME=str(tmp_path))
     folder = tmp_path / "teleopdesign" / "machine_code"
     (source,) = folder.glob("*.py")
     text = source.read_text()
@@ -118,17 +172,17 @@ def test_what_is_kept_is_not_run_where_it_is_not_what_was_kept(damage, tmp_path)
         (file,) = (folder / "__pycache__").glob(f"*.{ending}")
         file.write_bytes(file.read_bytes()[:20])
     for _ in range(2):
-        done = python(KERNEL, env=place)
-        assert (done.stdout.split()[:2], done.stderr) == (["42", "1.0"], "")
+        out, said = run_kernel(XDG_CACHE_HOME=str(tmp_path))
+        assert (out.split()[:2], said) == (["42", "1.0"], "")
     if damage == "another source":
         assert source.read_text() == text
     if damage.startswith("short"):
-        assert done.stdout.split()[-1] == "1", "what was damaged was made anew"
+        assert out.split()[-1] == "1", "what was damaged was made anew"
 
 
 @posix
 @pytest.mark.parametrize("whose", ["open to others", "a link"])
-def test_a_cache_folder_that_others_may_write_to_is_not_used(whose, tmp_path):
+def test_a_cache_folder_that_others_may_write_to_is_not_used(whose, run_kernel, tmp_path):
     folder = tmp_path / "teleopdesign" / "machine_code"
     folder.parent.mkdir()
     if whose == "a link":
@@ -137,8 +191,7 @@ def test_a_cache_folder_that_others_may_write_to_is_not_used(whose, tmp_path):
     else:
         folder.mkdir()
         folder.chmod(0o777)
-    done = python(KERNEL, env={"XDG_CACHE_HOME": str(tmp_path)})
-    assert (done.stdout, done.stderr) == ("42 1.0 0\n", "")
+    assert run_kernel(XDG_CACHE_HOME=str(tmp_path)) == ("42 1.0 0\n", "")
     assert list(folder.iterdir()) == []
 
 

@@ -44,7 +44,6 @@ def test_the_file_that_is_spoilt_is_good(reader, tmp_path):
 def test_a_spoilt_file_is_read_or_refused_in_one_line(reader):
     @settings(
         max_examples=EXAMPLES,
-        deadline=None,
         database=None,
         derandomize="FUZZ" not in os.environ,
         suppress_health_check=list(HealthCheck),

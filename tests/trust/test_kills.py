@@ -8,7 +8,7 @@ import sys
 import time
 
 import pytest
-from security.test_files_run_nothing import diagram_file
+from security.diagram_file import diagram_file
 from trust.fuzzing import ROOT, STUDY
 from trust.test_environments import environment
 from trust.test_invariance import as_recorded, written

@@ -21,7 +21,7 @@ def model_data(model: Model) -> dict[str, Any]:
     data: dict[str, Any] = {place: body_data(body) for place, body in model.bodies.items()}
     if model.record_shift:
         data[RECORD_SHIFT] = {
-            place: {"value": late.value, "unit": "s"} | _error(late)
+            place: {"value": late.value, "unit": "s", "fixed": late.fixed} | _error(late)
             for place, late in model.record_shift.items()
         }
     return data
@@ -79,7 +79,11 @@ def _shifts_from(shifts: Table) -> dict[str, Value]:
     """The shifts of the records, by body."""
     tables = {place: shifts.table(place) for place in shifts.content}
     return {
-        place: Value(table.number("value"), False, table.content.get("stderr", math.nan))
+        place: Value(
+            table.number("value"),
+            table.content.get("fixed", False),
+            table.content.get("stderr", math.nan),
+        )
         for place, table in tables.items()
     }
 

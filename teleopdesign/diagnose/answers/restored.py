@@ -16,6 +16,7 @@ from ..diagnosis import Diagnosis, OpenQuestion
 from ..effort import EFFORTS
 from ..excerpt import on_windows
 from ..fit import Fit, estimate
+from ..learnable import learnable_from, near_reversals_from
 from ..noise_floor import NoiseFloor
 from ..one_moment import Moment
 from ..prepare import Prepared, prepare
@@ -86,11 +87,15 @@ def restored(
         estimated=evaluated(steps.estimated, prepared),
         floor=_floor(content),
         moment=_moment(content.get("one_moment")),
+        learnable=learnable_from(content),
+        near_reversals=near_reversals_from(content),
         named=tuple(c for c in steps.added if c is not None and c.key in _named(content)),
         open=tuple(
             OpenQuestion(added, tuple((c, evaluated(m, prepared)) for c, m in others))
             for added, others in steps.open
         ),
+        left_out=tuple(content.get("left_out", ())),
+        recorded=content,
     )
 
 
@@ -145,6 +150,8 @@ def steps_of(saved: SavedAnswer, known: Mapping[str, Effect]) -> _Steps:
     replaced = []
     for row in rows:
         instead = row.get("instead_of")
+        if instead is not None and row["added"] is None:
+            raise ExperimentError(f"{saved.file}: ladder: instead_of: found it beside added: null")
         place = None if instead is None else {"effect": instead, "at": row["added"]["at"]}
         gone = None if place is None else candidate(place, "ladder", ladder[0])
         replaced.append(None if gone is None else replaced_from(gone, ladder[0]))

@@ -34,6 +34,27 @@ class SavedAnswer:
         return str(self.content["verdict"])
 
     @property
+    def folder(self) -> Path:
+        """The folder of its experiment, as seen from the answer's own folder.
+
+        raises ExperimentError: it says none, as one of an earlier version; or none is there any
+            more
+        """
+        recorded = self.content.get("experiment", {}).get("folder")
+        if recorded is None:
+            raise ExperimentError(
+                f"{self.file}: does not say where its records are: give the folder of its "
+                f"experiment, and --answer {self.file}"
+            )
+        folder: Path = Path(self.file).parent / recorded
+        if not folder.is_dir():
+            raise ExperimentError(
+                f"{self.file}: its experiment was in {quoted(recorded)}, found no such folder: "
+                f"give the folder, and --answer {self.file}"
+            )
+        return folder
+
+    @property
     def left(self) -> float:
         """Error that is left, in noise floors."""
         floor, last = self.content["noise_floor"], self.content["ladder"][-1]["check_error"]

@@ -207,6 +207,10 @@ _LATER: dict[str, Check] = {
             }
         )
     ),
+    "learnable": _ERROR,
+    "black_box": _or_null(_table({"left": _SIZE, "alone": _SIZE, "where": _text})),
+    "near_reversals": _or_null(_table({"check_error": _SIZE, "share": _SIZE})),
+    "simulation": _table({"horizons": _list_of(_table({"use": _text, "at": _text}))}),
     "at_bound": _list_of(_text),
     "experiment": _table(
         {
@@ -214,9 +218,11 @@ _LATER: dict[str, Check] = {
             "axes": _table_of(_text),
             "records": _list_of(_table({"file": _text, "use": _text, "samples": _SIZE}), least=1),
             "digest": _text,
-        }
+        },
+        {"folder": _text},
     ),
     "models": _table({"ladder": _list_of(_BODIES, least=1), "estimated": _BODIES}),
+    "left_out": _list_of(_text),
     "floor": _table({"drawn": _SIZE, "held": _flag}),
     "open": _list_of(
         _table(

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ...derive import block_symbol, transfer
+from ...derive import symbol_values, transfer
 from ...diagrams import Diagram
 from ...realise.lti import linear_blocks
 from ...realise.tips import led, linear_tips
@@ -27,6 +27,5 @@ def hand_port(diagram: Diagram, *, speed: float = 0.0) -> tuple[Impedance, tuple
     motion = motion if motion in apart.signals else "L"
     linear = linear_blocks(apart, speed=speed)
     form = transfer(apart.opened("K"), "E", (motion,), given=motion)[motion]
-    values = {block_symbol(n): e for n, e in linear.blocks.items()}
-    values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
-    return impedance(sp.sympify(form).subs(values), motion="position"), linear.left_out
+    z = impedance(sp.sympify(form).subs(symbol_values(linear)), motion="position")
+    return z, linear.left_out

@@ -1,7 +1,5 @@
 """The studies of passivity, run quickly, against the features that their figures must show."""
 
-from runpy import run_module
-
 import compensation_through_a_cable as cable
 import forward_euler_against_exact
 import largest_compensation_without_growth
@@ -70,23 +68,6 @@ def test_cycles_through_a_cable_give_out_energy_where_the_plain_limit_says():
         floor = cable.Dahl(cable.MOTOR, stiffness)
         assert not cable.gives_out(floor, friction)
         assert cable.available_storage(floor, friction, points=31).is_finite
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "name",
-    [
-        "largest_compensation_without_growth",
-        "passive_region_with_presliding",
-        "forward_euler_against_exact",
-        "compensation_through_a_cable",
-        "passive_walls",
-    ],
-)
-def test_a_study_writes_its_figure_and_its_numbers(name, tmp_path, monkeypatch):
-    monkeypatch.setattr("sys.argv", [name, "--quick", "--output", str(tmp_path)])
-    run_module(name, run_name="__main__")
-    assert {p.suffix for p in tmp_path.iterdir()} == {".pdf", ".svg", ".png", ".nc"}
 
 
 @pytest.mark.slow

@@ -26,7 +26,7 @@ from shared_data import shared_folder
 
 from teleopdesign import EFFECTS
 
-STUDIES = Path(__file__).resolve().parents[1] / "studies"
+STUDIES = Path(__file__).resolve().parents[2] / "studies"
 STRIBECK, BIAS = ("stribeck", "device"), ("bias", "device")
 ASYMMETRY = ("coulomb_asymmetry", "device")
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..measurement.filtering import Array
+from .filtering import Array
 
 
 @dataclass(frozen=True)
@@ -51,3 +51,16 @@ def since_reversal(
         rested=np.where(known, before, 0.0),
         known=known,
     )
+
+
+def near_reversals(direction: NDArray[np.int8], *, within: int) -> NDArray[np.bool_]:
+    """The samples at most so many before or after one where the motion sets off the other way.
+
+    direction: +1, -1, or 0 where no motion can be told
+    """
+    moving = np.flatnonzero(direction)
+    turned = moving[1:][np.diff(direction[moving].astype(int)) != 0]
+    edges = np.zeros(len(direction) + 1, dtype=int)
+    np.add.at(edges, np.maximum(turned - within, 0), 1)
+    np.add.at(edges, np.minimum(turned + within + 1, len(direction)), -1)
+    return np.cumsum(edges[:-1]) > 0

@@ -1,7 +1,5 @@
 """The studies of onset, run quickly, against the features that their figures must show."""
 
-from runpy import run_module
-
 import numpy as np
 import passive_delay_and_stiffness as coupling
 import pytest
@@ -84,13 +82,3 @@ def test_sinusoids_at_half_the_sample_rate_grow_from_pi_squared_over_eight_on():
     over = found["over"].sel(late=1, ends="worst hand").values
     # the last interval of seven bisections is 1.1 %
     assert over == pytest.approx(np.full(3, np.pi**2 / 8), rel=0.012)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "name", ["teleoperator_onset", "passive_delay_and_stiffness", "stiffest_late_compensator"]
-)
-def test_a_study_of_onset_writes_its_figure_and_its_numbers(name, tmp_path, monkeypatch):
-    monkeypatch.setattr("sys.argv", [name, "--quick", "--output", str(tmp_path)])
-    run_module(name, run_name="__main__")
-    assert {p.suffix for p in tmp_path.iterdir()} == {".pdf", ".svg", ".png", ".nc"}

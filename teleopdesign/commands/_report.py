@@ -1,0 +1,28 @@
+"""The page of a diagnosis, with every section filled."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ._options import say
+
+if TYPE_CHECKING:
+    from ..diagnose import Diagnosis
+
+
+def write_page(diagnosis: Diagnosis, path: Path) -> None:
+    """The page, with what was found about the recording, what is left, and what to measure next."""
+    from ..check import check_experiment
+    from ..next_experiment import propose
+    from ..report import write_report
+    from ..unexplained import where_it_fails
+
+    say("checking the recording")
+    soundness = check_experiment(diagnosis.experiment, diagnosis.before.model)
+    say("describing what is left")
+    left = where_it_fails(diagnosis.after, diagnosis.prepared, diagnosis.floor)
+    open_questions = diagnosis.verdict == "undecided" or bool(diagnosis.groups)
+    steps = propose(diagnosis, progress=say).findings() if open_questions else ()
+    say("")
+    write_report(diagnosis, path, soundness=soundness, unexplained=left, next_steps=steps)

@@ -1,0 +1,45 @@
+"""write an identified model for a rigid-body simulator: MJCF (MuJoCo) or URDF"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ..plain_data import write_text
+from ._diagnosis import add_experiment, model_of_source
+from ._options import check_output
+
+EXAMPLES = """
+  teleopdesign export answer.json --to mjcf
+  teleopdesign export rod --to urdf --output rod.urdf
+"""
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    add_experiment(parser)
+    parser.add_argument("--to", required=True, choices=("mjcf", "urdf"), help="the format")
+    parser.add_argument(
+        "--output", type=Path, metavar="F", help="the file (default: beside the answer)"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the file; say what it holds of the model, and what it cannot."""
+    from ..realise.simulator_files import ENDINGS, as_simulator_file
+
+    ending = ENDINGS[options.to]
+    path = options.output
+    if path is not None:
+        check_output(path, (ending,))
+    model, source = model_of_source(options)
+    if path is None:
+        path = source.with_suffix(ending) if source.suffix == ".json" else Path(f"model{ending}")
+        check_output(path, (ending,))
+    file = as_simulator_file(model, options.to, name=path.stem)
+    write_text(path, file.text)
+    for name, value, unit, where in file.holds:
+        print(f"  {name:<32} {value:<12.5g} {unit:<8} {where}")
+    print("left out: " + (", ".join(file.left_out) or "nothing"))
+    print(f"written: {path}")
+    return 0

@@ -1,0 +1,50 @@
+"""write the page of a diagnosis, of a saved answer or made now"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ._diagnosis import add_experiment, add_search, diagnosis_of, experiment_and_answer
+from ._options import check_output
+from ._report import write_page
+
+EXAMPLES = """
+  teleopdesign report answer.json
+  teleopdesign report rod --answer answer.json --output rod.html
+  teleopdesign report rod
+"""
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    add_experiment(parser)
+    parser.add_argument(
+        "--output",
+        type=Path,
+        metavar="F",
+        help="the page (default: beside the answer, or report.html)",
+    )
+    add_search(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the page; say what was computed for it."""
+    if options.output is not None:
+        check_output(options.output, (".html",))
+    experiment = experiment_and_answer(options)
+    answer: Path | None = options.answer
+    if options.output is not None:
+        path = options.output
+    else:
+        path = Path("report.html") if answer is None else answer.with_suffix(".html")
+        check_output(path, (".html",))
+    diagnosis = diagnosis_of(experiment, options)
+    if answer is not None:
+        print(
+            f"{answer}: its models are computed along the records of {experiment.folder.name}; "
+            "nothing is searched or estimated anew"
+        )
+    write_page(diagnosis, path)
+    print(f"written: {path}")
+    return 0

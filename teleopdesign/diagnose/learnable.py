@@ -1,0 +1,281 @@
+"""What could still be learned: a black box takes from the residual what the motion tells of it.
+
+Boosted trees learn the low-passed residual from the motion alone: place, velocity, acceleration,
+direction, time and travel since the last reversal. They predict records that they have not seen. So
+what they take away is a function of the motion, whatever its law; what they leave does not repeat,
+or depends on what was not measured. That is a ceiling for models, as the noise floor is a floor.
+
+The commanded force is no input: a model that has it as an input predicts it from itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..measurement.filtering import Array
+from ..measurement.motion import Motion
+from ..measurement.reversals import near_reversals, since_reversal
+from ..model import Model
+from ..quantity import unit_of
+from .effort import EFFORTS
+from .error import error_of
+from .fit import estimate
+from .prepare import FOLDS, Prepared, Stretch, folds, measured_force
+from .record_offsets import along_with_offsets
+from .residual import residuals
+
+#: s to either side of a reversal that count as near it: where presliding, gaps and lags show
+NEAR = 0.1
+#: s without a told motion after which the same direction counts as a new start
+REST = 0.5
+#: most rows that the trees learn from, spread evenly: more take time and tell little more
+MOST_ROWS = 20_000
+#: trees, their learning rate, leaves and fewest rows a leaf: those of scikit-learn with leaves
+#: twice as large, for neighbouring rows are no independent observations; nothing is tuned
+TREES, RATE, LEAVES, ROWS_OF_A_LEAF = 150, 0.08, 31, 40
+#: by how much the part of what is learned must exceed the part of the rows for a place to be said:
+#: less is everywhere
+SAID = 0.2
+
+
+@dataclass(frozen=True)
+class Learnable:
+    """What a black box reaches from the motion, on records that it has not seen.
+
+    left: check error of the model;  error: what is left of it beside the black box
+    alone: check error of a black box without any model
+    where: in words, where most of what is learned lies; "" where that is everywhere or nothing
+    """
+
+    left: float
+    error: float
+    alone: float
+    where: str = ""
+
+    @property
+    def part(self) -> float:
+        """How much of the error could be learned, at least nothing."""
+        return max(self.left - self.error, 0.0)
+
+    def __str__(self) -> str:
+        left, rest = 100 * self.left, 100 * min(self.error, self.left)
+        if not self.part > 0.0:
+            return f"{left:.2g} % left; none of it could be learned from the motion"
+        where = f", {self.where}" if self.where else ""
+        return (
+            f"{left:.2g} % left; {100 * self.part:.2g} of it could be learned{where}; "
+            f"{rest:.2g} does not repeat"
+        )
+
+
+@dataclass(frozen=True)
+class NearReversals:
+    """Check error on the rows within `NEAR` of a reversal, relative to the force there.
+
+    share: their part of all rows that count
+    """
+
+    error: float
+    share: float
+
+    def __str__(self) -> str:
+        return (
+            f"within {NEAR:g} s of a reversal: {100 * self.error:.3g} % of the force there "
+            f"({100 * self.share:.2g} % of the rows)"
+        )
+
+
+def is_installed() -> bool:
+    """Whether the extra `learn` is there."""
+    return find_spec("sklearn") is not None
+
+
+def error_near_reversals(model: Model, prepared: Prepared) -> NearReversals | None:
+    """The error near reversals on the check records (else the fit records); None: none there."""
+    stretches = prepared.of("check") or prepared.of("fit")
+    left = force = 0.0
+    rows = whole = 0
+    for s, (residual, _) in zip(stretches, residuals(model, stretches), strict=True):
+        near = _near(s.motion)[s.keep]
+        left += s.weight * float(np.sum(residual[near] ** 2))
+        force += s.weight * float(np.sum(measured_force(s)[near] ** 2))
+        rows, whole = rows + int(near.sum()), whole + len(near)
+    return NearReversals(float(np.sqrt(left / force)), rows / whole) if force > 0.0 else None
+
+
+def learnable(model: Model, prepared: Prepared, *, seed: int = 0) -> Learnable | None:
+    """What could be learned of what a model leaves; None without the extra `learn`.
+
+    Every check record is predicted by trees that have learned from all others; without check
+    records, blocks of the fit records are held out in turn.
+    """
+    if not is_installed():
+        return None
+    stretches = prepared.stretches if prepared.of("check") else prepared.of("fit")
+    measured = [measured_force(s) for s in stretches]
+    unseen: list[Stretch] = []
+    before: list[Array] = []
+    after: list[Array] = []
+    alone: list[Array] = []
+    for held, there in _turns(model, prepared, stretches):
+        inputs = [_inputs(motion) for _, motion in along_with_offsets(there, stretches)]
+        left = [r for r, _ in residuals(there, stretches)]
+        of_rest = _predicted(stretches, inputs, left, held, seed)
+        of_force = _predicted(stretches, inputs, measured, held, seed)
+        unseen += [_of_rows(s, rows) for s, rows in zip(stretches, held, strict=True)]
+        before += [r[rows] for r, rows in zip(left, held, strict=True)]
+        after += [r[rows] - p for r, rows, p in zip(left, held, of_rest, strict=True)]
+        alone += [f[rows] - p for f, rows, p in zip(measured, held, of_force, strict=True)]
+    gain = [b**2 - a**2 for b, a in zip(before, after, strict=True)]
+    return Learnable(
+        left=error_of(unseen, before),
+        error=error_of(unseen, after),
+        alone=error_of(unseen, alone),
+        where=_where(model, unseen, gain),
+    )
+
+
+def learnable_data(learned: Learnable | None, near: NearReversals | None) -> dict[str, Any]:
+    """The entries of an answer: `learnable`, `black_box` and `near_reversals`."""
+    return {
+        "learnable": None if learned is None else learned.error,
+        "black_box": None
+        if learned is None
+        else {"left": learned.left, "alone": learned.alone, "where": learned.where},
+        "near_reversals": None
+        if near is None
+        else {
+            "check_error": near.error,
+            "share": near.share,
+            "within": {"value": NEAR, "unit": "s"},
+        },
+    }
+
+
+def learnable_from(content: Mapping[str, Any]) -> Learnable | None:
+    """What `learnable_data` wrote of a black box."""
+    error, box = content.get("learnable"), content.get("black_box")
+    if error is None or box is None:
+        return None
+    return Learnable(float(box["left"]), float(error), float(box["alone"]), str(box["where"]))
+
+
+def near_reversals_from(content: Mapping[str, Any]) -> NearReversals | None:
+    """What `learnable_data` wrote of the error near reversals."""
+    near = content.get("near_reversals")
+    return None if near is None else NearReversals(float(near["check_error"]), float(near["share"]))
+
+
+def _turns(
+    model: Model, prepared: Prepared, stretches: Sequence[Stretch]
+) -> Iterator[tuple[list[NDArray[np.bool_]], Model]]:
+    """Of each turn, the rows of `keep` of each stretch that are held out, and the model there.
+
+    The model has not seen those rows: without check records it is estimated again without them.
+    """
+    files = list(dict.fromkeys(s.motion.file for s in stretches if s.use == "check"))
+    for group in (set(files[i::FOLDS]) for i in range(min(FOLDS, len(files)))):
+        yield [np.full(len(s.keep), s.motion.file in group) for s in stretches], model
+    if files:
+        return
+    for known, unseen in folds(stretches):
+        as_check = tuple(replace(s, use="check") for s in unseen)
+        turn = replace(prepared, stretches=(*known, *as_check))
+        there = estimate(model, turn, effort=EFFORTS.held_out).model
+        held = [np.isin(s.keep, u.keep) for s, u in zip(stretches, unseen, strict=True)]
+        yield held, there
+
+
+def _of_rows(stretch: Stretch, rows: NDArray[np.bool_]) -> Stretch:
+    """The stretch with some of its rows."""
+    force = measured_force(stretch)[rows]
+    squares = stretch.weight * float(force @ force)
+    return replace(stretch, keep=stretch.keep[rows], measured=squares)
+
+
+def _predicted(
+    stretches: Sequence[Stretch],
+    inputs: Sequence[Array],
+    targets: Sequence[Array],
+    held: Sequence[NDArray[np.bool_]],
+    seed: int,
+) -> list[Array]:
+    """The target on the rows held out, low-passed as the error is, by what the others tell."""
+    predicted = [np.zeros(int(rows.sum())) for rows in held]
+    for body in {s.motion.body for s in stretches}:
+        mine = [i for i, s in enumerate(stretches) if s.motion.body == body]
+        known = np.concatenate([inputs[i][stretches[i].keep[~held[i]]] for i in mine])
+        target = np.concatenate([targets[i][~held[i]] for i in mine])
+        every = max(1, -(-len(target) // MOST_ROWS))
+        if not len(target):
+            continue
+        trees = _trees(known[::every], target[::every], seed)
+        for i in mine:
+            if held[i].any():
+                motion, rows = stretches[i].motion, stretches[i].keep[held[i]]
+                predicted[i] = motion.lowpassed(trees.predict(inputs[i]))[rows]
+    return predicted
+
+
+def _trees(inputs: Array, target: Array, seed: int) -> Any:
+    """Boosted trees that have learned the target (n,) from inputs (n, k)."""
+    from sklearn.ensemble import HistGradientBoostingRegressor
+
+    trees = HistGradientBoostingRegressor(
+        max_iter=TREES,
+        learning_rate=RATE,
+        max_leaf_nodes=LEAVES,
+        min_samples_leaf=ROWS_OF_A_LEAF,
+        early_stopping=False,
+        random_state=seed,
+    )
+    return trees.fit(inputs, target)
+
+
+def _inputs(motion: Motion) -> Array:
+    """What the trees are told of a motion (n, k); NaN before the first motion that can be told."""
+    since = since_reversal(
+        motion.direction, motion.position, sample_time=motion.sample_time, rest=REST
+    )
+    columns: list[Array] = [motion.position, motion.velocity, motion.acceleration]
+    columns.append(motion.direction.astype(float))
+    columns += [np.where(since.known, x, np.nan) for x in (since.time, since.travel)]
+    return np.column_stack([*columns, *motion.further.values()])
+
+
+def _near(motion: Motion) -> NDArray[np.bool_]:
+    return near_reversals(motion.direction, within=round(NEAR / motion.sample_time))
+
+
+def _where(model: Model, stretches: Sequence[Stretch], gain: Sequence[Array]) -> str:
+    """Where most of the gain (squares, each row) lies, in words."""
+    weight = np.concatenate([np.full(len(s.keep), s.weight) for s in stretches])
+    each = weight * np.concatenate(gain)
+    if not each.sum() > 0.0:
+        return ""
+    speed = np.concatenate([np.abs(s.motion.velocity[s.keep]) for s in stretches])
+    near = np.concatenate([_near(s.motion)[s.keep] for s in stretches])
+
+    def excess(rows: NDArray[np.bool_]) -> float:
+        """By how much the rows' part of the gain exceeds their part of all rows."""
+        return float(each[rows].sum() / each.sum() - weight[rows].sum() / weight.sum())
+
+    axes = {model.body(s.motion.body).axis for s in stretches}
+    words = []
+    if len(axes) == 1:
+        unit = unit_of("velocity", axes.pop())
+        borders = np.quantile(speed, np.linspace(0.1, 0.9, 9))
+        excesses = [excess(speed < border) for border in borders]
+        if max(excesses) > SAID:
+            words.append(f"below {borders[int(np.argmax(excesses))]:.2g} {unit}")
+        elif -min(excesses) > SAID:
+            words.append(f"above {borders[int(np.argmin(excesses))]:.2g} {unit}")
+    if excess(near) > SAID:
+        words.append("around reversals")
+    return " ".join(words)

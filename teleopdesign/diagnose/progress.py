@@ -1,0 +1,27 @@
+"""How far a ranking is: a line of text that also says how many candidates are begun, of all."""
+
+from __future__ import annotations
+
+
+class ProgressLine(str):
+    """A line of text, such as "step 2: stribeck at device (14 of 38)".
+
+    stage: what it is part of, such as "step 2"; "" for no part
+    begun, total: of the parts of that stage
+    """
+
+    stage: str
+    begun: int
+    total: int
+
+    def __new__(cls, text: str, *, begun: int, total: int, stage: str = "") -> ProgressLine:
+        head = f"{stage}: " if stage else ""
+        line = super().__new__(cls, f"{head}{text} ({begun} of {total})")
+        line._text, line.stage, line.begun, line.total = text, stage, begun, total
+        return line
+
+    _text: str
+
+    def within(self, stage: str) -> ProgressLine:
+        """The same line as part of a stage."""
+        return ProgressLine(self._text, begun=self.begun, total=self.total, stage=stage)

@@ -1,0 +1,69 @@
+"""What a log seems to hold: which column is which quantity, in which unit, and what is a guess.
+
+Names come first. Where they leave it open physics decides: a velocity is the derivative of a
+position, a force is what inertia and friction of the motion ask for, and friction takes energy out,
+which tells the sign. What rests on neither is said to be a guess.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from ...errors import ExperimentError
+from ..doors._log import Log, listed
+from .clock import numeric_columns, on_one_grid, time_column
+from .content import Choices, Survey, SurveyedColumn
+from .forces import describe_forces
+from .position import axis_of, describe_position, find_position
+
+__all__ = [
+    "Choices",
+    "Survey",
+    "SurveyedColumn",
+    "same_columns",
+    "spans_of",
+    "survey_log",
+]
+
+#: part of a log that is fitted, where one log is all there is; the rest is the check record
+FIT_PART = 0.6
+
+
+def survey_log(log: Log, file: str, choices: Choices) -> Survey:
+    """Look at one log.
+
+    raises ExperimentError: no position, no force among the columns, or a column that is not there
+    """
+    raw = numeric_columns(log, file)
+    for key in ("time", "position", "actuator_force", "interaction_force"):
+        name = getattr(choices, key)
+        if name is not None and name not in raw:
+            raise ExperimentError(f"{file}: {key}: no column {name!r}, found {listed(raw)}")
+    guesses: dict[str, str] = {}
+    time_name, unit = time_column(raw, log, choices, guesses, file)
+    time, columns = on_one_grid(raw, log, time_name, unit, choices, file)
+    survey = Survey("", {}, float(time[-1] - time[0]), guesses, time, columns)
+    if time_name is not None:
+        survey.channels["time"] = {"column": time_name, "unit": unit}
+    else:
+        survey.channels["sample_rate"] = {"value": choices.sample_rate or 1000.0, "unit": "Hz"}
+    position, velocity = find_position(survey, time_name, choices, file)
+    survey.axis = axis_of(survey, position, choices)
+    describe_position(survey, position, velocity, choices)
+    describe_forces(survey, position, velocity, time_name, choices, file)
+    return survey
+
+
+def spans_of(duration: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """(begin, end) in s of the fit record and of the check record in one log."""
+    cut = float(f"{FIT_PART * duration:.4g}")
+    return (0.0, cut), (cut, math.ceil(duration + 1.0))
+
+
+def same_columns(logs: Sequence[Log], files: Sequence[str]) -> None:
+    """Raise an ExperimentError where a later log lacks a column of the first."""
+    for log, file in zip(logs[1:], files[1:], strict=True):
+        missing = [n for n in logs[0].names if n not in log.names]
+        if missing:
+            raise ExperimentError(f"{file}: has no column {missing[0]!r}, which {files[0]} has")

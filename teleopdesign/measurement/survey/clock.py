@@ -1,0 +1,130 @@
+"""The clock of a log: which column is time and in which unit, and all others on its grid."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from ...errors import ExperimentError
+from ...quantity import measures, si_factor
+from ..column_names import is_wanted, likeness, unit_in_name
+from ..doors._log import Log, listed
+from ..tables import numbers_of
+from ..time_grid import clock_of
+from .content import Array, Choices, SurveyedColumn, rises
+
+#: rows that are looked at
+MOST = 60_000
+
+
+def numeric_columns(log: Log, file: str) -> dict[str, Array]:
+    """Columns that hold numbers or dates, by name."""
+    raw: dict[str, Array] = {}
+    for name in log.names:
+        if log.names.count(name) > 1:
+            continue
+        try:
+            values = numbers_of(log.read({name: ""})[name], name, file)
+        except ExperimentError:
+            continue
+        if len(values) > 1 and np.isfinite(values).mean() > 0.5:
+            raw[name] = values
+    if not raw:
+        raise ExperimentError(f"{file}: found no column of numbers among {listed(log.names)}")
+    return raw
+
+
+def time_column(
+    raw: Mapping[str, Array],
+    log: Log,
+    choices: Choices,
+    guesses: dict[str, str],
+    file: str,
+) -> tuple[str | None, str]:
+    """The column of time and its unit; None: there is none."""
+    if choices.sample_rate is not None:
+        return None, "s"
+    rising = {n: x for n, x in raw.items() if rises(x)}
+    if choices.time is not None:
+        name = choices.time
+    elif log.clocks:
+        name = _busiest_clock(log, raw, choices)
+    else:
+        scores = {n: likeness(n, "time") for n in rising}
+        if not scores:
+            guesses["sample_rate"] = "no column rises like a time: 1000 Hz is a guess"
+            return None, "s"
+        name = max(scores, key=lambda n: scores[n])
+        if scores[name] == 0.0:
+            name = next(iter(rising))
+            guesses["channels.time.column"] = f"{name!r} is the first column that always rises"
+    unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name, "time")
+    if unit is None or not measures(unit, "time"):
+        unit, why = _time_unit(raw[name])
+        if why:
+            guesses["channels.time.unit"] = why
+    return name, unit
+
+
+def _busiest_clock(log: Log, raw: Mapping[str, Array], choices: Choices) -> str:
+    """Of the clocks of a bag: that of the position."""
+    if choices.position is not None:
+        return log.clocks[choices.position]
+    scores = {n: likeness(n.rpartition(".")[2], "position") - 0.6 * is_wanted(n) for n in raw}
+    best = max(scores, key=lambda n: (scores[n], len(raw[n])))
+    return log.clocks[best]
+
+
+def _time_unit(stamps: Array) -> tuple[str, str]:
+    """Unit of a time from its usual step, and why if it is a guess."""
+    step = float(np.median(np.abs(np.diff(stamps[np.isfinite(stamps)]))))
+    scales = ((0.2, "s"), (200.0, "ms"), (2e5, "us"), (math.inf, "ns"))
+    unit = next(name for largest, name in scales if step < largest or largest == math.inf)
+    if unit == "s" and step > 1e-5:
+        return "s", ""
+    return unit, f"steps of {step:.4g} are those of a log only in {unit}"
+
+
+def on_one_grid(
+    raw: Mapping[str, Array],
+    log: Log,
+    time_name: str | None,
+    unit: str,
+    choices: Choices,
+    file: str,
+) -> tuple[Array, dict[str, SurveyedColumn]]:
+    """All columns on one even grid, by straight lines: good enough to tell which is which."""
+    if time_name is None:
+        count = max(map(len, raw.values()))
+        stamps = np.arange(count) / (choices.sample_rate or 1000.0)
+    else:
+        stamps = raw[time_name] * si_factor(unit, quantity="time")
+    beside_time = {n: x for n, x in raw.items() if len(x) == len(stamps)}
+    rows = np.flatnonzero(np.isfinite(stamps))[:MOST]
+    origin = stamps[rows[0]]
+    clock = clock_of(
+        stamps[rows] - origin, (slice(0, len(rows)),), np.zeros(len(rows), dtype=bool), file
+    )
+    used = rows[clock.rows]
+    columns: dict[str, SurveyedColumn] = {}
+    for name, values in raw.items():
+        if name == time_name:
+            continue
+        clock_name = log.clocks.get(name)
+        at, x = clock.time[clock.places], values
+        if clock_name is not None and clock_name != time_name and name not in log.clocks.values():
+            at = raw[clock_name] - origin
+        elif name in beside_time:
+            x = values[used]
+        else:
+            continue
+        fine = np.isfinite(x) & np.isfinite(at)
+        if fine.sum() < 2:
+            continue
+        said = choices.units.get(name) or log.units.get(name) or unit_in_name(name)
+        columns[name] = SurveyedColumn(
+            name, np.interp(clock.time, at[fine], x[fine]), x[fine], said
+        )
+    return clock.time, columns

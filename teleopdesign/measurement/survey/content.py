@@ -1,0 +1,89 @@
+"""What is known of a log while it is surveyed: columns on one grid, and what they are taken for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...quantity import is_unit, measures
+from ..first_guess import FirstGuess
+
+Array = NDArray[np.float64]
+
+#: likeness of a name from which no physics is needed
+SURE_NAME = 0.75
+
+
+@dataclass(frozen=True)
+class SurveyedColumn:
+    """One column on the even grid of the survey: `values` (n,); `readings` (m,) as written."""
+
+    name: str
+    values: Array
+    readings: Array
+    unit: str | None
+
+
+@dataclass
+class Survey:
+    """What a log seems to hold.
+
+    channels: quantity -> table as in [channels];  guesses: "channels.time.unit" -> why
+    questions: what a person is asked: key -> (question, what is taken otherwise)
+    time: (n,) s from the first row;  columns: by name, on it;  first: values of a first model
+    """
+
+    axis: str
+    channels: dict[str, dict[str, Any]]
+    duration: float
+    guesses: dict[str, str] = field(default_factory=dict)
+    time: Array = field(default_factory=lambda: np.zeros(0))
+    columns: dict[str, SurveyedColumn] = field(default_factory=dict)
+    first: FirstGuess | None = None
+    notes: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Choices:
+    """What the user says: columns, units, axis, constants; None: to be found.
+
+    units: column -> unit;  torque_constant, gear_ratio: (value, unit)
+    """
+
+    axis: str | None = None
+    time: str | None = None
+    position: str | None = None
+    actuator_force: str | None = None
+    interaction_force: str | None = None
+    units: Mapping[str, str] = field(default_factory=dict)
+    torque_constant: tuple[float, str] | None = None
+    gear_ratio: float | None = None
+    counts_per_turn: float | None = None
+    sample_rate: float | None = None
+
+
+def moves(column: SurveyedColumn) -> bool:
+    return bool(np.ptp(column.values) > 0)
+
+
+def is_unit_of(unit: str | None, quantity: str) -> bool:
+    if unit is None:
+        return False
+    if unit == "counts":
+        return quantity == "position"
+    if quantity == "force" and is_unit(unit) and unit in ("A", "mA", "V", "%"):
+        return True
+    return any(measures(unit, quantity, axis) for axis in ("prismatic", "revolute"))
+
+
+def rises(x: Array) -> bool:
+    steps = np.diff(x[np.isfinite(x)])
+    return len(steps) > 1 and float(np.mean(steps >= 0)) > 0.99 and float(np.mean(steps > 0)) > 0.5
+
+
+def sample_time_of(survey: Survey) -> float:
+    return float(np.median(np.diff(survey.time)))

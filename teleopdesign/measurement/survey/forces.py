@@ -1,0 +1,196 @@
+"""Which columns of a log are the commanded and the measured force, in which unit and sign."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from ...errors import ExperimentError
+from ...quantity import is_unit, measures, si_factor, unit_of
+from ..column_names import WANTED, likeness, words_of
+from ..doors._log import listed
+from ..first_guess import FirstGuess, explain_force
+from .content import (
+    SURE_NAME,
+    Array,
+    Choices,
+    Survey,
+    SurveyedColumn,
+    is_unit_of,
+    moves,
+    rises,
+    sample_time_of,
+)
+from .position import unwrapped, wrap_of
+
+#: part of the force that motion explains, from which physics says that a column is the force
+DRIVES = 0.3
+#: what a force gains that is a field of the position's struct or joint: more than names that are
+#: alike differ by ("current" 0.98, "effort" 0.9), less than a name that says what was commanded
+BESIDE = 0.2
+
+
+def describe_forces(
+    survey: Survey,
+    position: str,
+    velocity: str | None,
+    time_name: str | None,
+    choices: Choices,
+    file: str,
+) -> None:
+    """The force that is commanded, the force that is measured, their units and signs."""
+    h = sample_time_of(survey)
+    entry = survey.channels["position"]
+    x = unwrapped(survey.columns[position].values, wrap_of(survey.columns[position].values))
+    used = {position, velocity, time_name}
+    free = {
+        n: c
+        for n, c in survey.columns.items()
+        if n not in used and moves(c) and not rises(c.values)
+    }
+    free = {
+        n: c
+        for n, c in free.items()
+        if not c.unit or is_unit_of(c.unit, "force") or not is_unit(c.unit)
+    }
+    physics = {n: explain_force(c.values, x, h) for n, c in free.items()}
+    scores = {
+        n: _force_score(c, physics[n]) + BESIDE * _stand_together(n, position)
+        for n, c in free.items()
+    }
+    if choices.actuator_force is not None:
+        force = choices.actuator_force
+    elif scores:
+        force = max(scores, key=lambda n: scores[n])
+    else:
+        raise ExperimentError(
+            f"{file}: found no column that could be a force beside {position!r}, "
+            f"found {listed(survey.columns)}"
+        )
+    if choices.actuator_force is None and likeness(force, "actuator_force") < SURE_NAME:
+        share = physics[force].explained
+        survey.guesses["channels.actuator_force.column"] = (
+            f"{force!r} is taken for the actuator's force: the motion explains {share:.0%} of it"
+        )
+    hand = _hand(free, force, choices)
+    survey.channels["actuator_force"] = _force_entry(survey, force, "actuator_force", choices)
+    if hand is not None:
+        survey.channels["interaction_force"] = _force_entry(
+            survey, hand, "interaction_force", choices
+        )
+    _signs(survey, x, h, force, hand)
+    if entry.get("gear_ratio") is not None:
+        survey.channels["actuator_force"]["gear_ratio"] = entry["gear_ratio"]
+
+
+def _stand_together(one: str, other: str) -> bool:
+    """Whether two columns are fields of one struct, or of one joint in a message."""
+    stems = {name.rpartition(".")[0] for name in (one, other)}
+    return len(stems) == 1 and "" not in stems
+
+
+def _force_score(column: SurveyedColumn, guess: FirstGuess) -> float:
+    score = likeness(column.name, "actuator_force") + max(guess.explained, 0.0)
+    score -= 0.7 * (likeness(column.name, "interaction_force") >= SURE_NAME)
+    # the command is wanted, not what a drive says that it reached
+    wanted_words = set(words_of(column.name)) & set(WANTED)
+    score += 0.3 * bool(wanted_words) + 0.5 * is_unit_of(column.unit, "force")
+    return score - 0.6 * (likeness(column.name, "position") >= SURE_NAME)
+
+
+def _hand(free: Mapping[str, SurveyedColumn], force: str, choices: Choices) -> str | None:
+    if choices.interaction_force is not None:
+        return choices.interaction_force
+    scores = {n: likeness(n, "interaction_force") for n in free if n != force}
+    best = max(scores, key=lambda n: scores[n], default=None)
+    return best if best is not None and scores[best] >= SURE_NAME else None
+
+
+def _force_entry(survey: Survey, name: str, key: str, choices: Choices) -> dict[str, Any]:
+    """A force with its unit, and the constant that a current needs."""
+    axis = survey.axis
+    unit = choices.units.get(name) or survey.columns[name].unit
+    entry: dict[str, Any] = {"column": name}
+    if unit is None and choices.torque_constant is not None and key == "actuator_force":
+        unit = choices.torque_constant[1].rpartition("/")[2]
+    if unit in ("A", "mA", "V"):
+        entry["unit"] = unit
+        base = "V" if unit == "V" else "A"
+        constant = choices.torque_constant
+        if constant is None:
+            constant = (1.0, f"{unit_of('force', axis)}/{base}")
+            survey.guesses[f"channels.{key}.torque_constant"] = (
+                f"1 {constant[1]} stands for the motor's constant: fill it in, forces and "
+                "parameters follow in proportion"
+            )
+        entry["torque_constant"] = {"value": constant[0], "unit": constant[1]}
+        return entry
+    if unit is None or not measures(unit, "force", axis):
+        unit = unit_of("force", axis)
+        survey.guesses[f"channels.{key}.unit"] = f"{unit}: the name {name!r} says no unit"
+    return {**entry, "unit": unit}
+
+
+def _signs(survey: Survey, x: Array, h: float, force: str, hand: str | None) -> None:
+    """Friction takes energy out and inertia is positive: what drives instead has the other sign."""
+    position = survey.channels["position"]
+    unit = position["unit"]
+    scale = 1.0
+    if unit == "counts":
+        scale = 2 * math.pi / float(position["counts_per_turn"])
+    else:
+        scale = si_factor(unit, quantity="position", axis=survey.axis)
+    scale /= float(position.get("gear_ratio", 1.0))
+    u = survey.columns[force].values * _to_si(survey, "actuator_force")
+    whole = explain_force(u, x * scale, h)
+    with_hand = whole
+    if hand is not None:
+        f = survey.columns[hand].values * _to_si(survey, "interaction_force")
+        by_sign = {s: explain_force(u + s * f, x * scale, h) for s in (1.0, -1.0)}
+        better = max(by_sign, key=lambda s: by_sign[s].explained)
+        if better < 0 and by_sign[-1.0].explained > by_sign[1.0].explained + 0.05:
+            survey.channels["interaction_force"]["sign"] = -1
+            survey.guesses["channels.interaction_force.sign"] = (
+                f"-1: {hand!r} then balances with {force!r}, which leaves "
+                f"{1 - by_sign[-1.0].explained:.0%} of the force instead of "
+                f"{1 - by_sign[1.0].explained:.0%}"
+            )
+        else:
+            better = 1.0
+        with_hand = by_sign[better]
+    turned = with_hand.inertia < -3.0 * with_hand.errors[0] or (
+        abs(with_hand.inertia) < 3.0 * with_hand.errors[0] and with_hand.level < 0
+    )
+    if turned and with_hand.explained > DRIVES:
+        survey.channels["position"]["sign"] = -1
+        if "velocity" in survey.channels:
+            survey.channels["velocity"]["sign"] = -1
+        survey.guesses["channels.position.sign"] = (
+            "-1: as logged, friction would drive the motion and inertia be negative"
+        )
+        with_hand = FirstGuess(
+            -with_hand.inertia,
+            -with_hand.level,
+            -with_hand.damping,
+            with_hand.explained,
+            with_hand.errors,
+        )
+    survey.first = with_hand
+    ratio = float(position.get("gear_ratio", 1.0))
+    if ratio != 1.0:
+        survey.notes.append(f"forces and positions are those behind the gear of {ratio:g}")
+
+
+def _to_si(survey: Survey, key: str) -> float:
+    """Factor of a force from its column to SI, as proposed."""
+    from ..conversion import conversion_of
+    from ..toml_table import Table
+
+    entry = survey.channels[key]
+    if key == "actuator_force" and "gear_ratio" in survey.channels["position"]:
+        entry = {**entry, "gear_ratio": survey.channels["position"]["gear_ratio"]}
+    conversion, _ = conversion_of(
+        Table(entry, "log"), quantity=key, kind="force", axis=survey.axis, unit=entry["unit"]
+    )
+    return conversion.factor

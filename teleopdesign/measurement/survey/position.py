@@ -1,0 +1,203 @@
+"""Which column of a log is the position and which its velocity; axis, unit, wrap and resolution."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ...errors import ExperimentError
+from ...quantity import measures, si_factor
+from ..column_names import is_wanted, likeness, words_of
+from ..doors._log import listed
+from ..encoder import reading_step
+from .content import (
+    SURE_NAME,
+    Array,
+    Choices,
+    Survey,
+    SurveyedColumn,
+    is_unit_of,
+    moves,
+    rises,
+    sample_time_of,
+)
+
+#: correlation from which one column is the derivative of another
+DERIVATIVE = 0.9
+
+
+def unwrapped(x: Array, jump: float | None) -> Array:
+    """A column without its wraps."""
+    return x if jump is None else np.asarray(np.unwrap(x, period=jump))
+
+
+def wrap_of(x: Array) -> float | None:
+    """Period at which a column wraps: that of jumps over most of its range; None: it does not."""
+    reach = float(np.ptp(x))
+    steps = np.diff(x)
+    usual = float(np.quantile(np.abs(steps), 0.95))
+    jumps = np.abs(steps[np.abs(steps) > max(0.6 * reach, 20.0 * usual)])
+    if len(jumps) == 0 or reach == 0.0:
+        return None
+    jump = float(np.median(jumps))
+    if np.any(np.abs(jumps - jump) > 0.1 * jump):
+        return None
+    for period in (360.0, 2 * math.pi, 1.0, 400.0, *(2.0**k for k in range(8, 33))):
+        if abs(period - jump) < 0.1 * period and reach <= 1.001 * period:
+            return period
+    return None
+
+
+def derivative_factor(x: Array, v: Array, sample_time: float) -> tuple[float, float]:
+    """Factor and correlation of one column with the derivative of another."""
+    from ..filtering import spectrum
+
+    s = spectrum(len(x), sample_time)
+    low = s.lowpass(min(0.02 / sample_time, 20.0))
+    rate = s.back(s.transform(x) * low * s.derivative(1))
+    slow = s.multiply(v, low)
+    inner = slice(len(x) // 50 + 1, -len(x) // 50 - 1)
+    a, b = rate[inner] - rate[inner].mean(), slow[inner] - slow[inner].mean()
+    power = float(a @ a)
+    if power <= 0 or float(b @ b) <= 0:
+        return 0.0, 0.0
+    return float(a @ b) / power, float(a @ b) / math.sqrt(power * float(b @ b))
+
+
+def find_position(
+    survey: Survey, time_name: str | None, choices: Choices, file: str
+) -> tuple[str, str | None]:
+    """The column of the position, and that of its velocity if there is one."""
+    h = sample_time_of(survey)
+    moving = {n: c for n, c in survey.columns.items() if moves(c) and not rises(c.values)}
+    flat = {n: unwrapped(c.values, wrap_of(c.values)) for n, c in moving.items()}
+    derivative: dict[str, tuple[str, float]] = {}
+    scores: dict[str, float] = {}
+    for name, column in moving.items():
+        score = likeness(name, "position") - 0.8 * is_wanted(name)
+        kinds = [q for q in ("position", "velocity", "force") if is_unit_of(column.unit, q)]
+        score += 0.5 * ("position" in kinds) - 0.8 * bool(kinds and "position" not in kinds)
+        score -= 0.4 * max(likeness(name, "velocity"), likeness(name, "actuator_force"))
+        for other, column_2 in moving.items():
+            if other == name or (is_unit_of(column_2.unit, "force") and column_2.unit):
+                continue
+            _, agree = derivative_factor(flat[name], column_2.values, h)
+            if agree > max(DERIVATIVE, derivative.get(name, ("", 0.0))[1]):
+                derivative[name] = (other, agree)
+        scores[name] = score + 0.4 * (name in derivative)
+    if choices.position is not None:
+        best = choices.position
+    elif scores:
+        best = max(scores, key=lambda n: scores[n])
+    else:
+        raise ExperimentError(f"{file}: found no column that moves among {listed(survey.columns)}")
+    if choices.position is None and likeness(best, "position") < SURE_NAME:
+        why = "its derivative is there too" if best in derivative else "by its name and unit"
+        survey.guesses["channels.position.column"] = f"{best!r} is taken for the position: {why}"
+    velocity = derivative.get(best, (None, 0.0))[0]
+    if velocity is not None:
+        survey.notes.append(f"{velocity!r} is the derivative of {best!r}")
+    return best, velocity
+
+
+def axis_of(survey: Survey, position: str, choices: Choices) -> str:
+    if choices.axis is not None:
+        return choices.axis
+    unit = choices.units.get(position) or survey.columns[position].unit
+    if unit is not None and unit != "counts":
+        for axis in ("prismatic", "revolute"):
+            if measures(unit, "position", axis):
+                return axis
+    units = [c.unit for c in survey.columns.values() if c.unit]
+    if "N" in units or any(measures(u, "position") for u in units if u != "counts"):
+        why, axis = "forces are in N", "prismatic"
+    else:
+        words = words_of(position)
+        turning = {"q", "angle", "winkel", "theta", "phi", "enc", "encoder", "joint"} & set(words)
+        axis = "revolute" if turning or unit == "counts" or "A" in units else "prismatic"
+        why = f"the position is called {position!r}"
+    survey.guesses["model.device.axis"] = f'"{axis}": {why}'
+    return axis
+
+
+def describe_position(
+    survey: Survey, position: str, velocity: str | None, choices: Choices
+) -> None:
+    """Unit, wrap and resolution of the position, and the velocity beside it."""
+    column, axis = survey.columns[position], survey.axis
+    entry: dict[str, Any] = {"column": position}
+    unit = choices.units.get(position) or column.unit
+    if unit == "counts" or unit is None and choices.counts_per_turn is not None:
+        unit = "counts"
+    if unit is None or unit != "counts" and not measures(unit, "position", axis):
+        unit, why = _position_unit(survey, column, velocity, axis)
+        survey.guesses["channels.position.unit"] = why
+    entry["unit"] = unit
+    jump = wrap_of(column.values)
+    factor = 1.0
+    if unit == "counts":
+        per_turn = choices.counts_per_turn
+        if per_turn is None:
+            per_turn = jump or 4096.0
+            survey.guesses["channels.position.counts_per_turn"] = (
+                f"{per_turn:g} counts a turn: look at the encoder"
+            )
+        entry["counts_per_turn"] = per_turn
+    else:
+        factor = si_factor(unit, quantity="position", axis=axis)
+        step = _seen_step(column.readings)
+        if step > 0:
+            entry["resolution"] = float(f"{step:.5g}")
+            survey.notes.append(f"{position!r} moves in steps of {step:.4g} {unit}")
+    if jump is not None:
+        turn = 2 * math.pi / factor
+        whole = axis == "revolute" and unit != "counts" and abs(jump - turn) < 1e-3 * turn
+        entry["unwrap"] = True if whole else jump
+        survey.notes.append(f"{position!r} wraps at {jump:g}")
+    if choices.gear_ratio is not None:
+        entry["gear_ratio"] = choices.gear_ratio
+    survey.channels["position"] = entry
+    if velocity is not None:
+        said = choices.units.get(velocity) or survey.columns[velocity].unit
+        if said is not None and measures(said, "velocity", axis):
+            more = {} if choices.gear_ratio is None else {"gear_ratio": choices.gear_ratio}
+            survey.channels["velocity"] = {"column": velocity, "unit": said, **more}
+
+
+def _seen_step(values: Array) -> float:
+    """Step of an encoder that the readings show; 0 where they are too fine to show one."""
+    raw = values[:20_000]
+    some = raw[np.r_[True, np.diff(raw) != 0]]
+    step = reading_step(raw)
+    if step <= 0 or len(some) < 10:
+        return 0.0
+    places = (raw - raw[0]) / step
+    on = np.abs(np.exp(2j * np.pi * places).mean())
+    return step if on > 0.9 and np.ptp(raw) > 20 * step else 0.0
+
+
+def _position_unit(
+    survey: Survey, column: SurveyedColumn, velocity: str | None, axis: str
+) -> tuple[str, str]:
+    """A unit where the name says none: from the velocity's, or from the range."""
+    whole = unwrapped(column.values, wrap_of(column.values))
+    reach = float(np.ptp(whole))
+    if velocity is not None and (said := survey.columns[velocity].unit):
+        factor, _ = derivative_factor(
+            whole, survey.columns[velocity].values, sample_time_of(survey)
+        )
+        scale = (
+            factor * si_factor(said, quantity="velocity", axis=axis)
+            if is_unit_of(said, "velocity") and measures(said, "velocity", axis)
+            else 0.0
+        )
+        for unit in ("deg", "rad", "turns") if axis == "revolute" else ("mm", "m", "um"):
+            if abs(scale / si_factor(unit, quantity="position", axis=axis) - 1.0) < 0.05:
+                return unit, f"{unit}: then it agrees with {velocity!r} in {said}"
+    if axis == "revolute":
+        unit = "deg" if reach > 50 else "rad"
+    else:
+        unit = "mm" if reach > 3 else "m"
+    return unit, f"{unit}, from its range of {reach:.3g}: its name says no unit"

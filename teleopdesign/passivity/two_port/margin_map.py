@@ -1,0 +1,145 @@
+"""Margins of a teleoperator's two-port over two of its values: numbers on the axis, no proof.
+
+At each pair of values the impedance matrix is computed at each frequency, delays exact, from the
+matrix that is derived once. Below zero some pair of passive terminations makes the teleoperator
+unstable, or a motion takes energy out. Above zero nothing is proved: frequencies between and beyond
+those of the grid, poles and residues are not looked at. `diagram_claims` judges a single point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import sympy as sp
+
+from ...arguments import checked
+from ...by_value import ByValue
+from ...derive import two_port_functions
+from ...diagrams import Diagram
+from ...errors import ModelError
+from ...realise.lti import LinearBlocks, S, linear_blocks, numerical
+from ...realise.tips import linear_tips
+from .two_port import passive_margin, stable_margin
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+    import xarray
+
+#: Hz; 40 frequencies a decade, as a resonance of 5 % damping is 10 % wide
+_FREQUENCY = (0.01, 1000.0, 201)
+
+
+@dataclass(frozen=True, eq=False)
+class MarginMap(ByValue):
+    """Least margins over the frequencies of a grid, at each pair of two values.
+
+    data: `llewellyn` (dimensionless, -inf where a port alone is active), `passive` (N s/m), and
+        `frequency` (Hz) of the least Llewellyn margin; dimensions are the names of the values
+    left_out: what has no linear form
+    """
+
+    data: xarray.Dataset
+    left_out: tuple[str, ...]
+
+    def plot(self) -> matplotlib.figure.Figure:
+        """Llewellyn's margin over both values, and the line where it is zero."""
+        from ...plot.margin_map import plot_margin_map
+
+        return plot_margin_map(self)
+
+    def __repr__(self) -> str:
+        first, second = self.data["llewellyn"].dims
+        stable = int((self.data["llewellyn"] >= 0).sum())
+        gone = f"; left out: {', '.join(self.left_out)}" if self.left_out else ""
+        return (
+            f"Llewellyn's margin over {first} and {second}: not below 0 at {stable} of "
+            f"{self.data['llewellyn'].size} points, checked numerically on the axis{gone}"
+        )
+
+
+@checked
+def margin_map(
+    diagram: Diagram,
+    values: Mapping[str, Sequence[float] | np.ndarray],
+    *,
+    frequency: np.ndarray | None = None,
+    speed: float = 0.0,
+) -> MarginMap:
+    """Llewellyn's and Raisbeck's margins of a diagram with two sides over two of its values.
+
+    Hand and environment are no part of it. Friction has no linear form: it is left out, and named.
+    values: two names of `diagram.values` -> numbers, of different blocks
+    frequency: Hz, default 0.01 to 1000;  speed: where smoothed friction and schedules are frozen
+    raises ModelError: no two-port, not two names, an unknown name, both of one block
+    """
+    import xarray
+
+    if len(values) != 2 or len({name.partition(".")[0] for name in values}) != 2:
+        raise ModelError(
+            f"margin map: expected values of two blocks, found {', '.join(values) or 'none'}"
+        )
+    f = np.geomspace(*_FREQUENCY) if frequency is None else np.asarray(frequency, dtype=float)
+    device = linear_tips(diagram.without("Z_H", "Z_E"))
+    matrix, s = _Matrix(device), 2j * np.pi * f
+    base = linear_blocks(device, speed=speed)
+    fixed = _responses(base, f)
+    varied = [
+        [_of_block(device.with_values({name: float(x)}), name, f, speed) for x in numbers]
+        for name, numbers in values.items()
+    ]
+    shape = (len(varied[0]), len(varied[1]))
+    margins = {name: np.empty(shape) for name in ("llewellyn", "passive", "frequency")}
+    for i, first in enumerate(varied[0]):
+        for k, second in enumerate(varied[1]):
+            z = matrix(s, {**fixed, **first, **second})
+            stable, passive = stable_margin(z), passive_margin(z)
+            lowest = int(np.argmin(stable))
+            margins["llewellyn"][i, k] = stable[lowest]
+            margins["passive"][i, k] = passive.min()
+            margins["frequency"][i, k] = f[lowest]
+    units = {"llewellyn": "1", "passive": "N s/m", "frequency": "Hz"}
+    names = list(values)
+    data = xarray.Dataset(
+        {n: (names, x, {"units": units[n]}) for n, x in margins.items()},
+        {n: np.asarray(values[n], dtype=float) for n in names},
+        {"diagram": diagram.name},
+    )
+    return MarginMap(data, base.left_out)
+
+
+class _Matrix:
+    """The derived impedance matrix by velocities, as a function of what its blocks are."""
+
+    def __init__(self, device: Diagram) -> None:
+        functions = two_port_functions(device, convention="velocity")
+        forms = [functions[f"Z_{i}{j}"] for i in "ms" for j in "ms"]
+        used = set().union(*(e.free_symbols for e in forms)) - {S}
+        # a block has a symbol that does not commute, a delay one that does: both by their names
+        plain = {x: sp.Symbol(x.name) for x in used}
+        self.names = sorted({x.name for x in used})
+        arguments = [S, *(sp.Symbol(n) for n in self.names)]
+        self.call = sp.lambdify(arguments, [e.xreplace(plain) for e in forms], "numpy")
+
+    def __call__(self, s: np.ndarray, blocks: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Values at complex s, (n, 2, 2);  blocks: each at s, of a delay its time."""
+        entries = self.call(s, *(blocks[n] for n in self.names))
+        flat = [np.broadcast_to(np.asarray(e, dtype=complex), s.shape) for e in entries]
+        return np.stack(flat, axis=-1).reshape(*s.shape, 2, 2)
+
+
+def _responses(linear: LinearBlocks, f: np.ndarray) -> dict[str, np.ndarray]:
+    """Each symbol of the derivation over frequency (Hz), by its name."""
+    s = 2j * np.pi * f
+    forms = {**linear.blocks, **{f"A_{n}": e for n, e in linear.actuation.items()}}
+    responses = {n: numerical(sp.sympify(e))(s) for n, e in forms.items()}
+    return responses | {n: np.full(len(f), float(t)) for n, t in linear.dead_times.items()}
+
+
+def _of_block(device: Diagram, name: str, f: np.ndarray, speed: float) -> dict[str, np.ndarray]:
+    """What belongs to the block of that parameter, at the values of this diagram."""
+    block = name.partition(".")[0]
+    here = _responses(linear_blocks(device, speed=speed, only=block), f)
+    return {n: x for n, x in here.items() if n in (block, f"A_{block}")}

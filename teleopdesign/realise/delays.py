@@ -1,0 +1,30 @@
+"""How late a signal is on a grid: whole steps or samples where it can be, else between two."""
+
+from __future__ import annotations
+
+from ..errors import ModelError
+
+#: steps or samples; a delay that near to a whole number of them is one: rounding of the division
+_WHOLE = 1e-9
+
+
+def is_whole(count: float) -> bool:
+    """Whether a delay of so many steps or samples is a whole number of them."""
+    return abs(count - round(count)) <= _WHOLE * max(count, 1.0)
+
+
+def late_samples(delay: float, period: float, *, what: str) -> float:
+    """The delay of a computer's signal in samples, at least one.
+
+    delay, period: s;  what: begins the error
+    raises ModelError: the delay is below the period
+    """
+    count = delay / period
+    if is_whole(count) and round(count) >= 1:
+        return float(round(count))
+    if count < 1:
+        raise ModelError(
+            f"{what}: a delay of {delay * 1e3:g} ms is below the computer's period of "
+            f"{period * 1e3:g} ms: make the block analog, or the period shorter"
+        )
+    return count

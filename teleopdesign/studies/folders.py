@@ -1,0 +1,176 @@
+"""Many recordings diagnosed: an answer file for each, kept from run to run.
+
+Each folder is a point whose number comes from its content, the search and the versions: a folder
+that is as it was is not diagnosed again, one that has changed or failed is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..by_value import ByValue
+from ..effects import EFFECTS, Effect
+from ..errors import ExperimentError, ModelError
+from ..measurement.files import content_digest
+from .evaluate import StudyTask
+from .fingerprint import fingerprint
+from .journal import Journal, PointOutcome
+from .measures import measures_of
+from .points import points_of
+from .processes import run_on_this_machine
+from .progress import Clock, Progress
+from .side_by_side import Unit
+from .versions import versions
+
+if TYPE_CHECKING:
+    from ..diagnose import Diagnosis
+
+#: file of finished folders within the output folder
+JOURNAL = "journal.part"
+#: digits of base 16 of a folder's number: 60 bits, which JSON holds as a whole number
+_DIGITS = 15
+
+
+@dataclass(frozen=True)
+class FolderSearch:
+    """How each folder is diagnosed.
+
+    known: effects by name;  among: names of those that are tried, None: all
+    quick: a first look alone
+    """
+
+    known: Mapping[str, Effect] = field(default_factory=lambda: EFFECTS)
+    among: tuple[str, ...] | None = None
+    quick: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class DiagnosedFolder(ByValue):
+    """What became of a folder.
+
+    answer: its file;  verdict, missing: as the diagnosis says; "" where it failed
+    before, after: check error of the model as stated and with what was added; NaN where it failed
+    failure: why it failed, "" where it did not
+    """
+
+    folder: Path
+    answer: Path
+    verdict: str = ""
+    missing: str = ""
+    before: float = float("nan")
+    after: float = float("nan")
+    failure: str = ""
+
+
+def diagnose_folders(
+    folders: Sequence[Path],
+    output: Path,
+    *,
+    search: FolderSearch | None = None,
+    workers: int | None = None,
+    progress: Callable[[Progress], object] | None = None,
+) -> tuple[DiagnosedFolder, ...]:
+    """Diagnose the experiment of every folder; each answer is written to the output folder.
+
+    workers: processes; None: as many as the machine has cores, where that is faster
+    Finished folders are kept in the output folder: the same call goes on from there.
+    raises ExperimentError: two folders that are one, an output that cannot be written
+    """
+    chosen = FolderSearch() if search is None else search
+    answers = answer_files(folders, output)
+    made_with = fingerprint(chosen.known, chosen.among, chosen.quick, versions())
+    numbers = [
+        int(fingerprint(made_with, answers[f].name, content_digest(f))[:_DIGITS], 16)
+        for f in folders
+    ]
+    journal = Journal(output / JOURNAL, "diagnoses of folders", len(folders))
+    try:
+        journal.forget_failures()
+        done = [
+            n in journal.outcomes and answers[f].exists()
+            for f, n in zip(folders, numbers, strict=True)
+        ]
+        clock = Clock(len(folders), sum(done), progress, "folders")
+        outcomes = {n: journal.outcomes[n] for n, there in zip(numbers, done, strict=True) if there}
+
+        def sink(outcome: PointOutcome) -> None:
+            kept = replace(outcome, point=numbers[outcome.point])
+            journal.add(kept)
+            outcomes[kept.point] = kept
+            clock.count(outcome)
+
+        task = StudyTask(
+            model=partial(_answered, files={str(f): a for f, a in answers.items()}, search=chosen),
+            case={},
+            points=points_of({"experiment": [str(f) for f in folders]}),
+            measures=measures_of("verdict"),
+        )
+        todo: list[Unit] = [(k,) for k, there in enumerate(done) if not there]
+        if todo:
+            run_on_this_machine(task, todo, sink, workers)
+    finally:
+        journal.close()
+    return tuple(
+        _diagnosed_folder(folder, answers[folder], outcomes[number])
+        for folder, number in zip(folders, numbers, strict=True)
+    )
+
+
+def answer_files(folders: Sequence[Path], output: Path) -> dict[Path, Path]:
+    """Folder -> file of its answer, named after the folder, and those above where names are alike.
+
+    raises ExperimentError: the same folder twice
+    """
+    parts = {f: f.resolve().parts[1:] for f in folders}
+    by_place: dict[tuple[str, ...], Path] = {}
+    for folder, place in parts.items():
+        if len(parts) < len(folders) or place in by_place:
+            raise ExperimentError(f"{folder}: found twice, expected every folder once")
+        by_place[place] = folder
+    names: dict[Path, Path] = {}
+    for folder, place in parts.items():
+        others = [p for p in by_place if p != place]
+        size = 1
+        while any(p[-size:] == place[-size:] for p in others) and size < len(place):
+            size += 1
+        names[folder] = output / f"{'-'.join(place[-size:]) or 'root'}.json"
+    if len(set(names.values())) < len(names):  # "a-b" beside "a/b"
+        raise ExperimentError(f"{output}: two folders would have one answer: rename one of them")
+    return names
+
+
+def _answered(experiment: str, files: Mapping[str, Path], search: FolderSearch) -> Diagnosis:
+    """The diagnosis of a folder, whose answer is written."""
+    from ..diagnose import find_missing
+    from ..diagnose.answer import write_answer
+    from ..diagnose.search_plan import PLAN, QUICK
+    from ..measurement import load_experiment
+    from ..model import Model
+
+    recorded = load_experiment(experiment)
+    model = Model.from_experiment(recorded, search.known)
+    plan = QUICK if search.quick else PLAN
+    diagnosis = find_missing(recorded, model, plan=plan, among=search.among)
+    write_answer(diagnosis, files[experiment])
+    return diagnosis
+
+
+def _diagnosed_folder(folder: Path, answer: Path, outcome: PointOutcome) -> DiagnosedFolder:
+    if outcome.reason:
+        return DiagnosedFolder(folder, answer, failure=outcome.reason)
+    values = {form[0]: value for form, value in zip(outcome.form, outcome.values, strict=True)}
+    try:
+        return DiagnosedFolder(
+            folder,
+            answer,
+            verdict=str(values["verdict"]),
+            missing=str(values["missing"]),
+            before=float(values["check_error_before"]),
+            after=float(values["check_error_after"]),
+        )
+    except (KeyError, TypeError) as error:
+        raise ModelError(f"{folder}: its kept outcome lacks {error}: remove {JOURNAL}") from error

@@ -1,0 +1,98 @@
+"""What help shows is what commands take, and shells complete it."""
+
+import argparse
+import re
+import shlex
+import subprocess
+
+import pytest
+
+from teleopdesign import EFFECTS
+from teleopdesign.cli import _parser, main
+from teleopdesign.commands._shells import SHELLS, completions
+
+PARSER = _parser()
+COMMANDS = next(a for a in PARSER._actions if isinstance(a, argparse._SubParsersAction)).choices
+
+
+def examples(name):
+    """Every command line of the examples in a command's help."""
+    text = COMMANDS[name].format_help().partition("examples:\n")[2]
+    found = []
+    for line in text.splitlines():
+        command = re.search(r"teleopdesign [^|)#]*", line)
+        assert command, f"{name}: {line!r} is no command"
+        # what explains a command stands two spaces or more behind it
+        found.append(re.split(r"\s{2,}", command[0].strip())[0])
+    return found
+
+
+@pytest.mark.parametrize("name", sorted(COMMANDS))
+def test_the_help_of_every_command_has_examples_that_its_parser_takes(name):
+    lines = examples(name)
+    assert lines
+    for line in lines:
+        words = shlex.split(line)
+        assert PARSER.parse_args(words[1:]).run is not None
+        assert words[1] == name
+
+
+@pytest.fixture(scope="module")
+def completed():
+    return completions(PARSER, EFFECTS)
+
+
+@pytest.mark.parametrize("shell", sorted(SHELLS))
+def test_the_script_of_a_shell_knows_every_command_option_and_effect(shell, capsys):
+    assert main(["completion", shell]) == 0
+    script = capsys.readouterr().out
+    for name, command in COMMANDS.items():
+        assert name in script
+        for option in (o for a in command._actions for o in a.option_strings):
+            wanted = option if shell != "fish" else f"-l {option[2:]}"
+            assert wanted in script or not option.startswith("--"), (name, option)
+    assert all(effect in script for effect in EFFECTS)
+
+
+def complete_in_bash(folder, *words):
+    """What bash offers for the last of these words."""
+    script = SHELLS["bash"](completions(PARSER, EFFECTS))
+    listed = " ".join(map(shlex.quote, words))
+    code = (
+        f"{script}\nCOMP_WORDS=({listed}); COMP_CWORD={len(words) - 1}; _teleopdesign\n"
+        'printf "%s\\n" "${COMPREPLY[@]}"'
+    )
+    done = subprocess.run(
+        ["bash", "-c", code], capture_output=True, text=True, cwd=folder, timeout=20
+    )
+    assert done.stderr == ""
+    return done.stdout.split()
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (["diag"], ["diagnose"]),
+        (["diagnose", "--qu"], ["--quick"]),
+        (["diagnose", "rod", "--only", "stri"], ["stribeck"]),
+        (["diagnose", "rod", "--only", "stribeck", "pres"], ["presliding"]),
+        (["effects", "back"], ["backlash"]),
+        (["new", "log.csv", "--axis", "re"], ["revolute"]),
+        (["diagnose", "ro"], ["rod"]),
+    ],
+)
+def test_bash_completes_commands_options_effects_and_files(words, expected, tmp_path):
+    (tmp_path / "rod").mkdir()
+    assert complete_in_bash(tmp_path, "teleopdesign", *words) == expected
+
+
+@pytest.mark.parametrize("shell", ["zsh", "fish"])
+def test_texts_of_help_stay_within_their_quotes(shell, completed):
+    script = SHELLS[shell](completed)
+    for line in script.splitlines():
+        assert line.replace("\\'", "").count("'") % 2 == 0, line
+
+
+def test_an_unknown_shell_is_one_line(refused):
+    assert 'no shell "bsh"' in refused("completion", "bsh")
+    assert 'did you mean "bash"' in refused("completion", "bsh")

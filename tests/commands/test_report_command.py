@@ -1,0 +1,79 @@
+"""The page of a saved answer."""
+
+import json
+import re
+import shutil
+
+import pytest
+
+from teleopdesign.cli import main
+
+
+@pytest.fixture
+def answer(rod, few, tmp_path):
+    """An answer of the rod, in a folder of its own."""
+    path = tmp_path / "saved" / "answer.json"
+    path.parent.mkdir()
+    assert main(["diagnose", str(rod), "--json", str(path)]) == 0
+    return path
+
+
+def data_of(page):
+    text = page.read_text(encoding="utf-8")
+    return json.loads(re.search(r'id="teleopdesign-data">(.*?)</script>', text, re.DOTALL)[1])
+
+
+def test_the_page_of_an_answer_tells_what_the_answer_tells(answer, capsys):
+    assert main(["report", str(answer)]) == 0
+    page = answer.with_suffix(".html")
+    said = capsys.readouterr().out
+    assert f"written: {page}" in said and "nothing is searched or estimated anew" in said
+    shown, saved = data_of(page), json.loads(answer.read_text())
+    assert shown["answer"]["candidates"] == saved["candidates"]
+    assert shown["answer"]["verdict"] == saved["verdict"]
+    assert [r["check_error"] for r in shown["report"]["ladder"]] == [
+        row["check_error"] for row in saved["ladder"]
+    ]
+    rows = shown["report"]["candidates"]
+    assert {r["effect"] for r in rows} == {c["effect"] for c in saved["candidates"]}
+    assert all(len(r["steps"]) == len(shown["report"]["candidate_steps"]) == 1 for r in rows)
+
+
+def test_a_folder_that_holds_an_answer_stands_for_it(answer, tmp_path):
+    page = tmp_path / "page.html"
+    assert main(["report", str(answer.parent), "--output", str(page)]) == 0
+    assert data_of(page)["answer"]["verdict"] == json.loads(answer.read_text())["verdict"]
+
+
+def test_an_answer_alone_is_described(answer, capsys):
+    assert main(["describe", str(answer), "--as-is"]) == 0
+    assert "Your model, re-estimated:" in capsys.readouterr().out
+
+
+def test_the_page_of_a_folder_is_that_of_a_diagnosis_made_now(rod, few, tmp_path):
+    page = tmp_path / "page.html"
+    assert main(["report", str(rod), "--only", "stribeck", "--output", str(page)]) == 0
+    assert [c["effect"] for c in data_of(page)["answer"]["candidates"]] == ["stribeck"]
+
+
+def test_an_answer_whose_records_are_gone_is_one_line(answer, rod, refused):
+    shutil.move(rod, rod.with_name("elsewhere"))
+    line = refused("report", answer)
+    assert 'its experiment was in "../rod", found no such folder' in line
+    assert main(["report", str(rod.with_name("elsewhere")), "--answer", str(answer)]) == 0
+
+
+def test_an_answer_of_other_records_is_one_line(answer, rod, refused):
+    toml = rod / "experiment.toml"
+    text = toml.read_text()
+    toml.write_text(text.replace('title = "', 'title = "Another '))
+    assert "answer.json: is not an answer to rod but to another" in refused("report", answer)
+
+
+def test_two_answers_are_one_line(answer, refused):
+    line = refused("report", answer, "--answer", answer)
+    assert "which is an answer itself" in line
+
+
+def test_a_page_in_another_format_is_refused(answer, refused):
+    assert "expected .html" in refused("report", answer, "--output", answer.with_suffix(".pdf"))

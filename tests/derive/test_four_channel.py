@@ -1,0 +1,171 @@
+"""The four-channel teleoperator against an independent derivation, by either convention."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from teleopdesign.controllers import controller
+from teleopdesign.derive import (
+    all_transfers,
+    hybrid_from_impedance,
+    impedance_from_hybrid,
+    in_convention,
+    two_port_functions,
+    with_values,
+)
+from teleopdesign.diagrams import ANY, four_channel, read_diagram, shipped, write_diagram
+from teleopdesign.errors import ModelError
+
+S = sp.Symbol("s")
+NAMES = "Z_m Z_s C_m C_s C_1 C_2 C_3 C_4 K_1 K_2 K_3 K_4".split()
+B = {n: sp.Symbol(n) for n in NAMES}
+T = {k: sp.Symbol(f"T_{k}", positive=True) for k in range(1, 5)}
+
+
+def by_hand(scaled):
+    """F_m and X_s on X_m and F_s, solved from Lawrence's equations by sympy."""
+    x_m, x_s, f_m, f_s = sp.symbols("X_m X_s F_m F_s")
+    late = {
+        k: B[f"C_{k}"] * (B[f"K_{k}"] if scaled else 1) * sp.exp(-S * T[k]) for k in range(1, 5)
+    }
+    master = sp.Eq(B["Z_m"] * x_m, f_m - B["C_m"] * x_m + late[2] * f_s + late[4] * x_s)
+    slave = sp.Eq(B["Z_s"] * x_s, f_s - B["C_s"] * x_s + late[1] * x_m + late[3] * f_m)
+    solved = sp.solve([master, slave], [f_m, x_s], dict=True)[0]
+    return {
+        f"h_{i}{j}": sp.diff(sp.expand(sp.together(solved[row])), column)
+        for i, row in ((1, f_m), (2, x_s))
+        for j, column in ((1, x_m), (2, f_s))
+    }
+
+
+def commuting(expression):
+    """The derived expression with symbols that commute, as those of one degree of freedom do."""
+    names = {a: B.get(a.name, T.get(int(a.name[2:])) if a.name[:2] == "T_" else S)
+             for a in expression.free_symbols}  # fmt: skip
+    return expression.xreplace(names)
+
+
+def number(expression, at, late):
+    """The expression at these blocks and numbers for e^(-s T_k)."""
+
+    def product(power):
+        powers = sp.expand(power).coeff(S)
+        return sp.Mul(*(late[k] ** -powers.coeff(t) for k, t in T.items()))
+
+    return sp.nsimplify(expression.replace(sp.exp, product).subs(at))
+
+
+@pytest.mark.parametrize("scaled", [False, True])
+def test_the_hybrid_matrix_is_that_of_an_independent_derivation(scaled):
+    """Compared at random rational numbers in exact arithmetic, each e^(-s T) one."""
+    scales = {"position_scale": 0.5, "force_scale": 2.0} if scaled else {}
+    found, expected = two_port_functions(four_channel(delay=0.02, **scales)), by_hand(scaled)
+    rng = np.random.default_rng(1)
+    for _ in range(3):
+        at = {x: sp.Rational(int(rng.integers(1, 99)), 7) for x in B.values()}
+        numbers = {k: sp.Rational(int(rng.integers(1, 99)), 100) for k in T}
+        for name, formula in expected.items():
+            values = [number(e, at, numbers) for e in (commuting(found[name]), formula)]
+            assert values[0] == values[1], name
+
+
+def test_perfect_transparency_is_the_ideal_hybrid_matrix():
+    """C_1 = Z_s + C_s, C_4 = Z_m + C_m, C_2 = C_3 = 1, no delay: Lawrence's condition."""
+    found = two_port_functions(four_channel())
+    ideal = {"h_12": -1, "h_21": 1, "h_22": 0}
+    z = {"Z_m": 3, "C_m": 5, "Z_s": 7, "C_s": 2, "C_1": 9, "C_4": 8, "C_2": 1, "C_3": 1}
+    for name, number in ideal.items():
+        e = commuting(found[name])
+        assert sp.nsimplify(e.subs({B[n]: v for n, v in z.items()})) == number
+    assert sp.nsimplify(commuting(found["h_11"]).subs({B[n]: v for n, v in z.items()})) == 0
+
+
+def test_the_shipped_diagram_derives_and_comes_back_from_a_file(tmp_path):
+    diagram = shipped("four-channel")
+    assert "exp(-s T_2) C_2" in all_transfers(diagram)["h_12"].text()
+    write_diagram(diagram, tmp_path / "four.toml")
+    assert read_diagram(tmp_path / "four.toml") == diagram
+
+
+def test_a_channel_that_is_not_there_leaves_no_signal():
+    two = four_channel(channels={"C_1": ANY, "C_2": ANY}, delay=0.01)
+    assert {"T_1", "T_2"} == {b.name for b in two.blocks if b.name.startswith("T_")}
+    assert "F_C3" not in two.signals and two.measured == ("X_m", "X_s", "F_s")
+
+
+def test_scales_are_of_both_ways():
+    diagram = four_channel(position_scale=0.5, force_scale=4.0)
+    scales = {k: diagram.values[f"K_{k}.gain.gain"] for k in range(1, 5)}
+    assert scales == {1: 0.5, 2: 4.0, 3: 0.25, 4: 2.0}
+
+
+NUMBER = st.fractions(-9, 9, max_denominator=9).map(
+    lambda x: sp.Rational(x.numerator, x.denominator)
+)
+CONVENTION = st.sampled_from(["position", "velocity"])
+
+
+@given(z=st.tuples(NUMBER, NUMBER, NUMBER, NUMBER.filter(bool)), convention=CONVENTION)
+@settings(deadline=None)
+def test_matrices_convert_there_and_back_exactly(z, convention):
+    matrix = sp.Matrix(2, 2, z)
+    h = hybrid_from_impedance(matrix, convention=convention)
+    assert impedance_from_hybrid(h, convention=convention) == matrix
+
+
+@given(z=st.tuples(NUMBER, NUMBER, NUMBER, NUMBER.filter(bool)))
+@settings(deadline=None)
+def test_both_conventions_are_one_two_port(z):
+    """The way by matrices and the way by single functions meet."""
+    by_position = sp.Matrix(2, 2, z)
+    by_velocity = by_position / S
+    h = hybrid_from_impedance(by_position, convention="position")
+    expected = hybrid_from_impedance(by_velocity, convention="velocity")
+    for i in range(2):
+        for j in range(2):
+            name = f"h_{i + 1}{j + 1}"
+            turned = in_convention(name, h[i, j], "velocity")
+            assert sp.simplify(turned - expected[i, j]) == 0
+            assert sp.simplify(in_convention(name, turned, "position") - h[i, j]) == 0
+
+
+def test_power_into_the_ports_is_the_same_in_both():
+    """F_m v_m + F_s v_s = F_m v_m + F_e (-v_s): the passive two-port of dampers stays passive."""
+    h = hybrid_from_impedance(sp.Matrix([[3, 1], [1, 2]]), convention="velocity")
+    assert h + h.T == sp.Matrix([[5, 0], [0, 1]])  # no part that is not passive: h_12 = -h_21
+
+
+def test_no_convention_or_function_is_said_in_one_line():
+    four = four_channel()
+    singular = sp.Matrix([[1, 1], [1, 0]])
+    for make, words in (
+        (lambda: two_port_functions(four, convention="velocities"), 'did you mean "velocity"'),
+        (lambda: in_convention("h_13", S, "velocity"), 'no function "h_13"'),
+        (lambda: hybrid_from_impedance(singular, convention="position"), "Z_ss is 0"),
+        (lambda: impedance_from_hybrid(singular, convention="velocity"), "h_22 is 0"),
+        (lambda: four_channel(channels={"C_5": ANY}), 'no channel "C_5"'),
+        (lambda: four_channel(channels={"C_1": ANY}, delay={"C_2": 0.1}), 'no channel "C_2"'),
+        (lambda: four_channel(force_scale=0.0), "expected > 0"),
+    ):
+        with pytest.raises(ModelError) as caught:
+            make()
+        assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_values_in_place_are_those_of_the_formula():
+    spring = controller("proportional_derivative",
+                        {"stiffness": 500.0, "damping": 5.0, "bandwidth": 100.0})  # fmt: skip
+    from devices import body
+
+    diagram = four_channel(
+        body(0.5), body(1.0, viscous__damping=2.0), master_control=spring, slave_control=spring,
+        channels={"C_1": spring}, delay=0.03,
+    )  # fmt: skip
+    form, left_out = with_values(diagram, output="X_s", input="X_m", given="X_m")
+    s = 7j
+    c = 500 + 5 * s / (1 + s / (200 * np.pi))
+    expected = c * np.exp(-s * 0.03) / (s**2 + 2 * s + c)
+    assert not left_out.left_out
+    assert complex(form.subs(S, s)) == pytest.approx(expected, rel=1e-12)

@@ -1,0 +1,134 @@
+"""A user's own effect file takes the way of the catalogue's, and a mistake in it is one line."""
+
+import re
+from dataclasses import fields
+
+import numpy as np
+import pytest
+import sympy as sp
+from effects.along import (
+    body_of,
+    motion_along,
+    signals,
+)
+
+from teleopdesign.effects import (
+    EFFECTS,
+    SIGNALS,
+    FitSearch,
+    catalogue,
+    load_effect,
+)
+from teleopdesign.errors import ModelError
+from teleopdesign.realise.along_motion import residual_along
+
+OWN = '''"""Own drag: a force in proportion to the square of velocity.
+
+    F = D v abs(v)
+"""
+
+from teleopdesign import Effect, Parameter
+
+
+def law(now, p):
+    return p.drag * now.velocity * abs(now.velocity)
+
+
+EFFECT = Effect(
+    role="force",
+    law=law,
+    parameters={"drag": Parameter("drag", "D: force per velocity squared")},
+    absent={"drag": 0.0},
+    source="made for a test",
+)
+'''
+
+
+@pytest.fixture
+def own(tmp_path):
+    file = tmp_path / "own_drag.py"
+    file.write_text(OWN)
+    return file
+
+
+def test_a_users_file_becomes_an_effect_under_the_files_name(own):
+    known = catalogue([own])
+    assert set(known) == {*EFFECTS, "own_drag"}
+    effect = known["own_drag"]
+    assert effect.title == "Own drag: a force in proportion to the square of velocity."
+    v, drag = SIGNALS["velocity"], effect.symbols()["drag"]
+    assert effect.expression() == drag * v * sp.Abs(v)
+
+
+def test_a_users_effect_takes_part_in_the_residual(own):
+    x, u, f = signals()
+    motion = motion_along(x, u, f)
+    bare = body_of()
+    body = bare.with_effect(load_effect(own), {"drag": 3.0})
+    force = (
+        residual_along(bare, motion).residual.value - residual_along(body, motion).residual.value
+    )
+    np.testing.assert_allclose(force, 3.0 * motion.velocity * abs(motion.velocity), atol=1e-12)
+
+
+def test_a_users_effect_takes_the_place_of_one_of_the_same_name(tmp_path):
+    file = tmp_path / "viscous.py"
+    file.write_text(OWN)
+    assert "drag" in catalogue([file])["viscous"].parameters
+    assert "damping" in EFFECTS["viscous"].parameters, "the package's own stays"
+
+
+BAD = {
+    "no EFFECT": ("EFFECT = Effect(", "OTHER = Effect(", "found no EFFECT"),
+    "wrong role": (
+        'role="force"',
+        'role="forse"',
+        'role: found the text "forse", expected one of .*mean "force"',
+    ),
+    "unknown signal": ("now.velocity *", "now.velocty *", "velocty"),
+    "unknown parameter": ("p.drag", "p.dragg", "dragg"),
+    "a symbol of its own": (
+        "return p.drag",
+        "import sympy\n    return sympy.Symbol('mystery') * p.drag",
+        "law uses mystery",
+    ),
+    "syntax": ("def law(now, p):", "def law(now, p)", "SyntaxError"),
+    "import": ("from teleopdesign import Effect", "from teleopdesign import Efect", "Efect"),
+    "failure of its own": ("def law", "1 / 0\n\n\ndef law", "ZeroDivisionError"),
+    "absent names no parameter": ('absent={"drag"', 'absent={"drg"', 'absent: no parameter "drg"'),
+    "argument left out": ('    absent={"drag": 0.0},\n', "", "absent"),
+}
+
+
+@pytest.mark.parametrize("mistake", BAD)
+def test_a_mistake_in_an_effect_file_is_one_line(own, mistake):
+    old, new, expected = BAD[mistake]
+    text = own.read_text()
+    assert old in text
+    own.write_text(text.replace(old, new, 1))
+    with pytest.raises(ModelError) as caught:
+        load_effect(own)
+    message = str(caught.value)
+    assert message.startswith(f"{own}: ")
+    assert len(message.splitlines()) == 1
+    assert re.search(expected, message), message
+
+
+@pytest.mark.parametrize("field", [f.name for f in fields(FitSearch)])
+def test_an_older_file_is_told_what_to_write_instead(own, field):
+    text = own.read_text()
+    older = re.sub(r"(Parameter\([^)]*)\)", rf"\1, {field}=0)", text)
+    assert older != text
+    own.write_text(older)
+    with pytest.raises(ModelError, match=rf"search=FitSearch\({field}=") as refusal:
+        load_effect(own)
+    assert "\n" not in str(refusal.value)
+
+
+def test_an_effect_file_that_is_not_there_or_has_no_name_is_one_line(tmp_path):
+    with pytest.raises(ModelError, match="no such effect file"):
+        load_effect(tmp_path / "nothing.py")
+    file = tmp_path / "my-effect.py"
+    file.write_text(OWN)
+    with pytest.raises(ModelError, match='"my-effect" must be a name such as my_effect.py'):
+        load_effect(file)

@@ -1,0 +1,50 @@
+"""What `estimate_error` says of a simulation, against the true error of drawn machines."""
+
+import numpy as np
+import pytest
+from exact.machines import Belt, Bristle, Gap, LateSpring, Relay, Stroke
+from exact.simulated import draw, pair
+
+from teleopdesign.simulate import simulate
+
+CASES = 1000
+TIMES = 1e-3 * np.arange(201)
+#: of the largest size: below it stands the rounding of the exact motions themselves
+ROUNDING = 1e-9
+MACHINES = (
+    Belt(speed=0.1),
+    Bristle(),
+    Bristle(extra=0.3, bristle_damping=20.0),
+    Stroke(),
+    Gap(),
+    Gap(stiffness=2e4, damping=5.0),
+    Relay(),
+    LateSpring(),
+)
+
+
+def estimated_and_true(machine):
+    """Of each column, the estimate and the true error, both over the largest size."""
+    both = pair(machine)
+    exact = both.exact(TIMES)
+    result = simulate(
+        both.diagram, duration=float(TIMES[-1]), **both.arguments, estimate_error=True
+    )
+    for name, (signal, more) in both.columns.items():
+        error = np.abs(result[signal].values + more(TIMES) - exact[name]).max()
+        yield result[signal].attrs["step_error"], error / np.abs(result[signal].values).max()
+
+
+@pytest.mark.slow
+def test_the_estimate_is_never_below_half_of_the_true_error():
+    """Bristles, belts, gaps soft and hard, relays and delays, each value within a factor of 4."""
+    rng = np.random.default_rng(20)
+    wrong, held = [], 0
+    for case in range(CASES):
+        machine = draw(rng, MACHINES[case % len(MACHINES)])
+        for estimate, error in estimated_and_true(machine):
+            held += error > ROUNDING
+            if error > ROUNDING and estimate < 0.5 * error:
+                wrong.append((estimate, error, machine))
+    assert not wrong, wrong[:3]
+    assert held > 1000  # columns whose error is no rounding

@@ -1,0 +1,31 @@
+"""Forces planted in a residual, and what is said of them."""
+
+from dataclasses import replace
+
+from teleopdesign import load_effect
+from teleopdesign.unexplained.curve import curve_of
+from teleopdesign.unexplained.dependence import model_columns
+from teleopdesign.unexplained.effect_file import write_effect
+from teleopdesign.unexplained.formula import formula_for
+from teleopdesign.unexplained.qualifiers import contrasts
+from teleopdesign.unexplained.sentences import sentence_for
+
+
+def planted(rows, missing):
+    """The rows with a force missing(along) that the model lacks, as the residual shows it."""
+    return replace(rows, residual=rows.residual + rows.lowpassed(lambda a: missing(a)[None])[:, 0])
+
+
+def said(rows, found, axis="prismatic"):
+    """The sentence about a dependence, with its formula."""
+    formula = formula_for(rows, model_columns(rows), found)
+    left = rows.residual * rows.root
+    sides = contrasts(rows, found, left)
+    return sentence_for(found.shape, curve_of(rows, found), formula, sides, axis), formula
+
+
+def written(tmp_path, name, found, prepared, described=None):
+    part, largest = found.largest
+    path = tmp_path / f"{name}.py"
+    write_effect(path, part, described or largest, prepared)
+    return load_effect(path)

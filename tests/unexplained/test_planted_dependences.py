@@ -1,0 +1,162 @@
+"""What is planted in a residual is said at its size; where nothing is planted, nothing is said."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from unexplained.planting import planted, said
+
+from teleopdesign.unexplained.curve import curve_of
+from teleopdesign.unexplained.dependence import Dependence, dependences, model_columns
+from teleopdesign.unexplained.qualifiers import contrasts
+from teleopdesign.unexplained.rows import rows_of
+from teleopdesign.unexplained.shapes import (
+    FORCE,
+    SHAPES,
+    Shape,
+)
+
+
+def position(a):
+    return a.signals["position"]
+
+
+PLANTED = {
+    "force over position": (lambda a: a.push * 4.0 * position(a), "at positions above", 4.0),
+    "friction over position": (
+        lambda a: a.grip * np.where(position(a) > 0.005, 12.0 * (position(a) - 0.005), 0.0),
+        "at positions above",
+        12.0,
+    ),
+    "force over speed": (lambda a: a.push * 0.5 * a.signals["speed"], "above", 0.5),
+    "friction over load": (lambda a: a.grip * 0.08 * a.signals["load"], "command's size", 0.08),
+    "damping over position": (
+        lambda a: a.push * 3e3 * position(a) ** 2 * a.signals["velocity"],
+        "more damping",
+        3e3,
+    ),
+}
+
+
+QUICK = ("force over position",)
+
+
+@pytest.mark.parametrize(
+    "name", [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in PLANTED]
+)
+def test_a_planted_dependence_is_said_with_variable_range_and_size(rows, floor_squares, name):
+    missing, words, size = PLANTED[name]
+    here = planted(rows, missing)
+    found, _ = dependences(here, floor_squares)
+    assert found[0].shape.name == name
+    text, formula = said(here, found[0])
+    assert words in text
+    assert formula.terms[0].kind in ("power", "above")
+    # noise of the sensors is a tenth to a third of what is planted
+    assert formula.coefficients[0] == pytest.approx(size, rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("name", "missing", "size"),
+    [
+        ("force", lambda a: a.push * -0.06, -0.06),
+        ("friction over time", lambda a: a.grip * 0.2 * np.exp(-a.signals["time"] / 3.0), None),
+        ("lateness", lambda a: a.push * 1.5e-3 * a.signals["force_rate"], 1.5e-3),
+        ("mass", lambda a: a.push * 0.02 * a.signals["acceleration"], 0.02),
+    ],
+)
+def test_a_planted_constant_has_its_sign_and_size(
+    rod, adequate, floor_squares, name, missing, size
+):
+    fixed = adequate.model.parameters["device.inertia"]
+    model = adequate.model.with_values({"device.inertia": replace(fixed, fixed=True)})
+    here = planted(rows_of(model, rod, "device"), missing)
+    found, _ = dependences(here, floor_squares)
+    assert found[0].shape.name == name
+    if size is not None:
+        assert curve_of(here, found[0]).y[0] == pytest.approx(size, rel=0.1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("frequency", [0.3, 17.0, 50.0])
+def test_a_hum_is_found_at_its_frequency(rows, floor_squares, frequency):
+    here = planted(
+        rows, lambda a: a.push * 0.15 * np.sin(2 * np.pi * frequency * a.signals["time"] + 1.0)
+    )
+    found, _ = dependences(here, floor_squares)
+    assert found[0].shape.carrier is FORCE and found[0].shape.variable.name == "time"
+    text, formula = said(here, found[0])
+    # a tenth of the resolution of a record of 12 s
+    assert formula.terms[0].number == pytest.approx(frequency, abs=0.01)
+    assert np.hypot(*formula.coefficients) == pytest.approx(0.15, rel=0.1)
+    assert "goes up and down at" in text
+
+
+def test_cogging_of_many_periods_is_found_at_its_period(rows, floor_squares):
+    here = planted(rows, lambda a: a.push * 0.1 * np.sin(2 * np.pi * position(a) / 1.2e-3))
+    found, _ = dependences(here, floor_squares)
+    assert found[0].shape.name == "force repeating over position"
+    assert 1.0 / found[0].knots[0] == pytest.approx(1.2e-3, rel=1e-3)
+    assert "every 1.2 mm of travel" in said(here, found[0])[0]
+
+
+def test_only_one_direction_is_said(rows, floor_squares):
+    here = planted(
+        rows, lambda a: a.push * np.where(a.signals["velocity"] > 0, a.signals["velocity"], 0.0)
+    )
+    found, _ = dependences(here, floor_squares)
+    assert found[0].shape.name in ("force over speed", "force over velocity", "friction over speed")
+    assert "forward" in said(here, found[0])[0]
+
+
+def test_only_after_a_rest_is_said(rows):
+    """A friction at low speed that is there only where the body had rested before."""
+    shape = Shape(SHAPES[1].carrier, next(s.variable for s in SHAPES if "over speed" in s.name))
+
+    def low(a):
+        return a.grip * 0.3 * np.exp(-((a.signals["speed"] / 0.03) ** 2))
+
+    whole = rows.lowpassed(lambda a: low(a)[None])[:, 0] * rows.root
+    after = rows.lowpassed(lambda a: (low(a) * (a.signals["rested"] >= 0.2))[None])[:, 0]
+    here = replace(rows, residual=rows.residual + after)
+    columns = replace(model_columns(rows), values=whole[:, None], penalty=np.zeros((1, 1)))
+    one = Dependence(
+        shape, np.zeros(1), columns, np.ones(1), np.zeros(0), np.zeros(0), 9.0, 0.0, 1.0
+    )
+    told = contrasts(here, one, here.residual * here.root)
+    assert [c.only for c in told if "rested" in c.sides[0]] == ["after it has rested"]
+    assert [c.only for c in told if "forward" in c.sides[0]] == [""]
+
+
+@pytest.mark.slow
+def test_the_residual_in_another_unit_says_the_same(rows, floor_squares):
+    missing = PLANTED["force over position"][0]
+    one = planted(rows, missing)
+    scaled = replace(one, residual=1e3 * one.residual, measured=1e3 * one.measured)
+    a, b = dependences(one, floor_squares)[0], dependences(scaled, 1e6 * floor_squares)[0]
+    assert [d.shape for d in a] == [d.shape for d in b]
+    assert [d.score for d in a] == pytest.approx([d.score for d in b], rel=1e-3)
+
+
+def test_what_another_value_of_a_parameter_explains_is_not_missing(rows, floor_squares):
+    step = 0.05 * rows.tangents / np.linalg.norm(rows.tangents, axis=0)
+    moved = replace(rows, residual=rows.residual + step @ np.ones(rows.tangents.shape[1]))
+    assert dependences(moved, floor_squares)[0] == ()
+
+
+def test_nothing_is_learnt_from_the_checked_rows(rows, floor_squares):
+    """A force on the check record alone is no dependence that the fit record tells of."""
+    here = planted(rows, lambda a: a.push * 4.0 * position(a) * (a.stretch.use == "check"))
+    assert "force over position" not in [d.shape.name for d in dependences(here, floor_squares)[0]]
+
+
+@pytest.mark.slow
+def test_noise_alone_is_called_a_dependence_in_less_than_one_record_of_fifty(rows, floor_squares):
+    """Residuals of the sensors' own spectrum, drawn anew."""
+    rng, alarms, draws = np.random.default_rng(8), 0, 100
+    size = np.sqrt(np.mean(rows.residual**2))
+    for _ in range(draws):
+        noise = rows.lowpassed(lambda a: rng.standard_normal((1, len(a.push))))[:, 0]
+        here = replace(rows, residual=size * noise / np.std(noise))
+        alarms += bool(dependences(here, floor_squares)[0])
+    assert alarms <= 2

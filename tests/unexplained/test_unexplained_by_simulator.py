@@ -1,0 +1,72 @@
+"""On machines of the independent simulator: what it hides is said; where nothing, nothing is."""
+
+from dataclasses import replace
+
+import pytest
+from diagnose.own_cases import FEW, truth_of, write_own
+from unexplained.planting import written
+
+from teleopdesign import Model, load_experiment
+from teleopdesign.diagnose import find_missing
+from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.unexplained import describe_residual
+
+SAID = {
+    "viscous": ("damping",),
+    "coulomb": ("friction",),
+    "stribeck": ("friction over speed",),
+    "bias": ("force",),
+    "spring": ("force over position",),
+    "hardening_spring": ("force over position",),
+    "actuation_delay": ("lateness",),
+    "actuator_lag": ("lateness",),
+    "quadratic_drag": ("friction over speed",),
+    "viscous_asymmetry": ("force over speed", "force over velocity"),
+    "position_dependent_friction": ("friction over position", "friction repeating over position"),
+    "cogging": ("force over position", "force repeating over position"),
+    "load_dependent_friction": ("friction over load",),
+    "friction_drift": ("friction over time",),
+    "actuator_saturation": ("force over actuator_force",),
+    "torque_ripple": ("lost command over position", "lost command repeating over position"),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("effect", SAID)
+def test_what_the_independent_simulator_hides_is_said(tmp_path, effect):
+    folder = write_own(tmp_path / "case", effect, seed=21)
+    prepared = prepare(load_experiment(folder))
+    fit = estimate_from_starts(Model.from_experiment(prepared.experiment), prepared)
+    assert describe_residual(fit, prepared).largest[1].dependence.shape.name in SAID[effect]
+
+
+@pytest.mark.slow
+def test_where_the_independent_simulator_hides_nothing_nothing_is_said(tmp_path):
+    alarms, number_of_cases = 0, 50
+    for seed in range(number_of_cases):
+        folder = write_own(tmp_path / str(seed), None, seed=1000 + seed)
+        prepared = prepare(load_experiment(folder))
+        fit = estimate_from_starts(Model.from_experiment(prepared.experiment), prepared)
+        alarms += describe_residual(fit, prepared).largest is not None
+    assert alarms <= 1, "2 % of records"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(6))
+def test_a_force_outside_the_catalogue_is_described_written_and_named(tmp_path, seed):
+    folder = write_own(tmp_path / "case", None, seed=300 + seed, level="outside")
+    experiment = load_experiment(folder)
+    prepared = prepare(experiment)
+    model = Model.from_experiment(experiment)
+    effect = written(
+        tmp_path, "found", describe_residual(estimate(model, prepared), prepared), prepared
+    )
+    # two among all of the catalogue, which takes long; the others among ten and the model's own
+    few = FEW | {name: model.known[name] for name, _ in model.effects}
+    known = {**(model.known if seed < 2 else few), "found": effect}
+    diagnosis = find_missing(experiment, replace(model, known=known))
+    assert "found" in [c.effect.name for c in diagnosis.missing]
+    # within half of the true model's error; a hum's form is exact, others to the floor's spread
+    assert diagnosis.after.check_error < 1.5 * truth_of(folder)["check_error_true"]
