@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError, ModelError
 from ..plain_data import replacing
-from ._diagnosis import add_search, diagnosed, experiment_of, print_diagnosis, stated_model
+from ._diagnosis import (
+    add_search,
+    diagnosed,
+    experiment_of,
+    known_of,
+    print_diagnosis,
+    stated_model,
+    tried_effects,
+)
 from ._folders import diagnose_all
 from ._options import add_effect_files, check_output, count_argument, say
 from ._report import write_page
@@ -119,14 +127,25 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
-    """The same for an arm: no figure and no page yet."""
-    for path, option in ((options.figure, "--figure"), (options.report, "--report")):
-        if path is not None:
+    """The same for an arm: no figure, no page and no simulation yet."""
+    for asked, option in (
+        (options.figure, "--figure"),
+        (options.report, "--report"),
+        (options.simulate, "--simulate"),
+    ):
+        if asked:
             raise ExperimentError(f"{option}: not there for an arm: use --json or --predictions")
     from ..diagnose.arms import find_missing_in_arm
     from ..diagnose.arms.answer import write_arm_answer, write_arm_predictions
+    from ..diagnose.search_plan import PLAN, QUICK
 
-    diagnosis = find_missing_in_arm(experiment, stated_model(experiment, options), progress=say)
+    diagnosis = find_missing_in_arm(
+        experiment,
+        stated_model(experiment, options),
+        progress=say,
+        plan=QUICK if options.quick else PLAN,
+        among=tried_effects(known_of(options), options.only, options.exclude),
+    )
     say("")
     print(diagnosis)
     if options.json is not None:

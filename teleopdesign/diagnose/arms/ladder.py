@@ -7,7 +7,7 @@ are looked at again with what it then says of the links.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 
 from ...measurement.experiment import Experiment
@@ -15,11 +15,12 @@ from ...model import Model
 from ..decision import is_better, moment_above_noise, verdict
 from ..diagnosis import Diagnosis
 from ..fit import Fit, estimate, fit_squares
-from ..ladder_state import LadderSearch, LadderState, look
+from ..ladder_state import LadderSearch, LadderState, look, trying
 from ..moves import add, remove
 from ..prepare import Prepared
 from ..probability import probable
 from ..rung import Rung
+from ..search_plan import PLAN, SearchPlan
 from .diagnosis import ArmDiagnosis, ArmRung
 from .fit import ArmFit, estimate_arm, knowledge, link_errors, misfits, with_others
 from .prepared import PreparedArm, alone, mean_inertias, prepare_arm, with_inertias
@@ -48,15 +49,20 @@ def find_missing_in_arm(
     *,
     progress: Callable[[str], None] | None = None,
     seed: int = 0,
+    plan: SearchPlan = PLAN,
+    among: Collection[str] | None = None,
 ) -> ArmDiagnosis:
     """Compare an arm with an experiment and add the effects that its check records support.
 
     model: default: the one that the experiment describes; a body for each joint
     progress: called with a line of text at each step;  seed: of the draws for the noise floor
+    plan: how much is searched, such as `QUICK`;  among: names of the effects that are tried
     raises ExperimentError: the experiment has no arm, or lacks what the comparison needs
     """
     said = progress or (lambda _: None)
     stated = model or Model.from_experiment(experiment)
+    if among is not None:
+        stated = trying(among, stated)
     said("forces of the links along the measured motion")
     prepared = prepare_arm(experiment, seed=seed)
     models = {
@@ -75,6 +81,7 @@ def find_missing_in_arm(
             prepared=first.prepared[j],
             stated=models[j],
             seed=seed,
+            plan=plan,
             progress=lambda text, j=j: said(f"{j}: {text}"),  # type: ignore[misc]
         )
         joints[j] = _begun(search, first.prepared[j], first.fits[j].model)
