@@ -128,12 +128,12 @@ def run(options: argparse.Namespace) -> int:
 
 def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
     """The same for an arm: no figure, no page and no simulation yet."""
-    for asked, option in (
+    for value, option in (
         (options.figure, "--figure"),
         (options.report, "--report"),
         (options.simulate, "--simulate"),
     ):
-        if asked:
+        if value:
             raise ExperimentError(f"{option}: not there for an arm: use --json or --predictions")
     from ..diagnose.arms import find_missing_in_arm
     from ..diagnose.arms.answer import write_arm_answer, write_arm_predictions

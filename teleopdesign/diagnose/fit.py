@@ -305,8 +305,7 @@ def solve(
         best, rows = minimum.values, len(minimum.residual) - len(shifts.bodies)
         residual, jacobian = minimum.residual[:rows], minimum.jacobian[:rows]
     else:
-        best = start
-        residual, jacobian = both(start)
+        best, (residual, jacobian) = start, both(start)
     if any(s.shared is not None for s in stretches):
         model = settle_links(there(best), stretches)
         residual, jacobian = both(best)
