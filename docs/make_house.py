@@ -32,6 +32,7 @@ FLOORS = {
     "diagrams": "wiring",
     "blocks": "equations",
     "effects": "physics; records",
+    "arms": "links of an arm",
     "quantity": "words that all share",
 }
 COLOURS = {"effects": "#0072B2", "measurement": "#D55E00"}

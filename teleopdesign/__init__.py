@@ -20,8 +20,8 @@ The names that a user types:
                   fetch
     models        Model, Body, Value
     effects       EFFECTS, Effect, Parameter, FitSearch, State, load_effect
-    diagnosis     fit, compare, rank, find_missing, describe, propose_experiment, Comparison,
-                  Ranking, Diagnosis
+    diagnosis     fit, compare, rank, find_missing, find_missing_in_arm, describe,
+                  propose_experiment, Comparison, Ranking, Diagnosis, ArmDiagnosis
     diagrams      Diagram, ANY, haptic_interface, teleoperator, hand, read_diagram,
                   write_diagram
     controllers   CONTROLLERS, Controller, controller, load_controller, from_control
@@ -42,6 +42,7 @@ The folders, each importing only from those before it:
     frozen        mappings that nobody changes (by_value, recipes, notebook: see there)
     quantity      force, velocity ... -> unit on a prismatic or a revolute axis
     finding       a sentence, its numbers, and a graph that shows it
+    arms          links of an arm, of a URDF or as written, and the forces that they need
     effects       what physics does: one effect = one file
     blocks        bodies, hand: equations only
     controllers   chosen, not found: one control law = one file
@@ -74,6 +75,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import app as app
+    from . import arms as arms
     from . import blocks as blocks
     from . import check as check
     from . import controllers as controllers
@@ -101,11 +103,13 @@ if TYPE_CHECKING:
     from .design import Assumptions, Design
     from .design import design as design_compensation
     from .diagnose import (
+        ArmDiagnosis,
         Comparison,
         Diagnosis,
         Ranking,
         compare,
         find_missing,
+        find_missing_in_arm,
         fit,
         rank,
     )
@@ -138,6 +142,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ANY",
+    "ArmDiagnosis",
     "Assumptions",
     "Body",
     "CONTROLLERS",
@@ -177,6 +182,7 @@ __all__ = [
     "experiment",
     "fetch",
     "find_missing",
+    "find_missing_in_arm",
     "fit",
     "from_control",
     "hand",
@@ -235,11 +241,13 @@ GROUPS: dict[str, dict[str, str]] = {
         "compare": "diagnose",
         "rank": "diagnose",
         "find_missing": "diagnose",
+        "find_missing_in_arm": "diagnose",
         "describe": "unexplained",
         "propose_experiment": "next_experiment:propose",
         "Comparison": "diagnose",
         "Ranking": "diagnose",
         "Diagnosis": "diagnose",
+        "ArmDiagnosis": "diagnose",
     },
     "diagrams": {
         "Diagram": "diagrams",
@@ -301,6 +309,7 @@ _HOMES = {name: home for group in GROUPS.values() for name, home in group.items(
 #: folders that are there as `td.NAME`, imported when first used
 _FOLDERS = (
     "app",
+    "arms",
     "blocks",
     "check",
     "controllers",

@@ -14,7 +14,7 @@ from .blocks.described import body_of, effects_of, value_of
 from .effects import CONTACT_ROLES, EFFECTS, Effect, Parameter, find_effect
 from .errors import ExperimentError, ModelError, did_you_mean
 from .frozen import Frozen
-from .measurement.description import BodyDescription, EnvironmentDescription
+from .measurement.description import BodyDescription, EnvironmentDescription, ModelValue
 from .measurement.experiment import Experiment
 from .notebook import html_table
 
@@ -25,11 +25,13 @@ class Model:
 
     record_shift: body -> s by which the log of its command is late: no physics, but what a logger
         did to the records that the model was estimated on; none where it is not given
+    links: base parameters (SI) of the arm whose joints the bodies are; (): none are estimated
     """
 
     bodies: Mapping[str, Body]
     known: Mapping[str, Effect] = field(default_factory=lambda: EFFECTS, repr=False)
     record_shift: Mapping[str, Value] = field(default_factory=dict, repr=False)
+    links: tuple[float, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
         expected = 'bodies by their place, such as {"device": Body(...)}'
@@ -55,7 +57,10 @@ class Model:
         known: the effects by name, for those who add their own
         raises ExperimentError: unknown effect or parameter, wrong unit, value out of bounds
         """
-        bodies = {n: _body(b, known) for n, b in experiment.bodies.items()}
+        described = experiment.bodies
+        if experiment.arm is not None:
+            described = {n: _of_joint(b) for n, b in described.items()}
+        bodies = {n: _body(b, known) for n, b in described.items()}
         for place, body in bodies.items():
             for effect in body.effects:
                 wanted = sorted(effect.channels())
@@ -138,6 +143,10 @@ class Model:
         """The model with other shifts of the records, by body; {}: with none."""
         instance(shifts, Mapping, "with_record_shift", expected='such as {"device": Value(0.001)}')
         return replace(self, record_shift=Frozen(shifts))
+
+    def with_links(self, values: tuple[float, ...]) -> Model:
+        """The model with other base parameters of its arm."""
+        return replace(self, links=values)
 
     @property
     def parameters(self) -> dict[str, Value]:
@@ -292,6 +301,12 @@ def _touching(body: Body, description: EnvironmentDescription, known: Mapping[st
             raise ExperimentError(f'{where}: "{effect.name}" acts at a body, not at an environment')
         body = body.with_effect(effect)
     return body.with_values(parameters)
+
+
+def _of_joint(description: BodyDescription) -> BodyDescription:
+    """A joint of an arm as a body: its links have the inertia that its motor does not state."""
+    motor = description.inertia or ModelValue(0.0, None, True, description.where)
+    return replace(description, inertia=replace(motor, fixed=True))
 
 
 def _body(description: BodyDescription, known: Mapping[str, Effect]) -> Body:

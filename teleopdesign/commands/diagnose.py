@@ -6,15 +6,24 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import ModelError
+from ..errors import ExperimentError, ModelError
 from ..plain_data import replacing
-from ._diagnosis import add_search, diagnosed, experiment_of, print_diagnosis
+from ._diagnosis import (
+    add_search,
+    diagnosed,
+    experiment_of,
+    known_of,
+    print_diagnosis,
+    stated_model,
+    tried_effects,
+)
 from ._folders import diagnose_all
 from ._options import add_effect_files, check_output, count_argument, say
 from ._report import write_page
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis, SimulationComparison
+    from ..measurement import Experiment
 
 EXAMPLES = """
   teleopdesign diagnose rod
@@ -98,6 +107,8 @@ def run(options: argparse.Namespace) -> int:
     experiment = experiment_of(folder)
     print(experiment)
     print()
+    if experiment.arm is not None:
+        return _run_arm(experiment, options)
     diagnosis = diagnosed(experiment, options)
     print_diagnosis(diagnosis)
     simulation = _simulation(diagnosis, options)
@@ -112,6 +123,35 @@ def run(options: argparse.Namespace) -> int:
         write_page(diagnosis, options.report)
     for line in _next_commands(diagnosis, folder):
         print(line)
+    return 0
+
+
+def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
+    """The same for an arm: no figure, no page and no simulation yet."""
+    for value, option in (
+        (options.figure, "--figure"),
+        (options.report, "--report"),
+        (options.simulate, "--simulate"),
+    ):
+        if value:
+            raise ExperimentError(f"{option}: not there for an arm: use --json or --predictions")
+    from ..diagnose.arms import find_missing_in_arm
+    from ..diagnose.arms.answer import write_arm_answer, write_arm_predictions
+    from ..diagnose.search_plan import PLAN, QUICK
+
+    diagnosis = find_missing_in_arm(
+        experiment,
+        stated_model(experiment, options),
+        progress=say,
+        plan=QUICK if options.quick else PLAN,
+        among=tried_effects(known_of(options), options.only, options.exclude),
+    )
+    say("")
+    print(diagnosis)
+    if options.json is not None:
+        write_arm_answer(diagnosis, options.json)
+    if options.predictions is not None:
+        write_arm_predictions(diagnosis, options.predictions)
     return 0
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..arguments import check_arguments
 from ..measurement.experiment import Experiment
 from ..model import Model
+from .arms import ArmDiagnosis, find_missing_in_arm
 from .by_simulation import HorizonError, RecordedLoop, SimulationComparison
 from .comparison import Comparison, compare
 from .corrected_fit import corrected_fit
@@ -19,6 +20,7 @@ from .rung import Rung
 from .search import estimate_from_starts
 
 __all__ = [
+    "ArmDiagnosis",
     "Comparison",
     "Diagnosis",
     "Fit",
@@ -30,6 +32,7 @@ __all__ = [
     "SimulationComparison",
     "compare",
     "find_missing",
+    "find_missing_in_arm",
     "fit",
     "rank",
 ]

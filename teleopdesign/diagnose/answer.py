@@ -40,13 +40,13 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "missing": [_missing_place(r) for r in diagnosis.rungs if r.added in diagnosis.missing],
         "ladder": [
             {
-                "added": None if r.added is None else _place(r.added.key),
+                "added": None if r.added is None else place_data(r.added.key),
                 "instead_of": None if r.instead_of is None else r.instead_of.effect.name,
                 "fit_error": r.fit.fit_error,
                 "check_error": r.fit.check_error,
                 "check_error_at_command": plain(r.fit.at_command.error),
                 "blind": r.fit.at_command.blind,
-                "could_be": None if r.could_be is None else [_place(c.key) for c in r.could_be],
+                "could_be": None if r.could_be is None else [place_data(c.key) for c in r.could_be],
             }
             for r in diagnosis.rungs
         ],
@@ -55,11 +55,11 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "noise_floor_source": diagnosis.floor.source,
         "check": "records" if checked else "blocks of fit",
         "bandwidth": {"value": diagnosis.prepared.bandwidth, "unit": "Hz"},
-        "candidates": _candidates(diagnosis) if recorded is None else recorded["candidates"],
-        "indistinguishable": [[_place(c.key) for c in g] for g in diagnosis.groups],
+        "candidates": candidate_rows(diagnosis) if recorded is None else recorded["candidates"],
+        "indistinguishable": [[place_data(c.key) for c in g] for g in diagnosis.groups],
         "own": offset_rows(diagnosis),
         "record_shift": shift_data(diagnosis.model, diagnosis.prepared.stretches),
-        "model_parameters": _parameters(diagnosis.after, _added(diagnosis)),
+        "model_parameters": parameter_rows(diagnosis.after, _added(diagnosis)),
         "left_over_noise_floors": plain(diagnosis.left),
         **learnable_data(diagnosis.learnable, diagnosis.near_reversals),
         "one_moment": _moment(diagnosis.moment),
@@ -84,9 +84,9 @@ def _open(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """The open questions: an accepted effect, and its rivals with their models."""
     return [
         {
-            "added": None if question.added is None else _place(question.added.key),
+            "added": None if question.added is None else place_data(question.added.key),
             "others": [
-                _place(c.key) | {"model": model_data(fit.model)} for c, fit in question.others
+                place_data(c.key) | {"model": model_data(fit.model)} for c, fit in question.others
             ],
         }
         for question in open_questions(diagnosis)
@@ -106,14 +106,15 @@ def _moment(moment: Moment | None) -> dict[str, Any] | None:
     }
 
 
-def _place(key: tuple[str, str]) -> dict[str, str]:
+def place_data(key: tuple[str, str]) -> dict[str, str]:
+    """An effect and where it acts, as answers write it."""
     return {"effect": key[0], "at": key[1]}
 
 
 def _missing_place(rung: Rung) -> dict[str, str]:
     """What a rung added, with the effect of the user's model that it takes the place of."""
     assert rung.added is not None
-    place = _place(rung.added.key)
+    place = place_data(rung.added.key)
     instead = rung.instead_of
     return place if instead is None else place | {"instead_of": instead.effect.name}
 
@@ -131,7 +132,8 @@ def _parameter(model: Model, name: str) -> dict[str, Any]:
     }
 
 
-def _parameters(fit: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
+def parameter_rows(fit: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
+    """Parameters of a fit with standard errors and units; without: effects left out, by places."""
     skip = set(without)
     return {
         n: _parameter(fit.model, n)
@@ -140,7 +142,7 @@ def _parameters(fit: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
     }
 
 
-def _candidates(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+def candidate_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """Every candidate, most probable first: at the step that accepted it, or at its best step."""
     best: dict[tuple[str, str], CandidateEvidence] = {}
     for one in evidence_of(diagnosis):
@@ -153,7 +155,7 @@ def _candidates(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 def _evidence(one: CandidateEvidence) -> dict[str, Any]:
     """Evidence behind the probability of a candidate, one row for each step that considered it."""
-    return _place(one.ranked.candidate.key) | {
+    return place_data(one.ranked.candidate.key) | {
         "accepted": one.accepted,
         "as_good": one.as_good,
         "score": plain(one.ranked.score),
@@ -212,7 +214,7 @@ def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
     for body in bodies:
         head += [f"{body}.{q}" for q in ("measured", "model_before", "model_after")]
         head += [f"{body}.residual_before", f"{body}.residual_after"]
-    with replacing(path) as part, _opened(part, path) as file:
+    with replacing(path) as part, opened(part, path) as file:
         out = csv.writer(file)
         out.writerow(head)
         for record in diagnosis.experiment.records:
@@ -228,7 +230,7 @@ def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
 
 
 @contextmanager
-def _opened(part: Path, path: Path) -> Iterator[TextIO]:
+def opened(part: Path, path: Path) -> Iterator[TextIO]:
     """A text file to write to, packed where the name says so; the name within is the path's."""
     with part.open("wb") as raw:
         if path.suffix != ".gz":

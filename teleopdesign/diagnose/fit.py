@@ -18,8 +18,9 @@ from .error_at_command import AtCommand, at_command
 from .least_squares import minimise
 from .prepare import Prepared, Stretch, folds
 from .record_shift import LARGEST, RecordShifts, record_shifts
-from .residual import both_residuals, relative_residuals
+from .residual import both_residuals, relative_residuals, residuals
 from .scales import scales
+from .shared_links import best_links
 
 #: seconds over which residuals count as one observation in standard errors and tests
 BLOCK = 0.25
@@ -304,8 +305,10 @@ def solve(
         best, rows = minimum.values, len(minimum.residual) - len(shifts.bodies)
         residual, jacobian = minimum.residual[:rows], minimum.jacobian[:rows]
     else:
-        best = start
-        residual, jacobian = both(start)
+        best, (residual, jacobian) = start, both(start)
+    if any(s.shared is not None for s in stretches):
+        model = settle_links(there(best), stretches)
+        residual, jacobian = both(best)
     at_bound = (best - lower < AT_BOUND) | (upper - best < AT_BOUND)
     return Solution(
         model=there(best),
@@ -318,6 +321,12 @@ def solve(
         by_shift=jacobian[:, p:],
         shift_at_bound=at_bound[p:],
     )
+
+
+def settle_links(model: Model, stretches: Sequence[Stretch]) -> Model:
+    """The model with the best base parameters of its arm beside the rest of it."""
+    left = [r for r, _ in residuals(model, stretches)]
+    return model.with_links(best_links(model.links, stretches, left))
 
 
 def over_decades(model: Model, name: str) -> bool:

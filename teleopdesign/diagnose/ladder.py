@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from dataclasses import replace
 
-from ..effects import find_effect
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .conclusion import conclude
 from .decision import is_a_tone
 from .diagnosis import Diagnosis
 from .exchange import exchange
-from .ladder_state import LadderSearch, LadderState, begin, look, search_for
+from .ladder_state import LadderSearch, LadderState, begin, look, search_for, trying
 from .moves import add, remove
 from .pairs import add_pair, replace_by_pair
 from .search_plan import PLAN, SearchPlan
@@ -39,7 +38,7 @@ def find_missing(
     raises ExperimentError: the experiment lacks what the comparison needs
     """
     if among is not None:
-        model = _trying(among, model or Model.from_experiment(experiment))
+        model = trying(among, model or Model.from_experiment(experiment))
     search = search_for(experiment, model, progress=progress, seed=seed, plan=plan)
     state = begin(search)
     while (moved := next_move(search, state)) is not None:
@@ -49,11 +48,6 @@ def find_missing(
         return diagnosis
     words = f"only these effects were tried: {', '.join(sorted(among))}"
     return replace(diagnosis, left_out=(*diagnosis.left_out, words))
-
-
-def _trying(among: Collection[str], model: Model) -> Model:
-    """The model to which only these effects may be added; raises ModelError: an unknown name."""
-    return replace(model, known={n: find_effect(n, model.known, "among") for n in among})
 
 
 def next_move(search: LadderSearch, state: LadderState) -> LadderState | None:

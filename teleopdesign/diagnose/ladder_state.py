@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..effects import depends_on_time
+from ..effects import depends_on_time, find_effect
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .candidates import Candidate
@@ -138,6 +138,11 @@ def search_for(
         plan=plan,
         progress=progress or (lambda _: None),
     )
+
+
+def trying(among: Collection[str], model: Model) -> Model:
+    """The model to which only these effects may be added; raises ModelError: an unknown name."""
+    return replace(model, known={n: find_effect(n, model.known, "among") for n in among})
 
 
 def begin(search: LadderSearch) -> LadderState:

@@ -69,8 +69,8 @@ def noise_floor(
     stated = all(channels[f"{s.motion.body}.position"].resolution is not None for s in stretches)
     errors, before = [], residuals(model, stretches)
     command_errors, command_before = [], at_command(model, stretches).residual
-    for _ in range(DRAWS):
-        drawn = [_drawn(s, prepared, generator) for s in stretches]
+    for k in range(DRAWS):
+        drawn = [_drawn(s, prepared, generator, k) for s in stretches]
         pairs = zip(residuals(model, drawn), before, strict=True)
         errors.append(error_of(drawn, [r - r0 for (r, _), (r0, _) in pairs]))
         again = zip(at_command(model, drawn).residual, command_before, strict=True)
@@ -83,9 +83,13 @@ def noise_floor(
     return NoiseFloor(left, source, drawn=left, at_command=max(back, 1.0))
 
 
-def _drawn(stretch: Stretch, prepared: Prepared, generator: np.random.Generator) -> Stretch:
+def _drawn(
+    stretch: Stretch, prepared: Prepared, generator: np.random.Generator, draw: int
+) -> Stretch:
     """The stretch read once more, with the directions that were told."""
     motion = read_again(stretch, prepared, generator)
+    if stretch.motion.links is not None:
+        motion = replace(motion, links=stretch.motion.links.drawn[draw])
     return replace(stretch, motion=replace(motion, direction=stretch.motion.direction))
 
 

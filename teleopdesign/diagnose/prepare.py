@@ -14,6 +14,7 @@ from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motions
 from .bandwidth import default_bandwidth
+from .shared_links import Shared, share_again
 
 #: seconds at each end of a stretch where the low-pass has not settled
 TRIM = 0.25
@@ -31,6 +32,7 @@ class Stretch(ByValue):
     weight: rows that each of them stands for
     measured: sum of squares of the low-passed measured force over the rows that count
     offset_names: in which the record may differ from the others
+    shared: of an arm's joint, what takes the freedom of the links out of residuals; None: nothing
     """
 
     motion: Motion
@@ -39,6 +41,7 @@ class Stretch(ByValue):
     weight: float
     measured: float
     offset_names: frozenset[str] = frozenset()
+    shared: Shared | None = None
 
     @property
     def has_zero_offset(self) -> bool:
@@ -65,6 +68,11 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
     bandwidth: Hz; default: the experiment's, or chosen from the record
     raises ExperimentError: bandwidth too high for the sample rate, or no stretch long enough
     """
+    if experiment.arm is not None:
+        raise ExperimentError(
+            f"{experiment.folder.name}/experiment.toml: model.arm: found an arm, expected one body "
+            "or two: only `teleopdesign diagnose` (find_missing_in_arm) compares an arm"
+        )
     chosen = bandwidth or experiment.bandwidth or default_bandwidth(experiment)
     stretches = []
     for record in experiment.records:
@@ -106,14 +114,15 @@ def folds(
         kept, held_out = [], []
         for s in stretches:
             part = np.arange(len(s.keep)) * FOLDS // len(s.keep) == i
-            kept.append(_cut(s, s.keep[~part]))
+            kept.append(replace(_cut(s, s.keep[~part]), shared=s.shared))
             held_out.append(_cut(s, s.keep[part]))
-        pairs.append((tuple(kept), tuple(held_out)))
+        pairs.append((share_again(kept), tuple(held_out)))
     return pairs
 
 
 def _cut(stretch: Stretch, keep: NDArray[np.intp]) -> Stretch:
-    return replace(stretch, keep=keep, measured=_squares(stretch.motion, keep, stretch.weight))
+    measured = _squares(stretch.motion, keep, stretch.weight)
+    return replace(stretch, keep=keep, measured=measured, shared=None)
 
 
 def measured_force(stretch: Stretch) -> Array:

@@ -142,8 +142,11 @@ def offset_groups(
 
 
 def as_logged(model: Model, motion: Motion) -> Motion:
-    """A motion with the model's shift of its record."""
+    """A motion with the model's shift of its record, and with what its links need of the joint."""
     late = model.command_late(motion.body)
+    if motion.links is not None:
+        carried = motion.links.carried(model.links, motion.acceleration)
+        return replace(motion, command_late=late, carried=carried)
     return motion if late == motion.command_late else replace(motion, command_late=late)
 
 

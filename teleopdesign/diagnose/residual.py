@@ -18,6 +18,7 @@ from ..realise.along_motion import residual_along
 from ..realise.traced import Probe, Traced, constant, through
 from .prepare import Stretch
 from .record_offsets import along_offsets, offset_groups
+from .shared_links import clear
 
 
 def residuals(
@@ -37,7 +38,8 @@ def relative_residuals(
 
     A model whose actuator passes next to nothing leaves next to no residual force, nor does one
     whose friction takes up whatever acts; relative to what it lets act on each body, nothing is
-    gained. Equal to `residuals` where nothing stands between command and force.
+    gained. Equal to `residuals` where nothing stands between command and force. What the links of
+    an arm, which all its joints share, can make of a joint's is taken out (`shared_links.clear`).
     """
     parts = _along(model, stretches, wrt, _taking(model))
     return _relative(model, stretches, parts, len(wrt))
@@ -57,7 +59,7 @@ def _relative(
     parameters: int,
 ) -> list[tuple[Array, Array]]:
     """Residuals and tangents at the scale of the measured force, from those of `_along`."""
-    scaled = [(r.value, r.tangent) for r, _ in parts]
+    scaled = clear(model.links, stretches, [(r.value, r.tangent) for r, _ in parts])
     for place in _taking(model):
         moving = {
             i: signal

@@ -93,9 +93,9 @@ def environment_from(
     values = {}
     for name, quantity in _ENVIRONMENT.items():
         if name in table.content:
-            values[name] = _value(table, name)
+            values[name] = value_from(table, name)
             values[name].in_si(quantity, axis)
-    return EnvironmentDescription(values, _effects(table), table.where())
+    return EnvironmentDescription(values, effects_from(table), table.where())
 
 
 def _moving(name: str, table: Table) -> BodyDescription:
@@ -122,21 +122,22 @@ def body_from(name: str, table: Table) -> BodyDescription:
         )
     inertia = None
     if "inertia" in table.content:
-        inertia = _value(table, "inertia")
+        inertia = value_from(table, "inertia")
         inertia.in_si("inertia", axis)
-    return BodyDescription(name, axis, inertia, _effects(table), table.where())
+    return BodyDescription(name, axis, inertia, effects_from(table), table.where())
 
 
-def _effects(table: Table) -> dict[str, dict[str, ModelValue]]:
+def effects_from(table: Table) -> dict[str, dict[str, ModelValue]]:
+    """The effects of a table under its key `effects`, with the values that are written."""
     effects = table.table("effects")
     written = {name: effects.table(name) for name in effects.content}
     return {
-        name: {parameter: _value(effect, parameter) for parameter in effect.content}
+        name: {parameter: value_from(effect, parameter) for parameter in effect.content}
         for name, effect in written.items()
     }
 
 
-def _value(table: Table, key: str) -> ModelValue:
+def value_from(table: Table, key: str) -> ModelValue:
     """{ value = 0.5, unit = "N", fixed = true, stderr = 0.1 }, or a number in SI."""
     if not isinstance(table.content[key], dict):
         return ModelValue(table.number(key), None, False, table.where(key))

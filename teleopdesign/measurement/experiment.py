@@ -9,6 +9,7 @@ from ..by_value import ByValue
 from ..errors import ExperimentError, did_you_mean, quoted
 from ..notebook import html_table
 from ..quantity import unit_of
+from .arm_description import ArmDescription, arm_from
 from .channel import BODY_QUANTITIES, Channel, channels_from, frequency_from, sample_rate_from
 from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from
 from .doors.bag import is_bag
@@ -24,9 +25,10 @@ _FILE = "experiment.toml"
 class Experiment(ByValue):
     """What was measured, and what the user believes so far. All signals in SI units.
 
-    bodies: "device", or "master" and "slave"
+    bodies: "device", or "master" and "slave", or the joints of an arm by their names
     channels: "device.position" and the like, "time", "segment"
     bandwidth: Hz; model and measurement are compared below it; None: to be chosen from the record
+    arm: the links that couple the bodies, where these are the joints of an arm
     guesses: what `teleopdesign new` guessed and nobody confirmed: key -> why
     """
 
@@ -38,6 +40,7 @@ class Experiment(ByValue):
     bandwidth: float | None
     records: tuple[Record, ...]
     guesses: Mapping[str, str] = field(default_factory=dict)
+    arm: ArmDescription | None = None
 
     @property
     def fit_records(self) -> tuple[Record, ...]:
@@ -94,6 +97,8 @@ class Experiment(ByValue):
                 if channel is not None:
                     unit = unit_of(BODY_QUANTITIES[quantity], body.axis)
                     lines.append(f"    {quantity} in {unit}{_exactness(channel, unit)}")
+        if self.arm is not None:
+            lines += [f"  {line}" for line in repr(self.arm).splitlines()]
         lines += [f"  {record!r}" for record in self.records]
         lines += reading_table(self.reading)
         return "\n".join(lines)
@@ -112,8 +117,8 @@ def load_experiment(folder: str | Path) -> Experiment:
     )
     title = experiment.text("title", folder.name)
     model = experiment.table("model")
-    bodies = bodies_from(model)
-    environment = environment_from(model, bodies)
+    arm, bodies = arm_from(model, folder) if "arm" in model.content else (None, bodies_from(model))
+    environment = environment_from(model, bodies) if arm is None else None
     channels = channels_from(experiment.table("channels"), bodies)
     sample_rate = sample_rate_from(experiment, experiment.table("channels"))
     comparison = experiment.table("comparison")
@@ -135,7 +140,9 @@ def load_experiment(folder: str | Path) -> Experiment:
     _check_bandwidth(bandwidth, records, comparison)
     guessed = experiment.table("guessed")
     guesses = {key: guessed.text(key) for key in guessed.content}
-    return Experiment(folder, title, bodies, environment, channels, bandwidth, records, guesses)
+    return Experiment(
+        folder, title, bodies, environment, channels, bandwidth, records, guesses, arm
+    )
 
 
 def _found_folder(path: Path) -> Path:

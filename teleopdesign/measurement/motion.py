@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -27,6 +27,28 @@ SHORTEST = 0.6
 
 
 @dataclass(frozen=True, eq=False)
+class LinkForces(ByValue):
+    """Force that the links of an arm need at one joint, along a motion of n samples, SI.
+
+    constant: (n,) by what is known;  columns: (b, n) per unit of each base parameter of the arm
+    smooth: the same columns through the comparison's low-pass
+    inertia: part of them that the body itself has, and that is not carried
+    drawn: the same forces with the positions of all joints read anew, for the noise floor
+    """
+
+    constant: Array
+    columns: Array
+    smooth: Array
+    drawn: tuple[LinkForces, ...] = ()
+    inertia: float = 0.0
+
+    def carried(self, values: Sequence[float], acceleration: Array) -> Array:
+        """The force (n,) at these values (b,) of the base parameters; acceleration: (n,)."""
+        force = self.constant + np.asarray(values) @ self.columns if len(values) else self.constant
+        return force - self.inertia * acceleration
+
+
+@dataclass(frozen=True, eq=False)
 class Motion(ByValue):
     """One body along one segment (n samples, uniform); all SI, position positive like the forces.
 
@@ -37,6 +59,7 @@ class Motion(ByValue):
     rows: the samples' place in the record;  bandwidth: of the comparison, Hz
     further: of channels besides: "temperature", "other_position" and its rates, smoothed alike
     command_late: s by which the log of the command is later than that of the position
+    links: of the arm that the body is a joint of;  carried: (n,) the force that they need here
     """
 
     body: str
@@ -55,6 +78,8 @@ class Motion(ByValue):
     bandwidth: float
     command_late: float = 0.0
     further: Mapping[str, Array] = field(default_factory=dict)
+    links: LinkForces | None = None
+    carried: Array | None = None
 
     @property
     def sample_time(self) -> float:

@@ -3,7 +3,7 @@
 The motion is given, so the effects decouple: each turns arrays into arrays, composed by role.
 
     command -> actuation stages (averages over each hold) -> acting force at the rows
-    needed friction = acting + interaction - inertia a - forces
+    needed friction = acting + interaction - inertia a - forces (- what the links of an arm need)
     friction = shape(level, motion); where the position cannot tell a motion it is what balances
     residual = needed friction - friction           > 0: more force acts than the model needs
 
@@ -66,6 +66,8 @@ def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
     along = along.with_signals({SIGNALS["acting_force"]: acting})
     inertia = along.evaluate(body.symbols()["inertia"] * SIGNALS["acceleration"])
     needed = acting + interaction - inertia
+    if motion.carried is not None:
+        needed = needed - along.constant(motion.carried)
     for effect in along.present(body.effects, "force"):
         needed = needed - _force(effect, along)
     contact = body.contact()

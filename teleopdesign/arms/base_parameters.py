@@ -1,0 +1,97 @@
+"""Base parameters: the combinations of inertial parameters that a motion of the arm can tell.
+
+Many of the ten parameters of a link act only together with those of others: a mass on an axis that
+never tips is not felt. Which columns of the forces are independent depends on the kinematics alone;
+so they are sought among random poses, by orthogonalisation: moments of inertia first, masses and
+motors last. Each base parameter bears the name of the inertial parameter that stands for its
+combination.
+
+Source: Gautier, Khalil, Direct calculation of minimum set of inertial parameters of serial robots,
+IEEE Trans. Robotics and Automation 6 (1990) 368.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..by_value import ByValue
+from .chain import INERTIAL, UNITS, Array, Chain
+from .regressor import force_columns
+
+#: random poses per joint: a few times the number of inertial parameters
+POSES = 60
+#: part of the largest column below which what is left of one is rounding: columns that depend leave
+#: 1e-13, those that do not 1e-4 and more
+INDEPENDENT = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class BaseParameters(ByValue):
+    """What can be told of the p inertial parameters and motor inertias of an arm with k joints.
+
+    names: of the b base parameters, "forearm_link.mx" and the like;  units: of each
+    chosen: (b,) columns that stand for them;  initial: (b,) their values by those of the arm
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    chosen: NDArray[np.intp]
+    initial: Array
+
+
+def columns_with_motors(arm: Chain, position: Array, velocity: Array, acceleration: Array) -> Array:
+    """Force at each joint per inertial parameter and per inertia of its motor (k, 11 k, n).
+
+    The rotor of joint j needs its inertia times the acceleration of that joint, at that joint.
+    """
+    columns = force_columns(arm, position, velocity, acceleration)
+    motors = np.eye(len(arm.links))[:, :, None] * acceleration[:, None, :]
+    return np.concatenate([columns, motors], axis=1)
+
+
+def base_parameters(arm: Chain, *, seed: int = 0) -> BaseParameters:
+    """The base parameters of an arm: links that tell first, motors last.
+
+    seed: of the random poses; the parameters do not depend on it but for rounding
+    """
+    k, generator = len(arm.links), np.random.default_rng(seed)
+    q, v, a = (generator.uniform(-np.pi, np.pi, (k, POSES * k)) for _ in range(3))
+    columns = columns_with_motors(arm, q, v, a)
+    rows = columns.transpose(0, 2, 1).reshape(-1, columns.shape[1])
+    order = np.argsort([_turn(i, k) for i in range(rows.shape[1])], kind="stable")
+    chosen = np.sort(order[_independent(rows[:, order])])
+    names = [f"{link.name}.{x}" for link in arm.links for x in INERTIAL]
+    names += [f"{link.joint}.motor_inertia" for link in arm.links]
+    motor = ["kg" if link.kind == "prismatic" else "kg*m^2" for link in arm.links]
+    units = [*UNITS * k, *motor]
+    whole = np.concatenate([arm.inertial, np.zeros(k)])
+    initial = np.linalg.lstsq(rows[:, chosen], rows @ whole, rcond=None)[0]
+    return BaseParameters(
+        tuple(names[i] for i in chosen), tuple(units[i] for i in chosen), chosen, initial
+    )
+
+
+def _turn(column: int, links: int) -> int:
+    """When a column is looked at: moments of links first, then masses, then motors."""
+    if column >= len(INERTIAL) * links:
+        return 2
+    return 1 if column % len(INERTIAL) == 0 else 0
+
+
+def _independent(rows: Array) -> NDArray[np.intp]:
+    """Columns none of which depends on those before it, in their order."""
+    size = np.linalg.norm(rows, axis=0)
+    basis = np.zeros((len(rows), 0))
+    chosen = []
+    for i in np.flatnonzero(size > INDEPENDENT * size.max()):
+        left = rows[:, i] / size[i]
+        for _ in range(2):  # twice: what rounding leaves of the first is taken out too
+            left = left - basis @ (basis.T @ left)
+        length = float(np.linalg.norm(left))
+        if length > INDEPENDENT:
+            basis = np.hstack([basis, left[:, None] / length])
+            chosen.append(int(i))
+    return np.array(chosen, dtype=np.intp)

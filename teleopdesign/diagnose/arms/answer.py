@@ -1,0 +1,157 @@
+"""The answer on an arm: as that on one body, with the errors of each joint in its ladder."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...blocks import Value
+from ...measurement.filtering import Array
+from ...measurement.reading import reading_data
+from ...model import Model
+from ...plain_data import harmless_cell, plain, replacing, write_json
+from ...realise.along_motion import residual_along
+from ..answer import candidate_rows, opened, parameter_rows, place_data
+from ..answers.fingerprint import experiment_data
+from ..diagnosis import Diagnosis
+from ..record_offsets import along_with_offsets
+from ..record_shift import shift_data
+from .diagnosis import ArmDiagnosis, ArmRung
+from .fit import ArmFit
+
+
+def arm_answer(diagnosis: ArmDiagnosis) -> dict[str, Any]:
+    """The answer as plain data: verdict, ladder, candidates, parameters; SI units."""
+    joints = diagnosis.joints.values()
+    candidates = [row for d in joints for row in candidate_rows(d)]
+    added = {c.added.key for c in diagnosis.rungs if c.added is not None}
+    shifts: dict[str, Any] = {}
+    for d in joints:
+        shifts |= shift_data(d.model, d.prepared.stretches)
+    return {
+        "verdict": diagnosis.verdict,
+        "missing": [_missing(r) for r in diagnosis.rungs if r.added in diagnosis.missing],
+        "ladder": [_rung(r) for r in diagnosis.rungs],
+        "noise_floor": diagnosis.floor,
+        "noise_floor_source": next(iter(joints)).floor.source,
+        "check": "records" if diagnosis.experiment.check_records else "blocks of fit",
+        "bandwidth": {"value": diagnosis.prepared.bandwidth, "unit": "Hz"},
+        "joints": {j: _joint(d) for j, d in diagnosis.joints.items()},
+        "candidates": sorted(candidates, key=lambda c: -c["probability"]),
+        "indistinguishable": [
+            [place_data(c.key) for c in group]
+            for d in joints
+            for group in d.groups
+            if group[0].key in added
+        ],
+        "record_shift": shifts,
+        "model_parameters": _parameters(diagnosis),
+        "at_bound": [n for d in joints for n in d.after.at_bound],
+        "experiment": experiment_data(diagnosis.experiment),
+        "reading": reading_data(diagnosis.experiment.reading),
+    }
+
+
+def _missing(rung: ArmRung) -> dict[str, str]:
+    assert rung.added is not None
+    place = place_data(rung.added.key)
+    instead = rung.instead_of
+    return place if instead is None else place | {"instead_of": instead.effect.name}
+
+
+def _rung(rung: ArmRung) -> dict[str, Any]:
+    fit = rung.fit
+    return {
+        "added": None if rung.added is None else place_data(rung.added.key),
+        "instead_of": None if rung.instead_of is None else rung.instead_of.effect.name,
+        "fit_error": fit.fit_error,
+        "check_error": fit.check_error,
+        "joints": {
+            j: {"fit_error": fit.fit_errors[j], "check_error": fit.check_errors[j]}
+            for j in fit.fits
+        },
+    }
+
+
+def _joint(diagnosis: Diagnosis) -> dict[str, Any]:
+    return {
+        "verdict": diagnosis.verdict,
+        "noise_floor": diagnosis.floor.value,
+        "left_over_noise_floors": plain(diagnosis.left),
+    }
+
+
+def _parameters(diagnosis: ArmDiagnosis) -> dict[str, Any]:
+    """Parameters of the user's model, and the base parameters of the links."""
+    rows: dict[str, Any] = {}
+    added = {f"{r.added.at}.{r.added.effect.name}" for r in diagnosis.rungs if r.added is not None}
+    for j, fit in diagnosis.after.fits.items():
+        rows |= {
+            n: row
+            for n, row in parameter_rows(fit, added).items()
+            if n != f"{j}.inertia"  # its body stands for the links too while it is searched
+        }
+    rows |= {
+        f"arm.{n}": {"value": plain(value), "stderr": plain(error), "unit": unit}
+        for n, (value, error, unit) in diagnosis.base_parameters.items()
+    }
+    return rows
+
+
+def write_arm_answer(diagnosis: ArmDiagnosis, path: str | Path) -> None:
+    """Write the answer as JSON."""
+    write_json(path, arm_answer(diagnosis))
+
+
+def write_arm_predictions(diagnosis: ArmDiagnosis, path: str | Path) -> None:
+    """Write measured and modelled force, a row a sample of every record; .csv or .csv.gz.
+
+    As `write_predictions` does for bodies: five columns a joint.
+    """
+    path = Path(path)
+    head = ["record", "t"]
+    for joint in diagnosis.joints:
+        head += [f"{joint}.{q}" for q in ("measured", "model_before", "model_after")]
+        head += [f"{joint}.residual_before", f"{joint}.residual_after"]
+    with replacing(path) as part, opened(part, path) as file:
+        out = csv.writer(file)
+        out.writerow(head)
+        for record in diagnosis.experiment.records:
+            columns: list[Array] = []
+            for joint in diagnosis.joints:
+                columns += _predicted(diagnosis, joint, record.file)
+            for k, time in enumerate(record.time):
+                numbers = (f"{c[k]:.7g}" for c in columns)
+                out.writerow([harmless_cell(record.file), f"{time:.9g}", *numbers])
+
+
+def _predicted(diagnosis: ArmDiagnosis, joint: str, file: str) -> Sequence[Array]:
+    record = next(r for r in diagnosis.experiment.records if r.file == file)
+    stretches = [s for s in diagnosis.before.prepared[joint].stretches if s.motion.file == file]
+    interaction = record.signals.get(f"{joint}.interaction_force")
+    measured = record.signals[f"{joint}.actuator_force"] + (
+        0.0 if interaction is None else interaction
+    )
+    left = []
+    for fit in (diagnosis.before, diagnosis.after):
+        residual = np.zeros_like(measured)
+        for body, motion in along_with_offsets(fit.fits[joint].model, stretches):
+            residual[motion.rows] = residual_along(body, motion).residual.value
+        left.append(residual)
+    before, after = left
+    return [measured, measured - before, measured - after, before, after]
+
+
+def arm_model(fit: ArmFit, stated: Model) -> Model:
+    """The model of a fitted arm: all its joints, their bodies with the inertia of their motors."""
+    bodies = {}
+    for j, one in fit.fits.items():
+        motor = stated.bodies[j].parameters["inertia"] if j in stated.bodies else Value(0.0, True)
+        bodies[j] = one.model.bodies[j].with_values({"inertia": motor})
+    shifts = {j: s for one in fit.fits.values() for j, s in one.model.record_shift.items()}
+    return replace(stated, bodies=bodies, record_shift=shifts, links=fit.links)

@@ -1,0 +1,226 @@
+"""Parameters of an arm: those of every joint, and the base parameters that all joints share.
+
+Each joint is fitted by itself with what the others know of the links; what it then knows itself
+goes to the others. Force is linear in the base parameters and nearly so in those of friction: two
+rounds agree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...by_value import ByValue
+from ...measurement.filtering import Array
+from ...model import Model
+from ..effort import EFFORTS, Effort
+from ..error import force_error
+from ..fit import BLOCK, Fit, block_numbers, estimate, free_parameters, standard_errors
+from ..prepare import Prepared, Stretch
+from ..record_shift import record_shifts
+from ..residual import relative_residuals
+from ..search import estimate_from_starts
+from ..shared_links import Knowledge, share, weighted_columns
+from .prepared import PreparedArm
+
+#: part of the measured force below which what is left does not make a joint count for more
+LEAST = 1e-4
+#: rounds over all joints for a fit: what a third changes is below 1e-3 of the error
+ROUNDS = 2
+
+
+@dataclass(frozen=True, eq=False)
+class ArmFit(ByValue):
+    """A fitted arm.
+
+    fits: joint -> its fit, with the base parameters of all in `fit.model.links`
+    prepared: joint -> its records, with what the other joints know of the links
+    links: the base parameters that all joints agree on
+    fit_errors, check_errors: joint -> relative force error at these; NaN without such records
+    """
+
+    fits: Mapping[str, Fit]
+    prepared: Mapping[str, Prepared]
+    links: tuple[float, ...]
+    fit_errors: Mapping[str, float]
+    check_errors: Mapping[str, float]
+
+    @property
+    def fit_error(self) -> float:
+        """Error of the arm on the fit records."""
+        return mean_error(self.fit_errors)
+
+    @property
+    def check_error(self) -> float:
+        """Error of the arm on the check records."""
+        return mean_error(self.check_errors)
+
+
+def mean_error(errors: Mapping[str, float]) -> float:
+    """Root of the mean over joints of the squared relative error of each."""
+    return float(np.sqrt(np.mean(np.square(list(errors.values())))))
+
+
+def estimate_arm(
+    models: Mapping[str, Model],
+    prepared: PreparedArm,
+    *,
+    rounds: int = ROUNDS,
+    effort: Effort = EFFORTS.fine,
+) -> ArmFit:
+    """Estimate all joints' parameters and the base parameters on the fit records.
+
+    models: joint -> the model of that joint alone
+    """
+    models, fits, records = dict(models), {}, dict(prepared.joints)
+    for k in range(rounds):
+        if prepared.base is not None:
+            sizes = misfits(models, prepared)
+            known = {j: knowledge(models[j], p.of("fit"), sizes[j]) for j, p in records.items()}
+            common = _together(known)
+            models = {j: m.with_links(common) for j, m in models.items()}
+            records = {j: with_others(p, known, sizes[j], j) for j, p in records.items()}
+        for j, model in models.items():
+            start = bool(model.absent) and k == 0
+            fits[j] = (
+                estimate_from_starts(model, records[j])
+                if start
+                else estimate(model, records[j], effort=effort)
+            )
+            models[j] = fits[j].model
+    return with_common_links(fits, records, prepared)
+
+
+def with_common_links(
+    fits: Mapping[str, Fit], records: Mapping[str, Prepared], prepared: PreparedArm
+) -> ArmFit:
+    """Fits of all joints, held against the records at base parameters that all agree on."""
+    links: tuple[float, ...] = ()
+    if prepared.base is not None:
+        sizes = misfits({j: f.model for j, f in fits.items()}, prepared)
+        known = {j: knowledge(f.model, records[j].of("fit"), sizes[j]) for j, f in fits.items()}
+        links = _together(known)
+    fits = {j: replace(f, model=f.model.with_links(links)) for j, f in fits.items()}
+    checked = bool(prepared.experiment.check_records)
+    return ArmFit(
+        fits=fits,
+        prepared=dict(records),
+        links=links,
+        fit_errors={j: force_error(f.model, bare(records[j].of("fit"))) for j, f in fits.items()},
+        check_errors={
+            j: force_error(f.model, records[j].of("check")) if checked else f.check_error
+            for j, f in fits.items()
+        },
+    )
+
+
+def misfits(models: Mapping[str, Model], prepared: PreparedArm) -> dict[str, float]:
+    """Joint -> root of the squares that its model leaves: by these, joints count as observations.
+
+    So a joint that lacks an effect does not lead the links astray, on which all others depend. As
+    long as an effect still waits for its start, by the measured squares.
+    """
+    if any(m.absent for m in models.values()):
+        return dict(prepared.size)
+    left = {j: force_error(m, bare(prepared.joints[j].of("fit"))) for j, m in models.items()}
+    return {j: max(left[j], LEAST) * size for j, size in prepared.size.items()}
+
+
+def bare(stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
+    """Stretches as they were measured, with the links' freedom left in."""
+    return tuple(replace(s, shared=None) for s in stretches)
+
+
+def knowledge(model: Model, stretches: tuple[Stretch, ...], size: float) -> Knowledge:
+    """What one joint knows of the base parameters, its own parameters free.
+
+    size: root of the squares that count as one observation's
+    """
+    columns, residual, slopes, _ = _linear(model, stretches)
+    basis = _basis(slopes)
+    columns, residual = (x - basis @ (basis.T @ x) for x in (columns, residual))
+    # residual at b: residual - columns (b - links)
+    target = residual + columns @ np.asarray(model.links)
+    return Knowledge(columns.T @ columns / size**2, columns.T @ target / size**2)
+
+
+def _linear(
+    model: Model, stretches: tuple[Stretch, ...]
+) -> tuple[Array, Array, Array, tuple[Stretch, ...]]:
+    """Columns of the links, residual, and columns of the joint's own parameters, with priors."""
+    plain, free = bare(stretches), _inside(model)
+    lasts = sum(s.weight * len(s.keep) * s.motion.sample_time for s in plain)
+    shifts = record_shifts(plain, round(lasts / BLOCK))
+    parts = relative_residuals(model, plain, (*free, *shifts.names))
+    roots = [np.sqrt(s.weight) for s in plain]
+    residual = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
+    slopes = np.concatenate([w * d.T for w, (_, d) in zip(roots, parts, strict=True)])
+    slopes = slopes * np.append(np.ones(len(free)), shifts.row)
+    samples = shifts.start(model)
+    known, slope = shifts.prior(samples, residual, slopes)
+    columns = np.vstack([weighted_columns(s) for s in plain])
+    nothing = np.zeros((len(known), columns.shape[1]))
+    return (
+        np.vstack([columns, nothing]),
+        np.append(residual, known),
+        np.vstack([slopes, slope]),
+        plain,
+    )
+
+
+def _inside(model: Model) -> tuple[str, ...]:
+    """Free parameters that are not at the value where their effect is absent."""
+    absent = {f"{at}.{name}" for name, at in model.absent}
+    first = {f"{at}.{n}.{model.body(at).effect(n).strength}" for n, at in model.absent}
+    free = free_parameters(model)
+    return tuple(n for n in free if n.rpartition(".")[0] not in absent or n in first)
+
+
+def _basis(columns: Array) -> Array:
+    """Orthonormal basis of what the columns span."""
+    size = np.linalg.norm(columns, axis=0)
+    columns = columns[:, size > 0] / size[size > 0]
+    basis, s, _ = np.linalg.svd(columns, full_matrices=False)
+    return np.asarray(basis[:, s > 1e-8 * s.max(initial=0.0)])
+
+
+def _together(known: Mapping[str, Knowledge]) -> tuple[float, ...]:
+    whole = _sum(list(known.values()))
+    return tuple(float(x) for x in whole.best())
+
+
+def _sum(known: list[Knowledge]) -> Knowledge:
+    whole = known[0]
+    for one in known[1:]:
+        whole = whole + one
+    return whole
+
+
+def with_others(
+    prepared: Prepared, known: Mapping[str, Knowledge], size: float, joint: str
+) -> Prepared:
+    """A joint's records with what the other joints know of the links."""
+    mine = known[joint]
+    nothing = Knowledge(np.zeros_like(mine.matrix), np.zeros_like(mine.vector))
+    others = _sum([nothing, *(k for j, k in known.items() if j != joint)])
+    fit = iter(share(prepared.of("fit"), others, size))
+    stretches = tuple(next(fit) if s.use == "fit" else s for s in prepared.stretches)
+    return replace(prepared, stretches=stretches)
+
+
+def link_errors(arm: ArmFit, prepared: PreparedArm) -> Array:
+    """Standard errors (b,) of the base parameters; NaN where a parameter is not told."""
+    sizes = misfits({j: f.model for j, f in arm.fits.items()}, prepared)
+    rows, left, blocks, first = [], [], [], 0
+    for j, fit in arm.fits.items():
+        columns, residual, slopes, plain = _linear(fit.model, arm.prepared[j].of("fit"))
+        basis, n = _basis(slopes), len(residual)
+        numbers = block_numbers(plain)
+        numbers = np.append(numbers, np.full(n - len(numbers), numbers.max() + 1))
+        rows.append((columns - basis @ (basis.T @ columns)) / sizes[j])
+        left.append((residual - basis @ (basis.T @ residual)) / sizes[j])
+        blocks.append(numbers + first)
+        first = int(blocks[-1].max()) + 1
+    return standard_errors(np.vstack(rows), np.concatenate(left), np.concatenate(blocks))

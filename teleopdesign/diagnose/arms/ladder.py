@@ -1,0 +1,231 @@
+"""The ladder of an arm: effects at its joints, those first that explain most of the whole arm.
+
+What one joint lacks leads the links astray, and other joints seem to lack something too. So the
+joint is taken first at which an effect takes most away from the squares of all joints; the others
+are looked at again with what it then says of the links.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
+
+from ...measurement.experiment import Experiment
+from ...model import Model
+from ..decision import is_better, moment_above_noise, verdict
+from ..diagnosis import Diagnosis
+from ..fit import Fit, estimate, fit_squares
+from ..ladder_state import LadderSearch, LadderState, look, trying
+from ..moves import add, remove
+from ..prepare import Prepared
+from ..probability import probable
+from ..rung import Rung
+from ..search_plan import PLAN, SearchPlan
+from .diagnosis import ArmDiagnosis, ArmRung
+from .fit import ArmFit, estimate_arm, knowledge, link_errors, misfits, with_others
+from .prepared import PreparedArm, alone, mean_inertias, prepare_arm, with_inertias
+
+
+@dataclass(frozen=True)
+class _Joint:
+    """Where the ladder of one joint stands; is_stale: others have changed what the links are."""
+
+    search: LadderSearch
+    state: LadderState
+    is_stale: bool = False
+
+    @property
+    def gain(self) -> float:
+        """Part of its measured squares that its best supported effect takes from the arm's."""
+        base = fit_squares(self.state.fit)
+        fits = [r.fit for r in self.state.supported]
+        whole = sum(s.measured for s in self.search.prepared.of("fit"))
+        return max((base - fit_squares(f) for f in fits), default=0.0) / whole
+
+
+def find_missing_in_arm(
+    experiment: Experiment,
+    model: Model | None = None,
+    *,
+    progress: Callable[[str], None] | None = None,
+    seed: int = 0,
+    plan: SearchPlan = PLAN,
+    among: Collection[str] | None = None,
+) -> ArmDiagnosis:
+    """Compare an arm with an experiment and add the effects that its check records support.
+
+    model: default: the one that the experiment describes; a body for each joint
+    progress: called with a line of text at each step;  seed: of the draws for the noise floor
+    plan: how much is searched, such as `QUICK`;  among: names of the effects that are tried
+    raises ExperimentError: the experiment has no arm, or lacks what the comparison needs
+    """
+    said = progress or (lambda _: None)
+    stated = model or Model.from_experiment(experiment)
+    if among is not None:
+        stated = trying(among, stated)
+    said("forces of the links along the measured motion")
+    prepared = prepare_arm(experiment, seed=seed)
+    models = {
+        j: Model({j: body}, stated.known).with_links(prepared.initial)
+        for j, body in stated.bodies.items()
+    }
+    said("re-estimating the model")
+    first = estimate_arm(models, prepared)
+    prepared, models = _as_bodies(prepared, first)
+    first = estimate_arm(models, prepared, rounds=1)
+    joints: dict[str, _Joint] = {}
+    for j in prepared.joints:
+        search = LadderSearch(
+            experiment=alone(experiment, j),
+            whole=first.prepared[j],
+            prepared=first.prepared[j],
+            stated=models[j],
+            seed=seed,
+            plan=plan,
+            progress=lambda text, j=j: said(f"{j}: {text}"),  # type: ignore[misc]
+        )
+        joints[j] = _begun(search, first.prepared[j], first.fits[j].model)
+    order = _climb(joints, prepared)
+    said("all joints together")
+    rungs = _rungs(joints, order, first, prepared)
+    return _conclude(experiment, prepared, joints, rungs)
+
+
+def _as_bodies(prepared: PreparedArm, first: ArmFit) -> tuple[PreparedArm, dict[str, Model]]:
+    """Records and models in which each joint's body has the mean inertia of its links.
+
+    So structures and checks of plausibility see a body of the size that moves.
+    """
+    inertias = mean_inertias(prepared, first.links)
+    models = {}
+    for j, fit in first.fits.items():
+        name = f"{j}.inertia"
+        inertias[j] += fit.model.parameters[name].value
+        value = replace(fit.model.parameters[name], value=inertias[j])
+        models[j] = fit.model.with_values({name: value})
+    motors = {j: f.model.parameters[f"{j}.inertia"].value for j, f in first.fits.items()}
+    extra = {j: inertias[j] - motors[j] for j in inertias}
+    return with_inertias(prepared, extra), models
+
+
+def _begun(search: LadderSearch, prepared: Prepared, model: Model) -> _Joint:
+    """A joint whose ladder begins, with what the others say of the links now."""
+    search = replace(search, whole=prepared, prepared=prepared)
+    fit = estimate(model, prepared)
+    return _Joint(search, look(search, (Rung(None, fit),)))
+
+
+def _climb(joints: dict[str, _Joint], prepared: PreparedArm) -> list[tuple[str, int]]:
+    """Climb the ladder of each joint once; joints: replaced by where they end.
+
+    returns: (joint, number of its rung) in the order in which they were added
+    """
+    waiting, order = list(joints), []
+    while waiting:
+        j = max(waiting, key=lambda name: joints[name].gain)
+        here = joints[j]
+        if here.is_stale:
+            records = {n: x.search.prepared for n, x in joints.items()}
+            fresh = with_known(records, {n: x.state.fit for n, x in joints.items()}, prepared, j)
+            joints[j] = _begun(here.search, fresh, here.state.fit.model)
+            continue
+        state = here.state
+        while (moved := _next(here.search, state)) is not None:
+            state = look(here.search, moved.rungs, moved)
+        joints[j] = replace(here, state=state)
+        waiting.remove(j)
+        if len(state.rungs) > 1:
+            order += [(j, i) for i in range(1, len(state.rungs))]
+            for other in waiting:
+                joints[other] = replace(joints[other], is_stale=True)
+    return order
+
+
+def _next(search: LadderSearch, state: LadderState) -> LadderState | None:
+    """The state after one effect more, and without one that it makes superfluous."""
+    if state.step > search.plan.most_effects:
+        return None
+    added = add(search, state)
+    return None if added is None else remove(search, added) or added
+
+
+def with_known(
+    records: dict[str, Prepared], fits: dict[str, Fit], prepared: PreparedArm, joint: str
+) -> Prepared:
+    """A joint's records with what the other joints say of the links by their fits."""
+    if prepared.base is None:
+        return records[joint]
+    sizes = misfits({j: f.model for j, f in fits.items()}, prepared)
+    known = {j: knowledge(f.model, records[j].of("fit"), sizes[j]) for j, f in fits.items()}
+    return with_others(records[joint], known, sizes[joint], joint)
+
+
+def _rungs(
+    joints: dict[str, _Joint],
+    order: list[tuple[str, int]],
+    first: ArmFit,
+    prepared: PreparedArm,
+) -> tuple[ArmRung, ...]:
+    """The ladder of the arm: each effect with all joints estimated again; none raises the error.
+
+    joints: an effect that no longer helps beside what was found at other joints, or that raises the
+        error of the whole arm, is taken from its ladder
+    """
+    rungs = [ArmRung(None, first)]
+    stopped: set[str] = set()
+    for j, i in order:
+        rung = joints[j].state.rungs[i]
+        if j in stopped:
+            continue
+        models = {n: f.model for n, f in rungs[-1].fit.fits.items()}
+        models[j] = rung.fit.model
+        fit = estimate_arm(models, prepared, rounds=1)
+        before, after, state = rungs[-1].fit.fits[j], fit.fits[j], joints[j].state
+        helps = is_better(before, after, state.floor, criteria=joints[j].search.criteria)
+        if fit.check_error > rungs[-1].fit.check_error or not helps:
+            stopped.add(j)
+            kept = joints[j].state.rungs[:i]
+            joints[j] = replace(joints[j], state=joints[j].state.with_rungs(kept))
+            continue
+        rungs.append(ArmRung(rung.added, fit, rung.instead_of))
+    return tuple(rungs)
+
+
+def _conclude(
+    experiment: Experiment,
+    prepared: PreparedArm,
+    joints: dict[str, _Joint],
+    rungs: tuple[ArmRung, ...],
+) -> ArmDiagnosis:
+    """The verdict on each joint with the final links, and on the arm."""
+    last = rungs[-1].fit
+    diagnoses = {j: _concluded(joints[j], last.fits[j]) for j in prepared.joints}
+    verdicts = {d.verdict for d in diagnoses.values()}
+    whole = "undecided"
+    if "effects_missing" in verdicts:
+        whole = "effects_missing"
+    elif verdicts == {"model_adequate"}:
+        whole = "model_adequate"
+    errors = () if prepared.base is None else tuple(link_errors(last, prepared).tolist())
+    return ArmDiagnosis(experiment, prepared, whole, rungs, diagnoses, errors)
+
+
+def _concluded(joint: _Joint, fit: Fit) -> Diagnosis:
+    """The diagnosis of one joint, its last rung with the final links."""
+    search, state = joint.search, joint.state
+    rungs = (*state.rungs[:-1], replace(state.rungs[-1], fit=fit))
+    moment = moment_above_noise(fit, search.prepared, state.floor, criteria=search.criteria)
+    diagnosis = Diagnosis(
+        experiment=search.experiment,
+        prepared=search.prepared,
+        verdict=verdict(rungs, state.floor, moment, criteria=search.criteria),
+        rungs=rungs,
+        last=state.ranking,
+        estimated=fit,
+        floor=state.floor,
+        moment=moment,
+    )
+    named = probable(diagnosis, criteria=search.criteria)
+    if diagnosis.verdict == "effects_missing" and not named:
+        return replace(diagnosis, verdict="undecided")
+    return replace(diagnosis, named=named)

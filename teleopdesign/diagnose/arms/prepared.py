@@ -1,0 +1,149 @@
+"""The records of an arm, ready for comparison: each joint's motion with the force of its links."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...arms import BaseParameters, Chain, base_parameters
+from ...arms.base_parameters import columns_with_motors
+from ...by_value import ByValue
+from ...errors import ExperimentError
+from ...measurement.experiment import Experiment
+from ...measurement.filtering import Array
+from ...measurement.motion import LinkForces, Motion
+from ..bandwidth import default_bandwidth
+from ..noise_floor import DRAWS, read_again
+from ..prepare import Prepared, Stretch, prepare
+
+#: poses of a record over which an inertia is averaged
+POSES = 50
+
+
+@dataclass(frozen=True, eq=False)
+class PreparedArm(ByValue):
+    """An experiment on an arm made ready for comparison at one bandwidth (Hz).
+
+    base: the base parameters that are estimated; None: the links are taken as they are given
+    joints: joint -> its records, as an experiment on one body
+    size: joint -> root of its measured squares on the fit records
+    """
+
+    experiment: Experiment
+    bandwidth: float
+    base: BaseParameters | None
+    joints: Mapping[str, Prepared]
+    size: Mapping[str, float]
+
+    @property
+    def initial(self) -> tuple[float, ...]:
+        """Base parameters by the values that the arm's description gives."""
+        return () if self.base is None else tuple(float(x) for x in self.base.initial)
+
+
+def alone(experiment: Experiment, joint: str) -> Experiment:
+    """The experiment as one on this joint by itself."""
+    return replace(experiment, bodies={joint: experiment.bodies[joint]}, arm=None)
+
+
+def prepare_arm(experiment: Experiment, *, seed: int = 0) -> PreparedArm:
+    """Smooth, differentiate and cut all joints' records, with the force of the links at each.
+
+    seed: of the readings drawn for the noise floor
+    raises ExperimentError: no arm, or bandwidth too high for the sample rate
+    """
+    if experiment.arm is None:
+        raise ExperimentError(f"{experiment.folder.name}/experiment.toml: no [model.arm]")
+    bandwidth = experiment.bandwidth or default_bandwidth(experiment)
+    arm, joints = experiment.arm.arm, tuple(experiment.bodies)
+    base = base_parameters(arm) if experiment.arm.estimate == "base parameters" else None
+    prepared = {j: prepare(alone(experiment, j), bandwidth=bandwidth) for j in joints}
+    stretches: dict[str, list[Stretch]] = {j: [] for j in joints}
+    generator = np.random.default_rng(seed)
+    checked = bool(experiment.check_records)
+    for together in zip(*(prepared[j].stretches for j in joints), strict=True):
+        motions = [s.motion for s in together]
+        links = _forces(arm, base, motions)
+        drawn: list[list[LinkForces]] = []
+        if (together[0].use == "check") == checked:
+            for _ in range(DRAWS):
+                again = [
+                    read_again(s, prepared[j], generator)
+                    for j, s in zip(joints, together, strict=True)
+                ]
+                drawn.append(_forces(arm, base, again))
+        for k, (j, stretch) in enumerate(zip(joints, together, strict=True)):
+            mine = replace(links[k], drawn=tuple(forces[k] for forces in drawn))
+            stretches[j].append(replace(stretch, motion=replace(stretch.motion, links=mine)))
+    made = {j: replace(prepared[j], stretches=tuple(stretches[j])) for j in joints}
+    size = {j: float(np.sqrt(sum(s.measured for s in made[j].of("fit")))) for j in joints}
+    for j in joints:
+        if not size[j] > 0:
+            raise ExperimentError(f"{experiment.folder.name}: {j}.actuator_force: zero throughout")
+    return PreparedArm(experiment, bandwidth, base, made, size)
+
+
+def _forces(arm: Chain, base: BaseParameters | None, motions: Sequence[Motion]) -> list[LinkForces]:
+    """The force of the links at each joint along motions of all joints at the same times."""
+    position, velocity, acceleration = (
+        np.array([getattr(m, name) for m in motions])
+        for name in ("position", "velocity", "acceleration")
+    )
+    columns = columns_with_motors(arm, position, velocity, acceleration)
+    forces = []
+    for k, motion in enumerate(motions):
+        nothing: Array = np.zeros(len(motion.time))
+        if base is None:
+            force = arm.inertial @ columns[k, : len(arm.inertial)]
+            forces.append(LinkForces(force, *np.zeros((2, 0, len(force)))))
+            continue
+        mine = np.ascontiguousarray(columns[k, base.chosen])
+        forces.append(LinkForces(nothing, mine, motion.lowpassed(mine)))
+    return forces
+
+
+def with_inertias(prepared: PreparedArm, inertias: Mapping[str, float]) -> PreparedArm:
+    """The records with a part of each joint's links as the inertia of its body.
+
+    inertias: joint -> what its body has, in its model too; the force of its links is less by that
+    """
+    joints = {}
+    for j, one in prepared.joints.items():
+        stretches = []
+        for stretch in one.stretches:
+            links = stretch.motion.links
+            assert links is not None
+            links = replace(
+                links,
+                inertia=inertias[j],
+                drawn=tuple(replace(d, inertia=inertias[j]) for d in links.drawn),
+            )
+            stretches.append(replace(stretch, motion=replace(stretch.motion, links=links)))
+        joints[j] = replace(one, stretches=tuple(stretches))
+    return replace(prepared, joints=joints)
+
+
+def mean_inertias(prepared: PreparedArm, links: tuple[float, ...]) -> dict[str, float]:
+    """Joint -> inertia that the links have about it (kg m^2, or kg), over its first record.
+
+    links: base parameters;  at least a thousandth of the largest, so that each is a body
+    """
+    assert prepared.experiment.arm is not None
+    arm = prepared.experiment.arm.arm.with_gravity((0.0, 0.0, 0.0))
+    motions = [p.stretches[0].motion for p in prepared.joints.values()]
+    places = np.linspace(0, len(motions[0].time) - 1, POSES).astype(int)
+    position = np.array([m.position[places] for m in motions])
+    inertias = {}
+    for k, j in enumerate(prepared.joints):
+        push = np.zeros_like(position)
+        push[k] = 1.0
+        columns = columns_with_motors(arm, position, np.zeros_like(position), push)[k]
+        if prepared.base is None:
+            force = arm.inertial @ columns[: len(arm.inertial)]
+        else:
+            force = np.asarray(links) @ columns[prepared.base.chosen]
+        inertias[j] = float(np.mean(force))
+    least = 1e-3 * max(*inertias.values(), 1e-9)
+    return {j: max(x, least) for j, x in inertias.items()}

@@ -1,0 +1,173 @@
+"""The arm of an experiment as written: [model.arm], from a URDF or with links of its own."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..arms import Chain, Link, inertia_about, read_urdf, rotation_of
+from ..arms.chain import GRAVITY, Array
+from ..by_value import ByValue
+from ..errors import ExperimentError, did_you_mean, quoted
+from .description import BodyDescription, effects_from, value_from
+from .toml_table import Table, described
+
+#: whether inertial parameters are estimated, or taken as they are
+ESTIMATES = ("base parameters", "as given")
+_ARM = ("urdf", "links", "estimate", "gravity", "joints")
+_JOINT = ("urdf_joint", "motor_inertia", "effects")
+_LINK = ("joint", "name", "kind", "axis", "xyz", "rpy", "mass", "centre", "inertia")
+#: a joint is a body: its name stands in channels and answers
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]{0,63}")
+_TAKEN = ("arm", "device", "environment", "master", "record", "segment", "slave", "t", "time")
+
+
+@dataclass(frozen=True, eq=False)
+class ArmDescription(ByValue):
+    """The links that couple the joints of an experiment.
+
+    arm: its joints in the order of the bodies of the experiment
+    estimate: "base parameters" are estimated, or inertial parameters are taken "as given"
+    """
+
+    arm: Chain
+    estimate: str
+
+    def __repr__(self) -> str:
+        return f"{self.arm!r}\n  inertial parameters: {self.estimate}"
+
+
+def arm_from(model: Table, folder: Path) -> tuple[ArmDescription, dict[str, BodyDescription]]:
+    """[model.arm], and its joints as bodies.
+
+    folder: of the experiment, where its URDF lies
+    raises ExperimentError: unknown key, joint or file, links that make no chain
+    """
+    model.allow(("arm",))
+    table = model.table("arm")
+    table.allow(_ARM)
+    joints = {name: table.table("joints").table(name) for name in table.table("joints").content}
+    if not joints:
+        raise ExperimentError(f"{table.where('joints')}: found none, expected one table a joint")
+    for name, joint in joints.items():
+        joint.allow(_JOINT)
+        if not _NAME.fullmatch(name) or name in _TAKEN:
+            raise ExperimentError(
+                f"{table.where('joints')}: found {quoted(name)}, expected a name of letters and "
+                f"digits, none of {', '.join(_TAKEN)}"
+            )
+    arm = _kinematics(table, folder, joints).with_gravity(_gravity(table))
+    estimate = table.text("estimate", ESTIMATES[0])
+    if estimate not in ESTIMATES:
+        raise ExperimentError(
+            f"{table.where('estimate')}: found {quoted(estimate)}, expected "
+            f"{' or '.join(map(quoted, ESTIMATES))}{did_you_mean(estimate, ESTIMATES)}"
+        )
+    bodies = {
+        name: _joint(name, joint, link)
+        for (name, joint), link in zip(joints.items(), arm.links, strict=True)
+    }
+    return ArmDescription(arm, estimate), bodies
+
+
+def _joint(name: str, table: Table, link: Link) -> BodyDescription:
+    """A joint as a body: its inertia is that of its motor."""
+    inertia = None
+    if "motor_inertia" in table.content:
+        inertia = value_from(table, "motor_inertia")
+        size, _ = inertia.in_si("inertia", link.kind)
+        if size < 0:
+            raise ExperimentError(f"{inertia.where}: found {size:g}, expected 0 or more")
+    return BodyDescription(name, link.kind, inertia, effects_from(table), table.where())
+
+
+def _kinematics(table: Table, folder: Path, joints: Mapping[str, Table]) -> Chain:
+    if ("urdf" in table.content) == ("links" in table.content):
+        entry = "both" if "urdf" in table.content else "neither"
+        raise ExperimentError(
+            f"{table.where()}: found {entry} of urdf and [[model.arm.links]], expected one of them"
+        )
+    if "links" in table.content:
+        for joint in joints.values():
+            if "urdf_joint" in joint.content:
+                raise ExperimentError(
+                    f"{joint.where('urdf_joint')}: found beside [[model.arm.links]], expected urdf"
+                )
+        return _chain_of_links(table, tuple(joints))
+    file = table.text("urdf")
+    path = (folder / file).resolve() if "\0" not in file else folder
+    if not path.is_relative_to(folder.resolve()) or not path.is_file():
+        names = sorted(p.name for p in folder.iterdir() if p.suffix in (".urdf", ".xml"))
+        raise ExperimentError(
+            f"{table.where('urdf')}: no file {quoted(file)} in {folder.name}/, found "
+            f"{', '.join(names[:10]) or 'none'}{did_you_mean(file, names)}"
+        )
+    named = [joint.text("urdf_joint", name) for name, joint in joints.items()]
+    return read_urdf(path, f"{folder.name}/{file}", named)
+
+
+def _chain_of_links(table: Table, joints: tuple[str, ...]) -> Chain:
+    """Kinematics of [[model.arm.links]]: one link a joint, from the base to the tip."""
+    links = tuple(_link(entry) for entry in table.tables("links"))
+    order = tuple(link.joint for link in links)
+    if order != joints:
+        raise ExperimentError(
+            f"{table.where('links')}: found joints {', '.join(order)}, expected those of "
+            f"[model.arm.joints] from the base to the tip: {', '.join(joints)}"
+        )
+    return Chain(links)
+
+
+def _link(table: Table) -> Link:
+    table.allow(_LINK)
+    joint = table.text("joint")
+    kind = table.text("kind", "revolute")
+    if kind not in ("revolute", "prismatic"):
+        raise ExperimentError(
+            f'{table.where("kind")}: found {quoted(kind)}, expected "revolute" or "prismatic"'
+        )
+    axis = numbers_from(table, "axis", 3, (0.0, 0.0, 1.0))
+    if not (size := float(np.linalg.norm(axis))) > 0:
+        raise ExperimentError(f"{table.where('axis')}: found 0, 0, 0, expected a direction")
+    xx, xy, xz, yy, yz, zz = numbers_from(table, "inertia", 6, (0.0,) * 6)
+    mass = table.number("mass") if "mass" in table.content else 0.0
+    if mass < 0:
+        raise ExperimentError(f"{table.where('mass')}: found {mass:g}, expected 0 or more")
+    moments = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    return Link(
+        name=table.text("name", f"{joint}_link"),
+        joint=joint,
+        kind=kind,
+        axis=axis / size,
+        rotation=rotation_of(*numbers_from(table, "rpy", 3, (0.0,) * 3).tolist()),
+        origin=numbers_from(table, "xyz", 3, (0.0,) * 3),
+        inertial=inertia_about(mass, numbers_from(table, "centre", 3, (0.0,) * 3), moments),
+    )
+
+
+def _gravity(table: Table) -> tuple[float, float, float]:
+    x, y, z = numbers_from(table, "gravity", 3, GRAVITY)
+    return float(x), float(y), float(z)
+
+
+def numbers_from(table: Table, key: str, count: int, default: tuple[float, ...]) -> Array:
+    """A list of finite numbers under `key`."""
+    if key not in table.content:
+        return np.array(default)
+    entry = table.content[key]
+    good = isinstance(entry, list) and len(entry) == count
+    numbers = entry if good else []
+    if not good or not all(
+        isinstance(x, int | float) and not isinstance(x, bool) and abs(x) < 1e12 for x in numbers
+    ):
+        raise ExperimentError(
+            f"{table.where(key)}: found {described(entry)}, expected {count} finite numbers"
+        )
+    if not all(math.isfinite(x) for x in numbers):
+        raise ExperimentError(f"{table.where(key)}: expected {count} finite numbers")
+    return np.array([float(x) for x in numbers])

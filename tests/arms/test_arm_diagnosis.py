@@ -1,0 +1,125 @@
+"""Arms diagnosed: simulated by an independent simulator, and a real one."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import numpy as np
+import pytest
+from arms.arm_simulator import random_arm, write_experiment
+from shared_data import shared_folder
+
+import teleopdesign as td
+from teleopdesign.cli import main
+from teleopdesign.diagnose.arms.fit import ArmFit, estimate_arm, mean_error
+from teleopdesign.diagnose.arms.prepared import PreparedArm, prepare_arm
+from teleopdesign.diagnose.error import force_error
+from teleopdesign.diagnose.shared_links import Knowledge
+from teleopdesign.measurement.filtering import Array
+from teleopdesign.measurement.zero_phase import zero_phase
+
+
+def fitted(folder) -> tuple[PreparedArm, ArmFit]:
+    """The model of an experiment on an arm, estimated."""
+    experiment = td.load_experiment(folder)
+    prepared, model = prepare_arm(experiment), td.Model.from_experiment(experiment)
+    models = {
+        j: td.Model({j: body}, model.known).with_links(prepared.initial)
+        for j, body in model.bodies.items()
+    }
+    return prepared, estimate_arm(models, prepared)
+
+
+def made(tmp_path, seed, count, hidden=None, seconds=20.0):
+    generator = np.random.default_rng(seed)
+    arm = random_arm(generator, count)
+    return arm, write_experiment(tmp_path / "arm", arm, generator, hidden, seconds=seconds)
+
+
+def test_directions_that_nobody_knows_stay_at_zero():
+    knowledge = Knowledge(np.diag([4.0, 0.0]), np.array([8.0, 0.0]))
+    assert np.allclose(knowledge.best(), [2.0, 0.0])
+
+
+def test_knowledge_of_two_joints_adds_up():
+    rows = np.random.default_rng(0).normal(size=(6, 3))
+    target: Array = np.random.default_rng(1).normal(size=6)
+
+    def known(part):
+        return Knowledge(rows[part].T @ rows[part], rows[part].T @ target[part])
+
+    together = (known(slice(0, 3)) + known(slice(3, 6))).best()
+    assert np.allclose(together, np.linalg.lstsq(rows, target, rcond=None)[0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [2, 4])
+def test_friction_of_every_joint_is_found_with_links_that_nobody_knows(tmp_path, count):
+    arm, folder = made(tmp_path, 1 + count, count)
+    _, fit = fitted(folder)
+    for i, (joint, one) in enumerate(fit.fits.items()):
+        values = {n: v.value for n, v in one.model.parameters.items()}
+        # noise of 1 % of the force over 2000 samples, friction a third of it: well below 1 %
+        assert values[f"{joint}.coulomb.level"] == pytest.approx(arm.coulomb[i], rel=0.02)
+        assert values[f"{joint}.viscous.damping"] == pytest.approx(arm.viscous[i], rel=0.02)
+    # 1 % of white noise through 8 Hz of 50: 0.4 %; at reversals the encoder leaves a little more
+    assert fit.check_error < 0.008
+
+
+@pytest.mark.slow
+def test_a_hidden_effect_is_named_at_its_joint_and_the_answer_recomputes(tmp_path):
+    _, folder = made(tmp_path, 0, 2, ("stribeck", 1, 1.0))
+    answer, predictions = tmp_path / "answer.json", tmp_path / "predictions.csv"
+    assert (
+        main(["diagnose", str(folder), "--json", str(answer), "--predictions", str(predictions)])
+        == 0
+    )
+    said = json.loads(answer.read_text())
+    assert said["verdict"] == "effects_missing"
+    assert said["missing"] == [{"effect": "stribeck", "at": "joint2"}]
+    assert {"joint1.coulomb.level", "joint2.viscous.damping"} < set(said["model_parameters"])
+    assert any(name.startswith("arm.link2.") for name in said["model_parameters"])
+    errors = [row["check_error"] for row in said["ladder"]]
+    assert errors == sorted(errors, reverse=True)
+    rows = list(csv.DictReader(predictions.open()))
+    check = [row for row in rows if row["record"].startswith("check")]
+    own = said["ladder"][-1]["joints"]
+    for joint in ("joint1", "joint2"):
+        measured, left = (
+            zero_phase(np.array([float(r[f"{joint}.{q}"]) for r in check]), 8.0, 0.01)[25:-25]
+            for q in ("measured", "residual_after")
+        )
+        error = np.sqrt(np.sum(left**2) / np.sum(measured**2))
+        # the force that is compared is averaged over each hold, the recorded one is not: 1 %
+        assert error == pytest.approx(own[joint]["check_error"], rel=0.05)
+    squares = [one["check_error"] ** 2 for one in own.values()]
+    assert said["ladder"][-1]["check_error"] == pytest.approx(np.sqrt(np.mean(squares)))
+
+
+@pytest.mark.slow
+def test_an_adequate_model_of_an_arm_lacks_nothing(tmp_path):
+    _, folder = made(tmp_path, 9, 3)
+    diagnosis = td.find_missing_in_arm(td.load_experiment(folder))
+    assert diagnosis.missing == ()
+    assert diagnosis.verdict == "model_adequate"
+
+
+@pytest.mark.slow
+def test_an_industrial_arm_is_predicted_better_than_by_plain_least_squares():
+    folder = shared_folder("data/ur10e_arm")
+    _, fit = fitted(folder)
+    errors = {}
+    for file in ("check_15harm.csv.gz", "check_other_week.csv.gz"):
+        errors[file] = mean_error(
+            {
+                j: force_error(
+                    one.model,
+                    [s for s in fit.prepared[j].of("check") if s.motion.file == file],
+                )
+                for j, one in fit.fits.items()
+            }
+        )
+    # plain least squares with the same terms: 10.95 and 10.41 % (its README); wanted: 8.5 and 9 %
+    assert errors["check_15harm.csv.gz"] < 0.085
+    assert errors["check_other_week.csv.gz"] < 0.09

@@ -1,0 +1,196 @@
+"""The forces that links need: against a Lagrangian, energy, and an independent simulator."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+import pytest
+import sympy as sp
+from arms.arm_simulator import SimulatedArm, forces, random_arm, urdf
+from hypothesis import given
+from hypothesis import strategies as st
+
+from teleopdesign.arms import (
+    Chain,
+    Link,
+    base_parameters,
+    force_columns,
+    inertia_about,
+    read_urdf,
+    rotation_of,
+)
+from teleopdesign.errors import ModelError
+
+#: of a force: double precision over some hundred products
+ROUNDING = 1e-9
+
+
+def arm_of(simulated: SimulatedArm) -> Chain:
+    links = [
+        Link(
+            name=f"link{i + 1}",
+            joint=f"joint{i + 1}",
+            kind=simulated.kinds[i],
+            axis=simulated.axes[i],
+            rotation=rotation_of(*simulated.angles[i]),
+            origin=simulated.origins[i],
+            inertial=inertia_about(simulated.masses[i], simulated.centres[i], simulated.moments[i]),
+        )
+        for i in range(simulated.count)
+    ]
+    return Chain(tuple(links))
+
+
+@lru_cache(maxsize=2)
+def lagrangian(spatial: bool):
+    """Joint forces of an arm by Lagrange's equations: planar of two joints, or spatial of three.
+
+    returns: f(q..., v..., a...) -> forces, the arm as the package has it
+    """
+    count = 3 if spatial else 2
+    axes = [(0, 0, 1), (0, 1, 0), (1, 0, 0)] if spatial else [(0, 1, 0), (0, 1, 0)]
+    kinds = ["revolute", "revolute", "prismatic"] if spatial else ["revolute"] * 2
+    origins = [(0, 0, 0.3), (0.1, 0, 0.4), (0.0, 0.2, 0.1)][:count]
+    centres = [(0.02, 0.03, 0.2), (0.1, -0.05, 0.15), (0.05, 0.02, 0.1)][:count]
+    masses = [4, 2.5, 1.5][:count]
+    moments = [(0.03, 0.05, 0.02), (0.02, 0.01, 0.04), (0.01, 0.02, 0.015)][:count]
+    q = [sp.Function(f"q{i}")(sp.Symbol("t")) for i in range(count)]
+    t = sp.Symbol("t")
+    turn, place, kinetic, potential = sp.eye(3), sp.zeros(3, 1), sp.S(0), sp.S(0)
+    for i in range(count):
+        place = place + turn * sp.Matrix(origins[i])
+        x, y, z = axes[i]
+        if kinds[i] == "prismatic":
+            place = place + turn * sp.Matrix(axes[i]) * q[i]
+        else:
+            k = sp.Matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+            turn = turn * (sp.eye(3) + sp.sin(q[i]) * k + (1 - sp.cos(q[i])) * k * k)
+        centre = place + turn * sp.Matrix(centres[i])
+        speed = centre.diff(t)
+        rate = turn.T * turn.diff(t)
+        spin = sp.Matrix([rate[2, 1], rate[0, 2], rate[1, 0]])
+        kinetic += masses[i] * speed.dot(speed) / 2
+        kinetic += (spin.T * sp.diag(*moments[i]) * spin)[0] / 2
+        potential += masses[i] * 9.80665 * centre[2]
+    lagrange = kinetic - potential
+    needed = [sp.diff(sp.diff(lagrange, x.diff(t)), t) - sp.diff(lagrange, x) for x in q]
+    names = sp.symbols(f"x:{count} v:{count} a:{count}")
+    by_name = {}
+    for i, x in enumerate(q):
+        by_name |= {x.diff(t, 2): names[2 * count + i], x.diff(t): names[count + i]}
+    for i, x in enumerate(q):
+        by_name[x] = names[i]
+    values = [
+        e.subs({k: v for k, v in by_name.items() if k.has(sp.Derivative) and k.args[1][1] == 2})
+        .subs({k: v for k, v in by_name.items() if k.has(sp.Derivative)})
+        .subs({k: v for k, v in by_name.items() if not k.has(sp.Derivative)})
+        for e in needed
+    ]
+    links = [
+        Link(
+            f"link{i}",
+            f"joint{i}",
+            kinds[i],
+            np.array(axes[i], float),
+            np.eye(3),
+            np.array(origins[i], float),
+            inertia_about(masses[i], np.array(centres[i]), np.diag(moments[i])),
+        )
+        for i in range(count)
+    ]
+    return sp.lambdify(names, values, "numpy", cse=True), Chain(tuple(links))
+
+
+@pytest.mark.parametrize("spatial", [False, True])
+def test_forces_are_those_of_lagranges_equations(spatial):
+    call, arm = lagrangian(spatial)
+    q, v, a = np.random.default_rng(1).normal(size=(3, len(arm.links), 20))
+    expected = np.array(call(*q, *v, *a))
+    got = np.einsum("kpn,p->kn", force_columns(arm, q, v, a), arm.inertial)
+    assert np.allclose(got, expected, rtol=0, atol=ROUNDING * np.abs(expected).max())
+
+
+@given(count=st.integers(1, 6), seed=st.integers(0, 10_000), prismatic=st.booleans())
+def test_forces_are_those_of_an_independent_simulator(count, seed, prismatic):
+    generator = np.random.default_rng(seed)
+    simulated = random_arm(generator, count, prismatic=prismatic)
+    q, v, a = generator.normal(size=(3, count, 4))
+    expected = forces(simulated, q, v, a)
+    arm = arm_of(simulated)
+    got = np.einsum("kpn,p->kn", force_columns(arm, q, v, a), arm.inertial)
+    assert np.allclose(got, expected, rtol=0, atol=ROUNDING * max(np.abs(expected).max(), 1.0))
+
+
+def energy(arm, q, v):
+    """Kinetic and potential energy (n,), from forces at rest and from unit accelerations."""
+    still = Chain(arm.links, gravity=(0.0, 0.0, 0.0))
+    nothing = np.zeros_like(q)
+    kinetic = np.zeros(q.shape[1])
+    for j in range(len(arm.links)):
+        push = nothing.copy()
+        push[j] = 1.0
+        column = np.einsum("kpn,p->kn", force_columns(still, q, nothing, push), arm.inertial)
+        kinetic += 0.5 * v[j] * np.sum(v * column, axis=0)
+    return kinetic
+
+
+@given(count=st.integers(1, 5), seed=st.integers(0, 10_000))
+def test_power_at_the_joints_is_the_rate_of_energy(count, seed):
+    generator = np.random.default_rng(seed)
+    arm = Chain(arm_of(random_arm(generator, count, prismatic=True)).links, gravity=(0.0, 0.0, 0.0))
+    q, v, a = generator.normal(size=(3, count, 1))
+    step = 1e-4
+    course = [q + v * h + a * h**2 / 2 for h in (-step, step)]
+    speed = [v + a * h for h in (-step, step)]
+    before, after = (energy(arm, x, y) for x, y in zip(course, speed, strict=True))
+    force = np.einsum("kpn,p->kn", force_columns(arm, q, v, a), arm.inertial)
+    power = np.sum(force * v, axis=0)
+    # central differences err by step^2 times third derivatives, rounding by 1e-16 / step
+    assert np.allclose((after - before) / (2 * step), power, rtol=1e-4, atol=1e-4)
+
+
+@given(count=st.integers(1, 6), seed=st.integers(0, 1000))
+def test_base_parameters_say_all_that_the_links_do(count, seed):
+    generator = np.random.default_rng(seed)
+    arm = arm_of(random_arm(generator, count))
+    base = base_parameters(arm)
+    q, v, a = generator.normal(size=(3, count, 5))
+    columns = force_columns(arm, q, v, a)
+    expected = np.einsum("kpn,p->kn", columns, arm.inertial)
+    motors = np.eye(count)[:, :, None] * a[:, None, :]
+    chosen = np.concatenate([columns, motors], axis=1)[:, base.chosen]
+    got = np.einsum("kbn,b->kn", chosen, base.initial)
+    assert np.allclose(got, expected, rtol=0, atol=1e-7 * max(np.abs(expected).max(), 1.0))
+    assert len(base.names) == len(set(base.names)) <= 11 * count
+
+
+def test_a_link_that_turns_about_the_vertical_is_told_by_one_parameter():
+    arm = Chain((arm_of(random_arm(np.random.default_rng(3), 1)).links[0],))
+    upright = Chain(
+        tuple(
+            Link(
+                x.name, x.joint, x.kind, np.array([0.0, 0.0, 1.0]), np.eye(3), x.origin, x.inertial
+            )
+            for x in arm.links
+        )
+    )
+    assert base_parameters(upright).names == ("link1.izz",)
+
+
+def test_a_motion_of_the_wrong_number_of_joints_is_refused():
+    arm = arm_of(random_arm(np.random.default_rng(0), 2))
+    with pytest.raises(ModelError, match="found a motion of 3 joints, expected 2"):
+        force_columns(arm, *np.zeros((3, 3, 4)))
+
+
+@given(count=st.integers(1, 6), seed=st.integers(0, 1000))
+def test_a_urdf_reads_as_the_arm_that_it_describes(count, seed, tmp_path_factory):
+    simulated = random_arm(np.random.default_rng(seed), count, prismatic=True)
+    path = tmp_path_factory.mktemp("arm") / "arm.urdf"
+    path.write_text(urdf(simulated, inertial=True))
+    arm = read_urdf(path, "arm.urdf", [f"axis{i + 1}" for i in range(count)])
+    q, v, a = np.random.default_rng(seed).normal(size=(3, count, 3))
+    got = np.einsum("kpn,p->kn", force_columns(arm, q, v, a), arm.inertial)
+    expected = forces(simulated, q, v, a)
+    assert np.allclose(got, expected, rtol=0, atol=ROUNDING * max(np.abs(expected).max(), 1.0))
