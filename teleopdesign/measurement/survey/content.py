@@ -71,7 +71,7 @@ def moves(column: SurveyedColumn) -> bool:
 
 
 def is_unit_of(unit: str | None, quantity: str) -> bool:
-    """Whether a unit is one of that quantity on either axis; for a force also what drives a motor."""
+    """Whether a unit is one of that quantity on an axis; for a force, what drives a motor too."""
     if unit is None:
         return False
     if unit == "counts":
