@@ -71,6 +71,7 @@ def moves(column: SurveyedColumn) -> bool:
 
 
 def is_unit_of(unit: str | None, quantity: str) -> bool:
+    """Whether a unit is one of that quantity on an axis; for a force, what drives a motor too."""
     if unit is None:
         return False
     if unit == "counts":
@@ -81,9 +82,11 @@ def is_unit_of(unit: str | None, quantity: str) -> bool:
 
 
 def rises(x: Array) -> bool:
+    """Whether numbers grow from row to row, as a clock's do."""
     steps = np.diff(x[np.isfinite(x)])
     return len(steps) > 1 and float(np.mean(steps >= 0)) > 0.99 and float(np.mean(steps > 0)) > 0.5
 
 
 def sample_time_of(survey: Survey) -> float:
+    """Seconds between two rows of the survey's grid."""
     return float(np.median(np.diff(survey.time)))

@@ -103,6 +103,7 @@ def find_position(
 
 
 def axis_of(survey: Survey, position: str, choices: Choices) -> str:
+    """The axis: as chosen, as the position's unit says, else a guess."""
     if choices.axis is not None:
         return choices.axis
     unit = choices.units.get(position) or survey.columns[position].unit
