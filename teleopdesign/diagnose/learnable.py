@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
@@ -118,6 +119,14 @@ def learnable(model: Model, prepared: Prepared, *, seed: int = 0) -> Learnable |
     """
     if not is_installed():
         return None
+    import sklearn.ensemble  # noqa: F401  loaded first: only then can its threads be limited
+
+    # threads of the trees and of other callers would wait for each other by spinning
+    with threadpool_limits(limits=1, user_api="openmp"):
+        return _learned(model, prepared, seed)
+
+
+def _learned(model: Model, prepared: Prepared, seed: int) -> Learnable:
     stretches = prepared.stretches if prepared.of("check") else prepared.of("fit")
     measured = [measured_force(s) for s in stretches]
     unseen: list[Stretch] = []

@@ -1,7 +1,6 @@
 """Numbers and verdicts in words."""
 
 import math
-import re
 from dataclasses import replace
 
 import pytest
@@ -66,7 +65,8 @@ def test_the_verdict_names_the_effect_and_both_errors(diagnosis):
     assert text.startswith(
         "Your model lacks stribeck at device. With it, the force error on records"
     )
-    assert re.search(r"from 7\.02.% to 0\.98.%", text)
+    before, after = diagnosis.before.check_error, diagnosis.after.check_error
+    assert f"from {100 * before:.2f}\u202f% to {100 * after:.2f}\u202f%" in text
 
 
 def test_look_alikes_are_named_together(diagnosis):

@@ -84,7 +84,8 @@ def test_parts_given_in_python_check_their_names_and_take_no_text_for_an_express
         lambda: Moving("M", ANY, "x", "u", {"f": text}, "u"),
         lambda: Attached("Z", ANY, "x", text),
         lambda: Control("C", ANY, text, "u", "x"),
-        lambda: Control("C", ANY, "x", "u", text),
+        lambda: Control("C", ANY, "x", text, "x"),
+        lambda: Control("C", ANY, "x", "u", text or "1"),  # a blank motion is none
         lambda: Junction(text, {"x": 1}),
         lambda: Junction("y", {text: 1}),
         lambda: Junction("y", {"x": text}),
