@@ -82,7 +82,7 @@ def test_a_hidden_effect_is_named_at_its_joint_and_the_answer_recomputes(tmp_pat
     assert any(name.startswith("arm.link2.") for name in said["model_parameters"])
     errors = [row["check_error"] for row in said["ladder"]]
     assert errors == sorted(errors, reverse=True)
-    rows = list(csv.DictReader(predictions.open()))
+    rows = list(csv.DictReader(predictions.read_text().splitlines()))
     check = [row for row in rows if row["record"].startswith("check")]
     own = said["ladder"][-1]["joints"]
     for joint in ("joint1", "joint2"):
@@ -120,6 +120,7 @@ def test_an_industrial_arm_is_predicted_better_than_by_plain_least_squares():
                 for j, one in fit.fits.items()
             }
         )
-    # plain least squares with the same terms: 10.95 and 10.41 % (its README); wanted: 8.5 and 9 %
-    assert errors["check_15harm.csv.gz"] < 0.085
-    assert errors["check_other_week.csv.gz"] < 0.09
+    # plain least squares of the same terms leaves 10.95 and 10.41 % (its README); here a joint that
+    # rests at a reversal may have any friction up to its level: measured 5.07 and 4.48 %
+    assert errors["check_15harm.csv.gz"] < 0.055
+    assert errors["check_other_week.csv.gz"] < 0.055
