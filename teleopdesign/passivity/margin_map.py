@@ -19,6 +19,7 @@ from ..arguments import checked
 from ..by_value import ByValue
 from ..derive import two_port_functions
 from ..diagrams import Diagram
+from ..diagrams.units import unit_of_value
 from ..errors import ModelError
 from ..realise.lti import LinearBlocks, S, linear_blocks, numerical
 from ..realise.tips import linear_tips
@@ -102,9 +103,10 @@ def margin_map(
             margins["frequency"][i, k] = f[lowest]
     units = {"llewellyn": "1", "passive": "N s/m", "frequency": "Hz"}
     names = list(values)
+    varied_units = {n: unit_of_value(diagram, n) for n in names}
     data = xarray.Dataset(
         {n: (names, x, {"units": units[n]}) for n, x in margins.items()},
-        {n: np.asarray(values[n], dtype=float) for n in names},
+        {n: (n, np.asarray(values[n], dtype=float), {"units": varied_units[n]}) for n in names},
         {"diagram": diagram.name},
     )
     return MarginMap(data, base.left_out)

@@ -29,8 +29,8 @@ def plot_margin_map(margins: MarginMap) -> matplotlib.figure.Figure:
         colours = axes.pcolormesh(x, y, shown, cmap="RdBu", vmin=-_LARGEST, vmax=_LARGEST)
         if shown.min() < 0 < shown.max():
             axes.contour(x, y, shown, levels=[0.0], colors="black")
-        axes.set_xlabel(second)
-        axes.set_ylabel(first)
+        axes.set_xlabel(f"{second} ({margin[second].units})")
+        axes.set_ylabel(f"{first} ({margin[first].units})")
         bar = figure.colorbar(colours, ax=axes)
         bar.set_label("least Llewellyn margin on the axis (1)")
     return figure

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from ..blocks import Body
 from ..diagrams import Attached, Control, Diagram, Linked, Moving
 from ..diagrams.parts import Weight
+from ..diagrams.units import first_axis
 from ..quantity import unit_of
 
 
@@ -14,7 +14,7 @@ def signal_units(diagram: Diagram) -> Callable[[str], str]:
     """Name of a signal or hidden state -> its SI unit on its axis."""
     axes, quantities = _axes(diagram), _quantities(diagram)
     states = _states(diagram)
-    first = next((b.body.axis for b in diagram.bodies if isinstance(b.body, Body)), "prismatic")
+    first = first_axis(diagram)
 
     def unit(name: str) -> str:
         if name in states:

@@ -17,10 +17,9 @@ from typing import Any, Literal
 import numpy as np
 
 from ..arguments import checked
-from ..blocks import Body
 from ..by_value import ByValue
-from ..diagrams import Control, Diagram
-from ..diagrams.parts import AnyBlock
+from ..diagrams import Diagram
+from ..diagrams.units import first_axis, unit_of_value
 from ..errors import ModelError, did_you_mean
 from ..quantity import unit_of
 from ..simulate import Sampling, Simulation, Trajectory, simulate, sine
@@ -122,9 +121,9 @@ class SimulatedCase(ByValue):
     def unit(self, name: str) -> str:
         """SI unit of a parameter; "1" where it has none."""
         stem, _, rest = name.partition(".")
-        length = unit_of("position", self._axis)
+        length = unit_of("position", first_axis(self.diagram))
         if name in self.diagram.values:
-            return self._unit_of_value(name)
+            return unit_of_value(self.diagram, name)
         if name in _OWN:
             return _OWN[name] or length
         if stem == "computer":
@@ -149,23 +148,6 @@ class SimulatedCase(ByValue):
             return _sine_parts(self.motion[signal])[part]
         start = (self.inputs if stem == "inputs" else self.initial).get(rest, 0.0)
         return float(start) if np.ndim(start) == 0 and not callable(start) else None
-
-    @property
-    def _axis(self) -> str:
-        bodies = (b.body for b in self.diagram.bodies if isinstance(b.body, Body))
-        return next((b.axis for b in bodies), "prismatic")
-
-    def _unit_of_value(self, name: str) -> str:
-        block_name, _, rest = name.partition(".")
-        block = self.diagram.block(block_name)
-        if not isinstance(block, Control):
-            body = block.body
-            return body.unit(rest) if isinstance(body, Body) else "1"
-        if isinstance(block.controller, AnyBlock):
-            return "1"
-        stage_name, _, parameter = rest.rpartition(".")
-        stage = next(s for s in block.controller.stages if s.name == stage_name)
-        return unit_of(stage.law.parameters[parameter].quantity, self._axis)
 
     def settings(self) -> dict[str, Any]:
         """How it is simulated, without the diagram: plain where it is."""
