@@ -12,8 +12,8 @@ from typing import Literal
 
 import numpy as np
 
-from ..blocks import Body
 from ..diagrams import Diagram
+from ..diagrams.units import first_axis
 from ..quantity import unit_of
 from ..realise.parted import simulated_parted
 from ..simulate import Sampling
@@ -67,7 +67,7 @@ def measured_impedance(
             distortion[here] = one[force].distortion
             unsettled[here] = max(h.unsettled for h in one.values())
             moved[here] = abs(one[read].phasor)
-    axis = axis_of(next(iter(cases.values())))
+    axis = first_axis(next(iter(cases.values())))
     length = unit_of("position", axis)
     values = {
         "impedance": (z, unit_of("stiffness", axis)),
@@ -78,8 +78,3 @@ def measured_impedance(
     data = grid.labelled(values, cases=list(cases), length=length)
     data.attrs |= {"drive": drive or motion, "motion": motion, "force": force, "give": give}
     return ImpedanceMap(data)
-
-
-def axis_of(diagram: Diagram) -> str:
-    """ "prismatic" or "revolute"."""
-    return next((b.body.axis for b in diagram.bodies if isinstance(b.body, Body)), "prismatic")

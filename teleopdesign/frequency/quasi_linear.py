@@ -18,6 +18,7 @@ from ..controllers import Controller
 from ..derive import block_symbol, transfer
 from ..derive.printing import dead_time_symbol
 from ..diagrams import Control, Diagram
+from ..diagrams.units import first_axis
 from ..errors import ModelError
 from ..quantity import unit_of
 from ..realise.lti import S, linear_blocks
@@ -25,7 +26,6 @@ from .cases import cases_of
 from .describing_function import describing_function, driven_gain
 from .grid import Amplitude, Grid
 from .impedance_map import ImpedanceMap
-from .measured_impedance import axis_of
 
 #: the phase of what drives a controller is found by iteration: relative change at its end
 _FOUND, _MOST = 1e-9, 100
@@ -51,7 +51,7 @@ def quasi_linear_impedance(
         form = _Form(diagram, motion, force)
         for at, size, f in grid.points:
             z[(i, *at)] = form.value(size, f)
-    axis = axis_of(next(iter(cases.values())))
+    axis = first_axis(next(iter(cases.values())))
     values = {"impedance": (z, unit_of("stiffness", axis))}
     data = grid.labelled(values, cases=list(cases), length=unit_of("position", axis))
     data.attrs |= {"motion": motion, "force": force}
