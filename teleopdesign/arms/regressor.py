@@ -38,7 +38,7 @@ def force_columns(arm: Chain, position: Array, velocity: Array, acceleration: Ar
     position, velocity, acceleration: (k, n) of the k joints, in the order of the arm
     """
     k = len(arm.links)
-    if position.shape[0] != k or position.shape != velocity.shape != acceleration.shape:
+    if position.shape[0] != k or not position.shape == velocity.shape == acceleration.shape:
         raise ModelError(
             f"arm: found a motion of {position.shape[0]} joints, expected {k} with n samples each"
         )

@@ -178,6 +178,14 @@ def test_a_link_that_turns_about_the_vertical_is_told_by_one_parameter():
     assert base_parameters(upright).names == ("link1.izz",)
 
 
+@pytest.mark.parametrize("short", range(3))
+def test_a_motion_whose_parts_have_not_one_length_is_refused(short):
+    arm = arm_of(random_arm(np.random.default_rng(0), 2))
+    parts = [np.zeros((2, 5 - (i == short))) for i in range(3)]
+    with pytest.raises(ModelError, match="n samples each"):
+        force_columns(arm, *parts)
+
+
 def test_a_motion_of_the_wrong_number_of_joints_is_refused():
     arm = arm_of(random_arm(np.random.default_rng(0), 2))
     with pytest.raises(ModelError, match="found a motion of 3 joints, expected 2"):
