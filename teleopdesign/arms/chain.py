@@ -94,8 +94,7 @@ def inertia_about(mass: float, centre: Array, inertia: Array) -> Array:
     """
     c = np.asarray(centre, dtype=float)
     about = inertia + mass * (float(c @ c) * np.eye(3) - np.outer(c, c))
-    moments = [about[0, 0], about[0, 1], about[0, 2], about[1, 1], about[1, 2], about[2, 2]]
-    return np.array([mass, *(mass * c), *moments])
+    return np.array([mass, *(mass * c), *_moments(about)])
 
 
 def seen_from(inertial: Array, rotation: Array, origin: Array) -> Array:
@@ -108,8 +107,12 @@ def seen_from(inertial: Array, rotation: Array, origin: Array) -> Array:
     # about the new origin: (r x)(r x)^T with r = origin + R s, summed over the mass
     both = np.outer(origin, first) + np.outer(first, origin) + mass * np.outer(origin, origin)
     about = about + np.trace(both) * np.eye(3) - both
-    moments = [about[0, 0], about[0, 1], about[0, 2], about[1, 1], about[1, 2], about[2, 2]]
-    return np.array([mass, *(first + mass * origin), *moments])
+    return np.array([mass, *(first + mass * origin), *_moments(about)])
+
+
+def _moments(about: Array) -> Array:
+    """The six components (6,) of a tensor of inertia (3, 3), in the order of `INERTIAL`."""
+    return about[np.triu_indices(3)]
 
 
 def tensor(moments: Array) -> Array:

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import ExperimentError, did_you_mean, quoted
-from .chain import Array, Chain, Link, inertia_about, rotation_of, seen_from
+from .chain import Array, Chain, Link, inertia_about, rotation_of, seen_from, tensor
 
 #: bytes of a file, and its elements and their depth: a hundred times what a large robot needs
 LARGEST, ELEMENTS, DEPTH = 20_000_000, 200_000, 64
@@ -165,9 +165,8 @@ def _inertial(link: ET.Element, where: str) -> Array:
         n: float(_numbers(moments_of, n, 1, f"{where}: inertia", default="0")[0])
         for n in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
     }
-    xx, xy, xz, yy, yz, zz = values.values()
-    moments = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    return inertia_about(float(mass), centre, rotation @ moments @ rotation.T)
+    about = tensor(np.array(list(values.values())))
+    return inertia_about(float(mass), centre, rotation @ about @ rotation.T)
 
 
 def _joint(element: ET.Element, file: str, links: dict[str, Array]) -> _Joint:
