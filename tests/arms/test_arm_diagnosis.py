@@ -84,6 +84,7 @@ def test_a_hidden_effect_is_named_at_its_joint_and_the_answer_recomputes(tmp_pat
     assert errors == sorted(errors, reverse=True)
     rows = list(csv.DictReader(predictions.read_text().splitlines()))
     check = [row for row in rows if row["record"].startswith("check")]
+    assert said["learnable"] is None
     own = said["ladder"][-1]["joints"]
     for joint in ("joint1", "joint2"):
         measured, left = (

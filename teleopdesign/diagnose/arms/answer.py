@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ...blocks import Value
 from ...measurement.filtering import Array
 from ...measurement.reading import reading_data
-from ...model import Model
 from ...plain_data import harmless_cell, plain, replacing, write_json
 from ...realise.along_motion import residual_along
 from ..answer import candidate_rows, opened, parameter_rows, place_data
@@ -22,7 +19,6 @@ from ..diagnosis import Diagnosis
 from ..record_offsets import along_with_offsets
 from ..record_shift import shift_data
 from .diagnosis import ArmDiagnosis, ArmRung
-from .fit import ArmFit
 
 
 def arm_answer(diagnosis: ArmDiagnosis) -> dict[str, Any]:
@@ -51,6 +47,7 @@ def arm_answer(diagnosis: ArmDiagnosis) -> dict[str, Any]:
         ],
         "record_shift": shifts,
         "model_parameters": _parameters(diagnosis),
+        "learnable": None,  # trees learn no coupled joints
         "at_bound": [n for d in joints for n in d.after.at_bound],
         "experiment": experiment_data(diagnosis.experiment),
         "reading": reading_data(diagnosis.experiment.reading),
@@ -145,13 +142,3 @@ def _predicted(diagnosis: ArmDiagnosis, joint: str, file: str) -> Sequence[Array
         left.append(residual)
     before, after = left
     return [measured, measured - before, measured - after, before, after]
-
-
-def arm_model(fit: ArmFit, stated: Model) -> Model:
-    """The model of a fitted arm: all its joints, their bodies with the inertia of their motors."""
-    bodies = {}
-    for j, one in fit.fits.items():
-        motor = stated.bodies[j].parameters["inertia"] if j in stated.bodies else Value(0.0, True)
-        bodies[j] = one.model.bodies[j].with_values({"inertia": motor})
-    shifts = {j: s for one in fit.fits.values() for j, s in one.model.record_shift.items()}
-    return replace(stated, bodies=bodies, record_shift=shifts, links=fit.links)
