@@ -8,9 +8,9 @@ its experiment is, and from a folder that holds `answer.json` and no experiment.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from ..errors import ExperimentError, ModelError, did_you_mean
 from ._options import add_effect_files, add_folder
@@ -19,11 +19,14 @@ from ._terminal import print_styled
 
 if TYPE_CHECKING:
     from ..blocks import Body
-    from ..diagnose import Diagnosis
+    from ..diagnose import ArmDiagnosis, Diagnosis
     from ..effects import Effect
     from ..measurement import Experiment
     from ..model import Model
     from ..realise.reach import Reach
+
+#: of one or two bodies, or of an arm
+Diagnosed = TypeVar("Diagnosed", bound="Diagnosis | ArmDiagnosis")
 
 
 def add_experiment(parser: argparse.ArgumentParser, *, answer: bool = True) -> None:
@@ -157,6 +160,14 @@ def diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> Diagnos
 def diagnosed(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
     """The diagnosis of an experiment, made now, with progress said."""
     from ..diagnose import find_missing
+
+    return searched(find_missing, experiment, options)
+
+
+def searched(
+    find: Callable[..., Diagnosed], experiment: Experiment, options: argparse.Namespace
+) -> Diagnosed:
+    """What a search finds (`find_missing`, or that of an arm) as the options ask for it."""
     from ..diagnose.search_plan import PLAN, QUICK
 
     among = tried_effects(
@@ -165,7 +176,7 @@ def diagnosed(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
     model = stated_model(experiment, options)
     plan = QUICK if getattr(options, "quick", False) else PLAN
     reporter = Reporter()
-    diagnosis = find_missing(experiment, model, progress=reporter, plan=plan, among=among)
+    diagnosis = find(experiment, model, progress=reporter, plan=plan, among=among)
     reporter.clear()
     return diagnosis
 
@@ -182,7 +193,7 @@ _STYLES = {
 }
 
 
-def print_diagnosis(diagnosis: Diagnosis) -> None:
+def print_diagnosis(diagnosis: Diagnosis | ArmDiagnosis) -> None:
     """Print the ladder and the verdict, in colours on a terminal."""
 
     def style(line: str) -> str:

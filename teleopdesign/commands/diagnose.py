@@ -12,10 +12,8 @@ from ._diagnosis import (
     add_search,
     diagnosed,
     experiment_of,
-    known_of,
     print_diagnosis,
-    stated_model,
-    tried_effects,
+    searched,
 )
 from ._folders import diagnose_all
 from ._options import add_effect_files, check_output, count_argument, say
@@ -137,17 +135,9 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
             raise ExperimentError(f"{option}: not there for an arm: use --json or --predictions")
     from ..diagnose.arms import find_missing_in_arm
     from ..diagnose.arms.answer import write_arm_answer, write_arm_predictions
-    from ..diagnose.search_plan import PLAN, QUICK
 
-    diagnosis = find_missing_in_arm(
-        experiment,
-        stated_model(experiment, options),
-        progress=say,
-        plan=QUICK if options.quick else PLAN,
-        among=tried_effects(known_of(options), options.only, options.exclude),
-    )
-    say("")
-    print(diagnosis)
+    diagnosis = searched(find_missing_in_arm, experiment, options)
+    print_diagnosis(diagnosis)
     if options.json is not None:
         write_arm_answer(diagnosis, options.json)
     if options.predictions is not None:
