@@ -8,32 +8,13 @@ from pathlib import Path
 
 import pytest
 from diagnose.contract import violations
+from own_effect import OWN
 
 import teleopdesign
 from teleopdesign import EFFECTS
 from teleopdesign.cli import main
 
 ROD = Path(teleopdesign.__file__).parent / "examples" / "rod"
-OWN = '''"""Own drag: a force in proportion to the square of velocity.
-
-    F = D v abs(v)
-"""
-
-from teleopdesign import Effect, Parameter
-
-
-def law(now, p):
-    return p.drag * now.velocity * abs(now.velocity)
-
-
-EFFECT = Effect(
-    role="force",
-    law=law,
-    parameters={"drag": Parameter("drag", "D: force per velocity squared")},
-    absent={"drag": 0.0},
-    source="made for a test",
-)
-'''
 
 
 @pytest.fixture

@@ -11,6 +11,7 @@ from effects.along import (
     motion_along,
     signals,
 )
+from own_effect import OWN
 
 from teleopdesign.effects import (
     EFFECTS,
@@ -21,27 +22,6 @@ from teleopdesign.effects import (
 )
 from teleopdesign.errors import ModelError
 from teleopdesign.realise.along_motion import residual_along
-
-OWN = '''"""Own drag: a force in proportion to the square of velocity.
-
-    F = D v abs(v)
-"""
-
-from teleopdesign import Effect, Parameter
-
-
-def law(now, p):
-    return p.drag * now.velocity * abs(now.velocity)
-
-
-EFFECT = Effect(
-    role="force",
-    law=law,
-    parameters={"drag": Parameter("drag", "D: force per velocity squared")},
-    absent={"drag": 0.0},
-    source="made for a test",
-)
-'''
 
 
 @pytest.fixture
