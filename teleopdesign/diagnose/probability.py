@@ -11,6 +11,7 @@ leaves a part of the order of what it explains, or a better one would not be wor
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -88,14 +89,30 @@ def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
 
 
 def probable(diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA) -> tuple[Candidate, ...]:
-    """The accepted effects that are at least as likely as not, in the order added."""
+    """The accepted effects that are at least as likely as not, in the order added.
+
+    One that needs an accepted effect that is less likely than not is not named either.
+    """
     probabilities = {
         one.ranked.candidate.key: one.probability(criteria=criteria)
         for one in evidence_of(diagnosis)
         if one.accepted
     }
-    added = [r.added for r in diagnosis.rungs if r.added is not None]
-    return tuple(c for c in added if probabilities[c.key] >= criteria.named)
+    named = {key for key, probability in probabilities.items() if probability >= criteria.named}
+    return standing(diagnosis, named)
+
+
+def standing(diagnosis: Diagnosis, named: Collection[tuple[str, str]]) -> tuple[Candidate, ...]:
+    """Accepted effects with these keys, in order, that need no accepted one without such a key."""
+    model, there = diagnosis.before.model, []
+    for rung in diagnosis.rungs:
+        new = rung.added
+        if new is None or new.key not in named or model.body(new.at).lacks(new.effect):
+            continue
+        there.append(new)
+        if rung.instead_of is None:  # else one of its kind is there already
+            model = model.with_effect(new.effect.name, at=new.at)
+    return tuple(there)
 
 
 def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:

@@ -107,6 +107,8 @@ def words_of(name: str) -> list[str]:
 def likeness(name: str, quantity: str) -> float:
     """How much a name sounds like a quantity: 0 to 1."""
     words = words_of(name)
+    if len(words) > 1 and all(len(w) == 1 for w in words):
+        words.append("".join(words))  # a letter with its index: "f_h"
     listed = WORDS[quantity]
     best = 0.0
     for word in words:

@@ -6,8 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
-from teleopdesign.diagnose.probability import CandidateEvidence, evidence_of, shares
+from teleopdesign.diagnose.probability import CandidateEvidence, evidence_of, shares, standing
+from teleopdesign.effects import EFFECTS
 
 
 class Scored:
@@ -74,3 +76,16 @@ def test_every_candidate_of_every_step_has_its_evidence(diagnosis):
     rankings = [*(r.ranking for r in diagnosis.rungs if r.ranking), diagnosis.last]
     assert len(found) == sum(len(k.ranked) for k in rankings)
     assert [e.ranked.candidate.key for e in found if e.accepted] == [("stribeck", "device")]
+
+
+@pytest.mark.parametrize("structure", ["transmission_compliance", "backlash"])
+def test_an_effect_is_not_named_without_the_accepted_one_that_it_needs(diagnosis, structure):
+    on, friction = (Candidate(EFFECTS[n], "device") for n in (structure, "tip_friction"))
+    first = diagnosis.rungs[0]
+    model = replace(diagnosis.before.model, known=EFFECTS)
+    first = replace(first, fit=replace(first.fit, model=model))
+    rungs = (first, *(replace(diagnosis.rungs[-1], added=c) for c in (on, friction)))
+    whole = replace(diagnosis, rungs=rungs)
+    assert standing(whole, {on.key, friction.key}) == (on, friction)
+    assert standing(whole, {friction.key}) == ()
+    assert standing(whole, {on.key}) == (on,)
