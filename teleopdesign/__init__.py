@@ -39,7 +39,7 @@ named as a folder: the folder is `td.simulate`, the function `td.simulate_diagra
 The folders, each importing only from those before it:
 
     arguments     what is given, held against the types declared (`expectations` beside it)
-    frozen        mappings that nobody changes (by_value, recipes, notebook: see there)
+    frozen        mappings that nobody changes (by_value, recipes, users_files, notebook: see there)
     quantity      force, velocity ... -> unit on a prismatic or a revolute axis
     finding       a sentence, its numbers, and a graph that shows it
     arms          links of an arm, of a URDF or as written, and the forces that they need

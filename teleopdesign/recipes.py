@@ -6,11 +6,9 @@ is read again, what was derived is derived again: `remember` keeps which.
 
 from __future__ import annotations
 
-import hashlib
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
-from pathlib import Path
 from typing import Any, TypeVar
 from weakref import WeakKeyDictionary
 
@@ -44,22 +42,6 @@ def recipe(thing: Any) -> tuple[Any, ...]:
             "it into a file of its own, or define it at the top of a module"
         )
     return _remake, (type(thing), {f.name: getattr(thing, f.name) for f in fields(thing)})
-
-
-def file_digest(path: Path, written: Path, what: str, expected: str = "") -> str:
-    """SHA-256 of a user's file.
-
-    written: its path as the user wrote it;  what: it holds, for messages;  expected: digest that it
-        must have, if any
-    raises ModelError: it cannot be read, or has another digest than expected
-    """
-    try:
-        digest = hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError as problem:
-        raise ModelError(f"{written}: cannot be read: {problem.strerror or problem}") from None
-    if expected and digest != expected:
-        raise ModelError(f"{written}: the {what} file has changed since it was used")
-    return digest
 
 
 def _remake(kind: type[Any], values: Mapping[str, Any]) -> Any:

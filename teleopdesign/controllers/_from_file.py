@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
+from types import ModuleType
 from weakref import WeakValueDictionary
 
-from ..errors import ModelError, TeleopDesignError
+from ..errors import ModelError
 from ..names import check_name
-from ..recipes import file_digest, remember
+from ..users_files import checked_path, load_once, run
 from ._controller import ControlLaw
 
 _LOADED: WeakValueDictionary[tuple[Path, str], ControlLaw] = WeakValueDictionary()
@@ -21,38 +21,20 @@ def load_controller(path: str | Path) -> ControlLaw:
     A file that has not changed since gives the same law again.
     raises ModelError: the file cannot be read or run, or defines no CONTROLLER
     """
-    path = Path(path)
-    if not path.is_file():
-        raise ModelError(f"{path}: no such file of a control law")
-    if not path.stem.isidentifier():
-        raise ModelError(f'{path}: the file name "{path.stem}" must be a name such as my_law.py')
+    path = checked_path(path, "control law", "my_law.py")
     return _of_file(path.resolve(), path)
 
 
 def _of_file(path: Path, written: Path, expected: str = "") -> ControlLaw:
-    """The law of a file.
+    """The law of a file;  written: its path in messages;  expected: digest that it must have."""
 
-    written: the path as the user wrote it;  expected: digest that the file must have
-    """
-    digest = file_digest(path, written, "control law", expected)
-    law = _LOADED.get((path, digest))
-    if law is None:
-        law = remember(_read(written), _of_file, path, written, digest)
-        _LOADED[path, digest] = law
-    return law
+    def read(content: bytes) -> ControlLaw:
+        return _checked(run(content, written, str(__package__)), written)
+
+    return load_once(_LOADED, _of_file, read, path, written, expected)
 
 
-def _read(path: Path) -> ControlLaw:
-    spec = importlib.util.spec_from_file_location(f"{__package__}.{path.stem}", path)
-    if spec is None or spec.loader is None:
-        raise ModelError(f"{path}: found a file of kind {path.suffix!r}, expected .py")
-    module = importlib.util.module_from_spec(spec)
-    try:
-        spec.loader.exec_module(module)
-    except TeleopDesignError as error:
-        raise ModelError(f"{path}: {error}") from error
-    except Exception as error:  # any failure of a user's file is reported, with its kind
-        raise ModelError(f"{path}: {type(error).__name__}: {error}") from error
+def _checked(module: ModuleType, path: Path) -> ControlLaw:
     law = getattr(module, "CONTROLLER", None)
     if not isinstance(law, ControlLaw):
         raise ModelError(f"{path}: found no CONTROLLER = ControlLaw(...)")

@@ -9,7 +9,7 @@ The file name is the effect's name, its docstring the effect's page. A user's ow
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -22,7 +22,8 @@ from ..arguments import check_arguments
 from ..errors import ModelError, TeleopDesignError, did_you_mean
 from ..frozen import Catalogue
 from ..names import check_name
-from ..recipes import file_digest, remember
+from ..recipes import remember
+from ..users_files import checked_path, load_once, run
 from ._effect import (
     CONTACT_ROLES,
     FURTHER,
@@ -79,44 +80,32 @@ def load_effect(path: str | Path) -> Effect:
     A file that has not changed since gives the same effect again.
     raises ModelError: the file cannot be read or run, defines no EFFECT, or an unsound one
     """
-    path = Path(path)
-    if not path.is_file():
-        raise ModelError(f"{path}: no such effect file")
-    if not path.stem.isidentifier():
-        raise ModelError(f'{path}: the file name "{path.stem}" must be a name such as my_effect.py')
+    path = checked_path(path, "effect", "my_effect.py")
     return _of_file(path.resolve(), path)
 
 
 _LOADED: WeakValueDictionary[tuple[Path, str], Effect] = WeakValueDictionary()
 
 
-def _of_file(path: Path, said: Path, expected: str = "") -> Effect:
-    """The effect of a file; said: as the user wrote its path;  expected: digest it must have."""
-    digest = file_digest(path, said, "effect", expected)
-    effect = _LOADED.get((path, digest))
-    if effect is None:
-        effect = _LOADED[path, digest] = remember(_read(said), _of_file, path, said, digest)
-    return effect
+def _of_file(path: Path, written: Path, expected: str = "") -> Effect:
+    """The effect of a file;  written: its path in messages;  expected: digest that it must have."""
+
+    def read(content: bytes) -> Effect:
+        return _checked(_run(content, written), written)
+
+    return load_once(_LOADED, _of_file, read, path, written, expected)
 
 
-def _read(path: Path) -> Effect:
-    spec = importlib.util.spec_from_file_location(f"{__name__}.{path.stem}", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
+def _run(content: bytes, path: Path) -> ModuleType:
     try:
-        spec.loader.exec_module(module)
-    except TeleopDesignError as error:
-        raise ModelError(f"{path}: {error}") from error
-    except TypeError as error:
+        return run(content, path, __name__)
+    except ModelError as error:
         for name in (f.name for f in fields(FitSearch)):
             if f"unexpected keyword argument '{name}'" in str(error):
                 raise ModelError(
                     f"{path}: Parameter: found {name}=..., expected search=FitSearch({name}=...)"
                 ) from error
-        raise ModelError(f"{path}: TypeError: {error}") from error
-    except (Exception, SystemExit) as error:  # any failure of a user's file is reported: its kind
-        raise ModelError(f"{path}: {type(error).__name__}: {error}") from error
-    return _checked(module, path)
+        raise
 
 
 #: signal -> roles whose laws may use it; for the others there is no such signal along a motion
@@ -168,7 +157,8 @@ def _checked(module: ModuleType, path: Path) -> Effect:
 
 def _own_effects() -> dict[str, Effect]:
     files = sorted(p for p in Path(__file__).parent.glob("*.py") if not p.name.startswith("_"))
-    return {p.stem: remember(_read(p), _own_effect, p.stem) for p in files}
+    modules = {p: importlib.import_module(f"{__name__}.{p.stem}") for p in files}
+    return {p.stem: remember(_checked(m, p), _own_effect, p.stem) for p, m in modules.items()}
 
 
 def _own_effect(name: str) -> Effect:

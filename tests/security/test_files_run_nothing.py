@@ -4,6 +4,7 @@ import ast
 import json
 import os
 import pickle
+import sys
 from types import SimpleNamespace
 
 import numpy as np
@@ -219,5 +220,6 @@ def test_a_written_effect_file_holds_titles_as_text_alone(tmp_path, monkeypatch,
     assert MARK not in ast.unparse(content)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv(MARK, raising=False)
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
     assert load_effect(path).role == "force"  # it is run here, the text in its docstring is not
     assert MARK not in os.environ and len(list(tmp_path.iterdir())) == 1

@@ -1,0 +1,81 @@
+"""Python files of the user: effects and control laws of one's own.
+
+What was read is what is run: the digest that names a file in answers and pickles is that of the
+very bytes that are compiled. Nothing is written beside the file.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, MutableMapping
+from pathlib import Path
+from types import ModuleType
+from typing import TypeVar
+
+from .errors import ModelError, TeleopDesignError
+from .recipes import remember
+
+Thing = TypeVar("Thing")
+#: makes the thing again: (resolved path, path as the user wrote it, digest that it must have)
+Again = Callable[[Path, Path, str], Thing]
+
+
+def checked_path(path: str | Path, what: str, example: str) -> Path:
+    """The path of a user's file.
+
+    what: it holds, for messages;  example: a file name that may stand there
+    raises ModelError: there is no such file, its name is no name, or it is no Python file
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise ModelError(f"{path}: no such {what} file")
+    if path.suffix != ".py":
+        raise ModelError(f"{path}: found a file of kind {path.suffix!r}, expected .py")
+    if not path.stem.isidentifier():
+        raise ModelError(f'{path}: the file name "{path.stem}" must be a name such as {example}')
+    return path
+
+
+def load_once(
+    loaded: MutableMapping[tuple[Path, str], Thing],
+    again: Again[Thing],
+    read: Callable[[bytes], Thing],
+    path: Path,
+    written: Path,
+    expected: str,
+) -> Thing:
+    """What a user's file defines; the same thing again where the file has not changed.
+
+    loaded: by path and digest;  again: what the thing pickles as;  read: the thing, from the bytes
+    of the file;  written: the path as the user wrote it;  expected: digest that the file must
+    have, "" for any
+    raises ModelError: the file cannot be read, or has another digest than expected
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as problem:
+        raise ModelError(f"{written}: cannot be read: {problem.strerror or problem}") from None
+    digest = hashlib.sha256(content).hexdigest()
+    if expected and digest != expected:
+        raise ModelError(f"{written}: the file has changed since it was used")
+    thing = loaded.get((path, digest))
+    if thing is None:
+        thing = loaded[path, digest] = remember(read(content), again, path, written, digest)
+    return thing
+
+
+def run(content: bytes, path: Path, package: str) -> ModuleType:
+    """The module that the bytes of a user's file make; its relative imports start at `package`.
+
+    raises ModelError: it cannot be compiled or run (the kind of the error in one line)
+    """
+    module = ModuleType(f"{package}.{path.stem}")
+    module.__file__ = str(path)
+    module.__package__ = package
+    try:
+        exec(compile(content, str(path), "exec"), module.__dict__)
+    except TeleopDesignError as error:
+        raise ModelError(f"{path}: {error}") from error
+    except (Exception, SystemExit) as error:  # any failure of a user's file is reported: its kind
+        raise ModelError(f"{path}: {type(error).__name__}: {error}") from error
+    return module

@@ -1,0 +1,52 @@
+"""A user's Python file: run as it was read, and nothing is written beside it."""
+
+import os
+import sys
+
+import pytest
+from own_effect import OWN
+
+from teleopdesign.controllers import load_controller
+from teleopdesign.effects import load_effect
+from teleopdesign.errors import ModelError
+
+LOADERS = {"effect": load_effect, "control law": load_controller}
+
+
+def test_an_edit_that_keeps_size_and_time_of_the_file_is_read(tmp_path, monkeypatch):
+    """Bytecode kept by Python is told by size and time of the file: it would run the old effect."""
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    path = tmp_path / "drag.py"
+    path.write_text(OWN)
+    assert load_effect(path).source == "made for a test"
+    stamp = path.stat()
+    path.write_text(OWN.replace("made for a test", "made for a TEST"))
+    os.utime(path, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
+    assert path.stat().st_size == stamp.st_size
+    assert load_effect(path).source == "made for a TEST"
+    assert [p.name for p in tmp_path.iterdir()] == ["drag.py"]
+
+
+@pytest.mark.parametrize("what", LOADERS)
+@pytest.mark.parametrize(
+    ("content", "refusal"),
+    [
+        ("import sys\nsys.exit(3)", "SystemExit: 3"),
+        ("1/0", "ZeroDivisionError"),
+        ("def f(:", "SyntaxError"),
+        ("x = '\0'", "null bytes|SyntaxError"),
+    ],
+)
+def test_a_file_that_fails_is_one_line(tmp_path, what, content, refusal):
+    path = tmp_path / "mine.py"
+    path.write_text(content)
+    with pytest.raises(ModelError, match=refusal) as caught:
+        LOADERS[what](path)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("what", LOADERS)
+def test_a_file_that_is_no_python_file_is_one_line(tmp_path, what):
+    (tmp_path / "mine.txt").write_text("EFFECT = 3")
+    with pytest.raises(ModelError, match=r"expected \.py"):
+        LOADERS[what](tmp_path / "mine.txt")
