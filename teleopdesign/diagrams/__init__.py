@@ -3,6 +3,7 @@
 from ..arguments import check_arguments
 from .arms import Arm, by_jacobian, joint, teleoperator_of_arms
 from .control_parts import controller_parts, plant_parts
+from .disturbance_observer import disturbance_observer
 from .felt_friction import FeltFriction, felt_friction
 from .four_channel import four_channel
 from .haptic_interface import four_cases, haptic_interface
@@ -47,6 +48,7 @@ __all__ = [
     "Reading",
     "by_jacobian",
     "controller_parts",
+    "disturbance_observer",
     "felt_friction",
     "four_cases",
     "four_channel",
