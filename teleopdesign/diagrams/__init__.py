@@ -1,6 +1,7 @@
 """Which blocks, wired by signal names."""
 
 from ..arguments import check_arguments
+from .admittance_device import admittance_device
 from .arms import Arm, by_jacobian, joint, teleoperator_of_arms
 from .control_parts import controller_parts, plant_parts
 from .disturbance_observer import disturbance_observer
@@ -46,6 +47,7 @@ __all__ = [
     "Moving",
     "Part",
     "Reading",
+    "admittance_device",
     "by_jacobian",
     "controller_parts",
     "disturbance_observer",
