@@ -24,6 +24,7 @@ from .shipped import SHIPPED, shipped
 from .teleoperator import teleoperator
 from .toml_reading import read_diagram
 from .toml_writing import write_diagram
+from .wave_variables import wave_variables
 from .wiring import Diagram
 from .world_haptics_2005 import READINGS, Reading, reading, world_haptics_2005
 
@@ -59,6 +60,7 @@ __all__ = [
     "shipped",
     "teleoperator",
     "teleoperator_of_arms",
+    "wave_variables",
     "world_haptics_2005",
     "write_diagram",
 ]
