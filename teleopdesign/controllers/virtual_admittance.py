@@ -29,6 +29,7 @@ def velocity(now, p):
 def sampled(values, period):
     below = [values[name] for name in ("inertia", "damping", "stiffness")]
     continuous = _state_space.rational_stage("virtual_admittance", [1.0], below, None)
+    assert continuous.law.sampled is not None
     return continuous.law.sampled(continuous.values, period)
 
 
