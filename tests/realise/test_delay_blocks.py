@@ -112,22 +112,22 @@ def test_two_delays_in_series_are_one_of_their_sum():
     np.testing.assert_array_equal(*runs)
 
 
-def test_delays_side_by_side_are_those_of_single_simulations():
+@pytest.mark.parametrize("analog", [pytest.param(True, marks=pytest.mark.slow), False])
+def test_delays_side_by_side_are_those_of_single_simulations(analog):
     """Analog and sampled, zero among them; lanes have the same arithmetic but for exp."""
     times = np.array([0.0, 0.004, 0.0125, 0.0125])
-    for analog in (True, False):
-        diagram = held(0.01, analog=analog, damping=2.0)
-        many = simulate_many(
-            diagram,
-            {"T_1.delay.time": times},
-            duration=0.02,
-            inputs={"f": 1.0},
-            reduce={"end": ("x", "final")},
-        )
-        for time, end in zip(times, many["end"].values, strict=True):
-            one = diagram.with_values({"T_1.delay.time": float(time)})
-            alone = simulate(one, duration=0.02, inputs={"f": 1.0}, jit=False)["x"].values[-1]
-            assert end == pytest.approx(alone, rel=1e-12)
+    diagram = held(0.01, analog=analog, damping=2.0)
+    many = simulate_many(
+        diagram,
+        {"T_1.delay.time": times},
+        duration=0.02,
+        inputs={"f": 1.0},
+        reduce={"end": ("x", "final")},
+    )
+    for time, end in zip(times, many["end"].values, strict=True):
+        one = diagram.with_values({"T_1.delay.time": float(time)})
+        alone = simulate(one, duration=0.02, inputs={"f": 1.0}, jit=False)["x"].values[-1]
+        assert end == pytest.approx(alone, rel=1e-12)
 
 
 def test_the_derivation_has_the_dead_time_as_a_factor_that_commutes():
