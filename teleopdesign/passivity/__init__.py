@@ -60,6 +60,7 @@ from .theorems.dahl_compensation import (
 from .theorems.delayed_compensation import delayed_small_motion, given_out_late, inertia_given_out
 from .theorems.delayed_coupling import delayed_spring
 from .theorems.delayed_inertia import cancelled_inertia, damping_given_out, largest_passive_inertia
+from .theorems.energy_tank import energy_tank
 from .theorems.lugre import lugre_passivity
 from .theorems.quantised_spring import quantised_spring, stiffest_spring
 from .theorems.sampled_compensation import Trembling, sampled_compensation
@@ -122,6 +123,7 @@ __all__ = [
     "delayed_small_motion",
     "delayed_spring",
     "diagram_claims",
+    "energy_tank",
     "free_motion",
     "free_motion_margin",
     "given_out",
