@@ -224,6 +224,9 @@ def _searched(whole: Diagram, port: Port, rng: np.random.Generator, search: Sear
         why = "its motion is no single body's, so that a simulation cannot prescribe it"
         return TopicClaim(topic, Claim(statement, Unknown(why)))
     free = without_holding(whole, port.motion.removesuffix("_tip"))
+    if code := [c.name for c in free.controls if c.is_code]:
+        why = f"{', '.join(code)} is known as code only, which a search would call a million times"
+        return TopicClaim(topic, Claim(statement, Unknown(why)))
     lengths = [x for pair in friction_pairs(free) for x in pair.lengths]
     shortest = min([search.stroke / 1000, *lengths])
     try:
