@@ -23,7 +23,7 @@ from ..errors import ModelError, did_you_mean
 from ..frozen import Frozen
 from ..notebook import html_table
 from ..recipes import recipe
-from ._exact import as_written
+from ._by_numbers import by_numbers, has_numbers, is_by_numbers
 
 _MOST_SHOWN = 8  # parameters of a law that one line shows
 
@@ -297,26 +297,52 @@ class Controller:
     ) -> sp.Expr | None:
         """Transfer function at constant speed; None where a law declares no linear form.
 
+        The velocity is that of the input: where it is another motion's, see `linear_parts`.
+
         held: also of what was measured, and of laws in discrete time, as
             H(e^(s T)) (1 - e^(-s T))/(s T): from the samples to the mean of the held output, copies
             at other multiples of the sampling rate left out
         """
-        if not all(stage.law.linear or (held and _has_numbers(stage)) for stage in self.stages):
+        parts = self.linear_parts(prefix, s, speed, held=held)
+        if parts is None or parts[1] == 0:
+            return None if parts is None else parts[0]
+        return sp.simplify(sp.Add(*parts))
+
+    def linear_parts(
+        self, prefix: str, s: sp.Symbol, speed: sp.Expr, *, held: bool = False
+    ) -> tuple[sp.Expr, sp.Expr] | None:
+        """Transfer functions from the input, and from the position along whose velocity it acts.
+
+        Arguments as of `linear_form`, which is their sum: the two are one signal there
+        """
+        if not all(stage.law.linear or (held and has_numbers(stage)) for stage in self.stages):
             return None
-        if all(_is_by_numbers(stage) for stage in self.stages):
-            return sp.Mul(*(_by_numbers(stage, s) for stage in self.stages))
-        drive = sp.Symbol("drive")
-        moved = {"velocity": s * drive, "speed": speed, "travel_rate": s * drive}
+        if all(is_by_numbers(stage) for stage in self.stages):
+            return sp.Mul(*(by_numbers(stage, s) for stage in self.stages)), sp.S(0)
+        drive, moved = sp.Symbol("drive"), sp.Symbol("moved")
+        motion = {"velocity": s * moved, "speed": speed, "travel_rate": s * moved}
         value: sp.Expr = drive
         for stage in self.stages:
-            if _is_by_numbers(stage):
-                value *= _by_numbers(stage, s)
+            if is_by_numbers(stage):
+                value *= by_numbers(stage, s)
                 continue
-            signals = {**moved, "input": value, "period": sp.S(0)}
+            signals = {**motion, "input": value, "period": sp.S(0)}
             equation = Controller((stage,)).equation(prefix, signals)
             states = sp.solve([s * x - r for x, r in equation.rates.items()], *equation.rates)
             value = equation.output.subs(states) if equation.rates else equation.output
-        return sp.simplify(value / drive)
+        return sp.simplify(sp.diff(value, drive)), sp.simplify(sp.diff(value, moved))
+
+    @property
+    def sees_velocity(self) -> bool:
+        """Whether a law of it that has a linear form takes the velocity itself, not its size."""
+        velocities = SIGNALS["velocity"], SIGNALS["travel_rate"]
+        for stage in self.stages:
+            if is_by_numbers(stage) or not stage.law.linear:
+                continue
+            equation = Controller((stage,)).equation("law", {**SIGNALS, "period": sp.S(0)})
+            if any(e.has(*velocities) for e in (equation.output, *equation.rates.values())):
+                return True
+        return False
 
     def __repr__(self) -> str:
         laws = (
@@ -334,38 +360,6 @@ class Controller:
             for n, v in g.values.items()
         ]
         return html_table("Controller", ("parameter", "value (SI)", "meaning"), rows)
-
-
-def _has_numbers(stage: Stage) -> bool:
-    """Whether it was measured, or has a transfer function in z at a period of its own."""
-    if stage.law.response is not None:
-        return True
-    return stage.law.shift is not None and stage.values["period"] > 0
-
-
-def _is_by_numbers(stage: Stage) -> bool:
-    law = stage.law
-    return any(x is not None for x in (law.transfer, law.shift, law.response))
-
-
-def _by_numbers(stage: Stage, s: sp.Symbol) -> sp.Expr:
-    """Transfer function of a law that states it, with its values in place."""
-    if stage.law.transfer is not None:
-        return stage.law.transfer(stage.values, s)
-    if stage.law.response is not None:
-        return as_written(stage.values["scale"]) * stage.law.response(s)
-    assert stage.law.shift is not None
-    period, z = as_written(stage.values["period"]), sp.Symbol("z")
-    late = sp.exp(-s * period)
-    above, below = (
-        sp.Poly(x, z) for x in sp.fraction(sp.together(stage.law.shift(stage.values, z)))
-    )
-    # in powers of e^(-s T): those of e^(s T) overflow far out in the right half plane
-    order = below.degree()
-    sides = (
-        sp.Add(*(c * late ** (order - k) for (k,), c in part.terms())) for part in (above, below)
-    )
-    return sp.Mul(next(sides), 1 / next(sides)) * (1 - late) / (s * period)
 
 
 def _placed(

@@ -65,6 +65,7 @@ from .theorems.quantised_spring import quantised_spring, stiffest_spring
 from .theorems.sampled_compensation import Trembling, sampled_compensation
 from .theorems.sampled_data import required_damping, sampled_coupling, sampled_passivity
 from .theorems.velocity_compensation import SteadyStrokes, velocity_compensation
+from .theorems.wave_channel import wave_channel, wave_claim, wave_teleoperator
 from .two_port.claims import absolutely_stable, passive
 from .two_port.two_port import (
     FrequencyMargins,
@@ -162,6 +163,9 @@ __all__ = [
     "teleoperator_two_port",
     "two_port",
     "velocity_compensation",
+    "wave_channel",
+    "wave_claim",
+    "wave_teleoperator",
     "write_record",
     "z_width",
 ]
