@@ -51,6 +51,20 @@ def pytest_xdist_make_scheduler(config, log):
     return ByFile(config, log)
 
 
+@pytest.fixture(scope="session", autouse=True)
+def all_trees():
+    """How many trees the black box has; in tests it has few, for it only goes along with most.
+
+    With all of them it takes half a second of each diagnosis, and seconds without check records.
+    """
+    from teleopdesign.diagnose import learnable
+
+    with pytest.MonkeyPatch.context() as patch:
+        every = learnable.TREES
+        patch.setattr(learnable, "TREES", 5)
+        yield every
+
+
 @pytest.fixture
 def hybrid():
     """LuGre device, 0.5 kg in place of the hand, hybrid compensation, position loop."""

@@ -16,6 +16,8 @@ from .claims.claim import Claim, Evidence, Proof, Refutation, Unknown
 from .claims.counterexample_files import read_record, write_record
 from .claims.second_opinion import SecondOpinion, second_opinion
 from .diagram_claims import DiagramClaims, Search, diagram_claims
+from .intervals.interval_claim import IntervalClaim
+from .intervals.over_box import claim_over_intervals
 from .linear.hand_port import hand_port
 from .linear.impedance import Impedance, impedance
 from .linear.kyp import Kyp, kyp, storage_function
@@ -93,6 +95,7 @@ __all__ = [
     "FrequencyMargins",
     "Given",
     "Impedance",
+    "IntervalClaim",
     "Kyp",
     "MarginMap",
     "PassivityControlled",
@@ -116,6 +119,7 @@ __all__ = [
     "available_storage",
     "bounded_compensation",
     "cancelled_inertia",
+    "claim_over_intervals",
     "confirmed_motion",
     "dahl_compensation",
     "damping_excess",

@@ -1,8 +1,7 @@
 """Linear equations with symbolic coefficients, solved by elimination.
 
 Where unknowns are joined by coefficients that are no numbers (accelerations through a mass matrix),
-expressions of their solution would grow beyond all bounds: its steps are given names instead. What
-a nonlinear law takes is solved for first, so that it may be computed, but not from its own output.
+expressions of their solution would grow beyond all bounds: its steps are given names instead.
 """
 
 from __future__ import annotations
@@ -23,25 +22,24 @@ def solve_linear(
     """Solve rows = 0, linear in the unknowns, one after the other; simplest pivots first.
 
     returns: the solution, and the named steps that it is written in
-    raises ModelError: an unknown is not determined, or enters other than linearly a row that no
-        other row makes linear
+    raises ModelError: an unknown is not determined, or enters other than linearly
     """
     rows, left = list(rows), set(unknown)
     solution: dict[sp.Symbol, sp.Expr] = {}
     while left:
-        choice, bent = None, ""
+        choice = None
         for i, row in enumerate(rows):
             for x in sorted(left & row.free_symbols, key=str):
                 factor = sp.diff(row, x)
                 if left & factor.free_symbols:
-                    bent = bent or x.name
-                    continue
+                    continue  # it may stand alone once others are known
                 cost = (not factor.is_Number, len(left & row.free_symbols), factor.count_ops())
                 if factor != 0 and (choice is None or cost < choice[0]):
                     choice = (cost, i, x, factor)
-        if choice is None and bent:
-            raise ModelError(f"{name}: {bent} enters an equation other than linearly")
         if choice is None:
+            for row in rows:  # an unknown that enters other than linearly is named
+                for x in sorted(left & row.free_symbols, key=str):
+                    _factor(row, x, left, name)
             raise _undetermined(left, name)
         (no_number, others, _), i, x, factor = choice
         if no_number and others > 1:
@@ -73,7 +71,7 @@ def _gathered(row: sp.Expr, unknown: set[sp.Symbol]) -> sp.Expr:
     here = sorted(unknown & row.free_symbols, key=str)
     factors = {x: sp.diff(row, x) for x in here}
     if any(unknown & f.free_symbols for f in factors.values()):
-        return row
+        return row  # a law of what is not known yet
     factors = {x: sp.expand(f, power_exp=False) for x, f in factors.items()}
     rest = row.xreplace(dict.fromkeys(here, sp.S(0)))
     return sp.Add(rest, *(f * x for x, f in factors.items()))
