@@ -89,10 +89,15 @@ def energy_tanks(
 
 def _counters(name: str, command: str, motion: str) -> list[Block]:
     """What the command has given to the body, and taken from it."""
-    given, taken = (controller("port_energy", {"sign": sign}) for sign in (1.0, -1.0))
     return [
-        Control(f"G_{name}", given, command, f"given_{name}", motion),
-        Control(f"K_{name}", taken, command, f"taken_{name}", motion),
+        Control(
+            f"{letter}_{name}",
+            controller("port_energy", {"sign": sign}),
+            command,
+            f"{count}_{name}",
+            motion,
+        )
+        for letter, count, sign in (("G", "given", 1.0), ("K", "taken", -1.0))
     ]
 
 
