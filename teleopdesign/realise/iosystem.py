@@ -156,10 +156,11 @@ def _known(diagram: Diagram) -> Diagram:
 
 
 def _code(part: Control) -> Any:
-    """The python-control system that the controller consists of; None where it is a law."""
+    """The system in continuous time that the controller consists of; None where it is a law."""
     assert isinstance(part.controller, Controller)
     stages = part.controller.stages
-    return stages[0].law.system if len(stages) == 1 else None
+    system = stages[0].law.system if len(stages) == 1 else None
+    return None if system is None or system.isdtime(strict=True) else system
 
 
 def _controller(part: Control, numbers: SymbolValues, names: PrivateNames) -> Any:
@@ -169,7 +170,7 @@ def _controller(part: Control, numbers: SymbolValues, names: PrivateNames) -> An
     v = motion_of(names.diagram, part.motion)[1] if part.motion else sp.S(0)
     signals = {"input": signal(part.input), "velocity": v, "speed": sp.Abs(v), "travel_rate": v}
     signals["period"] = sp.S(0)
-    equation = part.controller.equation(part.name, signals)
+    equation = part.controller.equation(part.name, signals, code=True)
     states = sorted(equation.rates, key=str)
     rates = [equation.rates[s] for s in states]
     used = set().union(*(e.free_symbols for e in (equation.output, *rates)))

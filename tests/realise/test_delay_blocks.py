@@ -132,9 +132,9 @@ def test_delays_side_by_side_are_those_of_single_simulations(analog):
 
 def test_the_derivation_has_the_dead_time_as_a_factor_that_commutes():
     x = transfer(held(0.02), "x", ("f",))["f"]
-    m, p, s = sp.Symbol("M"), sp.Symbol("P"), sp.Symbol("s")
+    m, p, s, v = (sp.Symbol(n) for n in ("M", "P", "s", "V_P"))  # V_P: the damper, on x itself
     plain = x.xreplace({a: sp.Symbol(a.name) for a in x.free_symbols})
-    assert sp.simplify(plain - 1 / (m + p * sp.exp(-s * sp.Symbol("T_1")))) == 0
+    assert sp.simplify(plain - 1 / (m + v + p * sp.exp(-s * sp.Symbol("T_1")))) == 0
     assert "exp(-s T_1) P" in all_transfers(held(0.02))["x/f"].text()
 
 

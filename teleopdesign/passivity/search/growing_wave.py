@@ -25,6 +25,8 @@ from ..linear.polynomials import even_part, where_negative
 
 LONGEST = 500  # periods of a wave that are sampled; each of them gives out energy
 _DIGITS = 40  # of numerical values: poles and zeros of badly scaled systems lie close together
+#: share of abs(Z) below which the sum of a replay in double precision loses Re Z: 1e4 roundings
+_WEAKEST = 1e-11
 
 
 @dataclass(frozen=True)
@@ -132,7 +134,17 @@ def growing_wave(z: Impedance) -> GrowingWave | None:
     waves = [_beside_the_axis(z, x) for x in where_negative(even_part(z.p, z.q))]
     growing = [w for w in waves if w is not None]
     # the one that grows fastest against its frequency is the plainest to look at
-    return max(growing, key=lambda w: w.rate / w.frequency) if growing else _at_a_growing_mode(z)
+    best = max(growing, key=lambda w: w.rate / w.frequency, default=None)
+    if best is not None and _share(best) > _WEAKEST:
+        return best
+    # a mode that grows shows more, where a zero beside it hides it from the axis
+    return _at_a_growing_mode(z) or best
+
+
+def _share(wave: GrowingWave) -> float:
+    """Part of abs(Z) that gives out energy at the wave of a single port."""
+    z = complex(wave.value[0, 0])
+    return -z.real / abs(z)
 
 
 def square_root(x: Fraction, digits: int) -> Fraction:
