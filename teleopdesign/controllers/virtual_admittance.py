@@ -26,7 +26,7 @@ def velocity(now, p):
     return (now.input - p.damping * now.velocity - p.stiffness * now.position) / p.inertia
 
 
-def sampled(values, period):
+def discretise(values, period):
     below = [values[name] for name in ("inertia", "damping", "stiffness")]
     continuous = _state_space.rational_stage("virtual_admittance", [1.0], below, None)
     return Controller((continuous,)).sampled(period).stages[0]
@@ -39,7 +39,7 @@ CONTROLLER = ControlLaw(
         "velocity": ControllerState("velocity", velocity),
     },
     linear=True,
-    sampled=sampled,
+    sampled=discretise,
     parameters={
         "inertia": Parameter("inertia", "M: virtual inertia", lower=_LIGHTEST),
         "damping": Parameter("damping", "B: virtual damping"),

@@ -70,8 +70,8 @@ def energy_tanks(
         blocks += _counters(name, command, body.motion)
         motions.append(body.motion)
         limit = controller("energy_limit", {"reserve": reserve, "travel": travel})
-        limited = _limited(name, command, limit)
-        blocks, sums = [*blocks, *limited[0]], [*sums, *limited[1]]
+        limiter = _limit_parts(name, command, limit)
+        blocks, sums = [*blocks, *limiter[0]], [*sums, *limiter[1]]
         texts |= {f"{start}_{name}": text for start, text in _TEXTS.items()}
     for name, other, channel in zip(ends, reversed(ends), (to_first, to_second), strict=True):
         if channel is None:
@@ -96,7 +96,7 @@ def _counters(name: str, command: str, motion: str) -> list[Block]:
     ]
 
 
-def _limited(name: str, command: str, limit: Controller) -> tuple[list[Block], list[Junction]]:
+def _limit_parts(name: str, command: str, limit: Controller) -> tuple[list[Block], list[Junction]]:
     """The wanted command within the limit: (abs(w + l) - abs(w - l))/2."""
     half = controller("magnitude", {"gain": 0.5})
     blocks: list[Block] = [

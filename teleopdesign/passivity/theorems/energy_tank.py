@@ -32,7 +32,7 @@ def energy_tank(*, reserve: Any, travel: Any) -> Claim:
     statement = (
         f"two ends with energy tanks of {decimal(reserve)} J give their bodies at most "
         f"{decimal(2 * reserve)} J more than they take from them, as long as no sample's travel "
-        f"exceeds {decimal(travel)} m"
+        f"exceeds {decimal(travel)} m, positions are exact and commands act from their sample on"
     )
     tank, size, force, way, most = sp.symbols("W F f x d", real=True)
     half = sp.Rational(1, 2)
