@@ -140,7 +140,8 @@ def test_what_no_exact_reasoning_covers_is_checked_numerically_and_says_so():
 
 
 def test_a_delay_leaves_numbers_and_no_proof():
-    spring = td.controller("spring_damper", {"stiffness": 100.0, "damping": 1.0})
+    values = {"stiffness": 100.0, "damping": 1.0, "bandwidth": 500.0}
+    spring = td.controller("proportional_derivative", values)
     side, none = body(0.15, viscous__damping=8.0), td.controller("gain", {"gain": 0.0})
     channels = {"C_1": spring, "C_2": none, "C_3": none, "C_4": spring}
     diagram = four_channel(
