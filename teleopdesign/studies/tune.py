@@ -53,7 +53,7 @@ class Tuned(ByValue):
 
     diagram: with `values`;  objective: the measure there, of `before` with the diagram's own values
         (NaN where it is not measured there);  limits: checked once more at `values`
-    number: of points that were tried;  simulated: simulations or evaluations of measures;  seed: of the search
+    number: of points that were tried;  simulated: simulations, or evaluations of measures
     at_ends: parameters at an end of their interval
     """
 
