@@ -8,12 +8,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import ModelError
+from ..expectations import described
 from ..passivity.intervals.box import ValueBox
 from .case import SimulatedCase
 from .chosen_measures import Measure
+from .evaluate import StudyTask
+from .journal import PointOutcome
 from .limits import TuningLimit, margin_function
-from .run import study
+from .points import points_of
+from .processes import run_on_this_machine
 from .samples import Samples
+from .side_by_side import units_of
 
 #: vertices of the intervals of a limit that the search looks at, beside their middle
 _MOST_VERTICES = 16
@@ -60,6 +65,7 @@ class Problem:
     trials: dict[tuple[float, ...], TrialPoint] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
     simulated: int = 0
+    reason: str = ""
 
     def __post_init__(self) -> None:
         self.scenarios = [self._scenarios(one) for one in self.limits]
@@ -194,16 +200,26 @@ class Problem:
         listed = measures or tuple({m.name: m for m in (*self.objectives, *limited)}.values())
         names = self.parameters.names
         points = Samples(names, np.array(keys), ("",) * len(names), "random", self.seed)
-        axes = [points, values] if values else points
-        done = study(self.case, axes, measures=listed, seed=self.seed, workers=self.workers).data
-        for m in listed:
-            if m.name in done and done[m.name].ndim != 1:
-                raise ModelError(f"tune: {m.name}: found several numbers, expected one")
-        self.units |= {
-            m.name: done[m.name].attrs.get("units", "") for m in listed if m.name in done
-        }
-        columns = {m.name: done[m.name].values for m in listed if m.name in done}
-        return {k: {n: float(c[i]) for n, c in columns.items()} for i, k in enumerate(keys)}
+        axes = points_of([points, values])
+        task = StudyTask(self.case, self.case.settings(), axes, listed, self.seed)
+        outcomes: dict[int, PointOutcome] = {}
+
+        def keep(outcome: PointOutcome) -> None:
+            outcomes[outcome.point] = outcome
+
+        run_on_this_machine(task, units_of(task, range(len(keys))), keep, self.workers)
+        return {k: self._numbers(outcomes[i]) for i, k in enumerate(keys)}
+
+    def _numbers(self, outcome: PointOutcome) -> dict[str, float]:
+        """Number by measure of a point; none where it failed."""
+        numbers = {}
+        for (name, kind, unit, *_), value in zip(outcome.form, outcome.values, strict=True):
+            if kind != "number" or isinstance(value, tuple):
+                raise ModelError(f"tune: {name}: found {described(value)}, expected one number")
+            self.units[name] = unit or self.units.get(name, "")
+            numbers[name] = float(value)
+        self.reason = outcome.reason or self.reason
+        return numbers
 
     def _scenarios(self, one: TuningLimit) -> list[dict[str, float]]:
         if not one.over:

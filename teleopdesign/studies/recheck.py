@@ -57,7 +57,7 @@ def _check(problem: Problem, trial: TrialPoint, k: int) -> CheckedLimit:
         claim = claim_over_intervals(diagram, one.over, claim=one.name)
         proved = claim.status == "proved" and (one.bound <= 0 or claim.proved_margin >= one.bound)
         holds = bool(claim.holds) and (np.isnan(claim.margin) or one.excess(claim.margin) >= 0)
-        how = claim.known if one.over or not proved else "proved at this point"
+        how = claim.known if one.over or not proved else f"proved at this point{claim.limited}"
         if holds and not proved:
             how = f"checked numerically at {claim.points} points, worst found there"
         return CheckedLimit(one, claim.margin, claim.unit, holds, how, claim.worst, active)

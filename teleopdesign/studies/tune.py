@@ -144,6 +144,8 @@ def tune(
     problem = problem_of(case, parameters, [objective], subject_to, seed, workers)
     start = problem.start()
     checked_limits = search_with_rounds(problem, evaluations)
+    if not any(np.isfinite(t.objectives).all() for t in problem.trials.values()) and problem.reason:
+        raise ModelError(f"tune: no point was measured: {problem.reason}")
     return tuned_of(problem, problem.best(), start, checked_limits)
 
 

@@ -44,7 +44,7 @@ def test_the_most_force_feedback_that_is_passive_is_where_algebra_has_it():
     # within 1 % from below: the simplex stops at a step of 1e-4 of the interval
     assert 0.99 * limit < tuned.values["H.gain.gain"] <= limit * (1 + 1e-9)
     (passive,) = tuned.limits
-    assert passive.active and passive.how == "proved at this point"
+    assert passive.active and passive.how == "proved at this point (in continuous time)"
     assert "best found of" in repr(tuned) and "optim" not in repr(tuned)
 
 
@@ -59,7 +59,7 @@ def test_a_limit_over_intervals_holds_at_the_worst_hand_and_device():
     )
     limit = most_gain(0.2, 3.0, 20.0)
     assert 0.99 * limit < tuned.values["H.gain.gain"] <= limit * (1 + 1e-9)
-    assert tuned.limits[0].how == "proved over the whole box"
+    assert tuned.limits[0].how == "proved over the whole box (in continuous time)"
     assert claim_over_intervals(tuned.diagram, over).status == "proved"
 
 
@@ -89,12 +89,27 @@ def test_margins_of_the_loop_and_measures_are_limits_too():
     assert tuned.limits[0].value >= 5e-3
 
 
+def load(diagram):
+    """A measure that depends on what is tuned and on what is not known."""
+    return diagram.values["H.gain.gain"] * diagram.values["Z_M.inertia"]
+
+
+def test_a_measure_over_intervals_is_bounded_at_its_worst_value():
+    heavy = td.limit(load, most=0.3, over={"Z_M.inertia": (0.1, 0.2)})
+    most = {"H.gain.gain": (0.05, 4.0)}
+    tuned = td.tune(LOOP, most, less_gain, subject_to=[heavy], evaluations=60)
+    assert tuned.keeps_limits and tuned.values["H.gain.gain"] == pytest.approx(1.5, rel=0.01)
+    (checked,) = tuned.limits
+    assert checked.worst == {"Z_M.inertia": 0.2} and checked.how.startswith("checked numerically")
+
+
 def test_where_no_point_keeps_the_limits_the_answer_says_so():
     limits = [td.limit(gain, most=0.01)]
     tuned = td.tune(LOOP, {"H.gain.gain": (0.05, 1.0)}, gain, subject_to=limits, evaluations=20)
     assert not tuned.keeps_limits and "keeps all limits" in repr(tuned)
 
 
+@pytest.mark.slow
 def test_trade_offs_are_points_that_no_other_one_beats_in_both():
     rows = np.array([[1.0, 3.0], [2.0, 2.0], [2.0, 2.5], [3.0, 1.0], [3.5, 1.0]])
     assert best_in_both(rows) == [0, 1, 3]
@@ -114,6 +129,15 @@ def test_trade_offs_are_points_that_no_other_one_beats_in_both():
         assert values["H.gain.gain"] <= bound * (1 + 1e-9)
     axes = front.plot().axes[0]
     assert axes.get_xlabel() == "less gain (1)" and len(axes.lines) == 4
+
+
+@pytest.mark.slow
+def test_more_processes_give_the_same_answer():
+    moved = {"duration": 0.2, "motion": {"L": td.sine(amplitude=0.01, frequency=10.0)}}
+    one, two = (
+        td.tune(LOOP, PARAMETERS, "force_error", evaluations=24, workers=n, **moved) for n in (1, 2)
+    )
+    assert one == two
 
 
 @pytest.mark.slow
