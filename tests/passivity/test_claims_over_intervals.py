@@ -17,7 +17,9 @@ from teleopdesign.passivity.intervals.bernstein import (
     excludes_zero_over,
     is_non_negative_over,
 )
+from teleopdesign.passivity.intervals.conditions import Conditions
 from teleopdesign.passivity.linear.polynomials import X
+from teleopdesign.realise.lti import S
 
 Y = sp.Symbol("y")
 UNIT = [(Fraction(-1), Fraction(1))]
@@ -52,6 +54,31 @@ def test_two_polynomials_that_meet_at_zero_inside_are_not_called_apart():
     )
 
 
+def test_no_polynomial_with_a_small_dip_inside_is_called_non_negative():
+    rng = np.random.default_rng(1)
+    for _ in range(60):
+        x0, y0 = (sp.Rational(int(n), 97) for n in rng.integers(1, 90, 2))
+        a, b = (sp.Rational(int(n), 10) for n in rng.integers(-20, 20, 2))
+        dip = sp.Rational(1, 10 ** int(rng.integers(2, 12)))
+        p = ((X - x0) + a * (Y - y0)) ** 2 + ((Y - y0) * (1 + X) + b * (X - x0)) ** 2 - dip
+        scale = Fraction(2) ** int(rng.integers(-6, 6))
+        assert not is_non_negative_over(poly(sp.expand(p)), UNIT, scale, ProofEffort(left=2000))
+
+
+@pytest.mark.parametrize("width", [1, 1000])
+def test_a_family_that_touches_the_axis_at_one_value_inside_is_not_called_hurwitz(width):
+    rng = np.random.default_rng(2)
+    for _ in range(12):
+        y0 = sp.Rational(int(rng.integers(-90, 90)), 97)
+        w = sp.Rational(int(rng.integers(1, 50)), 7) * width
+        touching = (S**2 + (Y - y0) ** 2 * S + w**2) * (S + 1 + Y**2)
+        ask = Conditions([Y], UNIT, ProofEffort(left=4000))
+        assert not ask.is_hurwitz(ask.poly(sp.expand(touching)))
+        apart = (S**2 + (sp.Rational(1, 5) + (Y - y0) ** 2) * S + w**2) * (S + 1 + Y**2)
+        ask = Conditions([Y], UNIT)
+        assert width > 1 or ask.is_hurwitz(ask.poly(sp.expand(apart)))
+
+
 def attack(seed, *names):
     """The claim over a random box, and the lowest that 60 points of it show by other formulas."""
     rng = np.random.default_rng(seed)
@@ -79,8 +106,8 @@ def test_no_random_box_that_is_proved_holds_a_point_where_it_fails():
 
 @pytest.mark.slow
 def test_no_more_random_boxes_that_are_proved_hold_a_point_where_they_fail():
-    statuses = [attack(seed) for seed in range(4, 18)]
-    assert statuses.count("proved") >= 7 and "refuted" in statuses
+    statuses = [attack(seed) for seed in range(4, 14)]
+    assert statuses.count("proved") >= 5 and "refuted" in statuses
 
 
 def test_hands_within_bounds_are_intervals_of_their_values():
@@ -90,7 +117,9 @@ def test_hands_within_bounds_are_intervals_of_their_values():
         "Z_H.spring.stiffness": (100.0, 600.0),
     }
     claim = claim_over_intervals(DIAGRAMS["interface"], hands, claim="stable")
-    assert claim.status == "proved" and claim.known == "proved over the whole box"
+    assert claim.status == "proved" and claim.known.startswith(
+        "proved over the whole box (in continuous time)"
+    )
     assert 0 < claim.proved_margin <= claim.margin
     # the slowest is the softest hand with the least damping, or the stiffest one with much mass
     assert claim.worst["Z_H.viscous.damping"] == 1.0
@@ -98,6 +127,13 @@ def test_hands_within_bounds_are_intervals_of_their_values():
     claim = claim_over_intervals(strong, hands, claim="stable")
     assert claim.status == "refuted"
     assert failure("interface", {**strong.values, **claim.worst}, "stable") < 0
+
+
+def test_what_no_computer_samples_is_proved_in_any_time():
+    side, spring = body(0.15, viscous__damping=2.0), body(0.1, spring__stiffness=100.0)
+    diagram = td.haptic_interface(side, hand=spring)
+    claim = claim_over_intervals(diagram, {"Z_M.inertia": (0.1, 0.2)})
+    assert claim.known == "proved over the whole box"
 
 
 def test_a_hand_is_no_part_of_what_is_passive():
@@ -125,6 +161,31 @@ def test_vertices_decide_how_much_friction_may_be_cancelled():
     assert claim.status == "refuted" and claim.worst["Z_M.coulomb.level"] == 0.3
 
 
+@pytest.mark.slow
+def test_friction_that_is_proved_over_a_box_is_so_at_points_inside():
+    rng = np.random.default_rng(3)
+    statuses = []
+    for _ in range(12):
+        middle = {
+            "C.dahl.level": rng.uniform(0.1, 0.6),
+            "C.dahl.stiffness": rng.uniform(5e3, 2e4),
+            "Z_M.coulomb.level": rng.uniform(0.3, 0.8),
+            "Z_M.presliding.stiffness": rng.uniform(1e4, 4e4),
+        }
+        names = rng.choice(list(middle), 2, replace=False)
+        box = {str(n): (0.9 * middle[n], 1.1 * middle[n]) for n in names}
+        diagram = rubbing(0.3, 1e4).with_values(middle)
+        claim = claim_over_intervals(diagram, box)
+        statuses.append(claim.status)
+        for _ in range(20):
+            v = {**diagram.values, **{n: rng.uniform(*ends) for n, ends in box.items()}}
+            level, friction = v["C.dahl.level"], v["Z_M.coulomb.level"]
+            ratio = v["C.dahl.stiffness"] / v["Z_M.presliding.stiffness"]
+            passive = level <= friction and ratio**2 * friction <= level
+            assert passive or claim.status == "refuted"
+    assert {"proved", "refuted"} <= set(statuses)
+
+
 def test_what_no_exact_reasoning_covers_is_checked_numerically_and_says_so():
     def headroom(diagram):
         return 0.3 - diagram.values["Z_M.inertia"]
@@ -139,6 +200,7 @@ def test_what_no_exact_reasoning_covers_is_checked_numerically_and_says_so():
     assert "proved" not in repr(claim)
 
 
+@pytest.mark.slow
 def test_a_delay_leaves_numbers_and_no_proof():
     values = {"stiffness": 100.0, "damping": 1.0, "bandwidth": 500.0}
     spring = td.controller("proportional_derivative", values)

@@ -15,8 +15,9 @@ from ...derive import symbol_values
 from ...derive.elimination import rows
 from ...diagrams import Control, Diagram
 from ...realise.lti import LinearBlocks, S, linear_blocks
+from ...realise.simulated import without_absent
 from ...realise.tips import with_tips
-from ..ports import impedance_matrix, judged, ports
+from ..ports import impedance_matrix, ports
 from .box import ValueBox
 
 #: points inside the box at which the family is held against the diagram; each costs about 0.1 s
@@ -68,7 +69,7 @@ def family_of(diagram: Diagram, box: ValueBox) -> Family | None:
     body's structure, of a system given by numbers), or one whose form changes within the box
     raises ModelError: a block known by its name only
     """
-    whole = with_tips(judged(diagram))
+    whole = _apart(diagram)
     linear = linear_blocks(whole)
     symbols = {n: sp.Dummy(f"v{k}", real=True) for k, n in enumerate(box.names)}
     blocks, actuation = dict(linear.blocks), dict(linear.actuation)
@@ -115,22 +116,36 @@ def _forms(
     return first, second
 
 
+def _apart(diagram: Diagram) -> Diagram:
+    """As `judged` has it, bodies with a structure apart; no linear form is made."""
+    for part in diagram.bodies:
+        if isinstance(part.body, Body):
+            diagram = diagram.with_block(part.name, without_absent(part.body))
+    return with_tips(diagram)
+
+
 def _agrees(family: Family, diagram: Diagram, box: ValueBox) -> bool:
     """Whether its blocks are exactly those of the diagram, inside and at two opposite vertices.
 
     An effect that its values make absent is so at an end of an interval.
     """
+    varied = {n.partition(".")[0] for n in box.names}
+    # a body that is parted at its structure is several blocks: all are compared then
+    parted = any(family.diagram.has(f"{name}_tip") for name in varied)
+    blocks_compared = ("",) if parted else tuple(varied)
     for point in (np.array(box.low), np.array(box.high), *box.inside(_COMPARED, 0)):
         values = box.named(point)
-        there = linear_blocks(with_tips(judged(diagram.with_values(values))))
+        there = _apart(diagram.with_values(values))
         placed = {family.symbols[n]: as_written(v) for n, v in values.items()}
-        for here, exact in (
-            (family.linear.blocks, there.blocks),
-            (family.linear.actuation, there.actuation),
-        ):
-            if here.keys() != exact.keys():
-                return False
-            pairs = ((sp.sympify(here[n]).subs(placed), exact[n]) for n in here)
-            if any(a != b and sp.cancel(sp.together(a - b)) != 0 for a, b in pairs):
-                return False
+        for one in blocks_compared:
+            exact = linear_blocks(there, only=one)
+            for here, forms in (
+                (family.linear.blocks, exact.blocks),
+                (family.linear.actuation, exact.actuation),
+            ):
+                if not (one or here.keys() == forms.keys()) or not forms.keys() <= here.keys():
+                    return False
+                pairs = ((sp.sympify(here[n]).subs(placed), form) for n, form in forms.items())
+                if any(a != b and sp.cancel(sp.together(a - b)) != 0 for a, b in pairs):
+                    return False
     return True

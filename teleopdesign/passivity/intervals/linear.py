@@ -19,9 +19,9 @@ from ..ports import judged, nonlinear_parts, ports
 from .at_points import judge_at_points
 from .box import ValueBox
 from .conditions import Conditions, one_port_is_passive, two_port_is_passive, two_port_is_stable
-from .family import family_of
+from .family import Family, family_of
 from .interval_claim import Parts, Status, parts_of
-from .worst import pole_margin, port_margin, search_worst
+from .worst import Margin, pole_margin, port_margin, search_worst
 
 #: claims that the package knows, and the unit of their margins
 CLAIMS = {"passive": "N s/m", "absolutely stable": "1", "stable": "1/s"}
@@ -30,6 +30,7 @@ _SHARES = (0.999, 0.9, 0.5)
 
 
 def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> Parts:
+    """Whether every pole of the whole diagram lies left of the axis."""
     statement = "every pole has a negative real part"
     if bent := nonlinear_parts(judged(middle)):
         raise ModelError(f"{middle.name}: stable: {', '.join(bent)} has no linear form")
@@ -75,11 +76,7 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
     z = family.impedance()
     stable = claim == "absolutely stable"
     ask = Conditions.over(box, family.symbols)
-    poles = []
-    if family.is_rational:
-        poles = [ask.poly(sp.fraction(sp.cancel(e))[1]) for e in z]
-    margin = port_margin(family, z, stable=stable, poles=poles, box=box)
-    worst = search_worst(margin, box, points=points, seed=seed)
+    worst = search_worst(_margin(family, z, box, claim), box, points=points, seed=seed)
     exact = _settle(alone, box, worst.point, claim)
     unit = CLAIMS[claim]
     if exact.status == "refuted":
@@ -99,6 +96,22 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
     if status == "unknown":
         how = f"at the worst point found: {exact.verdict}"
     return parts_of(statement, status, worst, box, unit, how, at_worst=exact)
+
+
+def margin_over(family: Family, box: ValueBox, claim: str) -> Margin:
+    """The margin of a claim as a function of the box's values; numerical, compiled once."""
+    if claim == "stable":
+        ask = Conditions.over(box, family.symbols)
+        return pole_margin(ask.poly(family.characteristic()), ask.symbols)
+    return _margin(family, family.impedance(), box, claim)
+
+
+def _margin(family: Family, z: sp.Matrix, box: ValueBox, claim: str) -> Margin:
+    ask, poles = Conditions.over(box, family.symbols), []
+    if family.is_rational:
+        poles = [ask.poly(sp.fraction(sp.cancel(e))[1]) for e in z]
+    stable = claim == "absolutely stable"
+    return port_margin(family, z, stable=stable, poles=poles, box=box)
 
 
 def _proved(ask: Conditions, z: sp.Matrix, claim: str) -> bool:
