@@ -56,7 +56,11 @@ def gain(rng, helped, resisted, level, lengths, speeds=(1.0,), rounds=40):
 
 
 def counted(number, judge, rng, *, seen=2.0):
-    """Statuses with whether the attack found energy; fails where the attack is blind."""
+    """Statuses with whether the attack found energy; fails where the attack is blind.
+
+    seen: least ratio of refuted systems that the attack finds too to those that it does not: those
+    a hair beyond their limit need motions that are longer, or more exact, than it draws
+    """
     counts = Counter()
     for _ in range(number):
         status, found = judge(rng)
@@ -150,7 +154,7 @@ def sampled_velocity_pair(rng):
 
 @attacked(8, 100)
 def test_no_samples_beat_a_law_of_velocity_that_is_proved_in_a_computer(seed, number):
-    counted(number, sampled_velocity_pair, np.random.default_rng(seed), seen=0.3)
+    counted(number, sampled_velocity_pair, np.random.default_rng(seed), seen=0.1)
 
 
 def lugre(rng):
