@@ -154,7 +154,10 @@ def wave(rng, z):
             break
         with mpmath.workdps(DIGITS):
             a, b, c, d = (at(one, mpmath.mpc(s[k].real, s[k].imag)) for one in z)
-            if a.real < 0 or d.real < 0 or 4 * a.real * d.real < abs(b + mpmath.conj(c)) ** 2:
+            size, rounding = abs(b + mpmath.conj(c)) ** 2, mpmath.mpf(10) ** (10 - DIGITS)
+            if min(a.real + rounding * abs(a), d.real + rounding * abs(d)) < 0:
+                return s[k]
+            if 4 * a.real * d.real < size * (1 - rounding):  # of rank one both are the same
                 return s[k]
     return None
 
