@@ -98,7 +98,7 @@ def diagram_claims(
             topic = f"friction of {pair.body.name}"
             claims += [replace(s, topic=topic) for s in device_claims(pair.device)]
             claims += pair_claims(pair)
-        if (composed := _composed(alone, all_ports, pairs)) is not None:
+        if (composed := composed_claim(alone, all_ports, pairs)) is not None:
             claims.append(composed)
     if not any(not c.analog for c in alone.controls):  # nothing that a computer could sample
         claims = [replace(one, time="any") for one in claims]
@@ -193,7 +193,7 @@ def _axis(diagram: Diagram, all_ports: Sequence[Port]) -> str:
     return axes.pop() if len(axes) == 1 else "prismatic"
 
 
-def _composed(
+def composed_claim(
     diagram: Diagram, all_ports: Sequence[Port], pairs: Sequence[FrictionPair]
 ) -> TopicClaim | None:
     """The sum of parts on the same motions: linear rest, and friction with what cancels it.
@@ -243,6 +243,9 @@ def _searched(whole: Diagram, port: Port, rng: np.random.Generator, search: Sear
         why = "its motion is no single body's, so that a simulation cannot prescribe it"
         return TopicClaim(topic, Claim(statement, Unknown(why)))
     free = without_holding(whole, port.motion.removesuffix("_tip"))
+    if code := [c.name for c in free.controls if c.is_code]:
+        why = f"{', '.join(code)} is known as code only, which a search would call a million times"
+        return TopicClaim(topic, Claim(statement, Unknown(why)))
     lengths = [x for pair in friction_pairs(free) for x in pair.lengths]
     shortest = min([search.stroke / 1000, *lengths])
     try:
