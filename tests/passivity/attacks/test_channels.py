@@ -38,7 +38,7 @@ def least_energy(rng, b, f, d, motions=40):
     return least
 
 
-@attacked(12, 150)
+@attacked(12, 100)
 def test_no_waves_take_energy_out_of_a_channel_that_is_proved(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):
