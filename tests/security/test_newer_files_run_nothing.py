@@ -32,7 +32,7 @@ GOOD = {
     "kind": "revolute",
     "axis": "0 0 1",
 }
-PRINTED = [t for t in CODE if t and t.isprintable()]
+PRINTED = [t for t in CODE if t and t.isprintable()][::2]
 
 
 def robot(**changed):

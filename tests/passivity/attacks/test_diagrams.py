@@ -163,7 +163,7 @@ def test_no_mode_grows_in_a_diagram_that_is_proved_at_all_its_ports(seed, number
     assert counts[True, False] >= number / 7 and counts[False, True] >= number / 7
 
 
-@attacked(2, 20)
+@attacked(1, 10)
 def test_no_motion_beats_a_diagram_with_friction_that_is_proved(seed, number):
     """Viscous and Coulomb friction, or a bristle, and a compensator: the claim on the whole."""
     rng = np.random.default_rng(seed)
