@@ -371,7 +371,7 @@ def differentiate_at_rest(inputs, parameters, memory, small, slopes_of):
                     STATES,
                     BRISTLES,
                     inputs,
-                    0,
+                    np.int64(0),  # no literal, see `module_source`
                     LATE,
                     parameters,
                     memory,
@@ -399,7 +399,7 @@ def run(
     memory, kept, out, begin, kinds, columns, others, results,
 ):  # fmt: skip
     """Advance all lanes over samples of `inner` steps of h; see `kernel.execute` for the arrays."""
-    nodes, row = samples * inner, 0
+    nodes, row = samples * inner, np.int64(0)  # no literal, see `module_source`
     for j in range(nodes + 1):
         time, now = j * h, j % inner == 0
         if COMPUTER and now:
