@@ -14,6 +14,7 @@ from ...controllers import Controller, as_written, in_exact_numbers, parameter_s
 from ...derive import symbol_values
 from ...derive.elimination import rows
 from ...diagrams import Control, Diagram
+from ...diagrams.second_input import acts_along_another
 from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.tips import with_tips
 from ..ports import impedance_matrix, judged, ports
@@ -37,7 +38,8 @@ class Family:
     @property
     def is_rational(self) -> bool:
         """Whether no dead time is in it."""
-        forms = (*self.linear.blocks.values(), *self.linear.actuation.values())
+        linear = self.linear
+        forms = (*linear.blocks.values(), *linear.actuation.values(), *linear.along.values())
         return not self.linear.dead_times and not any(sp.sympify(f).has(sp.exp) for f in forms)
 
     def impedance(self) -> sp.Matrix:
@@ -95,6 +97,8 @@ def _forms(
         law = part.controller
         if not isinstance(law, Controller) or part.dead_time is not None:
             return None
+        if acts_along_another(diagram, part):
+            return None  # two forms, from two signals
         form = law.linear_form(part.name, S, sp.S(0))
         if form is None:
             return None

@@ -8,6 +8,7 @@ all its equations, denominators multiplied out and nothing cancelled, has no roo
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import reduce
 
 import numpy as np
@@ -68,7 +69,9 @@ def _characteristic(diagram: Diagram) -> sp.Poly | None:
     whole = sp.Poly(ring.to_sympy(ring.convert_from(determinant, ring.get_field())), S, domain="QQ")
     for part in diagram.controls:
         assert isinstance(part.controller, Controller)
-        cancelled = sp.Poly(sp.fraction(sp.cancel(linear.blocks[part.name]))[1], S, domain="QQ")
+        cancelled = _common_denominator(
+            (linear.blocks[part.name], linear.along.get(part.name, sp.S(0)))
+        )
         uncancelled = sp.Poly(1, S, domain="QQ")
         for stage in part.controller.stages:
             uncancelled *= _denominator(stage, part.name)
@@ -88,7 +91,12 @@ def _denominator(stage: Stage, prefix: str) -> sp.Poly:
         below, _ = resolvent(a, a[0], a[0])
         return sp.Poly([sp.Rational(c) for c in below], S, domain="QQ")
     alone = Controller((stage,))
-    form = sp.sympify(alone.linear_form(prefix, S, sp.S(0)) or 0)
     numbers = {parameter_symbol(prefix, n): as_written(x) for n, x in alone.names().items()}
-    form = in_exact_numbers(form.subs(numbers))
-    return sp.Poly(sp.fraction(sp.cancel(form))[1], S, domain="QQ")
+    # from the input, and from the motion that it acts along: in their sum a mode could cancel
+    forms = alone.linear_parts(prefix, S, sp.S(0)) or ()
+    return _common_denominator(in_exact_numbers(sp.sympify(x).subs(numbers)) for x in forms)
+
+
+def _common_denominator(forms: Iterable[sp.Expr]) -> sp.Poly:
+    below = [sp.Poly(sp.fraction(sp.cancel(form))[1], S, domain="QQ") for form in forms]
+    return reduce(sp.lcm, below, sp.Poly(1, S, domain="QQ"))
