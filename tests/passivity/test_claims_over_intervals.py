@@ -142,7 +142,8 @@ def test_what_no_exact_reasoning_covers_is_checked_numerically_and_says_so():
 def test_a_delay_leaves_numbers_and_no_proof():
     spring = td.controller("spring_damper", {"stiffness": 100.0, "damping": 1.0})
     side, none = body(0.15, viscous__damping=8.0), td.controller("gain", {"gain": 0.0})
-    channels = {"C_1": spring, "C_2": none, "C_3": none, "C_4": spring}
+    across = td.controller("gain", {"gain": 100.0})  # no motion is wired along a channel
+    channels = {"C_1": across, "C_2": none, "C_3": none, "C_4": across}
     diagram = four_channel(
         side, side, master_control=spring, slave_control=spring, channels=channels, delay=0.005
     )
