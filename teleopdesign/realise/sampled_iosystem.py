@@ -26,8 +26,9 @@ if TYPE_CHECKING:
 
 #: by how much an inner step may be divided where bristles or fast oscillations ask for it
 _MOST_DIVIDED = 200
-#: most memory of samples that one delay block may add to the state
-_MOST_KEPT = 1000
+#: samples that a delay block may keep, each a state: 10 s at 1 kHz, beyond any channel; trades
+#: what can be said against the memory of a linearisation, of the square of it
+_MOST_KEPT = 10_000
 
 
 def sampled_iosystem(diagram: Diagram, dt: float, step: float) -> control.NonlinearIOSystem:

@@ -14,6 +14,7 @@ from teleopdesign.controllers import (
     CONTROLLERS,
     ControlLaw,
     Controller,
+    ControllerState,
     Stage,
     controller,
     from_control,
@@ -26,6 +27,9 @@ from teleopdesign.errors import ModelError
 from teleopdesign.frequency import delay_margin, loop_gain, matrix_response
 from teleopdesign.frequency.quasi_linear import quasi_linear_impedance
 from teleopdesign.passivity import diagram_claims
+from teleopdesign.passivity.intervals.box import ValueBox
+from teleopdesign.passivity.intervals.family import family_of
+from teleopdesign.passivity.linear.hidden_modes import growth_within
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.lti import numerical
 from teleopdesign.simulate import simulate, sine
@@ -165,3 +169,35 @@ def test_a_block_of_the_name_that_the_derivation_needs_is_refused():
     doubled = replace(diagram, blocks=(*diagram.blocks, other))
     with pytest.raises(ModelError, match="V_K is what K makes of the velocity of x"):
         transfer(doubled, "x")
+
+
+#: dw/dt = w + e - v: from e = x and v = dx/dt together it gives -x, and its own mode grows
+HIDDEN = ControlLaw(
+    law=lambda now, p: now.memory,
+    states={
+        "memory": ControllerState("position", lambda now, p: now.memory + now.input - now.velocity)
+    },
+    linear=True,
+    parameters={},
+    name="hidden",
+)
+
+
+@pytest.mark.parametrize("front", ["", "scaled"])
+def test_a_mode_that_input_and_velocity_cancel_still_grows(front):
+    """On the motion itself the sum of its two forms is -1; beside a gain both are there."""
+    diagram = behind(FRONTS["scaled"], Controller((Stage(HIDDEN, {}),)))
+    if not front:
+        blocks = [replace(b, input="x") if b.name == "K" else b for b in diagram.blocks]
+        diagram = replace(diagram, blocks=tuple(blocks))
+    growth = growth_within(diagram)
+    assert growth is not None
+    assert growth > 0.5
+    found = diagram_claims(diagram, rng=np.random.default_rng(1))
+    assert not [one for one in found.claims if one.claim.status == "proved"]
+
+
+def test_a_claim_over_an_interval_of_a_law_with_two_inputs_is_not_exact():
+    diagram = behind(FRONTS["low-passed"], SPRING)
+    box = ValueBox(("K.spring_damper.damping",), (0.0,), (1.0,))
+    assert family_of(diagram, box) is None

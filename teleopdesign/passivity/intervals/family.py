@@ -14,6 +14,7 @@ from ...controllers import Controller, as_written, in_exact_numbers, parameter_s
 from ...derive import symbol_values
 from ...derive.elimination import rows
 from ...diagrams import Control, Diagram
+from ...diagrams.second_input import acts_along_another
 from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.simulated import without_absent
 from ...realise.tips import with_tips
@@ -66,7 +67,7 @@ class Family:
         varied = {n.partition(".")[0] for n in self.symbols}
         for part in self.diagram.controls:
             if part.dead_time is None and part.name not in varied:
-                whole *= cancelled_poles(part, self.linear.blocks[part.name]).as_expr()
+                whole *= cancelled_poles(part, self.linear).as_expr()
         return whole
 
 
@@ -83,7 +84,7 @@ def family_of(diagram: Diagram, box: ValueBox) -> Family | None:
     symbols = {n: sp.Dummy(f"v{k}", real=True) for k, n in enumerate(box.names)}
     blocks, actuation = dict(linear.blocks), dict(linear.actuation)
     for name in {n.partition(".")[0] for n in box.names}:
-        if not whole.has(name) or name in linear.along:
+        if not whole.has(name):
             return None
         of_block = {n.partition(".")[2]: s for n, s in symbols.items() if n.startswith(f"{name}.")}
         forms = _forms(whole, name, of_block)
@@ -105,6 +106,8 @@ def _forms(
         law = part.controller
         if not isinstance(law, Controller) or part.dead_time is not None:
             return None
+        if acts_along_another(diagram, part):
+            return None  # two forms, from two signals
         form = law.linear_form(part.name, S, sp.S(0))
         if form is None:
             return None

@@ -8,6 +8,7 @@ all its equations, denominators multiplied out and nothing cancelled, has no roo
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import reduce
 
 import numpy as np
@@ -25,7 +26,7 @@ from ...controllers import (
 from ...derive import symbol_values
 from ...derive.elimination import rows
 from ...diagrams import Control, Diagram
-from ...realise.lti import S, linear_blocks
+from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.tips import with_tips
 from ..checker.polynomials import is_free_of_growth, polynomial
 from .impedance import exact
@@ -67,18 +68,18 @@ def _characteristic(diagram: Diagram) -> sp.Poly | None:
     determinant = DomainMatrix(matrix, (size, size), ring).to_field().det()
     whole = sp.Poly(ring.to_sympy(ring.convert_from(determinant, ring.get_field())), S, domain="QQ")
     for part in diagram.controls:
-        whole *= cancelled_poles(part, linear.blocks[part.name])
+        whole *= cancelled_poles(part, linear)
     return whole if not whole.is_zero else None
 
 
-def cancelled_poles(part: Control, form: sp.Expr) -> sp.Poly:
-    """What the denominators of a controller's stages have more than its linear form, in S."""
+def cancelled_poles(part: Control, linear: LinearBlocks) -> sp.Poly:
+    """What the denominators of a controller's stages have more than its linear forms, in S."""
     assert isinstance(part.controller, Controller)
-    kept = sp.Poly(sp.fraction(sp.cancel(form))[1], S, domain="QQ")
+    forms = (linear.blocks[part.name], linear.along.get(part.name, sp.S(0)))
     whole = sp.Poly(1, S, domain="QQ")
     for stage in part.controller.stages:
         whole *= _denominator(stage, part.name)
-    return whole.quo(kept)
+    return whole.quo(_common_denominator(forms))
 
 
 def _denominator(stage: Stage, prefix: str) -> sp.Poly:
@@ -93,7 +94,12 @@ def _denominator(stage: Stage, prefix: str) -> sp.Poly:
         below, _ = resolvent(a, a[0], a[0])
         return sp.Poly([sp.Rational(c) for c in below], S, domain="QQ")
     alone = Controller((stage,))
-    form = sp.sympify(alone.linear_form(prefix, S, sp.S(0)) or 0)
     numbers = {parameter_symbol(prefix, n): as_written(x) for n, x in alone.names().items()}
-    form = in_exact_numbers(form.subs(numbers))
-    return sp.Poly(sp.fraction(sp.cancel(form))[1], S, domain="QQ")
+    # from the input, and from the motion that it acts along: in their sum a mode could cancel
+    forms = alone.linear_parts(prefix, S, sp.S(0)) or ()
+    return _common_denominator(in_exact_numbers(sp.sympify(x).subs(numbers)) for x in forms)
+
+
+def _common_denominator(forms: Iterable[sp.Expr]) -> sp.Poly:
+    below = [sp.Poly(sp.fraction(sp.cancel(form))[1], S, domain="QQ") for form in forms]
+    return reduce(sp.lcm, below, sp.Poly(1, S, domain="QQ"))
