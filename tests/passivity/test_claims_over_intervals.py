@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 
+import control as ct
 import numpy as np
 import pytest
 import sympy as sp
@@ -9,7 +10,8 @@ from devices import body
 from passivity.interval_boxes import DIAGRAMS, HAND, failure, random_case
 
 import teleopdesign as td
-from teleopdesign.diagrams import four_channel
+from teleopdesign.controllers import from_control
+from teleopdesign.diagrams import Control, Diagram, Junction, Moving, four_channel
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity import claim_over_intervals
 from teleopdesign.passivity.intervals.bernstein import (
@@ -202,7 +204,8 @@ def test_what_no_exact_reasoning_covers_is_checked_numerically_and_says_so():
 
 @pytest.mark.slow
 def test_a_delay_leaves_numbers_and_no_proof():
-    spring = td.controller("spring_damper", {"stiffness": 100.0, "damping": 1.0})
+    values = {"stiffness": 100.0, "damping": 1.0, "bandwidth": 500.0}
+    spring = td.controller("proportional_derivative", values)
     side, none = body(0.15, viscous__damping=8.0), td.controller("gain", {"gain": 0.0})
     channels = {"C_1": spring, "C_2": none, "C_3": none, "C_4": spring}
     diagram = four_channel(
@@ -228,3 +231,35 @@ def test_an_interval_that_is_none_is_refused(intervals, words):
 def test_an_interval_without_width_is_a_value():
     claim = claim_over_intervals(DIAGRAMS["interface"], {"Z_M.inertia": (0.2, 0.2)}, claim="stable")
     assert claim.status == "proved" and claim.worst == {"Z_M.inertia": 0.2} and claim.points == 1
+
+
+GROWS, ENDS = ([1.0], [1.0, -1.0]), ([1.0, -1.0], [1.0, 1.0])
+
+
+@pytest.mark.parametrize("within", [False, True], ids=["between two blocks", "within one"])
+def test_nothing_is_proved_over_a_box_in_which_a_hidden_mode_grows(within):
+    """A pole at 1 1/s that a zero cancels: at the port, a spring behind a low-pass."""
+    first, second = (from_control(ct.tf(*ratio), name="law") for ratio in (GROWS, ENDS))
+    laws = [first.then(second)] if within else [first, second]
+    names = ["x", *(f"y{k}" for k in range(len(laws)))]
+    controls = [Control(f"C{k}", law, names[k], names[k + 1], "x") for k, law in enumerate(laws)]
+    device = Moving("M", body(0.15, viscous__damping=2.0), "x", "u", {"f": 1}, "f")
+    minus = Junction("u", {names[-1]: -1})
+    diagram = Diagram("hidden", (device, *controls), (minus,), {"f": "force"}, ())
+    box = {"M.inertia": (0.1, 0.3)}
+    assert claim_over_intervals(diagram, box).status == "unknown"
+    assert claim_over_intervals(diagram, box, claim="stable").status == "refuted"
+
+
+def test_a_damper_along_another_motion_is_judged_at_every_point_by_itself():
+    """Its spring reads a filtered position, its damper the velocity now: two forms of one value."""
+    damper = td.controller("spring_damper", {"stiffness": 0.0, "damping": 1.0})
+    low_pass = td.controller("low_pass", {"bandwidth": 5.0})
+    device = Moving("M", body(0.15, viscous__damping=2.0), "x", "u", {"f": 1}, "f")
+    controls = (Control("Q", low_pass, "x", "y"), Control("C", damper, "y", "F", "x"))
+    minus = Junction("u", {"F": -1})
+    diagram = Diagram("damped", (device, *controls), (minus,), {"f": "force"}, ())
+    claim = claim_over_intervals(diagram, {"C.spring_damper.damping": (0.0, 5.0)}, points=4)
+    assert claim.status == "evidence" and claim.margin == pytest.approx(2.0, rel=1e-3)
+    claim = claim_over_intervals(diagram, {"C.spring_damper.damping": (-5.0, 5.0)}, points=4)
+    assert claim.status == "refuted"

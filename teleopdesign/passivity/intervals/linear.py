@@ -83,7 +83,7 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
         how = str(exact.verdict)
         worst = worst if worst.margin < 0 else replace(worst, margin=-np.inf)
         return parts_of(statement, "refuted", worst, box, unit, how, at_worst=exact)
-    if family.is_rational and _proved(ask, z, claim):
+    if family.is_rational and _proved(ask, z, claim) and _hides_no_growth(ask, family, z):
         bound = 0.0 if stable else _bound(ask, z, worst.margin)
         how = _how(ask, "its conditions are polynomials of one sign")
         worst = replace(worst, margin=max(worst.margin, bound))
@@ -118,6 +118,25 @@ def _proved(ask: Conditions, z: sp.Matrix, claim: str) -> bool:
     if z.shape == (1, 1):
         return one_port_is_passive(ask, z[0, 0])
     return (two_port_is_stable if claim == "absolutely stable" else two_port_is_passive)(ask, z)
+
+
+def _hides_no_growth(ask: Conditions, family: Family, z: sp.Matrix) -> bool:
+    """Whether all modes that the ports, left free, do not show are shown to die out; 0 may stay.
+
+    An impedance is what ports do from rest: what a zero cancels in it may grow by itself inside.
+    """
+    whole = sp.fraction(sp.cancel(family.characteristic()))[0]
+    shown = sp.fraction(sp.cancel(z.det()))[0]
+    if shown == 0:
+        return False
+    hidden = ask.poly(sp.fraction(sp.cancel(whole / shown))[0])
+    s = ask.poly(S)
+    while hidden.degree() > 0:
+        rest, at_zero = sp.div(hidden, s)
+        if not at_zero.is_zero:
+            break
+        hidden = rest
+    return ask.is_hurwitz(hidden)
 
 
 def _bound(ask: Conditions, z: sp.Matrix, margin: float) -> float:
@@ -175,5 +194,5 @@ def _how(ask: Conditions, what: str) -> str:
 def _no_proof(ask: Conditions) -> str:
     return (
         f"no proof over the whole box: not shown on {ask.effort.cells} parts of it, or poles on "
-        "the axis that no condition covers"
+        "the axis that no condition covers, or modes inside that no port shows"
     )
