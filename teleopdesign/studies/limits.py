@@ -82,15 +82,15 @@ def limit(
     raises ModelError: no measure of that name, no bound or two
     """
     known = isinstance(what, str) and what in (*CLAIMS, *LOOP_MARGINS)
+    measure = None if known else measures_of([what])[0]
+    name = what if measure is None else measure.name
     if known and what in CLAIMS and least is None:
         least = 0.0
     if (least is None) == (most is None):
-        raise ModelError(f"limit {what}: expected least or most, found {least} and {most}")
+        raise ModelError(f"limit {name}: expected least or most, found {least} and {most}")
     if known and most is not None:
-        raise ModelError(f"limit {what}: a margin is to be large: expected least, found most")
+        raise ModelError(f"limit {name}: a margin is to be large: expected least, found most")
     bound = float(most if most is not None else least)  # type: ignore[arg-type]
-    measure = None if known else measures_of([what])[0]
-    name = what if known else measure.name  # type: ignore[union-attr]
     return TuningLimit(name, bound, most is not None, dict(over or {}), controller, measure)
 
 
