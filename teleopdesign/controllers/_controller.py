@@ -71,7 +71,7 @@ class ControlLaw:
         `period` (a parameter of it, s); its output is held in between
     sampled(values, period): the stage that takes the place of this one in a computer of that
     period (s); None: this one, its states stepped as they say
-    system: a python-control system in place of a law: known as code only, it has no equation
+    system: a python-control system that the law calls: known as code only, it has no equation
     response: a sympy function of s in place of a law, known on the axis at measured frequencies
 
     What the law can do, each by the name of the parameter that says how much; "": it cannot.
@@ -250,10 +250,13 @@ class Controller:
         )
         return Controller(tuple(stages))
 
-    def equation(self, prefix: str, signals: Mapping[str, sp.Expr]) -> ControllerEquation:
+    def equation(
+        self, prefix: str, signals: Mapping[str, sp.Expr], *, code: bool = False
+    ) -> ControllerEquation:
         """The laws composed in series; prefix: name of the block, in its symbols.
 
         signals: those of `SIGNALS`; a `period` of 0 is continuous time
+        code: whether systems that are known as code take part, as calls of their functions
         raises ModelError: continuous time, and a state that exists in a computer only; a system
             that is known as code only
         """
@@ -268,10 +271,10 @@ class Controller:
                     "of the steps in time: it takes part in frequency responses alone; fit a "
                     "transfer function to it"
                 )
-            if law.system is not None:
+            if law.system is not None and not code:
                 raise ModelError(
                     f"{prefix}: {law.name} is a nonlinear python-control system, known as code "
-                    "only: it takes part in `to_iosystem`, not in simulations of its own kernel"
+                    "only: it takes part in `simulate` and `to_iosystem`, and nowhere else"
                 )
             now, p = _placed(stage, prefix, {**signals, "input": value})
             probe = SimpleNamespace(**{**vars(now), "travel_rate": SIGNALS["travel_rate"]})

@@ -13,17 +13,17 @@ from . import low_pass
 from ._controller import ControlLaw, ControllerState
 
 
-def filtered(now, p):
+def change(now, p):
     return low_pass.output(SimpleNamespace(input=now.velocity, output=now.filtered), p)
 
 
 def law(now, p):
-    return p.inertia * filtered(now, p) + p.damping * now.filtered
+    return p.inertia * change(now, p) + p.damping * now.filtered
 
 
 CONTROLLER = ControlLaw(
     law=law,
-    states={"filtered": ControllerState("velocity", filtered)},
+    states={"filtered": ControllerState("velocity", change)},
     linear=True,
     parameters={
         "inertia": Parameter("inertia", "M_n: nominal inertia"),

@@ -8,7 +8,7 @@ stepped exactly for a force that is held over each sample.
 
 from ..effects import Parameter
 from . import _state_space
-from ._controller import ControlLaw, ControllerState
+from ._controller import ControlLaw, Controller, ControllerState
 
 #: kg or kg m^2: a mass has to be there; a millionth of what a hand can tell is as good as none
 _LIGHTEST = 1e-6
@@ -26,11 +26,10 @@ def velocity(now, p):
     return (now.input - p.damping * now.velocity - p.stiffness * now.position) / p.inertia
 
 
-def sampled(values, period):
+def discretise(values, period):
     below = [values[name] for name in ("inertia", "damping", "stiffness")]
     continuous = _state_space.rational_stage("virtual_admittance", [1.0], below, None)
-    assert continuous.law.sampled is not None
-    return continuous.law.sampled(continuous.values, period)
+    return Controller((continuous,)).sampled(period).stages[0]
 
 
 CONTROLLER = ControlLaw(
@@ -40,7 +39,7 @@ CONTROLLER = ControlLaw(
         "velocity": ControllerState("velocity", velocity),
     },
     linear=True,
-    sampled=sampled,
+    sampled=discretise,
     parameters={
         "inertia": Parameter("inertia", "M: virtual inertia", lower=_LIGHTEST),
         "damping": Parameter("damping", "B: virtual damping"),

@@ -5,6 +5,7 @@ from .admittance_device import admittance_device
 from .arms import Arm, by_jacobian, joint, teleoperator_of_arms
 from .control_parts import controller_parts, plant_parts
 from .disturbance_observer import disturbance_observer
+from .energy_tanks import energy_tanks
 from .felt_friction import FeltFriction, felt_friction
 from .four_channel import four_channel
 from .haptic_interface import four_cases, haptic_interface
@@ -51,6 +52,7 @@ __all__ = [
     "by_jacobian",
     "controller_parts",
     "disturbance_observer",
+    "energy_tanks",
     "felt_friction",
     "four_cases",
     "four_channel",

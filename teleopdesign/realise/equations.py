@@ -411,7 +411,7 @@ def _placed(
     assert isinstance(part.controller, Controller)
     signals = {"input": input, "velocity": speed, "speed": sp.Abs(speed), "travel_rate": rate}
     signals["period"] = period
-    made = part.controller.equation(part.name, signals)
+    made = part.controller.equation(part.name, signals, code=True)
 
     equation = without_delays(made, part.name, late)
     kept = [*equation.rates.values(), *equation.steps.values(), *(e for e, _ in late.values())]

@@ -175,6 +175,21 @@ def test_modes_that_the_port_does_not_see_drop_out():
     assert str(impedance(space)) == "1/(s + 1)"
 
 
+@pytest.mark.parametrize(
+    "system",
+    [
+        control.ss(np.diag([-1.0, 5.0]), [[1], [0]], [[1, 1]], [[0.0]]),
+        control.ss(np.diag([-1.0, 5.0]), [[1], [1]], [[1, 0]], [[0.0]]),
+        control.tf([1.0, -5.0], [1.0, -4.0, -5.0]),
+    ],
+    ids=["driven by nothing", "read by nothing", "cancelled"],
+)
+def test_a_system_with_a_mode_that_grows_is_proved_nothing_though_its_port_shows_none(system):
+    claim = positive_real(system)
+    assert str(impedance(system)) == "1/(s + 1)" and positive_real(1 / (S + 1)).holds
+    assert claim.status == "unknown" and "grows" in str(claim.verdict)
+
+
 @settings(max_examples=30)
 @given(st.lists(st.floats(-10, 10).map(lambda x: round(x, 2)), min_size=9, max_size=9))
 def test_state_space_and_transfer_function_agree(entries):

@@ -55,6 +55,11 @@ def test_a_compensator_near_rest_needs_no_damping_but_allows_none_that_drives():
         sampled_passivity(-500, damping=sp.Rational(-1, 5), sample_time=T, stiffness=500)
 
 
+def test_a_body_on_a_negative_spring_is_refuted_without_any_law():
+    claim = sampled_passivity(0, damping=1, sample_time=1, stiffness=-1)
+    assert claim.status == "refuted" and claim.record.replay() > 0
+
+
 def test_a_negative_spring_alone_is_never_passive():
     """The condition on the unit circle is met by any b >= 0; the pole at z = 1 refutes it."""
     assert required_damping(-500, sample_time=T) == np.inf

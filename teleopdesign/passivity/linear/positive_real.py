@@ -17,11 +17,13 @@ import sympy as sp
 from ..claims.certificate import positive_real_certificate
 from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..search.growing_wave import GrowingWave, growing_wave
-from .impedance import Impedance, Motion, exact, gaussian, impedance
+from .impedance import Impedance, Motion, exact, gaussian, grows_unseen, impedance
 from .polynomials import X, even_part, is_hurwitz, is_non_negative, positive_roots, value
 
 #: relative; coefficients are known no better than some operations on floats leave them, 2^-53 each
 NEARBY = 2.0**-50
+#: why nothing is proved of a system whose impedance alone is that of a passive one
+UNSEEN = "from rest its impedance is that of a passive one, but a mode that no port shows grows"
 
 
 def is_positive_real(z: Impedance) -> bool:
@@ -37,8 +39,9 @@ def positive_real(system: Any, *, motion: Motion = "velocity") -> Claim:
 
     system, motion: see `impedance`
     returns: proved, with the excess of damping as margin (N s/m: what could be taken away), or
-    refuted by a growing wave; unknown only where floats came in, and the wave's sign rests on their
-    last digits, or where so little comes out that a replay in double precision does not show it
+    refuted by a growing wave; unknown where a mode of a python-control system grows that its port
+    does not show, where floats came in and the wave's sign rests on their last digits, or where so
+    little comes out that a replay in double precision does not show it
     raises ModelError: not a rational function of s with given coefficients
     """
     z = impedance(system, motion=motion)
@@ -57,6 +60,8 @@ def positive_real(system: Any, *, motion: Motion = "velocity") -> Claim:
             f"Re Z = {wave.value[0, 0].real:.6g} N s/m at s = {a:.6g} + {w:.6g} j, a growing wave"
         )
         return Claim(statement, Refutation(method, wave))
+    if grows_unseen(system):
+        return Claim(statement, Unknown(UNSEEN))
     certificate = positive_real_certificate(statement, [[z.expression]])
     margin = damping_excess(z)
     method = "the positive-real test"

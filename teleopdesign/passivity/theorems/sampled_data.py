@@ -237,7 +237,8 @@ def _given_out(
     before = np.concatenate([np.zeros_like(position[..., :1]), position[..., :-1]], axis=-1)
     above, below = (sp.Poly(part, Z) for part in sp.fraction(sp.cancel(law)))
     a = [float(c) for c in below.all_coeffs()]
-    b = [0.0] * (below.degree() - above.degree()) + [float(c) for c in above.all_coeffs()]
+    b = [float(c) for c in above.all_coeffs()]  # of a law that does nothing: [0]
+    b = [0.0] * (len(a) - len(b)) + b
     held = lfilter(b, a, before)
     lost = float(damping) / float(sample_time) * (travel**2).sum(axis=-1)
     stored = float(stiffness) * position[..., -1] ** 2 / 2

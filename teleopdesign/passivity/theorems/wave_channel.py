@@ -44,7 +44,7 @@ def wave_channel(*, wave_impedance: Any, scale: Any = 1, delay_growth: Any = 0) 
     grows = f"grow by {decimal(d)} s a second at most" if d else "are constant or fall"
     statement = (
         f"a channel of waves of {decimal(b)} N s/m, scaled by {decimal(f)}, with delays that "
-        f"{grows}, gives out no more energy at both ends than came in"
+        f"{grows}, gives out no more energy at both ends than came in, in continuous time"
     )
     if f**2 > 1 - d:
         return Claim(statement, Unknown("scale^2 is above 1 - delay_growth"))
@@ -93,7 +93,7 @@ def wave_teleoperator(*, master: Any, slave: Any, coupling: Any, wave_impedance:
     channel = wave_channel(wave_impedance=wave_impedance)
     statement = (
         f"the teleoperator of waves of {decimal(exact(wave_impedance))} N s/m is passive at both "
-        "ports together, for all constant delays of its channel"
+        "ports together, for all constant delays of its channel, in continuous time"
     )
     certificates = list(channel.certificates)
     for name, part in (("master", master), ("slave", slave), ("coupling", coupling)):
@@ -123,6 +123,13 @@ def wave_claim(diagram: Diagram) -> Claim:
     )
     bent = [n for n in linear.left_out if n not in ("Z_m.coulomb", "Z_s.coulomb")]
     bent += [f"the actuator of {n}" for n, stage in linear.actuation.items() if stage != 1]
+    # the channel acts on one side of a compliance, the hand on the other: two ports, not one
+    bent += [
+        f"{b.name}.{effect.name}"
+        for b in alone.bodies
+        for effect in getattr(b.body, "effects", ())
+        if effect.role == "structure"
+    ]
     if bent and isinstance(claim.verdict, Proof):
         why = f"not in the impedances that were judged: {', '.join(bent)}"
         return Claim(claim.statement, Unknown(why))

@@ -1,6 +1,6 @@
 """How many random systems each attack takes, and a climb that several attackers share.
 
-`TELEOPDESIGN_ATTACKS=2000 pytest tests/passivity/attacks -m slow` attacks 2000 of each kind,
+`TELEOPDESIGN_ATTACKS=2000 pytest tests/passivity/attacks -m slow`: 2000 systems of each kind;
 `TELEOPDESIGN_ATTACK_SEED=7` draws others. Attackers import nothing of the package but the function
 that makes the claim: their equations, integration and optimisation are their own.
 """

@@ -56,7 +56,11 @@ def gain(rng, helped, resisted, level, lengths, speeds=(1.0,), rounds=40):
 
 
 def counted(number, judge, rng, *, seen=2.0):
-    """Statuses with whether the attack found energy; fails where the attack is blind."""
+    """Statuses with whether the attack found energy; fails where the attack is blind.
+
+    seen: least ratio of refuted systems that the attack finds too to those that it does not: those
+    a hair beyond their limit need motions that are longer, or more exact, than it draws
+    """
     counts = Counter()
     for _ in range(number):
         status, found = judge(rng)
@@ -84,7 +88,7 @@ def dahl_pair(rng):
     return claim.status, gain(rng, dahl(f_d, f_d, sigma_d), resisted, f_d, lengths)
 
 
-@attacked(12, 150)
+@attacked(8, 80)
 def test_no_motion_beats_a_dahl_compensator_that_is_proved_passive(seed, number):
     counted(number, dahl_pair, np.random.default_rng(seed), seen=1.0)
 
@@ -115,7 +119,7 @@ def velocity_pair(rng):
     return claim.status, found
 
 
-@attacked(12, 150)
+@attacked(8, 80)
 def test_no_motion_beats_a_law_of_velocity_that_is_proved_passive(seed, number):
     counted(number, velocity_pair, np.random.default_rng(seed), seen=1.0)
 
@@ -148,9 +152,9 @@ def sampled_velocity_pair(rng):
     return claim.status, climbed(rng, share, start, rounds=25)[0]
 
 
-@attacked(8, 100)
+@attacked(8, 80)
 def test_no_samples_beat_a_law_of_velocity_that_is_proved_in_a_computer(seed, number):
-    counted(number, sampled_velocity_pair, np.random.default_rng(seed), seen=0.3)
+    counted(number, sampled_velocity_pair, np.random.default_rng(seed), seen=0.1)
 
 
 def lugre(rng):
@@ -181,7 +185,7 @@ def lugre(rng):
     return claim.status, found
 
 
-@attacked(8, 100)
+@attacked(4, 60)
 def test_no_motion_takes_energy_out_of_lugre_friction_that_is_proved_passive(seed, number):
     counted(number, lugre, np.random.default_rng(seed), seen=0.0)
 
@@ -240,7 +244,7 @@ def joint(rng):
     return claim.status, climbed(rng, share, start, rounds=30)[0]
 
 
-@attacked(8, 100)
+@attacked(8, 80)
 def test_no_two_hands_beat_a_compliant_joint_that_is_proved_passive(seed, number):
     counted(number, joint, np.random.default_rng(seed), seen=0.5)
 

@@ -24,7 +24,16 @@ from teleopdesign.passivity import (
 )
 
 Z = sp.Symbol("z")
-KINDS = ("wall", "late wall", "filtered wall", "negative spring", "integrator", "grows", "any")
+KINDS = (
+    "wall",
+    "late wall",
+    "filtered wall",
+    "negative spring",
+    "integrator",
+    "grows",
+    "nothing, or at the edge",
+    "any",
+)
 
 
 def law(rng, kind):
@@ -35,6 +44,8 @@ def law(rng, kind):
     pole = Fraction(int(rng.integers(0, 100)), 100)
     if kind == "wall":
         return wall
+    if kind == "nothing, or at the edge":  # H = 0, and a pole at z = -1
+        return ([Fraction(0)], [Fraction(1)]) if rng.random() < 0.5 else ([k], [Fraction(1)] * 2)
     if kind == "late wall":
         return wall[0], times(wall[1], delay)
     if kind == "filtered wall":
@@ -79,14 +90,15 @@ def least(matrix):
     """Lowest eigenvalue of the form, over its size; and the travel."""
     form = (matrix + matrix.T) / 2
     value, vector = np.linalg.eigh(form)
-    return value[0] / np.abs(form).max(), vector[:, 0]
+    return value[0] / (np.abs(form).max() or 1.0), vector[:, 0]
 
 
 def lowest(p, q, b, k_0):
     """Over several numbers of samples; b in N s/m over T = 1 s."""
     found = []
     for n in (2, 3, 6, 20, 120):
-        m = held(p, q, n) + b * np.eye(n) + k_0 / 2 * np.ones((n, n))
+        with np.errstate(all="ignore"):  # what grows may leave the numbers of the machine
+            m = held(p, q, n) + b * np.eye(n) + k_0 / 2 * np.ones((n, n))
         if not np.all(np.isfinite(m)):
             break
         found.append(least(m)[0])
@@ -142,7 +154,7 @@ def judged(rng, kind):
     return claim.status, found < -1e-11
 
 
-@attacked(42, 500)
+@attacked(16, 300)
 def test_no_motion_takes_energy_out_of_a_sampled_body_that_is_proved_passive(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter(judged(rng, KINDS[k % len(KINDS)]) for k in range(number))
@@ -153,7 +165,7 @@ def test_no_motion_takes_energy_out_of_a_sampled_body_that_is_proved_passive(see
     assert counts["refuted", True] > 2 * counts["refuted", False]
 
 
-@attacked(10, 200)
+@attacked(8, 100)
 def test_no_two_motions_take_energy_out_of_a_sampled_coupling_that_is_proved(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter()

@@ -58,7 +58,7 @@ def _diagonal_and_through(rng, shape, rank_two):
 
 def _network(rng, rank_two=None):
     z = None
-    for _ in range(int(rng.integers(1, 4))):
+    for _ in range(int(rng.integers(1, 3))):
         two = int(rng.integers(2)) if rank_two is None else rank_two
         one = _diagonal_and_through(rng, part(rng, lossy=True), two)
         z = one if z is None else [added(a, b) for a, b in zip(z, one, strict=True)]
@@ -154,7 +154,10 @@ def wave(rng, z):
             break
         with mpmath.workdps(DIGITS):
             a, b, c, d = (at(one, mpmath.mpc(s[k].real, s[k].imag)) for one in z)
-            if a.real < 0 or d.real < 0 or 4 * a.real * d.real < abs(b + mpmath.conj(c)) ** 2:
+            size, rounding = abs(b + mpmath.conj(c)) ** 2, mpmath.mpf(10) ** (10 - DIGITS)
+            if min(a.real + rounding * abs(a), d.real + rounding * abs(d)) < 0:
+                return s[k]
+            if 4 * a.real * d.real < size * (1 - rounding):  # of rank one both are the same
                 return s[k]
     return None
 
@@ -286,7 +289,7 @@ def judged(rng, kind):
     return said.status, stable.status, against is not None, unstable is not None
 
 
-@attacked(10, 150)
+@attacked(5, 100)
 def test_nothing_beats_a_two_port_that_is_proved(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter(judged(rng, KINDS[k % len(KINDS)]) for k in range(number))
@@ -301,7 +304,7 @@ def test_nothing_beats_a_two_port_that_is_proved(seed, number):
         assert of[k]["refuted", True] >= 3 * of[k]["refuted", False], of[k]
 
 
-@attacked(10, 100)
+@attacked(6, 100)
 def test_no_terminations_beat_a_delayed_spring_that_is_proved(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter()
