@@ -68,8 +68,13 @@ def conclude(
 
 
 def _unexplained(rung: Rung, named: Collection[Candidate]) -> Rung:
-    """A rung that is not named, with all else that explains a good part of what it does."""
-    if rung.added is None or rung.added in named or rung.could_be is not None:
+    """A rung that is not named, with all else that explains a good part of what it does.
+
+    One that stands for a group says already what it cannot be told from.
+    """
+    if rung.added is None or rung.added in named or rung.alternatives:
+        return rung
+    if rung.could_be is not None:
         return rung
     ranking = rung.ranking
     best = next((r for r in ranking.ranked if r.candidate == rung.added), None) if ranking else None

@@ -44,6 +44,7 @@ def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
     if state.exchanges >= search.plan.exchanges or is_adequate(state.fit, floor, criteria=criteria):
         return None
     there = [r.added for r in state.rungs if r.added is not None]
+    there += [one.candidate for one in state.set_aside]
     # the last was ranked beside all the others already
     rivals = {
         r.added: rivals_of(r.ranking, there, floor, criteria=criteria)

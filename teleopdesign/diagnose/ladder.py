@@ -16,6 +16,10 @@ from .moves import add, remove
 from .pairs import add_pair, replace_by_pair
 from .search_plan import PLAN, SearchPlan
 
+#: effects that may be set aside with the search going on without them. One: each asks for all
+#: candidates to be ranked again, and what comes in its place is often as little there
+SEARCHED_ON = 1
+
 
 def find_missing(
     experiment: Experiment,
@@ -42,7 +46,9 @@ def find_missing(
     search = search_for(experiment, model, progress=progress, seed=seed, plan=plan)
     state = begin(search)
     while True:
-        while (moved := next_move(search, state)) is not None:
+        while (
+            len(state.set_aside) <= SEARCHED_ON and (moved := next_move(search, state)) is not None
+        ):
             state = look(search, moved.rungs, moved)
         rungs = with_last_corrected(search, state)
         less = without_doubtful(search, state, rungs)
@@ -68,6 +74,8 @@ def next_move(search: LadderSearch, state: LadderState) -> LadderState | None:
     if added is not None:
         return remove(search, added) or added
     if is_a_tone(state.fit, state.tone, state.floor, criteria=search.criteria):
+        return None
+    if state.set_aside:  # pairs and exchanges were sought before, beside what was set aside
         return None
     attempts = (move(search, state) for move in (add_pair, exchange, replace_by_pair))
     return next((moved for moved in attempts if moved is not None), None)

@@ -91,10 +91,12 @@ def could_be_text(rung: Rung, *, named: bool = True) -> str | None:
     """What else a rung could be: where the model before it left only noise, or it is not named."""
     if rung.could_be is None:
         return None
-    others = ", ".join(map(str, rung.could_be)) or "nothing else that was tried"
+    others = ", ".join(map(str, rung.could_be))
     if named:
+        others = others or "nothing else that was tried"
         return f"the model before it leaves only noise; it could also be: {others}"
-    return f"unexplained: less likely than not what its name says; it could also be: {others}"
+    also = f"it could also be: {others}" if others else "nothing else that was tried does as much"
+    return f"unexplained: less likely than not what its name says; {also}"
 
 
 def ladder_text(diagnosis: Diagnosis) -> str:

@@ -63,11 +63,18 @@ def _best_pair(
     if is_adequate(here, floor, criteria=criteria):
         return None
     pairs: list[tuple[Rung, ...]] = []
-    trials = [r for r in ranking.ranked if r.counts and fit_squares(r.fit) < fit_squares(here)]
+    gone = {one.candidate.key for one in state.set_aside}
+    trials = [
+        r
+        for r in ranking.ranked
+        if r.counts and r.candidate.key not in gone and fit_squares(r.fit) < fit_squares(here)
+    ]
     for first in trials[: search.plan.trials]:
         beside = search.rank(first.fit, step=state.step, among=among)
         supported = (
-            r for r in beside.ranked if is_supported(first.fit, r, floor, criteria=criteria)
+            r
+            for r in beside.ranked
+            if r.candidate.key not in gone and is_supported(first.fit, r, floor, criteria=criteria)
         )
         second = next((r for r in supported if r.instead_of != first.candidate), None)
         if second is None:

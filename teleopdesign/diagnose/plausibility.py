@@ -17,6 +17,7 @@ from ..effects import CONTACT_ROLES, SIGNALS, Effect, RecordFacts
 from ..errors import ModelError
 from ..model import Model
 from ..realise.along_motion import measured_along
+from ..realise.traced import Along
 from .prepare import Prepared, Stretch
 
 
@@ -37,10 +38,12 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
         stretches = [s for s in prepared.stretches if s.motion.body == place]
         numbers = {n: v.value for n, v in body.parameters.items()}
         facts = record_facts(model, place, prepared, numbers)
+        alongs = [(measured_along(body, s.motion), s) for s in stretches]
+        most = _all_that_acts(stretches, facts)
         for effect in effects:
             said = _said(effect, "plausible", facts)
-            if said is None and effect.role == "force" and not effect.states:
-                said = _taken_away_again(effect, body, stretches, facts)
+            if said is None and effect.role == "force":
+                said = _taken_away_again(effect, alongs, most, facts)
             if said is not None:
                 meanings[effect.name, place] = said
     return meanings
@@ -56,24 +59,17 @@ def untold_of(effect: Effect, at: str, model: Model, prepared: Prepared) -> str 
 
 
 def _taken_away_again(
-    effect: Effect, body: Body, stretches: Sequence[Stretch], facts: RecordFacts
+    effect: Effect, alongs: Sequence[tuple[Along, Stretch]], most: float, facts: RecordFacts
 ) -> str | None:
     """Whether a force varies along the motion by more than all that act together.
 
-    Half of its range against the largest measured force and the inertia's largest.
+    Half of its range against the largest of what acts, `most`.
     """
-    if effect.expression().has(SIGNALS["acting_force"]):
+    law = effect.expression()
+    if effect.states or law.has(SIGNALS["acting_force"]):
         return None
-    inertia = abs(facts.body["inertia"])
-    ranges, most = [], 0.0
-    for s in stretches:
-        along = measured_along(body, s.motion)
-        force = along.evaluate(effect.expression()).value[s.keep]
-        ranges.append((float(force.min()), float(force.max())))
-        carried = 0.0 if s.motion.carried is None else np.abs(s.motion.carried[s.keep]).max()
-        needed = inertia * np.abs(s.motion.acceleration[s.keep]).max() + carried
-        most = max(most, facts.force + float(needed))
-    half = 0.5 * (max(high for _, high in ranges) - min(low for low, _ in ranges))
+    forces = [along.evaluate(law).value[s.keep] for along, s in alongs]
+    half = 0.5 * float(max(f.max() for f in forces) - min(f.min() for f in forces))
     if not half > most:
         return None
     return (
@@ -81,6 +77,15 @@ def _taken_away_again(
         f"{facts.text(most, 'force')} act: another effect takes it away again, and only their sum "
         "is known"
     )
+
+
+def _all_that_acts(stretches: Sequence[Stretch], facts: RecordFacts) -> float:
+    """Largest measured force and largest force of inertia and of the links of an arm, together."""
+    inertia, needed = abs(facts.body["inertia"]), 0.0
+    for s in stretches:
+        carried = 0.0 if s.motion.carried is None else np.abs(s.motion.carried[s.keep]).max()
+        needed = max(needed, inertia * np.abs(s.motion.acceleration[s.keep]).max() + carried)
+    return facts.force + float(needed)
 
 
 def _said(effect: Effect, hook: str, facts: RecordFacts) -> str | None:

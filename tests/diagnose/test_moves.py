@@ -7,6 +7,7 @@ from diagnose.own_cases import write_own
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.conclusion import without_doubtful
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.decision import is_adequate
 from teleopdesign.diagnose.exchange import exchange
@@ -124,3 +125,20 @@ def test_a_pair_takes_the_place_of_rungs_that_leave_more_once(ladder):
     assert set(added(moved)) == {"spring", "bias"} and moved.replaced
     assert replace_by_pair(search, replace(stand_in, replaced=True)) is None
     assert replace_by_pair(search, state) is None  # the model alone: there is nothing to replace
+
+
+def test_what_the_stated_errors_do_not_tell_from_absence_is_set_aside_once(ladder):
+    search, state = ladder
+    full = with_effects(search, state, "spring", "bias")
+    last, name = full.rungs[-1], "device.bias.force"
+    value = last.fit.model.parameters[name]
+    wide = last.fit.model.with_values({name: replace(value, stderr=2.0 * abs(value.value))})
+    stated = (*full.rungs[:-1], replace(last, fit=replace(last.fit, model=wide)))
+    moved = without_doubtful(search, full, stated)
+    assert added(moved) == ["spring"]
+    assert [one.candidate.key[0] for one in moved.set_aside] == ["bias"]
+    assert "force = " in moved.set_aside[0].reason
+    again = look(search, moved.rungs, moved)
+    assert "bias" not in {r.candidate.key[0] for r in again.supported}
+    back = replace(full, set_aside=moved.set_aside)
+    assert without_doubtful(search, back, stated) is None
