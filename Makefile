@@ -7,13 +7,16 @@ PYTEST_ARGS ?=
 FUZZ ?= 2000
 STUDY_ARGS ?=
 STUDY_OUTPUT ?= studies/output
+# what is run with the lowest versions: files, equations, compiled code, proofs, tables
+LOWEST_TESTS ?= tests/effects tests/measurement tests/realise tests/simulate tests/passivity/test_kyp.py \
+	tests/studies tests/plot tests/design tests/commands
 # processes at a time, of tests and of studies
 JOBS ?= 2
 # parts in which pages are read: more than cores, for some pages take minutes and others none
 PARTS ?= 4
 PIP := $(BIN)/python -m pip --disable-pip-version-check --no-input
 
-.PHONY: help demo test slow lint types imports docs studies benchmarks fuzz ci clean
+.PHONY: help demo test slow lint types imports docs studies benchmarks fuzz lowest lock licences wheel ci clean
 .DEFAULT_GOAL := help
 
 help:  ## list these targets
@@ -72,6 +75,25 @@ docs: $(VENV)/installed-docs  ## documentation in docs/_build/html, warnings are
 	@echo "== Documentation"
 	@$(BIN)/sphinx-build -W --keep-going -q -j $(PARTS) -b html docs docs/_build/html
 	@echo "docs/_build/html/index.html"
+
+lowest:  ## tests with every dependency at the lowest version that pyproject.toml declares, in build/lowest
+	@echo "== Tests with the lowest declared versions"
+	@$(PYTHON) -m venv --clear build/lowest
+	@build/lowest/bin/python -m pip --disable-pip-version-check --no-input install --quiet \
+		--constraint release/lowest.txt --editable ".[app,cluster,io,learn,lmi,proof,ros,studies]" \
+		hypothesis polars pytest
+	@build/lowest/bin/python -m pytest $(LOWEST_TESTS) $(PYTEST_ARGS)
+
+lock: $(VENV)/installed-test $(VENV)/installed-docs  ## release/lock.txt: the versions of this environment; release/lowest.txt
+	@$(BIN)/python release/dependencies.py lowest lock
+
+licences: $(VENV)/installed-test $(VENV)/installed-docs  ## docs/licences.md: the licence of everything that is installed
+	@$(BIN)/python release/dependencies.py licences
+
+wheel:  ## wheel and sdist into dist
+	@$(PYTHON) -m venv build/wheel
+	@build/wheel/bin/python -m pip --disable-pip-version-check --no-input install --quiet build
+	@build/wheel/bin/python -m build --outdir dist .
 
 studies: $(VENV)/installed-studies  ## every study, figures and numbers into STUDY_OUTPUT (STUDY_ARGS=--quick)
 	@printf '%s\n' studies/[!_]*.py | xargs -P $(JOBS) -I {} sh -c \

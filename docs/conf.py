@@ -15,10 +15,10 @@ version = release = teleopdesign.__version__
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
-    "sphinx.ext.mathjax",
     "sphinx.ext.viewcode",
     "executed",
     "catalogue",
+    "mathml",
     "docstrings",
 ]
 exclude_patterns = ["_build", "_generated", "examples"]
@@ -34,6 +34,7 @@ autodoc_type_aliases = {"xarray.Dataset": "xarray.Dataset"}
 python_use_unqualified_type_names = True
 maximum_signature_line_length = 80
 
+html_math_renderer = "mathml"
 html_theme = "furo"
 html_title = f"teleopdesign {version}"
 html_static_path = ["_static"]

@@ -1,6 +1,6 @@
 """Write what the package answers today into a folder; see the README beside this file.
 
-python golden/freeze.py OUT [PART ...]
+python golden/freeze.py OUT [PART ...] [--whole]
 """
 
 from __future__ import annotations
@@ -21,7 +21,18 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 #: measurements that are not part of the project; the parts that need them are left out without
 SHARED = ROOT.parent / "shared"
-#: draws of the tests' own simulator: (number of cases, seed)
+#: simulated cases of which a refactoring needs the answers: of each kind of what is missing
+#: at least one (outside the catalogue, nothing, actuation, inertia, force, friction, two at once)
+CASES = ("001", "004", "005", "006", "007", "010", "012", "016", "022", "024", "025", "027")
+#: real recordings whose diagnosis takes seconds
+RECORDINGS = ("cicese_gravity", "cicese_presliding", "ur10e_joint1")
+#: effects that these diagnoses choose from; the whole catalogue takes five times as long
+TRIED = (
+    "viscous", "coulomb", "coulomb_asymmetry", "stribeck", "presliding", "bias", "spring",
+    "added_inertia", "actuation_delay", "actuator_lag", "cogging", "friction_drift", "gravity",
+    "shear_thinning",
+)  # fmt: skip
+#: with --whole, draws of the tests' own simulator too: (number of cases, seed)
 DRAWN = (30, 20261)
 #: candidates of an answer that are kept, best first
 BEST = 5
@@ -182,7 +193,17 @@ def pages() -> dict[str, Any]:
 
 
 def answers() -> dict[str, Any]:
-    """Answers on simulated cases: those beside the project, and draws of the tests' simulator."""
+    """Answers on simulated cases beside the project, among few effects."""
+    return _diagnosed({f"hidden {c}": SHARED / "hidden" / "cases" / c for c in CASES}, TRIED)
+
+
+def recordings() -> dict[str, Any]:
+    """Answers on real recordings beside the project, among few effects."""
+    return _diagnosed({name: SHARED / "data" / name for name in RECORDINGS}, TRIED)
+
+
+def whole_answers() -> dict[str, Any]:
+    """Answers among the whole catalogue on all simulated cases, and draws of the tests' own."""
     sys.path[:0] = [str(ROOT / "studies"), str(ROOT / "tests")]
     from _campaign import plan
     from _one_case import make
@@ -193,27 +214,30 @@ def answers() -> dict[str, Any]:
             planned = {k: v for k, v in vars(case).items()}
             make(Path(scratch), case.name, planned)
             jobs[f"drawn {case.name}"] = Path(scratch) / "cases" / case.name
-        return _diagnosed({n: f for n, f in jobs.items() if (f / "experiment.toml").is_file()})
+        return _diagnosed(jobs)
 
 
-def recordings() -> dict[str, Any]:
-    """Answers on the real recordings beside the project."""
+def whole_recordings() -> dict[str, Any]:
+    """Answers among the whole catalogue on all real recordings beside the project."""
     folders = sorted(f.parent for f in (SHARED / "data").glob("*/experiment.toml"))
     return _diagnosed({f.name: f for f in folders})
 
 
-def _diagnosed(folders: dict[str, Path]) -> dict[str, Any]:
+def _diagnosed(folders: dict[str, Path], tried: Sequence[str] = ()) -> dict[str, Any]:
+    there = {n: f for n, f in folders.items() if (f / "experiment.toml").is_file()}
     with ProcessPoolExecutor(max_workers=2) as pool:
-        return dict(zip(folders, pool.map(_answer, folders.values()), strict=True))
+        each = pool.map(_answer, there.values(), [tuple(tried)] * len(there))
+        return dict(zip(there, each, strict=True))
 
 
-def _answer(folder: Path) -> dict[str, Any]:
+def _answer(folder: Path, tried: tuple[str, ...]) -> dict[str, Any]:
     from teleopdesign.cli import main
 
     with tempfile.TemporaryDirectory() as scratch:
         path, said = Path(scratch) / "answer.json", io.StringIO()
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(said):
-            status = main(["diagnose", str(folder), "--json", str(path)])
+            only = ["--only", *tried] if tried else []
+            status = main(["diagnose", str(folder), *only, "--json", str(path)])
         if status != 0:
             return {"status": status, "said": said.getvalue().strip().replace(str(folder), "")}
         answer = json.loads(path.read_text(encoding="utf-8"))
@@ -230,6 +254,8 @@ PARTS: dict[str, Callable[[], dict[str, Any]]] = {
     "answers": answers,
     "recordings": recordings,
 }
+#: what --whole puts in their place
+WHOLE = {"answers": whole_answers, "recordings": whole_recordings}
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -237,10 +263,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("output", type=Path)
     parser.add_argument("parts", nargs="*", metavar="PART", help=", ".join(PARTS))
+    parser.add_argument("--whole", action="store_true", help="all cases, the whole catalogue")
     options = parser.parse_args(arguments)
+    parts = {**PARTS, **WHOLE} if options.whole else PARTS
     options.output.mkdir(parents=True, exist_ok=True)
-    for part in options.parts or PARTS:
-        lines = json.dumps(PARTS[part](), indent=0, sort_keys=True)
+    for part in options.parts or parts:
+        lines = json.dumps(parts[part](), indent=0, sort_keys=True)
         (options.output / f"{part}.json").write_text(lines + "\n", encoding="utf-8")
         print(part, flush=True)
 

@@ -330,7 +330,7 @@ _FOLDERS = (
     "studies",
     "unexplained",
 )
-__version__ = "0.1.0.dev0"
+__version__ = "0.1.0"
 
 
 def __getattr__(name: str) -> Any:

@@ -102,7 +102,7 @@ def test_an_effect_file_pickles_by_its_path_and_is_refused_when_it_has_changed(t
     file.write_text(OWN.replace("now.velocity", "now.position"))
     changed = td.load_effect(file)
     assert changed is not effect and changed != effect
-    with pytest.raises(td.ModelError, match="own.py: the effect file has changed"):
+    with pytest.raises(td.ModelError, match="own.py: the file has changed"):
         pickle.loads(data)
 
 

@@ -106,7 +106,7 @@ def law_lines(effect: Effect) -> list[str]:
     states = effect.state_symbols()
     names |= {z: "z" if len(states) == 1 else rf"z_{{{i}}}" for i, z in enumerate(states.values())}
     left = _LEFT.get(effect.role, "F")
-    equals = "" if left.endswith("quad") else " = "
+    equals = " " if left.endswith("quad") else " = "
     lines = [f"{left}{equals}{latex(effect.expression(), names)}"]
     for name, rate in effect.rates().items():
         lines.append(rf"\dot {{{names[states[name]]}}} = {latex(rate, names)}")

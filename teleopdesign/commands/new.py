@@ -44,7 +44,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         ("time", "time"),
         ("position", "the position"),
         ("force", "the force or current commanded to the actuator"),
-        ("hand", "the measured force of the hand or environment"),
+        ("hand", "the measured force of the hand or environment, or none"),
     ):
         parser.add_argument(f"--{name}", metavar="COLUMN", help=f"the column of {text}")
     parser.add_argument(
@@ -137,6 +137,10 @@ def survey_text(survey: Survey, name: str) -> str:
         unit = f" in {entry['unit']}" if "column" in entry else ""
         lines.append(f"  {key:<18} {column}{unit}{', ' + more if more else ''}")
     lines += [f"  {note}" for note in survey.notes]
+    if survey.unused:
+        lines.append("not used:")
+        width = max(18, *map(len, survey.unused))
+        lines += [f"  {column:<{width}} {why}" for column, why in survey.unused.items()]
     if survey.guesses:
         lines.append("guessed:")
         lines += [f"  {key}: {why}" for key, why in survey.guesses.items()]

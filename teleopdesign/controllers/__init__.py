@@ -27,6 +27,7 @@ from ._controller import (
 from ._exact import as_written, in_exact_numbers, resolvent
 from ._from_control import from_control, inverted
 from ._from_file import load_controller
+from ._opaque import calls_in, is_call
 
 __all__ = [
     "CONTROLLERS",
@@ -38,10 +39,12 @@ __all__ = [
     "ControllerState",
     "Stage",
     "as_written",
+    "calls_in",
     "controller",
     "from_control",
     "in_exact_numbers",
     "inverted",
+    "is_call",
     "laws_that_declare",
     "load_controller",
     "parameter_symbol",

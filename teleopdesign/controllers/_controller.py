@@ -23,7 +23,7 @@ from ..errors import ModelError, did_you_mean
 from ..frozen import Frozen
 from ..notebook import html_table
 from ..recipes import recipe
-from ._exact import as_written
+from ._by_numbers import by_numbers, has_numbers, is_by_numbers
 
 _MOST_SHOWN = 8  # parameters of a law that one line shows
 
@@ -71,7 +71,7 @@ class ControlLaw:
         `period` (a parameter of it, s); its output is held in between
     sampled(values, period): the stage that takes the place of this one in a computer of that
     period (s); None: this one, its states stepped as they say
-    system: a python-control system in place of a law: known as code only, it has no equation
+    system: a python-control system that the law calls: known as code only, it has no equation
     response: a sympy function of s in place of a law, known on the axis at measured frequencies
 
     What the law can do, each by the name of the parameter that says how much; "": it cannot.
@@ -250,10 +250,13 @@ class Controller:
         )
         return Controller(tuple(stages))
 
-    def equation(self, prefix: str, signals: Mapping[str, sp.Expr]) -> ControllerEquation:
+    def equation(
+        self, prefix: str, signals: Mapping[str, sp.Expr], *, code: bool = False
+    ) -> ControllerEquation:
         """The laws composed in series; prefix: name of the block, in its symbols.
 
         signals: those of `SIGNALS`; a `period` of 0 is continuous time
+        code: whether systems that are known as code take part, as calls of their functions
         raises ModelError: continuous time, and a state that exists in a computer only; a system
             that is known as code only
         """
@@ -268,10 +271,10 @@ class Controller:
                     "of the steps in time: it takes part in frequency responses alone; fit a "
                     "transfer function to it"
                 )
-            if law.system is not None:
+            if law.system is not None and not code:
                 raise ModelError(
                     f"{prefix}: {law.name} is a nonlinear python-control system, known as code "
-                    "only: it takes part in `to_iosystem`, not in simulations of its own kernel"
+                    "only: it takes part in `simulate` and `to_iosystem`, and nowhere else"
                 )
             now, p = _placed(stage, prefix, {**signals, "input": value})
             probe = SimpleNamespace(**{**vars(now), "travel_rate": SIGNALS["travel_rate"]})
@@ -297,26 +300,52 @@ class Controller:
     ) -> sp.Expr | None:
         """Transfer function at constant speed; None where a law declares no linear form.
 
+        The velocity is that of the input: where it is another motion's, see `linear_parts`.
+
         held: also of what was measured, and of laws in discrete time, as
             H(e^(s T)) (1 - e^(-s T))/(s T): from the samples to the mean of the held output, copies
             at other multiples of the sampling rate left out
         """
-        if not all(stage.law.linear or (held and _has_numbers(stage)) for stage in self.stages):
+        parts = self.linear_parts(prefix, s, speed, held=held)
+        if parts is None or parts[1] == 0:
+            return None if parts is None else parts[0]
+        return sp.simplify(sp.Add(*parts))
+
+    def linear_parts(
+        self, prefix: str, s: sp.Symbol, speed: sp.Expr, *, held: bool = False
+    ) -> tuple[sp.Expr, sp.Expr] | None:
+        """Transfer functions from the input, and from the position along whose velocity it acts.
+
+        Arguments as of `linear_form`, which is their sum: the two are one signal there
+        """
+        if not all(stage.law.linear or (held and has_numbers(stage)) for stage in self.stages):
             return None
-        if all(_is_by_numbers(stage) for stage in self.stages):
-            return sp.Mul(*(_by_numbers(stage, s) for stage in self.stages))
-        drive = sp.Symbol("drive")
-        moved = {"velocity": s * drive, "speed": speed, "travel_rate": s * drive}
+        if all(is_by_numbers(stage) for stage in self.stages):
+            return sp.Mul(*(by_numbers(stage, s) for stage in self.stages)), sp.S(0)
+        drive, moved = sp.Symbol("drive"), sp.Symbol("moved")
+        motion = {"velocity": s * moved, "speed": speed, "travel_rate": s * moved}
         value: sp.Expr = drive
         for stage in self.stages:
-            if _is_by_numbers(stage):
-                value *= _by_numbers(stage, s)
+            if is_by_numbers(stage):
+                value *= by_numbers(stage, s)
                 continue
-            signals = {**moved, "input": value, "period": sp.S(0)}
+            signals = {**motion, "input": value, "period": sp.S(0)}
             equation = Controller((stage,)).equation(prefix, signals)
             states = sp.solve([s * x - r for x, r in equation.rates.items()], *equation.rates)
             value = equation.output.subs(states) if equation.rates else equation.output
-        return sp.simplify(value / drive)
+        return sp.simplify(sp.diff(value, drive)), sp.simplify(sp.diff(value, moved))
+
+    @property
+    def sees_velocity(self) -> bool:
+        """Whether a law of it that has a linear form takes the velocity itself, not its size."""
+        velocities = SIGNALS["velocity"], SIGNALS["travel_rate"]
+        for stage in self.stages:
+            if is_by_numbers(stage) or not stage.law.linear:
+                continue
+            equation = Controller((stage,)).equation("law", {**SIGNALS, "period": sp.S(0)})
+            if any(e.has(*velocities) for e in (equation.output, *equation.rates.values())):
+                return True
+        return False
 
     def __repr__(self) -> str:
         laws = (
@@ -334,38 +363,6 @@ class Controller:
             for n, v in g.values.items()
         ]
         return html_table("Controller", ("parameter", "value (SI)", "meaning"), rows)
-
-
-def _has_numbers(stage: Stage) -> bool:
-    """Whether it was measured, or has a transfer function in z at a period of its own."""
-    if stage.law.response is not None:
-        return True
-    return stage.law.shift is not None and stage.values["period"] > 0
-
-
-def _is_by_numbers(stage: Stage) -> bool:
-    law = stage.law
-    return any(x is not None for x in (law.transfer, law.shift, law.response))
-
-
-def _by_numbers(stage: Stage, s: sp.Symbol) -> sp.Expr:
-    """Transfer function of a law that states it, with its values in place."""
-    if stage.law.transfer is not None:
-        return stage.law.transfer(stage.values, s)
-    if stage.law.response is not None:
-        return as_written(stage.values["scale"]) * stage.law.response(s)
-    assert stage.law.shift is not None
-    period, z = as_written(stage.values["period"]), sp.Symbol("z")
-    late = sp.exp(-s * period)
-    above, below = (
-        sp.Poly(x, z) for x in sp.fraction(sp.together(stage.law.shift(stage.values, z)))
-    )
-    # in powers of e^(-s T): those of e^(s T) overflow far out in the right half plane
-    order = below.degree()
-    sides = (
-        sp.Add(*(c * late ** (order - k) for (k,), c in part.terms())) for part in (above, below)
-    )
-    return sp.Mul(next(sides), 1 / next(sides)) * (1 - late) / (s * period)
 
 
 def _placed(

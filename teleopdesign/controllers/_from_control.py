@@ -27,7 +27,10 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
     name: in the names of parameters: "H.state_space.numerator_0" of a transfer function, the
         coefficient of s^0, "H.state_space.a_0_0" of a state space
     Its numbers are kept as they came, so that poles and zeros that cancel on paper do cancel.
-    A nonlinear system (`control.nlsys`) is Python code: it takes part in `to_iosystem` alone. A
+    A nonlinear system (`control.nlsys`) is Python code: it takes part in `simulate`, which then
+    runs in plain Python, some hundred times slower, and in `to_iosystem`; claims and margins name
+    it as what they leave out, or refuse. A computer carries it over a sample with its input held,
+    by an adaptive integrator to 1e-10, or steps it as it is in discrete time. A
     measured frequency response (`control.frd`) takes part in `bode`, `loop_gain` and
     `matrix_response` alone, within its frequencies, on the line between two of them.
     raises ModelError: several inputs or outputs, improper, no system
@@ -47,8 +50,6 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
     if isinstance(system, control.FrequencyResponseData):
         return measured(name, system)
     if not isinstance(system, control.StateSpace | control.TransferFunction):
-        if system.isdtime(strict=True):
-            raise ModelError("from_control: a nonlinear system is taken in continuous time only")
         return opaque(name, system)
     dt = system.dt
     period = None if not system.isdtime(strict=True) else 0.0 if dt is True else float(dt)

@@ -248,14 +248,18 @@ def _held(name: str, values: Mapping[str, float], n: int, period: float) -> Stag
     return stage(name, (stepped[:n, :n], stepped[:n, n], c, d), period)
 
 
+def check_period(name: str, stated: float, period: float) -> None:
+    """ModelError where a system of that period (s; 0: any) is put into a computer of another."""
+    if stated and abs(stated - period) > 1e-9 * period:
+        raise ModelError(
+            f"{name}: is sampled every {stated * 1e3:g} ms, the computer every "
+            f"{period * 1e3:g} ms: give it in continuous time, or sample both alike"
+        )
+
+
 def _same_period(name: str) -> Callable[[Mapping[str, float], float], Stage]:
     def sampled(values: Mapping[str, float], period: float) -> Stage:
-        stated = values["period"]
-        if stated and abs(stated - period) > 1e-9 * period:
-            raise ModelError(
-                f"{name}: is sampled every {stated * 1e3:g} ms, the computer every "
-                f"{period * 1e3:g} ms: give it in continuous time, or sample both alike"
-            )
+        check_period(name, values["period"], period)
         form: Form = "coefficients" if "denominator_0" in values else "matrices"
         return Stage(_law(name, form, _order(values), True), values)
 

@@ -1,9 +1,11 @@
 """Spring and damper that a computer or circuit makes: joins two sides of a teleoperator.
 
-    F = k e + d de/dt
+    F = k e + d v
 
-With e the difference of two positions this is position-position control; of the interface's own
-position, a virtual wall without its side.
+Input is e, and v the velocity of the motion that the block is wired along, de/dt where that motion
+is e itself. With e the difference of two positions this is position-position control; of the
+interface's own position, a virtual wall without its side. On a signal that is late or filtered the
+damper still acts along the motion, now; `proportional_derivative` differentiates what it reads.
 """
 
 from ..effects import Parameter

@@ -12,10 +12,11 @@ from time import monotonic
 import sympy as sp
 
 from ..diagrams import Attached, Control, Diagram, Kinematics, Linked, Moving, position_symbol
+from ..diagrams.second_input import acts_along_another
 from ..errors import ModelError
 from .loops import loop_of
 from .noncommutative import counterexample
-from .printing import block_symbol, late
+from .printing import along_symbol, block_symbol, late
 
 #: signal -> coefficient, acting from the left; the sum over all is zero
 Row = dict[str, sp.Expr]
@@ -36,8 +37,7 @@ def rows(diagram: Diagram) -> list[Row]:
             equations += _linked(part)
             continue
         elif isinstance(part, Control):
-            law = block_symbol(part.name) if part.dead_time is None else late(part.name)
-            terms = [(part.output, sp.S(1)), (part.input, -law)]
+            terms = [(part.output, sp.S(1)), *((s, -law) for s, law in paths(diagram, part))]
         elif isinstance(part, Kinematics):
             slopes = {s: sp.diff(part.expression, position_symbol(s)) for s in part.inputs}
             terms = [(part.output, sp.S(1)), *((s, -diagram.here(g)) for s, g in slopes.items())]
@@ -46,6 +46,23 @@ def rows(diagram: Diagram) -> list[Row]:
             terms = [(part.output, sp.S(1)), *weights]
         equations.append(_row(terms))
     return equations
+
+
+def paths(diagram: Diagram, part: Control) -> list[tuple[str, sp.Expr]]:
+    """What drives a controller, each with its block: the input, and a motion that it acts along.
+
+    raises ModelError: a block has the name of what another one makes of that motion
+    """
+    law = block_symbol(part.name) if part.dead_time is None else late(part.name)
+    if not acts_along_another(diagram, part):
+        return [(part.input, law)]
+    along = along_symbol(part.name)
+    if diagram.has(along.name):
+        raise ModelError(
+            f"{diagram.name}: {along.name} is what {part.name} makes of the velocity of "
+            f"{part.motion}, and the name of a block: call the block otherwise"
+        )
+    return [(part.input, law), (part.motion, along)]
 
 
 def _linked(part: Linked) -> list[Row]:
@@ -104,6 +121,13 @@ def transfer(
         _eliminate(system, signal, diagram)
     row = next(r for r in system if _OUTPUT in r)
     return {s: product(sp.S(-1), row.get(s, sp.S(0))) for s in chosen}
+
+
+def round_trip(diagram: Diagram, part: Control) -> sp.Expr:
+    """What comes back at the output of a controller for 1 put in there, all else at work."""
+    opened, out = diagram.opened(part.name), part.output
+    ways = paths(diagram, part)
+    return sp.Add(*(product(law, transfer(opened, s, (out,))[out]) for s, law in ways))
 
 
 def _driver(diagram: Diagram, motion: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..diagrams import Control, Diagram, Part
+from ..diagrams.second_input import acts_along_another
 
 
 def loop_of(diagram: Diagram, signal: str) -> tuple[str, ...]:
@@ -15,7 +16,7 @@ def loop_of(diagram: Diagram, signal: str) -> tuple[str, ...]:
         reached = [signal]
         for at in reached:
             part = makers.get(at)
-            for source in () if part is None else _inputs_of(part):
+            for source in () if part is None else _inputs_of(diagram, part):
                 if source == signal:
                     return _back(before, at, signal)
                 if source not in before:
@@ -24,9 +25,10 @@ def loop_of(diagram: Diagram, signal: str) -> tuple[str, ...]:
     return ()
 
 
-def _inputs_of(part: Part) -> tuple[str, ...]:
-    # of a controller the motion only sets where its law is frozen
-    return (part.input,) if isinstance(part, Control) else part.inputs
+def _inputs_of(diagram: Diagram, part: Part) -> tuple[str, ...]:
+    if isinstance(part, Control) and not acts_along_another(diagram, part):
+        return (part.input,)  # the motion only sets where the law is frozen
+    return part.inputs
 
 
 def _back(before: Mapping[str, str], at: str, signal: str) -> tuple[str, ...]:

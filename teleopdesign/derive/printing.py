@@ -18,6 +18,14 @@ def block_symbol(name: str) -> sp.Symbol:
     return sp.Symbol(name, commutative=False)
 
 
+def along_symbol(name: str) -> sp.Symbol:
+    """What the controller of that name makes of the motion along whose velocity it acts.
+
+    Where that motion is not its input: output = K input + V_K motion
+    """
+    return block_symbol(f"V_{name}")
+
+
 def late(name: str) -> sp.Expr:
     """A delay block of that name, e^(-s T) with its name for T: it commutes with every block."""
     return sp.exp(-S * dead_time_symbol(name))

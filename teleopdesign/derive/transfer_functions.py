@@ -11,8 +11,8 @@ import sympy as sp
 from ..diagrams import Control, Diagram
 from ..errors import ModelError
 from ..frozen import Frozen
-from .elimination import product, transfer
-from .printing import as_latex, as_text, block_symbol, with_gamma
+from .elimination import round_trip, transfer
+from .printing import as_latex, as_text, with_gamma
 
 
 @dataclass(frozen=True)
@@ -120,5 +120,4 @@ def return_difference(diagram: Diagram, name: str) -> sp.Expr:
     block = diagram.block(name)
     if not isinstance(block, Control):
         raise ModelError(f"{diagram.name}: {name} is no controller, its loop cannot be opened")
-    back = transfer(diagram.opened(name), block.input, (block.output,))[block.output]
-    return sp.S(1) - product(block_symbol(name), back)
+    return sp.S(1) - round_trip(diagram, block)

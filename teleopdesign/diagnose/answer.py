@@ -57,6 +57,13 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "bandwidth": {"value": diagnosis.prepared.bandwidth, "unit": "Hz"},
         "candidates": candidate_rows(diagnosis) if recorded is None else recorded["candidates"],
         "indistinguishable": [[place_data(c.key) for c in g] for g in diagnosis.groups],
+        "cannot_tell": [
+            place_data(one.candidate.key) | {"sentence": one.sentence} for one in diagnosis.untold
+        ],
+        "set_aside": [
+            place_data(one.candidate.key) | {"check_error": one.check_error, "reason": one.reason}
+            for one in diagnosis.set_aside
+        ],
         "own": offset_rows(diagnosis),
         "record_shift": shift_data(diagnosis.model, diagnosis.prepared.stretches),
         "model_parameters": parameter_rows(diagnosis.after, _added(diagnosis)),

@@ -1,28 +1,42 @@
-"""The end of a ladder: reading errors taken off, errors on the whole records, and the verdict."""
+"""The end of a ladder: reading errors taken off, errors on the whole records, and the verdict.
+
+The model that an answer ends with holds what its ladder shows. What is not there by the errors that
+the answer states is set aside before; what stays and is not named is said to be unexplained.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
+from .candidates import Candidate
 from .corrected_fit import corrected
-from .decision import moment_above_noise, verdict
-from .diagnosis import Diagnosis
+from .decision import moment_above_noise, others_that_help, verdict
+from .diagnosis import Diagnosis, SetAside
 from .error import force_error
 from .error_at_command import at_command
 from .fit import Fit
+from .identifiability import doubt
 from .ladder_state import LadderSearch, LadderState
 from .learnable import error_near_reversals, learnable
+from .plausibility import implausible_effects
 from .prepare import Prepared
 from .probability import probable
 from .rung import Rung
-from .rungs import first_rise, without_rise
+from .rungs import estimate_without, falling, first_rise, refitted, without_rise
+from .untold import untold
 
 
-def conclude(search: LadderSearch, state: LadderState) -> Diagnosis:
-    """The diagnosis that a ladder ends with."""
+def conclude(
+    search: LadderSearch, state: LadderState, rungs: tuple[Rung, ...] | None = None
+) -> Diagnosis:
+    """The diagnosis that a ladder ends with.
+
+    rungs: those of the state with the reading error removed from the last fit; default: removed now
+    """
     prepared, floor, criteria = search.prepared, state.floor, search.criteria
     estimated = state.fit
-    rungs = _with_reading_error(search, state)
+    rungs = with_last_corrected(search, state) if rungs is None else rungs
     moment = moment_above_noise(rungs[-1].fit, prepared, floor, criteria=criteria)
     if prepared is not search.whole:
         search.progress("errors on the whole records")
@@ -43,14 +57,67 @@ def conclude(search: LadderSearch, state: LadderState) -> Diagnosis:
         learnable=learnable(model, search.whole, seed=search.seed),
         near_reversals=error_near_reversals(model, search.whole),
         left_out=search.plan.omissions(),
+        untold=untold(rungs, search.whole),
+        set_aside=state.set_aside,
     )
     named = probable(diagnosis, criteria=criteria)
+    diagnosis = replace(diagnosis, rungs=tuple(_unexplained(r, named) for r in rungs))
     if diagnosis.verdict == "effects_missing" and not named:
         return replace(diagnosis, verdict="undecided")
     return replace(diagnosis, named=named)
 
 
-def _with_reading_error(search: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
+def _unexplained(rung: Rung, named: Collection[Candidate]) -> Rung:
+    """A rung that is not named, with all else that explains a good part of what it does."""
+    if rung.added is None or rung.added in named or rung.could_be is not None:
+        return rung
+    ranking = rung.ranking
+    best = next((r for r in ranking.ranked if r.candidate == rung.added), None) if ranking else None
+    if ranking is None or best is None:
+        return rung
+    return replace(rung, could_be=others_that_help(best, ranking))
+
+
+def doubtful(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, str] | None:
+    """The last rung whose effect is not there, or not what its name says, at the end; and why."""
+    last = rungs[-1].fit
+    stands_for = implausible_effects(last.model, prepared) if len(rungs) > 1 else {}
+    for rung in reversed(rungs[1:]):
+        assert rung.added is not None
+        if not last.model.body(rung.added.at).has(rung.added.effect.name):
+            continue
+        why = stands_for.get(rung.added.key) or doubt(last, rung.added)
+        if why:
+            return rung, why
+    return None
+
+
+def without_doubtful(
+    search: LadderSearch, state: LadderState, rungs: Sequence[Rung]
+) -> LadderState | None:
+    """The ladder without the last effect that is doubtful at its end; None: none is, or was before.
+
+    rungs: of the state, with the errors that the answer would state
+    """
+    doubted = doubtful(rungs, search.prepared)
+    if doubted is None:
+        return None
+    rung, why = doubted
+    assert rung.added is not None
+    gone = {one.candidate.key for one in state.set_aside}
+    fewer = [r for r in state.rungs if r.added != rung.added]
+    without = estimate_without(state.fit.model, rung, search.prepared)
+    if rung.added.key in gone or without is None:
+        return None
+    order = falling(refitted(fewer, without, search.prepared), search.prepared)
+    if order is None:
+        return None
+    aside = SetAside(rung.added, rung.fit.check_error, why)
+    search.progress(f"set aside: {aside}")
+    return replace(state.with_rungs(order), set_aside=(*state.set_aside, aside))
+
+
+def with_last_corrected(search: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
     """The rungs with the reading error removed from the last fit, unless its error grows."""
     search.progress("reading the model's own motion")
     last = corrected(search, state.fit, state.floor)

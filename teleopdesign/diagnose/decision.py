@@ -213,9 +213,16 @@ def displaced(base: Fit, fit: Fit) -> list[str]:
 
 
 def _is_there(base: Fit, name: str) -> bool:
-    """Whether the records show that the effect of a parameter is present."""
+    """Whether the records show that the effect of a parameter is present.
+
+    By all that it cannot be without; what is optional may be open.
+    """
     effect = name.rpartition(".")[0]
-    values = {n: v for n, v in base.model.parameters.items() if n.rpartition(".")[0] == effect}
+    values = {
+        n: v
+        for n, v in base.model.parameters.items()
+        if n.rpartition(".")[0] == effect and (n == name or not base.model.declared(n).optional)
+    }
     return all(v.fixed or not v.stderr >= base.model.from_absence(n) for n, v in values.items())
 
 
@@ -330,10 +337,14 @@ def others_that_help(best: Ranked, ranking: Ranking) -> tuple[Candidate, ...]:
     return tuple(r.candidate for r in others if whole - check_squares(r.fit) >= least)
 
 
-def simplicity(ranked: Ranked) -> tuple[int, int]:
-    """Parameters that must be estimated, and effects that must be there: fewer is simpler."""
+def simplicity(ranked: Ranked) -> tuple[int, int, int]:
+    """Parameters that must be estimated, effects that must be there, and optional parameters.
+
+    Fewer is simpler.
+    """
     effect = ranked.candidate.effect
-    return sum(not p.optional for p in effect.parameters.values()), len(effect.needs)
+    optional = sum(p.optional for p in effect.parameters.values())
+    return len(effect.parameters) - optional, len(effect.needs), optional
 
 
 def moment_above_noise(

@@ -36,6 +36,29 @@ class OpenQuestion(ByValue):
     others: tuple[tuple[Candidate, Fit], ...]
 
 
+@dataclass(frozen=True)
+class Untold:
+    """What records cannot tell of an accepted effect's parameters, in a sentence."""
+
+    candidate: Candidate
+    sentence: str
+
+    def __str__(self) -> str:
+        return f"{self.candidate}: {self.sentence}"
+
+
+@dataclass(frozen=True)
+class SetAside:
+    """An effect that lowered the error and was taken out again: with it, and why."""
+
+    candidate: Candidate
+    check_error: float
+    reason: str
+
+    def __str__(self) -> str:
+        return f"{self.candidate} ({100 * self.check_error:.2f} %): {self.reason}"
+
+
 @dataclass(frozen=True, eq=False)
 class Diagnosis(ByValue):
     """What a recording says about a model.
@@ -51,6 +74,8 @@ class Diagnosis(ByValue):
     learnable: what a black box learns of what is left; None without the extra `learn`
     near_reversals: the check error near reversals; None where there are none
     left_out: what was not searched though it usually is, in words
+    untold: what the records cannot tell of the accepted effects
+    set_aside: effects that were accepted, and are not there by the errors that the answer states
     recorded: the answer that a diagnosis was read back from, which has its candidates; else None
     """
 
@@ -67,6 +92,8 @@ class Diagnosis(ByValue):
     learnable: Learnable | None = None
     near_reversals: NearReversals | None = None
     left_out: tuple[str, ...] = ()
+    untold: tuple[Untold, ...] = ()
+    set_aside: tuple[SetAside, ...] = ()
     recorded: Mapping[str, Any] | None = None
 
     @property
@@ -88,6 +115,10 @@ class Diagnosis(ByValue):
     def missing(self) -> tuple[Candidate, ...]:
         """Effects that can be named, in the order added; none where the verdict is undecided."""
         return self.named if self.verdict == "effects_missing" else ()
+
+    def reason_set_aside(self, key: tuple[str, str]) -> str:
+        """Why an effect (name, place) that was accepted once is not there; "" for all others."""
+        return next((one.reason for one in self.set_aside if one.candidate.key == key), "")
 
     @property
     def unlikely(self) -> bool:

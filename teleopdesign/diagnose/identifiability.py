@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .fit import Fit
 
@@ -37,3 +38,27 @@ def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bo
         if float(np.linalg.norm(rest)) > criteria.own_column * size:
             return True
     return False
+
+
+def doubt(fit: Fit, candidate: Candidate) -> str:
+    """Which parameter an accepted effect stands on and the stated errors do not tell from absence.
+
+    By the errors at the end of a ladder, which hold what the readings themselves bring in. Others
+    of its parameters may be open. "": none
+    """
+    for name, declared in candidate.effect.parameters.items():
+        full = f"{candidate.at}.{candidate.effect.name}.{name}"
+        absent = candidate.effect.absent.get(name)
+        strength = absent is not None and np.isfinite(absent)
+        if full not in fit.free or declared.optional:
+            continue
+        if not (strength or declared.search.essential):
+            continue
+        value = fit.model.parameters[full]
+        if not value.stderr < fit.model.from_absence(full):
+            unit = fit.model.unit(full)
+            return (
+                f"{name} = {value.value:.3g} +- {value.stderr:.2g} {unit} is not told from absence "
+                "by the errors of the readings"
+            )
+    return ""

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ..measurement.experiment import Experiment
 from ..model import Model
-from .conclusion import conclude
+from .conclusion import conclude, with_last_corrected, without_doubtful
 from .decision import is_a_tone
 from .diagnosis import Diagnosis
 from .exchange import exchange
@@ -41,9 +41,15 @@ def find_missing(
         model = trying(among, model or Model.from_experiment(experiment))
     search = search_for(experiment, model, progress=progress, seed=seed, plan=plan)
     state = begin(search)
-    while (moved := next_move(search, state)) is not None:
-        state = look(search, moved.rungs, moved)
-    diagnosis = conclude(search, state)
+    while True:
+        while (moved := next_move(search, state)) is not None:
+            state = look(search, moved.rungs, moved)
+        rungs = with_last_corrected(search, state)
+        less = without_doubtful(search, state, rungs)
+        if less is None:
+            break
+        state = look(search, less.rungs, less)
+    diagnosis = conclude(search, state, rungs)
     if among is None:
         return diagnosis
     words = f"only these effects were tried: {', '.join(sorted(among))}"

@@ -20,6 +20,7 @@ from .decision import (
     is_supported,
     worth_pursuing,
 )
+from .diagnosis import SetAside
 from .excerpt import on_windows
 from .fit import Fit
 from .noise_floor import NoiseFloor, noise_floor
@@ -87,6 +88,8 @@ class LadderState:
     exchanges: how many were made;  replaced: whether a pair took the place of all rungs once
     came_back: effects (name, place) that were given up for another once, or came back beside it:
         none of them gives way again, so that two effects cannot take turns
+    set_aside: effects that were accepted and are not there by the errors that the answer would
+        state: none of them is added again
     """
 
     rungs: tuple[Rung, ...]
@@ -98,6 +101,7 @@ class LadderState:
     exchanges: int = 0
     replaced: bool = False
     came_back: frozenset[tuple[str, str]] = frozenset()
+    set_aside: tuple[SetAside, ...] = ()
 
     @property
     def fit(self) -> Fit:
@@ -168,10 +172,12 @@ def look(
     first = bounded if before is None else before.first
     floors = Floors(drawn, allowed_floor(bounded, first, rungs[0].fit, criteria=criteria))
     tone = best_tone(here, prepared)
+    gone = set() if before is None else {one.candidate.key for one in before.set_aside}
     supported = tuple(
         r
         for r in ranking.ranked
-        if is_supported(here, r, floors.allowed, criteria=criteria)
+        if r.candidate.key not in gone
+        and is_supported(here, r, floors.allowed, criteria=criteria)
         and (tone.is_beaten_by(r.fit) or depends_on_time(r.candidate.effect))
     )
     if before is None:

@@ -87,12 +87,14 @@ def refused_lines(diagnosis: Diagnosis) -> list[str]:
     return lines
 
 
-def could_be_text(rung: Rung) -> str | None:
-    """What else a rung could be, where the model before it left only noise."""
+def could_be_text(rung: Rung, *, named: bool = True) -> str | None:
+    """What else a rung could be: where the model before it left only noise, or it is not named."""
     if rung.could_be is None:
         return None
     others = ", ".join(map(str, rung.could_be)) or "nothing else that was tried"
-    return f"the model before it leaves only noise; it could also be: {others}"
+    if named:
+        return f"the model before it leaves only noise; it could also be: {others}"
+    return f"unexplained: less likely than not what its name says; it could also be: {others}"
 
 
 def ladder_text(diagnosis: Diagnosis) -> str:
@@ -116,8 +118,14 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         if rung.alternatives:
             others = ", ".join(map(str, rung.alternatives))
             lines.append(f"      no different on these records: {others}")
-        if (could_be := could_be_text(rung)) is not None:
+        named = rung.added in diagnosis.named or bool(rung.alternatives)
+        if (could_be := could_be_text(rung, named=named)) is not None:
             lines.append(f"      {could_be}")
+        lines += [
+            f"      cannot be told: {one.sentence}"
+            for one in diagnosis.untold
+            if one.candidate == rung.added
+        ]
     lines += [
         f"own of {o['record']}: {o['of'].replace('_', ' ')} {o['value']:.4g} {o['unit']}"
         for o in offset_rows(diagnosis)
@@ -132,6 +140,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     if diagnosis.learnable is not None:
         lines.append(f"black box: {diagnosis.learnable}")
     lines += refused_lines(diagnosis)
+    lines += [f"set aside: {one}" for one in diagnosis.set_aside]
     lines += [f"left out: {words}" for words in diagnosis.left_out]
     lines.append("")
     lines.append(sentence(diagnosis))
@@ -159,7 +168,11 @@ def sentence(diagnosis: Diagnosis) -> str:
             if r.added in diagnosis.missing
         )
         less = [r.said for r in added if r.added not in diagnosis.missing]
-        others = f" {', '.join(less)}: less likely than not." if less else ""
+        others = (
+            f" {', '.join(less)}: less likely than not; what it describes is unexplained."
+            if less
+            else ""
+        )
         return f"verdict: effects_missing: {names}.{others}{rest}"
     if diagnosis.unlikely:
         names = ", ".join(r.said for r in diagnosis.rungs if r.added is not None)

@@ -1,9 +1,14 @@
-"""Whether fitted effects deserve their names, by what their own files say of their parameters."""
+"""Whether fitted effects deserve their names, by what their own files say of their parameters.
+
+One rule holds for every force, a user's own among them: along the motion it cannot vary by more
+than what was measured, or another effect takes away again what it gives.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +16,7 @@ from ..blocks import Body
 from ..effects import CONTACT_ROLES, SIGNALS, Effect, RecordFacts
 from ..errors import ModelError
 from ..model import Model
+from ..realise.along_motion import measured_along
 from .prepare import Prepared, Stretch
 
 
@@ -22,30 +28,73 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
     meanings = {}
     for place, body in model.bodies.items():
         effects = [
-            e for e in body.effects if e.plausible is not None and e.role not in CONTACT_ROLES
+            e
+            for e in body.effects
+            if e.role not in CONTACT_ROLES and (e.name, place) not in model.absent
         ]
         if not effects:
             continue
+        stretches = [s for s in prepared.stretches if s.motion.body == place]
         numbers = {n: v.value for n, v in body.parameters.items()}
         facts = record_facts(model, place, prepared, numbers)
         for effect in effects:
-            if (effect.name, place) in model.absent:
-                continue
-            said = _said(effect, facts)
+            said = _said(effect, "plausible", facts)
+            if said is None and effect.role == "force" and not effect.states:
+                said = _taken_away_again(effect, body, stretches, facts)
             if said is not None:
                 meanings[effect.name, place] = said
     return meanings
 
 
-def _said(effect: Effect, facts: RecordFacts) -> str | None:
-    assert effect.plausible is not None
+def untold_of(effect: Effect, at: str, model: Model, prepared: Prepared) -> str | None:
+    """What an effect's own file says that these records cannot tell of its parameters; None.
+
+    raises ModelError: as `implausible_effects`
+    """
+    place = model.holder(at)
+    return _said(effect, "untold", record_facts(model, place, prepared))
+
+
+def _taken_away_again(
+    effect: Effect, body: Body, stretches: Sequence[Stretch], facts: RecordFacts
+) -> str | None:
+    """Whether a force varies along the motion by more than all that act together.
+
+    Half of its range against the largest measured force and the inertia's largest.
+    """
+    if effect.expression().has(SIGNALS["acting_force"]):
+        return None
+    inertia = abs(facts.body["inertia"])
+    ranges, most = [], 0.0
+    for s in stretches:
+        along = measured_along(body, s.motion)
+        force = along.evaluate(effect.expression()).value[s.keep]
+        ranges.append((float(force.min()), float(force.max())))
+        carried = 0.0 if s.motion.carried is None else np.abs(s.motion.carried[s.keep]).max()
+        needed = inertia * np.abs(s.motion.acceleration[s.keep]).max() + carried
+        most = max(most, facts.force + float(needed))
+    half = 0.5 * (max(high for _, high in ranges) - min(low for low, _ in ranges))
+    if not half > most:
+        return None
+    return (
+        f"it varies by +-{facts.text(half, 'force')} along the motion, where no more than "
+        f"{facts.text(most, 'force')} act: another effect takes it away again, and only their sum "
+        "is known"
+    )
+
+
+def _said(effect: Effect, hook: str, facts: RecordFacts) -> str | None:
+    """What the effect's own `plausible` or `untold` says; None where it has none."""
+    check: Callable[[Any, RecordFacts], str | None] | None = getattr(effect, hook)
+    if check is None:
+        return None
     values = {n: facts.body[f"{effect.name}.{n}"] for n in effect.parameters}
     try:
-        said = effect.plausible(SimpleNamespace(**values), facts)
+        said = check(SimpleNamespace(**values), facts)
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-        raise ModelError(f"{effect.name}: plausible: {type(error).__name__}: {error}") from error
+        raise ModelError(f"{effect.name}: {hook}: {type(error).__name__}: {error}") from error
     if said is not None and not (isinstance(said, str) and said.strip()):
-        raise ModelError(f"{effect.name}: plausible: found {said!r}, expected None or a sentence")
+        raise ModelError(f"{effect.name}: {hook}: found {said!r}, expected None or a sentence")
     return said
 
 
@@ -72,6 +121,7 @@ def record_facts(
         speed=speed,
         film=_film(body, speed, numbers),
         body=numbers,
+        duration=max(float(np.ptp(m.time)) for m in motions),
         places=np.concatenate([m.position[m.direction != 0] for m in motions]),
         speeds=np.concatenate([m.velocity[m.direction != 0] for m in motions]),
     )

@@ -11,8 +11,8 @@ leaves a part of the order of what it explains, or a better one would not be wor
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -37,6 +37,7 @@ class CandidateEvidence:
     barred: which check it failed on this step, whatever it explains; "" where none
     outweighs: squares that it takes away on this step over these and what the last step leaves
         above the noise floor, 0 to 1; of the force or seen at the command, the smaller
+    at_most: probability of the accepted effects that it needs: it is not there without them
     """
 
     ranked: Ranked
@@ -47,6 +48,7 @@ class CandidateEvidence:
     left: float
     barred: str = ""
     outweighs: float = 0.0
+    at_most: float = 1.0
 
     def probability(self, *, criteria: Criteria = CRITERIA) -> float:
         """Probability that the effect is missing, 0 to 1."""
@@ -57,11 +59,34 @@ class CandidateEvidence:
         # unexplained, as much as noise is sure to be no effect
         trusted = 1.0 if self.left <= criteria.adequate else (criteria.adequate / self.left) ** 2
         trusted = max(trusted, self.outweighs**criteria.outweighing)
-        return float(np.clip(criteria.true_of_accepted * real * trusted, 0.0, 1.0))
+        return float(np.clip(criteria.true_of_accepted * real * trusted, 0.0, self.at_most))
 
 
 def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
     """The evidence for every candidate on every step."""
+    evidence = _evidence_alone(diagnosis)
+    accepted = {one.ranked.candidate.key: one.probability() for one in evidence if one.accepted}
+    most = _no_likelier_than_needed(diagnosis, accepted)
+    return [
+        replace(one, at_most=most.get(one.ranked.candidate.key, 1.0)) if one.accepted else one
+        for one in evidence
+    ]
+
+
+def _no_likelier_than_needed(
+    diagnosis: Diagnosis, accepted: Mapping[tuple[str, str], float]
+) -> dict[tuple[str, str], float]:
+    """Largest probability of each accepted effect at which all that it needs is as likely."""
+    most: dict[tuple[str, str], float] = {}
+    for level in sorted(set(accepted.values()), reverse=True):
+        likely = {key for key, probability in accepted.items() if probability >= level}
+        for candidate in standing(diagnosis, likely):
+            most.setdefault(candidate.key, level)
+    return most
+
+
+def _evidence_alone(diagnosis: Diagnosis) -> list[CandidateEvidence]:
+    """The evidence for every candidate on every step, whatever it needs."""
     steps: list[tuple[Rung | None, Ranking]] = [
         (r, r.ranking) for r in diagnosis.rungs if r.ranking is not None
     ]
@@ -72,7 +97,9 @@ def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
         for ranked in ranking.ranked:
             key = ranked.candidate.key
             accepted = rung is not None and rung.added is not None and rung.added.key == key
-            barred = "" if accepted else helps_but_is_barred(ranking.base, ranked, diagnosis.floor)
+            barred = diagnosis.reason_set_aside(key)
+            if not accepted and not barred:
+                barred = helps_but_is_barred(ranking.base, ranked, diagnosis.floor)
             evidence.append(
                 CandidateEvidence(
                     ranked=ranked,
@@ -89,17 +116,13 @@ def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
 
 
 def probable(diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA) -> tuple[Candidate, ...]:
-    """The accepted effects that are at least as likely as not, in the order added.
-
-    One that needs an accepted effect that is less likely than not is not named either.
-    """
-    probabilities = {
-        one.ranked.candidate.key: one.probability(criteria=criteria)
+    """The accepted effects that are at least as likely as not, in the order added."""
+    likely = {
+        one.ranked.candidate.key
         for one in evidence_of(diagnosis)
-        if one.accepted
+        if one.accepted and one.probability(criteria=criteria) >= criteria.named
     }
-    named = {key for key, probability in probabilities.items() if probability >= criteria.named}
-    return standing(diagnosis, named)
+    return standing(diagnosis, likely)
 
 
 def standing(diagnosis: Diagnosis, named: Collection[tuple[str, str]]) -> tuple[Candidate, ...]:

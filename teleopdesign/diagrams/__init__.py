@@ -1,8 +1,11 @@
 """Which blocks, wired by signal names."""
 
 from ..arguments import check_arguments
+from .admittance_device import admittance_device
 from .arms import Arm, by_jacobian, joint, teleoperator_of_arms
 from .control_parts import controller_parts, plant_parts
+from .disturbance_observer import disturbance_observer
+from .energy_tanks import energy_tanks
 from .felt_friction import FeltFriction, felt_friction
 from .four_channel import four_channel
 from .haptic_interface import four_cases, haptic_interface
@@ -24,6 +27,7 @@ from .shipped import SHIPPED, shipped
 from .teleoperator import teleoperator
 from .toml_reading import read_diagram
 from .toml_writing import write_diagram
+from .wave_variables import wave_variables
 from .wiring import Diagram
 from .world_haptics_2005 import READINGS, Reading, reading, world_haptics_2005
 
@@ -44,8 +48,11 @@ __all__ = [
     "Moving",
     "Part",
     "Reading",
+    "admittance_device",
     "by_jacobian",
     "controller_parts",
+    "disturbance_observer",
+    "energy_tanks",
     "felt_friction",
     "four_cases",
     "four_channel",
@@ -59,6 +66,7 @@ __all__ = [
     "shipped",
     "teleoperator",
     "teleoperator_of_arms",
+    "wave_variables",
     "world_haptics_2005",
     "write_diagram",
 ]

@@ -187,6 +187,12 @@ class Control:
         """Time (s) by which the block is late, where it is a delay and nothing else; else None."""
         return self.controller.dead_time if isinstance(self.controller, Controller) else None
 
+    @property
+    def is_code(self) -> bool:
+        """Whether a stage of it is a nonlinear python-control system, known as code only."""
+        stages = self.controller.stages if isinstance(self.controller, Controller) else ()
+        return any(stage.law.system is not None for stage in stages)
+
 
 @checked
 @dataclass(frozen=True)

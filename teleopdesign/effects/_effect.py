@@ -234,6 +234,8 @@ class Effect:
     plausible: plausible(p, facts), what its parameters must obey to deserve the effect's name: None
         where they do, else one sentence that says what they stand for instead. A diagnosis names no
         effect that its own file does not believe
+    untold: untold(p, facts), what records cannot tell of the parameters though the name stands,
+        such as a level that they never carried; one sentence, or None
     led: inertia(p) of a body among the hidden states whose position is corrected: the force that it
         would take to lead it so is left unexplained as well
     """
@@ -254,6 +256,7 @@ class Effect:
     led: Callable[[Any], sp.Expr] | None = None
     coupling: Callable[[Any, Any], sp.Expr] | None = None
     plausible: Callable[[Any, RecordFacts], str | None] | None = None
+    untold: Callable[[Any, RecordFacts], str | None] | None = None
     source: str = ""
     name: str = ""
     text: str = ""

@@ -25,6 +25,8 @@ SPEEDS, SAMPLES = 40, 10
 #: friction of the speed is named for one of the place; higher: sweeps that hardly differ in speed
 #: say nothing
 APART = 0.1
+#: share of the sliding samples below whose speed nothing is taken as seen: fewer are turning points
+SELDOM = 0.01
 #: travels per period from which something is seen to repeat. One and a half: half of it comes
 #: twice. Fewer: any slow force of the position fits; more: long true periods lose their name
 REPEATS = 1.5
@@ -41,6 +43,7 @@ class RecordFacts:
     speed: largest speed;  film: friction (N or N m) at that speed by those effects of the body that
         follow from the velocity alone and dissipate, such as `viscous`
     body: its other numbers by their names, such as "inertia" and "coulomb.level"
+    duration: of the longest record (s)
     places, speeds: (n,) of the samples in which the body slides, over all records
     """
 
@@ -52,8 +55,14 @@ class RecordFacts:
     speed: float
     film: float
     body: Mapping[str, float]
+    duration: float = float("inf")
     places: Array = field(default_factory=lambda: np.zeros(0))
     speeds: Array = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def slowest(self) -> float:
+        """Speed below which the body hardly ever slid: a hundredth of the samples; else 0."""
+        return float(np.quantile(np.abs(self.speeds), SELDOM)) if len(self.speeds) else 0.0
 
     def apart_from_speed(self, pattern: Callable[[Array], Array]) -> float:
         """Share of the variance of a function of the place that is no function of the speed.

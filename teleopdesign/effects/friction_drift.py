@@ -26,6 +26,16 @@ def plausible(p, facts):
     )
 
 
+def untold(p, facts):
+    if p.time_constant <= facts.duration:
+        return None
+    rate = p.fraction / p.time_constant
+    return (
+        f"warming up in {p.time_constant:.3g} s outlasts the records, {facts.duration:.3g} s: only "
+        f"the rate d / tau = {rate:.3g} 1/s at which the level changes is known"
+    )
+
+
 EFFECT = Effect(
     role="friction_factor",
     energy="dissipates",
@@ -40,6 +50,7 @@ EFFECT = Effect(
     },
     absent={"fraction": 0.0},
     plausible=plausible,
+    untold=untold,
     needs=frozenset({"coulomb"}),
     always=frozenset({"even in velocity", "non-negative"}),
     source="first-order warm-up of a lubricant",

@@ -1,16 +1,36 @@
-"""Load-dependent friction: the level grows with the force carried.
+"""Load-dependent friction: the level grows with what the transmission carries.
 
-    level = F_C + mu abs(acting force)
+    level = F_C + mu abs(u) (1 + d sgn(u v)) (1 + e exp(-(v / v_S)^2)),   u: acting force
 
-Gears, screws and capstans press harder on their contacts the more they transmit. Told from
-`coulomb` by commands that vary at equal speed. From mu = 1 on no acting force moves the body.
+Gears, screws and capstans press harder on their contacts the more they transmit. The acting force
+is what they carry as the actuator feels it: gravity, inertia and the hand on the far side included.
+d tells an actuator that drives (d > 0: more friction) from one that is driven back; e is the extra
+at rest of contacts that slide better as speed grows. Told from `coulomb` by commands that vary at
+equal speed, d by loads both with and against the motion. From mu = 1 on no acting force moves the
+body.
 """
+
+from sympy import exp, sign
 
 from ._effect import Effect, FitSearch, Parameter
 
+#: m/s or rad/s, far below any that is seen: keeps the law defined at v_S = 0
+AT_REST = 1e-9
+
 
 def law(now, p):
-    return p.coefficient * abs(now.acting_force)
+    level = p.coefficient * abs(now.acting_force)
+    if p.driving_difference != 0:
+        level *= 1 + p.driving_difference * sign(now.acting_force) * now.direction
+    if p.extra_at_rest != 0:
+        slow = exp(-(now.velocity**2) / (p.stribeck_velocity**2 + AT_REST**2))
+        level *= 1 + p.extra_at_rest * slow
+    return level
+
+
+def of_load(quantity, meaning, start, **bounds):
+    search = FitSearch(starts=(start,))
+    return Parameter(quantity, meaning, optional=True, search=search, **bounds)
 
 
 EFFECT = Effect(
@@ -20,10 +40,20 @@ EFFECT = Effect(
     parameters={
         "coefficient": Parameter(
             "dimensionless", "mu: level per force carried", search=FitSearch(within=1.0)
-        )
+        ),
+        "driving_difference": of_load(
+            "dimensionless",
+            "d: half of driving minus driven back, over the mean",
+            0.0,
+            lower=-1.0,
+            upper=1.0,
+        ),
+        "extra_at_rest": of_load("dimensionless", "e: extra at rest, over the sliding part", 0.3),
+        "stribeck_velocity": of_load("velocity", "v_S: that extra down to 1/e", 0.1),
     },
     absent={"coefficient": 0.0},
     needs=frozenset({"coulomb"}),
-    always=frozenset({"even in velocity", "non-negative"}),
-    source="Amontons' law on the transmitted force",
+    always=frozenset({"non-negative"}),
+    source="Amontons' law on the transmitted force; with direction and speed: Duclusaud, Passault, "
+    "Padois, Daney, Extended Friction Models for the Physics Simulation of Servo Actuators (2024)",
 )

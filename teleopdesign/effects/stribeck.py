@@ -3,8 +3,11 @@
     level = F_C + (F_S - F_C) exp(-(v / v_S)^2)
 
 Holds for lubricated contacts in steady sliding. A record tells it from `presliding` only if it
-crosses v_S slowly, both ways, and travels many bristle lengths between reversals.
+crosses v_S slowly, both ways, and travels many bristle lengths between reversals. What is extra at
+rest is told where a speed far below v_S was seen, or a force of that size.
 """
+
+import math
 
 from sympy import exp
 
@@ -13,6 +16,20 @@ from ._effect import Effect, FitSearch, Parameter
 
 def law(now, p):
     return p.extra_static_level * exp(-((now.velocity / p.stribeck_velocity) ** 2))
+
+
+def untold(p, facts):
+    at_rest = facts.body["coulomb.level"] + p.extra_static_level
+    if at_rest <= facts.force:
+        return None
+    slowest = facts.slowest
+    there = p.extra_static_level * math.exp(-((slowest / p.stribeck_velocity) ** 2))
+    return (
+        f"friction of {facts.text(at_rest, 'force')} at rest is more than any force measured, "
+        f"{facts.text(facts.force, 'force')}: the level at rest is not told, nor v_S apart from "
+        f"it; what is known is the fall from {facts.text(there, 'force')} extra at the slowest "
+        f"motion, {facts.text(slowest, 'velocity')}"
+    )
 
 
 EFFECT = Effect(
@@ -26,6 +43,7 @@ EFFECT = Effect(
         ),
     },
     absent={"extra_static_level": 0.0},
+    untold=untold,
     needs=frozenset({"coulomb"}),
     always=frozenset({"even in velocity", "non-negative"}),
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",

@@ -9,7 +9,8 @@ import numpy as np
 import sympy as sp
 
 from ..controllers import Controller
-from ..derive import block_symbol, symbol_values, transfer
+from ..derive import symbol_values
+from ..derive.elimination import round_trip
 from ..diagrams import Control, Diagram
 from ..errors import ModelError
 from ..realise.lti import as_transfer_function, linear_blocks, numerical
@@ -80,10 +81,7 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
             f"{diagram.name}: {controller} ({laws}) has no linear form, so that its loop has no "
             "gain: see `describing_function`; a system with dt=True needs its period"
         )
-    opened = diagram.opened(controller)
-    path = sp.sympify(transfer(opened, part.input, (part.output,))[part.output])
-    values = symbol_values(linear)
-    gain = -(path * block_symbol(controller)).subs(values)
+    gain = -sp.sympify(round_trip(diagram, part)).subs(symbol_values(linear))
     kept = {c.name: c for c in diagram.controls if c.name in linear.held}
     periods = [g.values["period"] for c in kept.values() for g in _stages(c) if g.law.shift]
     fastest = np.pi / max(periods) if periods else float("inf")

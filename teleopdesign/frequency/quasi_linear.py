@@ -16,7 +16,7 @@ import sympy as sp
 from ..blocks import Body
 from ..controllers import Controller
 from ..derive import block_symbol, transfer
-from ..derive.printing import dead_time_symbol
+from ..derive.printing import along_symbol, dead_time_symbol
 from ..diagrams import Control, Diagram
 from ..diagrams.units import first_axis
 from ..errors import ModelError
@@ -65,13 +65,27 @@ class _Form:
         self.diagram, self.motion = diagram, motion
         self.force = transfer(diagram, force, (motion,), given=motion)[motion]
         self.controls: dict[str, tuple[Controller, sp.Expr | None]] = {}
+        self.linear = linear_blocks(diagram)
         for part in diagram.controls:
             if part.dead_time is not None:
+                continue
+            if part.name in self.linear.along:
+                self._check_speed(part)
                 continue
             if not isinstance(part.controller, Controller):
                 raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no laws")
             self.controls[part.name] = (part.controller, self._drive(part))
-        self.linear = linear_blocks(diagram)
+
+    def _check_speed(self, part: Control) -> None:
+        """ModelError where the linear form of a law on two signals changes with speed."""
+        assert isinstance(part.controller, Controller)
+        speed = sp.Symbol("speed", positive=True)
+        forms = part.controller.linear_parts(part.name, S, speed) or ()
+        if any(form.has(speed) for form in forms):
+            raise ModelError(
+                f"{self.diagram.name}: {part.name} follows {part.input} and the velocity of "
+                f"{part.motion}, and its gain the speed: no describing function; simulate it"
+            )
 
     def _drive(self, part: Control) -> sp.Expr | None:
         """What drives a controller, per motion; None: the motion itself."""
@@ -85,6 +99,9 @@ class _Form:
         values = {
             block_symbol(f"A_{n}"): complex(e.subs(S, s)) for n, e in self.linear.actuation.items()
         }
+        for name, form in self.linear.along.items():
+            values[along_symbol(name)] = complex(form.subs(S, s))
+            values[block_symbol(name)] = complex(self.linear.blocks[name].subs(S, s))
         values |= {dead_time_symbol(n): complex(t) for n, t in self.linear.dead_times.items()}
         values[S] = s
         for part in self.diagram.bodies:

@@ -29,6 +29,7 @@ class FirstGuess:
     """SI values of inertia, friction level and damping; `explained`: part of the force (0 to 1).
 
     errors: standard errors of the three, each second of the record counted as one reading
+    left: rms of what they leave of the low-passed force, in its unit
     """
 
     inertia: float
@@ -36,6 +37,7 @@ class FirstGuess:
     damping: float
     explained: float
     errors: tuple[float, float, float]
+    left: float = 0.0
 
 
 def motion_columns(position: Array, sample_time: float) -> tuple[Array, Array, Array]:
@@ -82,7 +84,8 @@ def explain_forces(pairs: Sequence[tuple[Array, Array]], sample_time: float) -> 
     covariance = np.linalg.pinv(normal @ normal.T / len(target)) * np.mean(left**2) / seconds
     errors = np.sqrt(np.abs(np.diag(covariance))) / scale
     m, c, b = (solution / scale)[:3].tolist()
-    return FirstGuess(m, c, b, explained, (float(errors[0]), float(errors[1]), float(errors[2])))
+    of_each = float(errors[0]), float(errors[1]), float(errors[2])
+    return FirstGuess(m, c, b, explained, of_each, float(np.sqrt(np.mean(left**2))))
 
 
 def guess_from(records: Sequence[Record], body: str) -> FirstGuess:

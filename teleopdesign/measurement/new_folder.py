@@ -162,6 +162,9 @@ def experiment_text(
         comments = [w for k, w in survey.guesses.items() if k.startswith(f"channels.{key}.")]
         line = f"{key} = {_inline(entry)}"
         lines += [f"# guessed: {c}" for c in comments] + [line]
+    if survey.unused:
+        lines += ["", "# columns of the log that are in no channel:"]
+        lines += [f"#   {_text(name)}: {why}" for name, why in survey.unused.items()]
     lines.append("")
     for record in records:
         lines.append("[[records]]")

@@ -76,7 +76,10 @@ def both_ways(y: Array, extended: Array, sos: Array, steady_state: Array) -> Non
         for j in range(r):
             extended[k, j] = 2.0 * y[0, j] - y[m - k, j]
             extended[m + n + k, j] = 2.0 * y[n - 1, j] - y[n - 2 - k, j]
-    extended[m : m + n] = y
+    # one by one: for rows at once numba compiles a check of shapes, which takes three times as long
+    for k in range(n):
+        for j in range(r):
+            extended[m + k, j] = y[k, j]
     one_way(extended, sos, steady_state, False)
     one_way(extended[m:], sos, steady_state, True)
 

@@ -16,6 +16,8 @@ from .claims.claim import Claim, Evidence, Proof, Refutation, Unknown
 from .claims.counterexample_files import read_record, write_record
 from .claims.second_opinion import SecondOpinion, second_opinion
 from .diagram_claims import DiagramClaims, Search, diagram_claims
+from .intervals.interval_claim import IntervalClaim
+from .intervals.over_box import claim_over_intervals
 from .linear.hand_port import hand_port
 from .linear.impedance import Impedance, impedance
 from .linear.kyp import Kyp, kyp, storage_function
@@ -60,11 +62,13 @@ from .theorems.dahl_compensation import (
 from .theorems.delayed_compensation import delayed_small_motion, given_out_late, inertia_given_out
 from .theorems.delayed_coupling import delayed_spring
 from .theorems.delayed_inertia import cancelled_inertia, damping_given_out, largest_passive_inertia
+from .theorems.energy_tank import energy_tank
 from .theorems.lugre import lugre_passivity
 from .theorems.quantised_spring import quantised_spring, stiffest_spring
 from .theorems.sampled_compensation import Trembling, sampled_compensation
 from .theorems.sampled_data import required_damping, sampled_coupling, sampled_passivity
 from .theorems.velocity_compensation import SteadyStrokes, velocity_compensation
+from .theorems.wave_channel import wave_channel, wave_claim, wave_teleoperator
 from .two_port.claims import absolutely_stable, passive
 from .two_port.two_port import (
     FrequencyMargins,
@@ -91,6 +95,7 @@ __all__ = [
     "FrequencyMargins",
     "Given",
     "Impedance",
+    "IntervalClaim",
     "Kyp",
     "MarginMap",
     "PassivityControlled",
@@ -114,6 +119,7 @@ __all__ = [
     "available_storage",
     "bounded_compensation",
     "cancelled_inertia",
+    "claim_over_intervals",
     "confirmed_motion",
     "dahl_compensation",
     "damping_excess",
@@ -121,6 +127,7 @@ __all__ = [
     "delayed_small_motion",
     "delayed_spring",
     "diagram_claims",
+    "energy_tank",
     "free_motion",
     "free_motion_margin",
     "given_out",
@@ -162,6 +169,9 @@ __all__ = [
     "teleoperator_two_port",
     "two_port",
     "velocity_compensation",
+    "wave_channel",
+    "wave_claim",
+    "wave_teleoperator",
     "write_record",
     "z_width",
 ]

@@ -21,6 +21,7 @@ from .claims.axis_units import in_units_of
 from .claims.claim import Claim, Proof, Refutation, Unknown
 from .device_claims import device_claims
 from .friction_pairs import FrictionPair, friction_pairs, pair_claims
+from .linear.hidden_modes import growth_within
 from .linear.positive_real import NEARBY, positive_real
 from .ports import (
     Port,
@@ -97,7 +98,7 @@ def diagram_claims(
             topic = f"friction of {pair.body.name}"
             claims += [replace(s, topic=topic) for s in device_claims(pair.device)]
             claims += pair_claims(pair)
-        if (composed := _composed(alone, all_ports, pairs)) is not None:
+        if (composed := composed_claim(alone, all_ports, pairs)) is not None:
             claims.append(composed)
     if not any(not c.analog for c in alone.controls):  # nothing that a computer could sample
         claims = [replace(one, time="any") for one in claims]
@@ -109,15 +110,33 @@ def diagram_claims(
 def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
     """Passivity of a linear diagram at its ports, and absolute stability where there are two.
 
-    What is refuted is so for all values nearby, too: none rests on the rounding of a number.
+    What is refuted is so for all values nearby, too: none rests on the rounding of a number. What
+    is proved has no mode inside that grows by itself, though no port shows it from rest.
     """
     claims = _linear_claims(diagram, all_ports)
+    if any(one.claim.status == "proved" for one in claims):
+        claims = _beside_what_grows(claims, growth_within(diagram))
     if not any(one.claim.status == "refuted" for one in claims):
         return claims
     nearby = [_linear_claims(other, all_ports) for other in _nearby(diagram)]
     return [
         one if all(other[k].claim.status == "refuted" for other in nearby) else _on_rounding(one)
         for k, one in enumerate(claims)
+    ]
+
+
+def _beside_what_grows(claims: list[TopicClaim], rate: float | None) -> list[TopicClaim]:
+    if rate is None:
+        return claims
+    why = (
+        f"from rest its impedance is that of a passive one, but a mode inside that no port shows "
+        f"grows by itself at {rate:.4g} 1/s"
+    )
+    return [
+        replace(one, claim=Claim(one.claim.statement, Unknown(why)))
+        if one.claim.status == "proved"
+        else one
+        for one in claims
     ]
 
 
@@ -174,7 +193,7 @@ def _axis(diagram: Diagram, all_ports: Sequence[Port]) -> str:
     return axes.pop() if len(axes) == 1 else "prismatic"
 
 
-def _composed(
+def composed_claim(
     diagram: Diagram, all_ports: Sequence[Port], pairs: Sequence[FrictionPair]
 ) -> TopicClaim | None:
     """The sum of parts on the same motions: linear rest, and friction with what cancels it.
@@ -224,6 +243,9 @@ def _searched(whole: Diagram, port: Port, rng: np.random.Generator, search: Sear
         why = "its motion is no single body's, so that a simulation cannot prescribe it"
         return TopicClaim(topic, Claim(statement, Unknown(why)))
     free = without_holding(whole, port.motion.removesuffix("_tip"))
+    if code := [c.name for c in free.controls if c.is_code]:
+        why = f"{', '.join(code)} is known as code only, which a search would call a million times"
+        return TopicClaim(topic, Claim(statement, Unknown(why)))
     lengths = [x for pair in friction_pairs(free) for x in pair.lengths]
     shortest = min([search.stroke / 1000, *lengths])
     try:

@@ -17,7 +17,7 @@ import sympy as sp
 
 from ..arguments import checked
 from ..by_value import ByValue
-from ..derive import two_port_functions
+from ..derive import symbol_values, two_port_functions
 from ..diagrams import Diagram
 from ..diagrams.units import unit_of_value
 from ..errors import ModelError
@@ -135,7 +135,7 @@ class _Matrix:
 def _responses(linear: LinearBlocks, f: np.ndarray) -> dict[str, np.ndarray]:
     """Each symbol of the derivation over frequency (Hz), by its name."""
     s = 2j * np.pi * f
-    forms = {**linear.blocks, **{f"A_{n}": e for n, e in linear.actuation.items()}}
+    forms = {x.name: e for x, e in symbol_values(linear).items() if x.name not in linear.dead_times}
     responses = {n: numerical(sp.sympify(e))(s) for n, e in forms.items()}
     return responses | {n: np.full(len(f), float(t)) for n, t in linear.dead_times.items()}
 
@@ -144,4 +144,4 @@ def _of_block(device: Diagram, name: str, f: np.ndarray, speed: float) -> dict[s
     """What belongs to the block of that parameter, at the values of this diagram."""
     block = name.partition(".")[0]
     here = _responses(linear_blocks(device, speed=speed, only=block), f)
-    return {n: x for n, x in here.items() if n in (block, f"A_{block}")}
+    return {n: x for n, x in here.items() if n in (block, f"A_{block}", f"V_{block}")}

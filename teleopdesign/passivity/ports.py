@@ -18,7 +18,7 @@ from ..derive import symbol_values, transfer
 from ..derive.printing import dead_time_symbol
 from ..diagrams import Diagram, Moving
 from ..errors import ModelError
-from ..realise.lti import S, linear_blocks
+from ..realise.lti import LinearBlocks, S, linear_blocks
 from ..realise.simulated import without_absent
 from ..realise.tips import with_tips
 from .linear.impedance import exact
@@ -116,13 +116,16 @@ def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
     return (*names, *(j.name for j in diagram.junctions if j.arms))
 
 
-def impedance_matrix(diagram: Diagram, at: Sequence[Port]) -> sp.Matrix:
+def impedance_matrix(
+    diagram: Diagram, at: Sequence[Port], *, linear: LinearBlocks | None = None
+) -> sp.Matrix:
     """Forces over velocities at ports, in exact numbers; all other outside signals are zero.
 
+    linear: forms of its blocks where they are not those of its values
     raises ModelError: the wiring does not determine it, or a port that gives way to any force
     """
     diagram = with_tips(diagram)
-    linear = linear_blocks(diagram)
+    linear = linear or linear_blocks(diagram)
     values = symbol_values(linear)
     # a dead time is a symbol of its own until the matrix is inverted: it commutes, and stays short
     late = {dead_time_symbol(n): sp.Dummy(n) for n in linear.dead_times}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,13 +17,21 @@ from ..quantity import unit_of
 _POINTS = 4000
 #: colours of what is fitted and of what is checked
 _SHADES = {"fit": "tab:blue", "check": "tab:orange"}
+#: columns in no channel that are named below the picture; inches that a line of theirs takes
+_UNUSED = 12
+_LINE = 0.16
 _KINDS = {"actuator_force": "force", "interaction_force": "force"}
 
 
 def draw_survey(survey: Survey, experiment: Experiment) -> Figure:
-    """The channels as they will be used, fit and check records in shades; SI units."""
+    """The channels as they will be used, fit and check records in shades; SI units.
+
+    Below stand the columns that are in no channel, with the reason of each.
+    """
     keys = [k for k in experiment.channels if experiment.channels[k].body is not None]
-    figure = Figure(figsize=(9.0, 1.7 * len(keys) + 2.6), layout="constrained")
+    unused = unused_lines(survey.unused)
+    height = 1.7 * len(keys) + 2.6 + _LINE * len(unused)
+    figure = Figure(figsize=(9.0, height), layout="constrained")
     grid = figure.add_gridspec(len(keys) + 1, 1, height_ratios=[1.0] * len(keys) + [1.5])
     first = None
     for row, key in enumerate(keys):
@@ -54,7 +62,18 @@ def draw_survey(survey: Survey, experiment: Experiment) -> Figure:
         axes.legend(frameon=False, fontsize=8)
     axes.set_xlabel(f"velocity ({unit_of('velocity', survey.axis)})")
     axes.set_ylabel(f"actuator force ({unit_of('force', survey.axis)})")
+    if unused:
+        figure.supxlabel("\n".join(unused), x=0.01, ha="left", fontsize=8, parse_math=False)
     return figure
+
+
+def unused_lines(unused: Mapping[str, str]) -> list[str]:
+    """Text on the columns that are in no channel: a line for each, of at most `_UNUSED`."""
+    if not unused:
+        return []
+    lines = [f'not used: "{name}": {why}' for name, why in unused.items()]
+    more = len(lines) - _UNUSED
+    return lines if more <= 0 else [*lines[:_UNUSED], f"... and {more} more: see experiment.toml"]
 
 
 def shade_spans(panels: Iterable[Axes], spans: Sequence[tuple[float, float]]) -> None:

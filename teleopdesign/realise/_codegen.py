@@ -6,11 +6,12 @@ the constants that say which row of the loop's memory holds what, and that loop.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
 import sympy as sp
 
+from ..controllers import calls_in
 from .equations import (
     PERIOD,
     TIME,
@@ -186,6 +187,10 @@ class Generator:
         analog = [*e.rates.values(), *e.signals.values(), *late, *e.joined.values()]
         return [*analog, *self._computer_expressions()]
 
+    def calls(self) -> dict[str, Callable[..., float]]:
+        """Functions of systems known as code, by their names in the source."""
+        return calls_in(self._expressions())
+
     def layout(self) -> Layout:
         """The order of everything."""
         e = self.equations
@@ -332,7 +337,8 @@ class Generator:
         kept = (x for x, _ in self.equations.computer.late.values()) if self.commands else ()
         read = {x: f"sampled[{i}, n]" for i, x in enumerate(self.sampled_inputs)}
         places = _places(rows) | read | self._parameter_places()
-        writer = _Writer(tuple(DIGITAL), places, self.names)
+        names = {**self.names, TIME: "(n * period)"}
+        writer = _Writer(tuple(DIGITAL), places, names)
         sources = {x.name: text for x, text in read.items()}
         sources |= {name: _entry("MADE", i) for i, name in enumerate(made)}
         commands = [f"{_entry('to', i)} = {sources[c]}" for i, c in enumerate(self.commands)]

@@ -30,11 +30,16 @@ def solve_linear(
         choice = None
         for i, row in enumerate(rows):
             for x in sorted(left & row.free_symbols, key=str):
-                factor = _factor(row, x, left, name)
+                factor = sp.diff(row, x)
+                if left & factor.free_symbols:
+                    continue  # it may stand alone once others are known
                 cost = (not factor.is_Number, len(left & row.free_symbols), factor.count_ops())
                 if factor != 0 and (choice is None or cost < choice[0]):
                     choice = (cost, i, x, factor)
         if choice is None:
+            for row in rows:  # an unknown that enters other than linearly is named
+                for x in sorted(left & row.free_symbols, key=str):
+                    _factor(row, x, left, name)
             raise _undetermined(left, name)
         (no_number, others, _), i, x, factor = choice
         if no_number and others > 1:
@@ -65,6 +70,8 @@ def _undetermined(left: set[sp.Symbol], name: str) -> ModelError:
 def _gathered(row: sp.Expr, unknown: set[sp.Symbol]) -> sp.Expr:
     here = sorted(unknown & row.free_symbols, key=str)
     factors = {x: sp.diff(row, x) for x in here}
+    if any(unknown & f.free_symbols for f in factors.values()):
+        return row  # a law of what is not known yet
     factors = {x: sp.expand(f, power_exp=False) for x, f in factors.items()}
     rest = row.xreplace(dict.fromkeys(here, sp.S(0)))
     return sp.Add(rest, *(f * x for x, f in factors.items()))

@@ -41,6 +41,10 @@ def module_source(laws: str, *, jit: bool = True, lanes: int = 1) -> str:
 
 def _laws_part(laws: str, *, jit: bool, lanes: int) -> list[str]:
     text = '"""Generated from the laws of the blocks of a diagram; do not edit."""'
+    if jit:
+        # places by which functions are called: numba compiles a function again for each literal
+        # number that it is given, and once for all numbers of a type
+        laws = re.sub(r"^(\w+ = )(\d+ \* LANES)$", r"\1np.int64(\2)", laws, flags=re.MULTILINE)
     # numba takes as long for a product of constants as for any other
     laws = re.sub(r"(\d+) \* LANES", lambda match: str(int(match[1]) * lanes), laws)
     decorators = _COMPILED if jit else _PLAIN

@@ -17,6 +17,7 @@ from ..controllers import SIGNALS as CONTROL_SIGNALS
 from ..controllers import Controller, ControllerEquation, parameter_symbol
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ..diagrams.parts import Weight
+from ..diagrams.second_input import without_motion
 from ..effects import SIGNALS, delayed
 from ..errors import ModelError, did_you_mean
 from ._linear import Steps, solve_linear
@@ -410,15 +411,12 @@ def _placed(
     assert isinstance(part.controller, Controller)
     signals = {"input": input, "velocity": speed, "speed": sp.Abs(speed), "travel_rate": rate}
     signals["period"] = period
-    made = part.controller.equation(part.name, signals)
+    made = part.controller.equation(part.name, signals, code=True)
 
     equation = without_delays(made, part.name, late)
     kept = [*equation.rates.values(), *equation.steps.values(), *(e for e, _ in late.values())]
     if any(e.has(_NO_VELOCITY) for e in (equation.output, *kept)):
-        raise ModelError(
-            f"{part.name}: its law sees a velocity, and no motion is wired: "
-            'motion="X" says along which'
-        )
+        raise without_motion(part.name)
     return equation
 
 

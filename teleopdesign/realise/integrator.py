@@ -164,7 +164,7 @@ def know_velocity(at, reading, period, smoothing, memory, lane):
 
 
 @jitted
-def read_sensors(n, encoder_step, period, smoothing, inputs, column, memory, lane):
+def read_sensors(first, encoder_step, period, smoothing, inputs, column, memory, lane):
     """Positions in encoder steps, and what the computer makes of them."""
     motions(STATES, inputs, column, memory, POSITIONS, VELOCITIES, lane)
     for i in range(MANY_MOTIONS):
@@ -172,7 +172,7 @@ def read_sensors(n, encoder_step, period, smoothing, inputs, column, memory, lan
         reading = memory[POSITIONS + at]
         if encoder_step > 0.0:
             reading = np.floor(reading / encoder_step + 0.5) * encoder_step
-        if n == 0:
+        if first:
             velocity = memory[VELOCITIES + at]
             memory[TRAVEL + at] = velocity
             memory[KNOWN + at] = velocity
@@ -203,30 +203,33 @@ def recall(n, samples, past, slots, memory, lane):
 
 
 @jitted
-def retain(n, period, sampled, past, slots, parameters, memory, lane):
+def retain(n, place, period, sampled, past, slots, parameters, memory, lane):
     """Keep what the computer has now for later samples."""
     computer_late(n, period, sampled, parameters, memory, SAMPLED_LATE_VALUES, lane)
     for i in range(MANY_SAMPLED_LATE):
         at = i * LANES + lane
-        entry = (n % slots) * MANY_SAMPLED_LATE * LANES + at
+        entry = (place % slots) * MANY_SAMPLED_LATE * LANES + at
         past[entry] = memory[SAMPLED_LATE_VALUES + at]
 
 
 @jitted
 def sample(
-    n, time, period, encoder_step, smoothing, inputs, column, sampled, late_samples, past, slots,
-    parameters, memory, lane,
+    first, n, place, time, period, encoder_step, smoothing, inputs, column, sampled, late_samples,
+    past, slots, parameters, memory, lane,
 ):  # fmt: skip
-    """The computer reads its sensors, makes its signals and steps its states."""
-    recall(n, late_samples, past, slots, memory, lane)
+    """The computer reads its sensors, makes its signals and steps its states.
+
+    first: nothing was read before;  n: of this sample;  place: of it in the ring `past`
+    """
+    recall(place, late_samples, past, slots, memory, lane)
     # what sensors see: just before the new command
     signals(time, STATES, BRISTLES, inputs, column, LATE, parameters, memory, NOW, lane)
-    read_sensors(n, encoder_step, period, smoothing, inputs, column, memory, lane)
-    if n > 0:
+    read_sensors(first, encoder_step, period, smoothing, inputs, column, memory, lane)
+    if not first:
         computer_before(n, period, sampled, parameters, memory, lane)
     computer_signals(n, period, sampled, parameters, memory, MADE, lane)
     held_commands(n, sampled, memory, NEW_COMMANDS, lane)
-    retain(n, period, sampled, past, slots, parameters, memory, lane)
+    retain(n, place, period, sampled, past, slots, parameters, memory, lane)
     computer_after(n, period, sampled, parameters, memory, lane)
 
 
@@ -368,7 +371,7 @@ def differentiate_at_rest(inputs, parameters, memory, small, slopes_of):
                     STATES,
                     BRISTLES,
                     inputs,
-                    0,
+                    np.int64(0),  # no literal, see `module_source`
                     LATE,
                     parameters,
                     memory,
@@ -396,13 +399,13 @@ def run(
     memory, kept, out, begin, kinds, columns, others, results,
 ):  # fmt: skip
     """Advance all lanes over samples of `inner` steps of h; see `kernel.execute` for the arrays."""
-    nodes, row = samples * inner, 0
+    nodes, row = samples * inner, np.int64(0)  # no literal, see `module_source`
     for j in range(nodes + 1):
         time, now = j * h, j % inner == 0
         if COMPUTER and now:
             for lane in range(LANES):
                 sample(
-                    j // inner, time, period, encoder_step, smoothing,
+                    j == 0, j // inner, j // inner, time, period, encoder_step, smoothing,
                     inputs, 2 * j, sampled, late_samples, past, past_slots,
                     parameters, memory, lane,
                 )  # fmt: skip

@@ -2,7 +2,8 @@
 
 Bodies, with what joins them, are one system; each controller and each of its junctions is another,
 joined by the names of their signals. Controllers act in continuous time: python-control cannot mix
-sampled and continuous blocks.
+sampled and continuous blocks. With its computer the diagram is one system in discrete time
+(`sampled_iosystem.py`).
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from ..errors import ModelError
 from ._codegen import needed_steps
 from .equations import TIME, Equations, equations, motion_of, signal, summed, velocity
 from .private_names import PrivateNames, private_names
+from .sampled_iosystem import sampled_iosystem
 from .simulated import simulated
 
 if TYPE_CHECKING:
@@ -45,20 +47,32 @@ def to_iosystem(
     prescribed: tuple[str, ...] = (),
     give: float = 1e-5,
     delay_order: int | None = None,
-) -> control.InterconnectedSystem:
-    """The diagram as a python-control system.
+    dt: float | None = None,
+    step: float = 1e-4,
+) -> control.NonlinearIOSystem:
+    """The diagram as a python-control system, in continuous time or sampled.
 
     prescribed: motions that are inputs ("L", "L_velocity", "L_acceleration") instead of results
     give: m or rad, as in `simulate`
     delay_order: of the Pade approximation in the place of each delay block, which python-control
         cannot hold as it is; `simulate` and all responses have them exactly
+    dt: s; None: controllers act in continuous time. Else the system is one in discrete time of that
+        step: the diagram with its computer of that period, as `simulate` has it (velocity by the
+        difference of readings, no delay of commands, no encoder). All inputs are held over a step.
+        Outputs are the signals at the sample, sensed ones just before the command changes
+    step: longest inner step of bodies and analog blocks between samples, s
     Inputs are the signals from outside, outputs all others; states are those of `simulate`.
     Parameters are its `params`, by their names in `Diagram.values`: with other values it need not
     be built anew, `input_output_response(..., params={"Z_M.inertia": 0.2})`.
-    raises ModelError: a block without laws, a delay block without `delay_order`, or a dead time of
-        an actuator
+    Sampled, `params` are those of the diagram as its computer realises it, and states are also the
+    commands held ("u_held"), the positions read last ("L_read") and what delay blocks keep.
+    raises ModelError: a block without laws, a delay block without `delay_order` (sampled: an analog
+        one), or a dead time of an actuator; sampled: prescribed motions, which cannot be held
     """
-    diagram = _approximated(simulated(diagram, give, prescribed), delay_order)
+    diagram = simulated(diagram, give, prescribed)
+    if dt is not None:
+        return _sampled(diagram, prescribed, delay_order, dt, step)
+    diagram = _approximated(diagram, delay_order)
     blocks = tuple(
         replace(b, analog=False) if isinstance(b, Control) else b for b in diagram.blocks
     )
@@ -67,11 +81,30 @@ def to_iosystem(
         return _joined(names, tuple(names.private.get(motion, motion) for motion in prescribed))
 
 
-def _approximated(diagram: Diagram, order: int | None) -> Diagram:
-    """The diagram with a Pade approximation of that order in the place of each dead time."""
+def _sampled(
+    diagram: Diagram, prescribed: tuple[str, ...], order: int | None, dt: float, step: float
+) -> control.NonlinearIOSystem:
+    for name, value in (("dt", dt), ("step", step)):
+        if not 0 < value < float("inf"):
+            raise ModelError(f"to_iosystem: {name}: found {value:g} s, expected more than 0")
+    if prescribed:
+        raise ModelError(
+            f"to_iosystem: {prescribed[0]} cannot be prescribed with dt: a motion that is held "
+            "over a step has no velocity; leave dt away"
+        )
+    return sampled_iosystem(_approximated(diagram, order, analog_alone=True), dt, step)
+
+
+def _approximated(diagram: Diagram, order: int | None, *, analog_alone: bool = False) -> Diagram:
+    """The diagram with a Pade approximation of that order in the place of each dead time.
+
+    analog_alone: those of the computer stay, which keeps samples
+    """
     import control
 
     for part in diagram.controls:
+        if analog_alone and not part.analog:
+            continue
         assert isinstance(part.controller, Controller)
         stages: list[Stage] = []
         for stage in part.controller.stages:
@@ -156,10 +189,11 @@ def _known(diagram: Diagram) -> Diagram:
 
 
 def _code(part: Control) -> Any:
-    """The python-control system that the controller consists of; None where it is a law."""
+    """The system in continuous time that the controller consists of; None where it is a law."""
     assert isinstance(part.controller, Controller)
     stages = part.controller.stages
-    return stages[0].law.system if len(stages) == 1 else None
+    system = stages[0].law.system if len(stages) == 1 else None
+    return None if system is None or system.isdtime(strict=True) else system
 
 
 def _controller(part: Control, numbers: SymbolValues, names: PrivateNames) -> Any:
@@ -169,7 +203,7 @@ def _controller(part: Control, numbers: SymbolValues, names: PrivateNames) -> An
     v = motion_of(names.diagram, part.motion)[1] if part.motion else sp.S(0)
     signals = {"input": signal(part.input), "velocity": v, "speed": sp.Abs(v), "travel_rate": v}
     signals["period"] = sp.S(0)
-    equation = part.controller.equation(part.name, signals)
+    equation = part.controller.equation(part.name, signals, code=True)
     states = sorted(equation.rates, key=str)
     rates = [equation.rates[s] for s in states]
     used = set().union(*(e.free_symbols for e in (equation.output, *rates)))

@@ -58,6 +58,7 @@ class Program:
     laws: their source;  loop: the loop around them, for one simulation
     functions: names of the plain module: its laws, its constants
     equations: on private symbols (`private_names`), their parameters by the user's names
+    has_code: whether a block is known as code only, so that the loop is plain Python
     """
 
     equations: Equations
@@ -65,6 +66,7 @@ class Program:
     laws: str
     loop: CompiledLoop
     functions: Mapping[str, Any]
+    has_code: bool = False
 
 
 @dataclass(frozen=True)
@@ -134,9 +136,13 @@ def _program(
             private = equations(names.diagram, prescribed=motions, sampled=sampled)
         generator = Generator(private, observer=observer)
         laws = generator.source()
+        calls = generator.calls()
         plain = _executed(module_source(laws, jit=False))
-        loop = loop_of(laws, 1) if jit else _entries(plain, 1)
-        _programs[key] = Program(generator.equations, generator.layout(), laws, loop, plain)
+        plain.update(calls)
+        loop = loop_of(laws, 1) if jit and not calls else _entries(plain, 1)
+        _programs[key] = Program(
+            generator.equations, generator.layout(), laws, loop, plain, bool(calls)
+        )
     return _in_public(_programs[key], names)
 
 
@@ -165,7 +171,7 @@ def _in_public(private: Program, names: PrivateNames) -> Program:
 
 
 @lru_cache(maxsize=64)
-def _executed(source: str) -> Mapping[str, Any]:
+def _executed(source: str) -> dict[str, Any]:
     module: dict[str, Any] = {"__name__": "teleopdesign_plain_kernel"}
     exec(compile(source, "<generated>", "exec"), module)
     return module

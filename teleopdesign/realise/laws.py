@@ -1,7 +1,8 @@
 """Laws as source text: the one place where an expression becomes code that is run.
 
 An expression is printed with the private name of each of its symbols; a symbol without one, or a
-function that neither Python nor the package knows, has no source. So nothing that a user calls
+function that neither Python nor the package knows, has no source. A system that is known as code
+is called by a name of the package's own. So nothing that a user calls
 something by can stand in generated code.
 """
 
@@ -13,6 +14,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.printing.pycode import PythonCodePrinter
 
+from ..controllers import is_call
 from ..errors import ModelError, quoted
 
 #: symbol -> its private name in the source
@@ -26,6 +28,9 @@ class _Printer(PythonCodePrinter):
         super().__init__({"fully_qualified_modules": False})
         self.names = names
 
+    def _print_AppliedUndef(self, expr: AppliedUndef) -> str:
+        return f"{expr.func}({', '.join(self._print(x) for x in expr.args)})"
+
     def _print_Symbol(self, expr: sp.Symbol) -> str:
         if expr not in self.names:
             raise ModelError(f"a law holds {quoted(expr.name)}, which nothing gives: no source")
@@ -37,7 +42,8 @@ def source_of(expression: sp.Expr, names: Names) -> str:
 
     raises ModelError: a symbol without a private name, a function of no known source
     """
-    if strangers := sorted(str(f.func) for f in expression.atoms(AppliedUndef)):
+    functions = (f for f in expression.atoms(AppliedUndef) if not is_call(f))
+    if strangers := sorted(str(f.func) for f in functions):
         raise ModelError(f"a law holds the function {quoted(strangers[0])}, which has no source")
     text = str(_Printer(names).doprint(expression))
     if "\n" in text or "#" in text:  # how sympy marks what it cannot print

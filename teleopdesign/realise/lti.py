@@ -16,8 +16,9 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from ..blocks import Body
-from ..controllers import Controller, as_written, in_exact_numbers, parameter_symbol
+from ..controllers import Controller, Stage, as_written, in_exact_numbers, parameter_symbol
 from ..diagrams import Control, Diagram, Linked, Moving
+from ..diagrams.second_input import acts_along_another, without_motion
 from ..errors import ModelError
 
 if TYPE_CHECKING:
@@ -34,6 +35,8 @@ class LinearBlocks:
     left_out: "block.effect" or "block" for what has no linear form;  speed: frozen, m/s or rad/s
     held: controllers in discrete time, which are there as their samples are held
     dead_times: of delay blocks, s
+    along: of controllers that take the velocity of a motion which is not their input, what they
+        make of that motion; `blocks` holds what they make of their input
     """
 
     blocks: Mapping[str, sp.Expr]
@@ -42,6 +45,7 @@ class LinearBlocks:
     speed: float
     held: tuple[str, ...] = ()
     dead_times: Mapping[str, sp.Expr] = field(default_factory=dict)
+    along: Mapping[str, sp.Expr] = field(default_factory=dict)
 
 
 def linear_blocks(
@@ -53,8 +57,9 @@ def linear_blocks(
     speed: at which smoothed friction and schedules are frozen
     held: whether controllers in discrete time take part, as H(e^(s T)) (1 - e^(-s T))/(s T); that
         is a frequency response below half the sampling rate, and no ground for a proof
-    raises ModelError: a block is known by its name only
+    raises ModelError: a block is known by its name only, a law takes a velocity of no motion
     """
+    along: dict[str, sp.Expr] = {}
     blocks: dict[str, sp.Expr] = {}
     actuation: dict[str, sp.Expr] = {}
     left_out: list[str] = []
@@ -62,17 +67,14 @@ def linear_blocks(
     times = {c.name: as_written(c.dead_time) for c in diagram.controls if c.dead_time is not None}
     for part in diagram.blocks if not only else (diagram.block(only),):
         if isinstance(part, Control):
-            if not isinstance(part.controller, Controller):
-                raise ModelError(
-                    f"{diagram.name}: {part.name} is known by its name only, no values"
-                )
-            form = part.controller.linear_form(part.name, S, as_written(abs(speed)), held=held)
-            values = part.controller.names().items()
-            numbers = {parameter_symbol(part.name, n): v for n, v in values}
-            blocks[part.name] = sp.S(0) if form is None else _numbered(form, numbers)
-            left_out += [part.name] if form is None else []
-            if any(stage.law.shift is not None for stage in part.controller.stages):
-                sampled += [part.name] if form is not None else []
+            forms = _of_controller(diagram, part, speed, held)
+            blocks[part.name] = forms[0] if forms else sp.S(0)
+            if len(forms) == 2:
+                along[part.name] = forms[1]
+            if not forms:
+                left_out.append(part.name)
+            elif any(stage.law.shift is not None for stage in _stages(part)):
+                sampled.append(part.name)
             continue
         if isinstance(part, Linked):
             blocks |= {
@@ -89,7 +91,30 @@ def linear_blocks(
             stage, gone = part.body.actuation(S)
             actuation[part.name] = _numbered(stage, part.body.numbers())
             left_out += [f"{part.name}.{name}" for name in gone]
-    return LinearBlocks(blocks, actuation, tuple(left_out), abs(speed), tuple(sampled), times)
+    gone, names = tuple(left_out), tuple(sampled)
+    return LinearBlocks(blocks, actuation, gone, abs(speed), names, times, along)
+
+
+def _stages(part: Control) -> tuple[Stage, ...]:
+    return part.controller.stages if isinstance(part.controller, Controller) else ()
+
+
+def _of_controller(
+    diagram: Diagram, part: Control, speed: float, held: bool
+) -> tuple[sp.Expr, ...]:
+    """What a controller makes of its input, and of a motion that is not its input; (): no form."""
+    if not isinstance(part.controller, Controller):
+        raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no values")
+    forms = part.controller.linear_parts(part.name, S, as_written(abs(speed)), held=held)
+    if forms is None:
+        return ()
+    if part.controller.sees_velocity and not part.motion:
+        raise without_motion(f"{diagram.name}: {part.name}")
+    numbers = {parameter_symbol(part.name, n): v for n, v in part.controller.names().items()}
+    if acts_along_another(diagram, part):
+        return tuple(_numbered(form, numbers) for form in forms)
+    whole = forms[0] if forms[1] == 0 else sp.simplify(sp.Add(*forms))
+    return (_numbered(whole, numbers),)
 
 
 def _numbered(form: sp.Expr, numbers: Mapping[sp.Symbol, float]) -> sp.Expr:

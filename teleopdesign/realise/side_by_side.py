@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..errors import ModelError
 from .kernel import (
     CompiledLoop,
     Program,
@@ -76,6 +77,11 @@ def workers() -> int:
 
 def lanes_of(made: Program) -> CompiledLoop:
     """The loop of this program for a block of lanes."""
+    if made.has_code:
+        raise ModelError(
+            "simulate_many: a nonlinear python-control system is code, which no lanes run side by "
+            "side: simulate one after the other"
+        )
     return loop_of(made.laws, LANES)
 
 

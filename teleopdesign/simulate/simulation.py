@@ -119,7 +119,8 @@ def simulate(
     estimate_error: run again with half and a quarter of the step (7 times the work) and give each
         signal an attribute `step_error`, the largest difference between the three over its largest
         size; large where stick and slip make motion chaotic
-    jit: False runs the generated code in plain Python
+    jit: False runs the generated code in plain Python, as a nonlinear python-control system among
+        the controllers does in any case: some hundred times slower
     raises ModelError: block without laws, unknown signal, step refused or force not finite
     """
     setup = prepare(
@@ -182,6 +183,8 @@ def _dataset(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -
     }
     time = ("time", step * np.arange(len(rows)), {"units": "s"})
     scheme = f"exponential Runge-Kutta of order 4, step {timing.step * 1e3:.4g} ms"
+    if setup.program.has_code:
+        scheme += ", in plain Python: a block is known as code only"
     attrs = {"diagram": setup.diagram.name, "step_s": timing.step, "scheme": scheme}
     attrs |= {f"parameter {n}": v for n, v in setup.diagram.values.items()}
     return xarray.Dataset(data, {"time": time}, attrs)

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 #: variable that says why a point failed, "" where it did not
 REASON = "failure"
+#: bytes of all variables of a file: twenty measures over ten million points; trades size for memory
+LARGEST = 1.6e9
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -122,12 +124,39 @@ def read_study(path: str | Path) -> Study:
 
     check_netcdf()
     try:
+        _check_size(path)
         data = xarray.load_dataset(path, engine="h5netcdf")
     except (OSError, ValueError, KeyError) as error:
-        raise ExperimentError(f"{path}: no study can be read: {error}") from error
-    if REASON not in data or "study" not in data.attrs:
+        why = " ".join(str(error).split())
+        raise ExperimentError(f"{path}: no study can be read: {why}") from error
+    attributes = [data.attrs.get(n) for n in ("study", "model", "axes")]
+    if REASON not in data or not all(isinstance(text, str) for text in attributes):
         raise ExperimentError(f"{path}: holds no study")
+    try:
+        axes = json.loads(data.attrs["axes"])
+    except (ValueError, RecursionError):
+        axes = None
+    if not isinstance(axes, list) or not all(isinstance(a, str) and a in data for a in axes):
+        raise ExperimentError(f"{path}: axes: expected a list of names of variables, as JSON")
     return Study(data)
+
+
+def _check_size(path: str | Path) -> None:
+    """Refuse a file that says more than it holds: blocks never written take no place in it."""
+    import h5py
+
+    sizes = []
+
+    def add(name: str, item: Any) -> None:
+        if isinstance(item, h5py.Dataset):
+            sizes.append(item.size * item.dtype.itemsize)
+
+    with h5py.File(path) as opened:
+        opened.visititems(add)
+    if sum(sizes) > LARGEST:
+        raise ExperimentError(
+            f"{path}: found {sum(sizes):.3g} bytes of data, expected at most {LARGEST:g}"
+        )
 
 
 def check_netcdf() -> None:

@@ -21,7 +21,8 @@ def test_the_columns_are_found_and_what_is_guessed_is_said(folder):
     table = shown.table()
     assert "| position | x | m | m, from its range" in table
     assert "| actuator_force | u | N |" in table
-    assert len(shown.plot().axes) == 2
+    assert "| interaction_force | f_h | N |" in table
+    assert len(shown.plot().axes) == 3  # position, actuator force, force of the hand
 
 
 def test_what_is_chosen_counts_and_the_experiment_opens(folder):

@@ -33,12 +33,14 @@ TYPICAL = {
     "damping": 2.0,
     "stiffness": 200.0,
     "energy": 1e-2,
+    "position": 1e-2,
     "velocity": 0.02,
     "frequency": 15.0,
     "time": 8e-3,  # whole samples of every period below
     "dimensionless": 3.0,
 }
 NAMED = {"extra_static_level": 0.1, "bristle_damping": 3.0, "zero": 10.0, "pole": 90.0}
+NAMED |= {"sign": 1.0, "share": 0.3, "seed": 0.2}
 #: two poles and a zero, feedthrough too
 SYSTEM = control.tf([2.0, 30.0, 800.0], [1.0, 40.0, 900.0])
 NAMES = [*CONTROLLERS, "state_space"]

@@ -25,6 +25,13 @@ from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.measurement.reversals import near_reversals
 
 
+@pytest.fixture(scope="module", autouse=True)
+def whole_black_box(all_trees):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "TREES", all_trees)
+        yield
+
+
 @pytest.fixture(scope="module")
 def prepared(experiment):
     return prepare(experiment)

@@ -60,6 +60,7 @@ SAID = {
         {"drag": 9.0, "exponent": 0.5},
         "a constant force",
     ),
+    "hardening_spring": ({"neutral": 0.1}, {"neutral": -2.0}, "a spring and a constant force"),
     "gravity": ({"amplitude": 2.0}, {"amplitude": -40.0}, "a spring"),
     "tip_friction": ({"level": 0.1}, {"level": 1e-5}, "friction of the actuator"),
     "viscous_temperature": ({"coefficient": 0.01}, {"coefficient": -0.01}, "a preload"),
@@ -90,6 +91,35 @@ def test_every_check_answers_for_values_of_any_size(name):
             p = SimpleNamespace(**dict.fromkeys(effect.parameters, size))
             said = effect.plausible(p, replace(facts, stroke=stroke))
             assert said is None or (isinstance(said, str) and said.strip())
+
+
+#: effect -> (parameters that the records tell, those that they do not, what is known of these)
+UNTOLD = {
+    "stribeck": (
+        {"extra_static_level": 1.0, "stribeck_velocity": 0.5},
+        {"extra_static_level": 4.0, "stribeck_velocity": 0.02},
+        "the fall from",
+    ),
+    "friction_drift": (
+        {"fraction": 0.2, "time_constant": 10.0},
+        {"fraction": 0.9, "time_constant": 200.0},
+        "the rate d / tau = 0.0045 1/s",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", sorted(UNTOLD))
+def test_what_records_never_carried_is_said_to_be_untold(name):
+    told, beyond, known = UNTOLD[name]
+    effect, facts = EFFECTS[name], replace(FACTS, duration=60.0)
+    assert effect.untold(SimpleNamespace(**told), facts) is None
+    said = effect.untold(SimpleNamespace(**beyond), facts)
+    assert known in said and "\n" not in said
+    assert effect.plausible is None or effect.plausible(SimpleNamespace(**beyond), facts) is None
+
+
+def test_every_effect_that_can_be_untold_is_tried_on_both_sides():
+    assert {n for n, e in EFFECTS.items() if e.untold} == set(UNTOLD)
 
 
 def test_every_effect_with_a_check_is_tried_on_both_sides():

@@ -50,7 +50,11 @@ def test_the_simulated_body_goes_about_where_the_device_did(rod):
     assert np.std(led) < 0.1 * np.std(motion.lowpassed(motion.at_rows(motion.command)))
 
 
-@pytest.mark.parametrize("effect", ["transmission_compliance", "backlash", "actuator_lag"])
+@pytest.mark.parametrize(
+    # a tip behind a gap is a tip too: the one without a gap is for the slow run
+    "effect",
+    [pytest.param("transmission_compliance", marks=pytest.mark.slow), "backlash", "actuator_lag"],
+)
 def test_bodies_with_hidden_states_start_with_the_record(rod, effect):
     found, prepared = rod
     motion = prepared.of("fit")[0].motion

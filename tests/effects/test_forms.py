@@ -62,8 +62,15 @@ def true_values(*names):
 
 
 def modelled(*names):
-    """The body at the values that are simulated."""
-    return body_of(*names, values={n: v for n, v in VALUES.items() if n.split(".")[0] in names})
+    """The body at the values that are simulated; what the simulator does not know is zero."""
+    unknown = {
+        f"{name}.{n}": 0.0
+        for name in set(names) & set(PUBLIC) & set(EFFECTS)
+        for n, p in EFFECTS[name].parameters.items()
+        if p.optional and n not in PUBLIC[name]
+    }
+    given = {n: v for n, v in VALUES.items() if n.split(".")[0] in names}
+    return body_of(*names, values=unknown | given)
 
 
 def simulated(*names, step=STEP):

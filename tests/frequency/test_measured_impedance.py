@@ -7,7 +7,7 @@ import pytest
 import xarray
 from devices import LUGRE, body
 
-from teleopdesign.blocks import Body, Value
+from teleopdesign.blocks import Body
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import four_cases, haptic_interface, world_haptics_2005
 from teleopdesign.errors import ModelError
@@ -71,7 +71,8 @@ def test_amplitude_can_follow_a_profile():
 
 
 def test_a_revolute_axis_has_its_own_units():
-    wheel = Body("revolute", {"inertia": Value(0.01)}, ())
+    # of the structure of LINEAR, whose kernel is there
+    wheel = Body("revolute", LINEAR.parameters, LINEAR.effects)
     found = measured_impedance(haptic_interface(wheel), amplitude=0.1, frequency=2.0)
     assert found.data["impedance"].attrs["units"] == "N*m/rad"
     assert found.data["amplitude"].attrs["units"] == "rad"

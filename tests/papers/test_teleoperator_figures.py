@@ -37,6 +37,7 @@ def test_cancellation_brings_no_oscillation(free_space):
         assert np.abs(jerk).max() < 1e-4, case
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("case", "share"), [("no compensation", 0.0), ("90 % cancelled", 0.9)])
 def test_in_contact_the_loop_narrows_to_the_rubbers_own(contact, case, share):
     own = contact.environment[case]
@@ -48,10 +49,12 @@ def test_in_contact_the_loop_narrows_to_the_rubbers_own(contact, case, share):
     assert found.stiffness == pytest.approx(own.stiffness / series, rel=0.05)
 
 
+@pytest.mark.slow
 def test_the_rubber_keeps_a_small_loop_of_its_own(contact):
     for loop in contact.environment.values():
         assert 0.05 < loop.width < 0.2
 
 
+@pytest.mark.slow
 def test_the_force_felt_is_nearly_the_tips(contact):
     assert contact.rms["90 % cancelled"] < 0.15 * contact.rms["no compensation"]

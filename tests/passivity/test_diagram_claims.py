@@ -2,6 +2,7 @@
 
 import json
 
+import control as ct
 import numpy as np
 import pytest
 import sympy as sp
@@ -12,11 +13,22 @@ from hypothesis import strategies as st
 import teleopdesign as td
 from teleopdesign.blocks import hand
 from teleopdesign.cli import main
-from teleopdesign.controllers import controller, scheduled_force_feedback
+from teleopdesign.controllers import controller, from_control, scheduled_force_feedback
 from teleopdesign.derive import block_symbol, two_port_functions
-from teleopdesign.diagrams import ANY, haptic_interface, read_diagram, teleoperator, write_diagram
+from teleopdesign.diagrams import (
+    ANY,
+    Control,
+    Diagram,
+    Junction,
+    Moving,
+    haptic_interface,
+    read_diagram,
+    teleoperator,
+    write_diagram,
+)
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity import Search, diagram_claims, hand_port
+from teleopdesign.passivity.diagram_claims import linear_claims
 from teleopdesign.passivity.ports import impedance_matrix, ports
 from teleopdesign.realise.lti import S, linear_blocks
 
@@ -202,3 +214,33 @@ def test_bad_input_is_one_line_and_status_2(arguments, said, capsys):
     assert main(["passivity", *arguments]) == 2
     error = capsys.readouterr().err
     assert said in error and error.count("\n") == 1
+
+
+GROWS, ENDS = ([1.0], [1.0, -1.0]), ([1.0, -1.0], [1.0, 1.0])
+
+
+def from_tf(*ratios):
+    made = [from_control(ct.tf(*r), name=f"law_{k}") for k, r in enumerate(ratios)]
+    return made[0] if len(made) == 1 else made[0].then(made[1])
+
+
+@pytest.mark.parametrize(
+    "stages",
+    [
+        [from_tf(GROWS), from_tf(ENDS)],
+        [from_tf(ENDS), from_tf(GROWS)],
+        [from_tf(GROWS, ENDS)],
+        [from_tf(([1.0, -1.0], [1.0, 0.0, -1.0]))],  # (s - 1)/((s - 1) (s + 1))
+        [from_control(ct.ss(np.diag([1.0, -1.0]), [[0.0], [1.0]], [[1.0, 1.0]], [[0.0]]))],
+    ],
+    ids=["read by nothing", "driven by nothing", "within a law", "in one ratio", "in states"],
+)
+def test_what_grows_inside_is_proved_nothing_though_no_port_shows_it(stages):
+    """The impedance of all of them is that of a passive spring, low-passed."""
+    names = ["x", *(f"y{k}" for k in range(len(stages)))]
+    controls = [Control(f"C{k}", law, names[k], names[k + 1], "x") for k, law in enumerate(stages)]
+    body_alone = Moving("M", body(0.15, damping=2.0), "x", "u", {"f": 1}, "f")
+    minus = Junction("u", {names[-1]: -1})
+    diagram = Diagram("hidden", (body_alone, *controls), (minus,), {"f": "force"}, ())
+    (one,) = linear_claims(diagram, ports(diagram))
+    assert one.claim.status == "unknown" and "grows by itself at 1 1/s" in str(one.claim.verdict)

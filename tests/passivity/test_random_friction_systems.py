@@ -1,4 +1,4 @@
-"""A thousand random devices: claims, refuting motions and a search in simulation must agree."""
+"""Hundreds of random devices: claims, refuting motions and a search in simulation must agree."""
 
 from collections import Counter
 
@@ -13,7 +13,7 @@ from passivity.friction_systems import (
     verdict,
 )
 
-SEED, SYSTEMS = 20261, 1000
+SEED, SYSTEMS = 20261, 400
 
 
 def one(**changed):
@@ -83,7 +83,7 @@ def test_theorems_refutations_and_search_never_contradict_each_other():
                 motion = confirmed(system, theory_motion(system, record))
         counts[said, motion is not None] += 1
     assert not contradictions
-    assert counts["proved", False] > 200 and counts["refuted", True] > 400
+    assert counts["proved", False] > 80 and counts["refuted", True] > 160
     # the search sees what there is to see: where it is silent, that means something. What it misses
     # are motions far slower, or of far more rounds, than a simulation of 30 000 steps holds
     assert counts["refuted", True] > 4 * counts["refuted", False]

@@ -10,8 +10,10 @@ from diagrams.test_wiring import pair
 from hypothesis import Phase, given, settings
 
 from teleopdesign.blocks import matrix_impedance
+from teleopdesign.controllers import controller
 from teleopdesign.diagrams import (
     ANY,
+    Control,
     Diagram,
     Junction,
     Kinematics,
@@ -114,6 +116,19 @@ def check(diagram):
     for _, x0, y0, x1, y1 in lines:
         assert left <= x0 and x1 <= right and top <= y0 and y1 <= bottom
     return drawing
+
+
+def test_a_delay_is_drawn_as_what_it_does_with_the_name_of_its_time():
+    """e^(-s T_1), with -s T_1 as exponent, and no second line that says "delay"."""
+    delay = controller("delay", {"time": 0.02})
+    late = Control("T_1", delay, "x", "w", "")
+    body = Moving("M", ANY, "x", "u", {"f": 1}, "f")
+    pulled = Junction("u", {"w": -1})
+    drawing = check(Diagram("late", (body, late), (pulled,), {"f": "force"}, ("x",)))
+    titles = {t.plain: t for t in of(drawing, Text) if t.role not in ("signal", "sign")}
+    assert set(titles) == {"M\N{MINUS SIGN}1", "e\N{MINUS SIGN}sT1"}
+    runs = titles["e\N{MINUS SIGN}sT1"].runs
+    assert [run.level for run in runs] == [0, 1, 1, 1, 1]
 
 
 @pytest.mark.parametrize("name", SHOWN)

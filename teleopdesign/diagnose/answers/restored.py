@@ -12,7 +12,7 @@ from ...errors import ExperimentError, ModelError
 from ...measurement.experiment import Experiment
 from ...model import Model
 from ..candidates import Candidate
-from ..diagnosis import Diagnosis, OpenQuestion
+from ..diagnosis import Diagnosis, OpenQuestion, SetAside, Untold
 from ..effort import EFFORTS
 from ..excerpt import on_windows
 from ..fit import Fit, estimate
@@ -95,6 +95,16 @@ def restored(
             for added, others in steps.open
         ),
         left_out=tuple(content.get("left_out", ())),
+        untold=tuple(
+            Untold(_known(saved, row, known, "cannot_tell"), row["sentence"])
+            for row in content.get("cannot_tell", ())
+        ),
+        set_aside=tuple(
+            SetAside(
+                _known(saved, row, known, "set_aside"), _error(row["check_error"]), row["reason"]
+            )
+            for row in content.get("set_aside", ())
+        ),
         recorded=content,
     )
 
@@ -192,6 +202,14 @@ def _in_model(
         if not there:
             raise ExperimentError(f"{saved.file}: {key}: {candidate}: its model has no such effect")
     return candidate
+
+
+def _known(
+    saved: SavedAnswer, row: Mapping[str, Any], known: Mapping[str, Effect], key: str
+) -> Candidate:
+    """The candidate of a row, whether or not a model of the answer has it."""
+    effects = with_block_effects(known)
+    return Candidate(known_effect(row["effect"], effects, where=f"{saved.file}: {key}"), row["at"])
 
 
 def _named(content: Mapping[str, Any]) -> set[tuple[str, str]]:

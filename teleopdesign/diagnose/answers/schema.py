@@ -223,6 +223,10 @@ _LATER: dict[str, Check] = {
     ),
     "models": _table({"ladder": _list_of(_BODIES, least=1), "estimated": _BODIES}),
     "left_out": _list_of(_text),
+    "cannot_tell": _list_of(_table({"effect": _text, "at": _text, "sentence": _text})),
+    "set_aside": _list_of(
+        _table({"effect": _text, "at": _text, "check_error": _ERROR, "reason": _text})
+    ),
     "floor": _table({"drawn": _SIZE, "held": _flag}),
     "open": _list_of(
         _table(

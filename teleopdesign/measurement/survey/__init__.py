@@ -13,9 +13,10 @@ from collections.abc import Sequence
 from ...errors import ExperimentError
 from ..doors._log import Log, listed
 from .clock import numeric_columns, on_one_grid, time_column
-from .content import Choices, Survey, SurveyedColumn
+from .content import NONE, Choices, Survey, SurveyedColumn
 from .forces import describe_forces
 from .position import axis_of, describe_position, find_position
+from .unused import unused_columns
 
 __all__ = [
     "Choices",
@@ -38,7 +39,7 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     raw = numeric_columns(log, file)
     for key in ("time", "position", "actuator_force", "interaction_force"):
         name = getattr(choices, key)
-        if name is not None and name not in raw:
+        if name is not None and name != NONE and name not in raw:
             raise ExperimentError(f"{file}: {key}: no column {name!r}, found {listed(raw)}")
     guesses: dict[str, str] = {}
     time_name, unit = time_column(raw, log, choices, guesses, file)
@@ -52,13 +53,14 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     survey.axis = axis_of(survey, position, choices)
     describe_position(survey, position, velocity, choices)
     describe_forces(survey, position, velocity, time_name, choices, file)
+    survey.unused = unused_columns(log, raw, survey)
     return survey
 
 
 def spans_of(duration: float) -> tuple[tuple[float, float], tuple[float, float]]:
     """(begin, end) in s of the fit record and of the check record in one log."""
     cut = float(f"{FIT_PART * duration:.4g}")
-    return (0.0, cut), (cut, math.ceil(duration + 1.0))
+    return (0.0, cut), (cut, math.floor(duration) + 1.0)
 
 
 def same_columns(logs: Sequence[Log], files: Sequence[str]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,6 +16,11 @@ Array = NDArray[np.float64]
 
 #: likeness of a name from which no physics is needed
 SURE_NAME = 0.75
+#: scores that differ by less are those of joints logged beside each other: what physics adds
+#: to a score is known no better
+AS_LIKELY = 0.05
+#: in place of a column's name: the log has none of that quantity
+NONE = "none"
 
 
 @dataclass(frozen=True)
@@ -35,6 +40,8 @@ class Survey:
     channels: quantity -> table as in [channels];  guesses: "channels.time.unit" -> why
     questions: what a person is asked: key -> (question, what is taken otherwise)
     time: (n,) s from the first row;  columns: by name, on it;  first: values of a first model
+    explained: column that may be a force -> part of it that the motion explains (up to 1)
+    unused: column that is in no channel -> why
     """
 
     axis: str
@@ -45,12 +52,15 @@ class Survey:
     columns: dict[str, SurveyedColumn] = field(default_factory=dict)
     first: FirstGuess | None = None
     notes: list[str] = field(default_factory=list)
+    explained: dict[str, float] = field(default_factory=dict)
+    unused: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Choices:
     """What the user says: columns, units, axis, constants; None: to be found.
 
+    interaction_force: "none" where the log has none
     units: column -> unit;  torque_constant, gear_ratio: (value, unit)
     """
 
@@ -90,3 +100,14 @@ def rises(x: Array) -> bool:
 def sample_time_of(survey: Survey) -> float:
     """Seconds between two rows of the survey's grid."""
     return float(np.median(np.diff(survey.time)))
+
+
+def as_likely(scores: Mapping[str, float], best: str) -> list[str]:
+    """The columns whose score is that of the best one but for `AS_LIKELY`."""
+    return [n for n, s in scores.items() if n != best and s > scores[best] - AS_LIKELY]
+
+
+def alike(column: str, others: Sequence[str], what: str) -> str:
+    """Why a column is a guess that others sound like as well."""
+    named = ", ".join(map(repr, others[:3])) + (", ..." if len(others) > 3 else "")
+    return f"{column!r} is taken for {what}: {named} may be it as well"

@@ -8,15 +8,18 @@ from typing import Any
 
 from ...errors import ExperimentError
 from ...quantity import is_unit, measures, si_factor, unit_of
-from ..column_names import WANTED, likeness, words_of
+from ..column_names import WANTED, is_wanted, likeness, words_of
 from ..doors._log import listed
 from ..first_guess import FirstGuess, explain_force
 from .content import (
+    NONE,
     SURE_NAME,
     Array,
     Choices,
     Survey,
     SurveyedColumn,
+    alike,
+    as_likely,
     is_unit_of,
     moves,
     rises,
@@ -29,6 +32,11 @@ DRIVES = 0.3
 #: what a force gains that is a field of the position's struct or joint: more than names that are
 #: alike differ by ("current" 0.98, "effort" 0.9), less than a name that says what was commanded
 BESIDE = 0.2
+#: what a column without a telling name may leave of the squares that the motion does not explain,
+#: to be taken for the hand's force: with more, chance finds one among many columns. And how far its
+#: factor may lie off one: a sensor's calibration error of a quarter still passes
+BALANCES = 2.0 / 3.0
+FACTOR_OF_ONE = 1.25
 
 
 def describe_forces(
@@ -73,15 +81,23 @@ def describe_forces(
         survey.guesses["channels.actuator_force.column"] = (
             f"{force!r} is taken for the actuator's force: the motion explains {share:.0%} of it"
         )
-    hand = _hand(free, force, choices)
+    elif choices.actuator_force is None and (others := as_likely(scores, force)):
+        survey.guesses["channels.actuator_force.column"] = alike(
+            force, others, "the actuator's force"
+        )
     survey.channels["actuator_force"] = _force_entry(survey, force, "actuator_force", choices)
+    if entry.get("gear_ratio") is not None:
+        survey.channels["actuator_force"]["gear_ratio"] = entry["gear_ratio"]
+    motion = x * _position_to_si(survey), h
+    hand = _hand(free, force, choices)
+    if hand is None and choices.interaction_force is None:
+        hand = _hand_by_motion(survey, free, force, motion)
     if hand is not None:
         survey.channels["interaction_force"] = _force_entry(
             survey, hand, "interaction_force", choices
         )
-    _signs(survey, x, h, force, hand)
-    if entry.get("gear_ratio") is not None:
-        survey.channels["actuator_force"]["gear_ratio"] = entry["gear_ratio"]
+    _signs(survey, motion, force, hand)
+    survey.explained.update({n: guess.explained for n, guess in physics.items()})
 
 
 def _stand_together(one: str, other: str) -> bool:
@@ -101,7 +117,7 @@ def _force_score(column: SurveyedColumn, guess: FirstGuess) -> float:
 
 def _hand(free: Mapping[str, SurveyedColumn], force: str, choices: Choices) -> str | None:
     if choices.interaction_force is not None:
-        return choices.interaction_force
+        return None if choices.interaction_force == NONE else choices.interaction_force
     scores = {n: likeness(n, "interaction_force") for n in free if n != force}
     best = max(scores, key=lambda n: scores[n], default=None)
     return best if best is not None and scores[best] >= SURE_NAME else None
@@ -132,22 +148,67 @@ def _force_entry(survey: Survey, name: str, key: str, choices: Choices) -> dict[
     return {**entry, "unit": unit}
 
 
-def _signs(survey: Survey, x: Array, h: float, force: str, hand: str | None) -> None:
-    """Friction takes energy out and inertia is positive: what drives instead has the other sign."""
+def _hand_by_motion(
+    survey: Survey, free: Mapping[str, SurveyedColumn], force: str, motion: tuple[Array, float]
+) -> str | None:
+    """A column that no name gives away, but that balances with the command: the hand's force.
+
+    The motion asks for `command + hand`, both in the unit of forces: of what it leaves of the
+    command alone, the column takes a good part away, with a factor of one.
+    """
+    x, h = motion
+    u = survey.columns[force].values * _to_si(survey, "actuator_force")
+    alone = explain_force(u, x, h)
+    best: tuple[float, str] | None = None
+    for name, column in free.items():
+        unit = column.unit
+        if name == force or is_wanted(name) or likeness(name, "position") >= SURE_NAME:
+            continue
+        if unit is not None and not measures(unit, "force", survey.axis):
+            continue
+        factor = si_factor(unit, quantity="force", axis=survey.axis) if unit else 1.0
+        more, less = (explain_force(u + s * factor * column.values, x, h) for s in (1.0, -1.0))
+        whole = min(more, less, key=lambda guess: guess.left)
+        left = whole.left**2
+        # what is left is a square in the column's factor: three values tell where it is least
+        bend = 0.5 * (more.left**2 + less.left**2) - alone.left**2
+        at = abs(0.25 * (more.left**2 - less.left**2) / bend) if bend > 0 else 0.0
+        if left > BALANCES * alone.left**2 or not 1 / FACTOR_OF_ONE < at < FACTOR_OF_ONE:
+            continue
+        # the command logged twice takes itself away, and no more of what remains is explained
+        if 1 - whole.explained > BALANCES * (1 - alone.explained):
+            continue
+        if best is None or left < best[0]:
+            best = left, name
+    if best is None:
+        return None
+    left, name = best
+    survey.guesses["channels.interaction_force.column"] = (
+        f"{name!r} is taken for the hand's force: added to {force!r}, it takes away "
+        f"{1 - left / alone.left**2:.0%} of what the motion does not explain"
+    )
+    return name
+
+
+def _position_to_si(survey: Survey) -> float:
+    """Factor of the position from its column to SI, behind the gear."""
     position = survey.channels["position"]
-    unit = position["unit"]
-    scale = 1.0
-    if unit == "counts":
+    if position["unit"] == "counts":
         scale = 2 * math.pi / float(position["counts_per_turn"])
     else:
-        scale = si_factor(unit, quantity="position", axis=survey.axis)
-    scale /= float(position.get("gear_ratio", 1.0))
+        scale = si_factor(position["unit"], quantity="position", axis=survey.axis)
+    return scale / float(position.get("gear_ratio", 1.0))
+
+
+def _signs(survey: Survey, motion: tuple[Array, float], force: str, hand: str | None) -> None:
+    """Friction takes energy out and inertia is positive: what drives instead has the other sign."""
+    x, h = motion
     u = survey.columns[force].values * _to_si(survey, "actuator_force")
-    whole = explain_force(u, x * scale, h)
+    whole = explain_force(u, x, h)
     with_hand = whole
     if hand is not None:
         f = survey.columns[hand].values * _to_si(survey, "interaction_force")
-        by_sign = {s: explain_force(u + s * f, x * scale, h) for s in (1.0, -1.0)}
+        by_sign = {s: explain_force(u + s * f, x, h) for s in (1.0, -1.0)}
         better = max(by_sign, key=lambda s: by_sign[s].explained)
         if better < 0 and by_sign[-1.0].explained > by_sign[1.0].explained + 0.05:
             survey.channels["interaction_force"]["sign"] = -1
@@ -177,7 +238,7 @@ def _signs(survey: Survey, x: Array, h: float, force: str, hand: str | None) -> 
             with_hand.errors,
         )
     survey.first = with_hand
-    ratio = float(position.get("gear_ratio", 1.0))
+    ratio = float(survey.channels["position"].get("gear_ratio", 1.0))
     if ratio != 1.0:
         survey.notes.append(f"forces and positions are those behind the gear of {ratio:g}")
 

@@ -18,6 +18,8 @@ from .content import (
     Choices,
     Survey,
     SurveyedColumn,
+    alike,
+    as_likely,
     is_unit_of,
     moves,
     rises,
@@ -96,6 +98,8 @@ def find_position(
     if choices.position is None and likeness(best, "position") < SURE_NAME:
         why = "its derivative is there too" if best in derivative else "by its name and unit"
         survey.guesses["channels.position.column"] = f"{best!r} is taken for the position: {why}"
+    elif choices.position is None and (others := as_likely(scores, best)):
+        survey.guesses["channels.position.column"] = alike(best, others, "the position")
     velocity = derivative.get(best, (None, 0.0))[0]
     if velocity is not None:
         survey.notes.append(f"{velocity!r} is the derivative of {best!r}")

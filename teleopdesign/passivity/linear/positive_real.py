@@ -38,7 +38,7 @@ def positive_real(system: Any, *, motion: Motion = "velocity") -> Claim:
     system, motion: see `impedance`
     returns: proved, with the excess of damping as margin (N s/m: what could be taken away), or
     refuted by a growing wave; unknown only where floats came in, and the wave's sign rests on their
-    last digits
+    last digits, or where so little comes out that a replay in double precision does not show it
     raises ModelError: not a rational function of s with given coefficients
     """
     z = impedance(system, motion=motion)

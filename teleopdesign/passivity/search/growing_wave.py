@@ -18,13 +18,16 @@ from typing import cast
 
 import numpy as np
 import sympy as sp
+from mpmath.libmp import NoConvergence
 
 from ...realise.lti import S
 from ..linear.impedance import Impedance
-from ..linear.polynomials import even_part, where_negative
+from ..linear.polynomials import even_part, fraction, where_negative
 
 LONGEST = 500  # periods of a wave that are sampled; each of them gives out energy
 _DIGITS = 40  # of numerical values: poles and zeros of badly scaled systems lie close together
+#: share of abs(Z) below which the sum of a replay in double precision loses Re Z: 1e4 roundings
+_WEAKEST = 1e-11
 
 
 @dataclass(frozen=True)
@@ -132,7 +135,17 @@ def growing_wave(z: Impedance) -> GrowingWave | None:
     waves = [_beside_the_axis(z, x) for x in where_negative(even_part(z.p, z.q))]
     growing = [w for w in waves if w is not None]
     # the one that grows fastest against its frequency is the plainest to look at
-    return max(growing, key=lambda w: w.rate / w.frequency) if growing else _at_a_growing_mode(z)
+    best = max(growing, key=lambda w: w.rate / w.frequency, default=None)
+    if best is not None and _share(best) > _WEAKEST:
+        return best
+    # a mode that grows shows more, where a zero beside it hides it from the axis
+    return _at_a_growing_mode(z) or best
+
+
+def _share(wave: GrowingWave) -> float:
+    """Part of abs(Z) that gives out energy at the wave of a single port."""
+    z = complex(wave.value[0, 0])
+    return -z.real / abs(z)
 
 
 def square_root(x: Fraction, digits: int) -> Fraction:
@@ -164,20 +177,35 @@ def _at_a_growing_mode(z: Impedance) -> GrowingWave | None:
     """
     for c in (sp.Rational(10) ** k for k in (0, -2, 2, -4, 4, -6, 6)):
         closed = sp.Poly(z.p + z.q.mul_ground(c), S)
+        scale = _middle(closed)
+        even = sp.Poly([x / scale**k for k, x in enumerate(closed.all_coeffs())], S)
         for digits in (30, 60, 120):
             try:
-                roots = closed.nroots(n=digits, maxsteps=500)
-            except sp.polys.polyerrors.PolynomialError:
+                roots = even.nroots(n=digits, maxsteps=500)
+            except (sp.polys.polyerrors.PolynomialError, NoConvergence):
                 continue
             waves = []
             for root in roots:
-                rate, frequency = (Fraction(str(sp.Float(x, digits))) for x in root.as_real_imag())
+                rate, frequency = (
+                    Fraction(str(sp.Float(x, digits))) * fraction(scale)
+                    for x in root.as_real_imag()
+                )
                 if rate > 0 and frequency >= 0:
                     waves.append(_checked(z, rate, frequency))
             growing = [w for w in waves if w is not None]
             if growing:
                 return max(growing, key=lambda w: w.rate)
     return None
+
+
+def _middle(polynomial: sp.Poly) -> sp.Rational:
+    """Power of ten near the geometric mean of the sizes of its roots but 0, 1/s."""
+    sizes = [abs(x) for x in polynomial.all_coeffs() if x]
+    powers = [k for k, x in enumerate(polynomial.all_coeffs()) if x]
+    if len(sizes) < 2:
+        return sp.S(1)
+    decades = float(sp.log(sizes[-1] / sizes[0], 10)) / (powers[-1] - powers[0])
+    return sp.Rational(10) ** round(decades)
 
 
 def _checked(z: Impedance, rate: Fraction, frequency: Fraction) -> GrowingWave | None:

@@ -6,6 +6,7 @@ from ...blocks import Body, Value
 from ...controllers import controller, laws_that_declare
 from ...diagrams import haptic_interface
 from ...effects import EFFECTS
+from ...errors import ModelError
 from ..claims.claim import Counterexample
 from ..rate_independent import Coulomb, Cycle, Dahl
 from ..search.by_simulation import SimulatedMotion, confirmed_motion
@@ -15,8 +16,8 @@ from ..search.stroke_motion import Strokes
 def simulate_cycle(cycle: Counterexample) -> SimulatedMotion | None:
     """A refuting cycle of one friction element, in the compiled simulation.
 
-    None where simulation does not confirm it, as next to a limit, for several elements, or a motion
-    of another kind.
+    None where simulation does not confirm it, as next to a limit, or takes too long for it, for
+    several elements, or a motion of another kind.
     """
     if not isinstance(cycle, Cycle) or len(cycle.friction) != 1:
         return None
@@ -36,4 +37,7 @@ def simulate_cycle(cycle: Counterexample) -> SimulatedMotion | None:
     # friction does not depend on speed: a stroke takes about 10 ms
     strokes = Strokes(cycle.turning_points, speed=300 * max(map(abs, cycle.turning_points)))
     deflection = min(*lengths, *map(abs, cycle.turning_points)) / 1000
-    return confirmed_motion(haptic_interface(body, cancellation=law), strokes, give=deflection)
+    try:
+        return confirmed_motion(haptic_interface(body, cancellation=law), strokes, give=deflection)
+    except ModelError:  # lengths so far apart that a simulation of it would take too many steps
+        return None

@@ -182,6 +182,8 @@ def _strokes(
     speed = _fastest_gain(f_d, a, least, b)
     for _ in range(200 if isinstance(friction, Dahl) else 1):
         command = _COMMAND(speed, f_d, a)
+        if command <= 0:  # a gain within rounding of its limit has no speed in double precision
+            return None
         share = (command - least - b * speed) / command
         if share <= 0:
             return None

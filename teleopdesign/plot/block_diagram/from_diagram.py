@@ -224,12 +224,20 @@ def _title(block: Block) -> tuple[Run, ...]:
         return *symbol(block.name), Run(f"{MINUS}1", 1, False)
     if isinstance(block, Attached) and block.sign < 0:
         return Run(MINUS, 0, False), *symbol(block.name)
+    if _is_delay(block):
+        # the block's name is that of its dead time: e^(-s T_1), index and all in the exponent
+        late = (Run(run.text, 1, run.italic) for run in symbol(block.name))
+        return Run("e", 0, False), Run(MINUS, 1, False), Run("s", 1, True), *late
     return symbol(block.name)
+
+
+def _is_delay(block: Block) -> bool:
+    return isinstance(block, Control) and block.dead_time is not None
 
 
 def _notes(block: Block) -> tuple[str, ...]:
     if isinstance(block, Control):
-        if not isinstance(block.controller, Controller):
+        if not isinstance(block.controller, Controller) or _is_delay(block):
             return ()
         return _said(tuple(stage.law.name for stage in block.controller.stages))
     if not isinstance(block.body, Body):

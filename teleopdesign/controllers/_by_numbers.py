@@ -1,0 +1,45 @@
+"""Laws that state their transfer function or were measured: values stand in it as numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+from ._exact import as_written
+
+if TYPE_CHECKING:
+    from ._controller import Stage
+
+
+def has_numbers(stage: Stage) -> bool:
+    """Whether it was measured, or has a transfer function in z at a period of its own."""
+    if stage.law.response is not None:
+        return True
+    return stage.law.shift is not None and stage.values["period"] > 0
+
+
+def is_by_numbers(stage: Stage) -> bool:
+    """Whether the law states its transfer function, from its input alone."""
+    law = stage.law
+    return any(x is not None for x in (law.transfer, law.shift, law.response))
+
+
+def by_numbers(stage: Stage, s: sp.Symbol) -> sp.Expr:
+    """Transfer function of a law that states it, with its values in place."""
+    if stage.law.transfer is not None:
+        return stage.law.transfer(stage.values, s)
+    if stage.law.response is not None:
+        return as_written(stage.values["scale"]) * stage.law.response(s)
+    assert stage.law.shift is not None
+    period, z = as_written(stage.values["period"]), sp.Symbol("z")
+    late = sp.exp(-s * period)
+    above, below = (
+        sp.Poly(x, z) for x in sp.fraction(sp.together(stage.law.shift(stage.values, z)))
+    )
+    # in powers of e^(-s T): those of e^(s T) overflow far out in the right half plane
+    order = below.degree()
+    sides = (
+        sp.Add(*(c * late ** (order - k) for (k,), c in part.terms())) for part in (above, below)
+    )
+    return sp.Mul(next(sides), 1 / next(sides)) * (1 - late) / (s * period)

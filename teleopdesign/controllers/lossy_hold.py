@@ -1,0 +1,43 @@
+"""Lossy hold: samples that are lost leave the last one that arrived.
+
+    output = input at a sample that arrives, else the output before;   of the first: 0
+
+A share of the samples is lost, by a sequence that looks random and is the same in each run: x' =
+4 x (1 - x) with x between 0 and 1, lost where x < sin^2(pi share/2). Behind a delay it makes delays
+that jitter. In continuous time nothing is lost.
+"""
+
+from sympy import Piecewise, S, pi, sin
+
+from ..effects import Parameter
+from ._controller import ControlLaw, ControllerState
+
+
+def law(now, p):
+    if now.period == 0:
+        return now.input
+    arrives = p.seed + now.chance >= sin(pi * p.share / 2) ** 2
+    return Piecewise((now.input, arrives), (now.held, True))
+
+
+def chance(now, p):
+    x = p.seed + now.chance
+    return 4 * x * (1 - x) - p.seed
+
+
+def nothing(now, p):
+    return S.Zero
+
+
+CONTROLLER = ControlLaw(
+    law=law,
+    states={
+        "held": ControllerState("force", nothing, law),
+        "chance": ControllerState("dimensionless", nothing, chance),
+    },
+    parameters={
+        "share": Parameter("dimensionless", "of the samples that are lost", upper=1.0),
+        "seed": Parameter("dimensionless", "start of the sequence, 0 to 1", upper=1.0),
+    },
+    source="zero-order hold of a lossy channel; Ulam, von Neumann (1947) for the sequence",
+)

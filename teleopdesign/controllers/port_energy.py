@@ -1,0 +1,49 @@
+"""Port energy: what has gone through a port in one direction so far.
+
+    dE/dt = max(s F v, 0),   output = E
+
+Input is the force F on the body that is commanded at the port, v the velocity of the motion it acts
+along; s = 1 counts what the force has given to the body, s = -1 what it has taken. Each only grows,
+so that a reading which arrives late, or is held where one is lost, is never too large: that is why
+a channel sends this, not the net energy. In a computer the force is held from a sample to the next
+and acts along the travel between them, so that the count is exact, at the sample itself.
+"""
+
+from sympy import Max, S
+
+from ..effects import Parameter
+from ._controller import ControlLaw, ControllerState
+
+
+def law(now, p):
+    return now.energy
+
+
+def energy(now, p):
+    return Max(p.sign * now.input * now.velocity, 0)
+
+
+def energy_after(now, p):
+    return now.energy + now.period * Max(p.sign * now.last * now.travel_rate, 0)
+
+
+def last(now, p):
+    return now.input
+
+
+def nothing(now, p):
+    return S.Zero  # in continuous time there is no last sample
+
+
+CONTROLLER = ControlLaw(
+    law=law,
+    takes="force",
+    states={
+        "energy": ControllerState("energy", energy, energy_after),
+        "last": ControllerState("force", nothing, last),
+    },
+    parameters={
+        "sign": Parameter("dimensionless", "1: given to the body; -1: taken", lower=-1.0, upper=1.0)
+    },
+    source="Ryu, Artigas, Preusche, Mechatronics 20 (2010) 812: energies in and out, apart",
+)

@@ -1,0 +1,86 @@
+"""Which columns of a log are in no channel, and why.
+
+A force that is left out in silence passes for physics that the model lacks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ...quantity import is_unit
+from ..column_names import is_wanted, likeness
+from ..doors._log import Log
+from .content import (
+    SURE_NAME,
+    Array,
+    Survey,
+    SurveyedColumn,
+    is_unit_of,
+    moves,
+    rises,
+    sample_time_of,
+)
+from .position import DERIVATIVE, derivative_factor, unwrapped, wrap_of
+
+
+def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[str, str]:
+    """Column -> why it is in no channel, in the order of the log.
+
+    raw: the columns that hold numbers, by name
+    """
+    used = {entry["column"] for entry in survey.channels.values() if "column" in entry}
+    used |= {log.clocks[name] for name in used if name in log.clocks}
+    left = [name for name in dict.fromkeys(log.names) if name not in used]
+    return {name: _why(name, log, raw, survey) for name in left}
+
+
+def _why(name: str, log: Log, raw: Mapping[str, Array], survey: Survey) -> str:
+    if (count := log.names.count(name)) > 1:
+        return f"{count} columns have this name"
+    if name not in raw:
+        return "holds no numbers"
+    if name in log.clocks.values():
+        return "stamps of a topic that is not used"
+    column = survey.columns.get(name)
+    if column is None:
+        return f"has {len(raw[name])} rows, other than the time"
+    if not moves(column):
+        return "does not change"
+    if rises(column.values):
+        return "only rises, as a second clock or a counter does"
+    return _why_no_channel(column, survey)
+
+
+def _why_no_channel(column: SurveyedColumn, survey: Survey) -> str:
+    """Why a signal that changes is taken for neither position, nor velocity, nor force."""
+    name, unit, position = column.name, column.unit, survey.channels["position"]["column"]
+    kinds = [q for q in ("position", "velocity", "force") if is_unit_of(unit, q)]
+    if unit is not None and is_unit(unit) and not kinds:
+        return f"in {unit}: no position, velocity or force"
+    if is_wanted(name) and "force" not in kinds:
+        return "what was wanted, not what was measured"
+    x = survey.columns[position].values
+    jump = wrap_of(x)
+    _, agree = derivative_factor(unwrapped(x, jump), column.values, sample_time_of(survey))
+    if agree > DERIVATIVE and "velocity" in survey.channels:
+        return f"a second velocity of {position!r}"
+    if agree > DERIVATIVE:
+        how = "" if unit else f"; its unit is not known: --unit {name + '=UNIT'!r} takes it"
+        return f"the velocity of {position!r}, which is computed from the position{how}"
+    for quantity, why in (
+        ("position", f"a position beside {position!r}"),
+        ("velocity", f"a velocity, but not that of {position!r}"),
+    ):
+        if quantity in kinds or not kinds and likeness(name, quantity) >= SURE_NAME:
+            return why
+    return _why_no_force(name, survey)
+
+
+def _why_no_force(name: str, survey: Survey) -> str:
+    """By how much the motion explains it, beside the column that was taken."""
+    force = survey.channels["actuator_force"]["column"]
+    share, best = (survey.explained.get(n) for n in (name, force))
+    beside = "" if best is None else f", of {force!r} {max(best, 0.0):.0%}"
+    said = "" if share is None else f": the motion explains {max(share, 0.0):.0%} of it{beside}"
+    second = likeness(name, "actuator_force") >= SURE_NAME
+    return f"a force beside {force!r}{said}" if second else f"no force by its name{said}"

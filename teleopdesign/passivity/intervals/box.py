@@ -1,0 +1,92 @@
+"""A box: an interval for each of some values of a diagram, and points in it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+
+from ...controllers import as_written
+from ...diagrams import Diagram
+from ...errors import ModelError, did_you_mean
+from ...expectations import described
+
+#: vertices that are looked at: 2^8, eight intervals
+MOST_VERTICES = 256
+
+
+@dataclass(frozen=True)
+class ValueBox:
+    """Intervals by the names of values; low < high, as they are written (0.1 is 1/10)."""
+
+    names: tuple[str, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+
+    @property
+    def exact(self) -> tuple[tuple[Fraction, Fraction], ...]:
+        """The intervals as rational numbers."""
+        ends = zip(self.low, self.high, strict=True)
+        return tuple((Fraction(str(as_written(a))), Fraction(str(as_written(b)))) for a, b in ends)
+
+    @property
+    def centre(self) -> np.ndarray:
+        """The middle of every interval, (n,)."""
+        return np.asarray((np.array(self.low) + np.array(self.high)) / 2)
+
+    def vertices(self) -> np.ndarray:
+        """Vertices, (m, n): all of them, or the first MOST_VERTICES."""
+        ends = zip(self.low, self.high, strict=True)
+        listed = [v for v, _ in zip(product(*ends), range(MOST_VERTICES), strict=False)]
+        return np.array(listed, dtype=float).reshape(len(listed), len(self.names))
+
+    def inside(self, number: int, seed: int) -> np.ndarray:
+        """Points of a scrambled Sobol sequence, (number, n)."""
+        from scipy.stats import qmc
+
+        if not number or not self.names:
+            return np.empty((0, len(self.names)))
+        bits = math.ceil(math.log2(max(number, 2)))
+        unit = qmc.Sobol(len(self.names), rng=np.random.default_rng(seed)).random_base2(bits)
+        width = np.array(self.high) - np.array(self.low)
+        return np.asarray(np.array(self.low) + unit[:number] * width)
+
+    def named(self, point: np.ndarray) -> dict[str, float]:
+        """Value by name."""
+        return dict(zip(self.names, map(float, point), strict=True))
+
+    def only(self, names: tuple[str, ...]) -> ValueBox:
+        """The box of these values alone."""
+        kept = [k for k, n in enumerate(self.names) if n in names]
+        pick = [tuple(x[k] for k in kept) for x in (self.names, self.low, self.high)]
+        return ValueBox(*pick)  # type: ignore[arg-type]
+
+
+def box_of(
+    diagram: Diagram, intervals: Mapping[str, tuple[float, float]]
+) -> tuple[Diagram, ValueBox]:
+    """The diagram with its values in the middle of their intervals, and the box.
+
+    An interval without width is a value, and no part of the box.
+    raises ModelError: an unknown value, no pair of finite numbers, low above high
+    """
+    known = diagram.values
+    for name, ends in intervals.items():
+        if name not in known:
+            raise ModelError(f'{diagram.name}: no parameter "{name}"{did_you_mean(name, known)}')
+        if not isinstance(ends, tuple | list) or len(ends) != 2:
+            raise ModelError(f"{name}: found {described(ends)}, expected (low, high)")
+        if not all(math.isfinite(x) for x in ends) or ends[0] > ends[1]:
+            raise ModelError(f"{name}: found {ends[0]:g} to {ends[1]:g}, expected low <= high")
+    wide = {n: (float(a), float(b)) for n, (a, b) in intervals.items() if a < b}
+    fixed = {n: float(a) for n, (a, b) in intervals.items() if a == b}
+    box = ValueBox(
+        tuple(wide), tuple(a for a, _ in wide.values()), tuple(b for _, b in wide.values())
+    )
+    for vertex in box.vertices():  # values that a block refuses are refused here
+        diagram.with_values({**fixed, **box.named(vertex)})
+    return diagram.with_values({**fixed, **box.named(box.centre)}), box

@@ -1,0 +1,136 @@
+"""A linear diagram with some of its values as symbols: what it is at all points of a box."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import sympy as sp
+from sympy.polys.matrices import DomainMatrix
+
+from ...blocks import Body
+from ...controllers import Controller, as_written, in_exact_numbers, parameter_symbol
+from ...derive import symbol_values
+from ...derive.elimination import rows
+from ...diagrams import Control, Diagram
+from ...realise.lti import LinearBlocks, S, linear_blocks
+from ...realise.tips import with_tips
+from ..ports import impedance_matrix, judged, ports
+from .box import ValueBox
+
+#: points inside the box at which the family is held against the diagram; each costs about 0.1 s
+_COMPARED = 2
+
+
+@dataclass(frozen=True)
+class Family:
+    """A diagram whose bodies with a structure are apart, and the symbols of its values.
+
+    linear: forms of all blocks in S and the symbols
+    """
+
+    diagram: Diagram
+    symbols: Mapping[str, sp.Symbol]
+    linear: LinearBlocks
+
+    @property
+    def is_rational(self) -> bool:
+        """Whether no dead time is in it."""
+        forms = (*self.linear.blocks.values(), *self.linear.actuation.values())
+        return not self.linear.dead_times and not any(sp.sympify(f).has(sp.exp) for f in forms)
+
+    def impedance(self) -> sp.Matrix:
+        """Forces over velocities at the ports, in S and the symbols."""
+        return impedance_matrix(self.diagram, ports(self.diagram), linear=self.linear)
+
+    def characteristic(self) -> sp.Expr:
+        """Determinant of all equations, times the blocks' denominators: its zeros are the poles.
+
+        Those that no port sees are among them. In S and the symbols
+        """
+        free = set(self.diagram.outside)
+        unknown = [s for s in self.diagram.signals if s not in free]
+        values = symbol_values(self.linear)
+        equations = []
+        for row in rows(self.diagram):
+            terms = {s: sp.cancel(sp.sympify(c).subs(values)) for s, c in row.items()}
+            below = sp.lcm_list([sp.fraction(c)[1] for c in terms.values()])
+            equations.append([sp.cancel(terms.get(s, sp.S(0)) * below) for s in unknown])
+        matrix = DomainMatrix.from_Matrix(sp.Matrix(equations)).to_field()
+        return matrix.domain.to_sympy(matrix.det())
+
+
+def family_of(diagram: Diagram, box: ValueBox) -> Family | None:
+    """The diagram with the box's values as symbols.
+
+    None where it has no such form: a value that a block does not show in its linear form (of a
+    body's structure, of a system given by numbers), or one whose form changes within the box
+    raises ModelError: a block known by its name only
+    """
+    whole = with_tips(judged(diagram))
+    linear = linear_blocks(whole)
+    symbols = {n: sp.Dummy(f"v{k}", real=True) for k, n in enumerate(box.names)}
+    blocks, actuation = dict(linear.blocks), dict(linear.actuation)
+    for name in {n.partition(".")[0] for n in box.names}:
+        if not whole.has(name):
+            return None
+        of_block = {n.partition(".")[2]: s for n, s in symbols.items() if n.startswith(f"{name}.")}
+        forms = _forms(whole, name, of_block)
+        if forms is None:
+            return None
+        blocks[name] = forms[0]
+        if name in actuation:
+            actuation[name] = forms[1]
+    made = Family(whole, symbols, replace(linear, blocks=blocks, actuation=actuation))
+    return made if _agrees(made, diagram, box) else None
+
+
+def _forms(
+    diagram: Diagram, name: str, symbols: Mapping[str, sp.Symbol]
+) -> tuple[sp.Expr, sp.Expr] | None:
+    """Forms of a block, and of its actuation, with these parameters as symbols; None: not there."""
+    part = diagram.block(name)
+    if isinstance(part, Control):
+        law = part.controller
+        if not isinstance(law, Controller) or part.dead_time is not None:
+            return None
+        form = law.linear_form(part.name, S, sp.S(0))
+        if form is None:
+            return None
+        numbers = {parameter_symbol(part.name, n): (n, v) for n, v in law.names().items()}
+        forms, parameters = (form, sp.S(1)), law.names()
+    elif isinstance(getattr(part, "body", None), Body):
+        body = part.body
+        assert isinstance(body, Body)
+        parameters = {n: v.value for n, v in body.parameters.items()}
+        numbers = {s: (n, parameters[n]) for n, s in body.symbols().items()}
+        forms = (body.impedance(S)[0], body.actuation(S)[0])
+    else:
+        return None
+    if not set(symbols) <= set(parameters):
+        return None
+    placed = {x: symbols.get(n, as_written(v)) for x, (n, v) in numbers.items()}
+    first, second = (in_exact_numbers(sp.sympify(f).subs(placed)) for f in forms)
+    return first, second
+
+
+def _agrees(family: Family, diagram: Diagram, box: ValueBox) -> bool:
+    """Whether its blocks are exactly those of the diagram, inside and at two opposite vertices.
+
+    An effect that its values make absent is so at an end of an interval.
+    """
+    for point in (np.array(box.low), np.array(box.high), *box.inside(_COMPARED, 0)):
+        values = box.named(point)
+        there = linear_blocks(with_tips(judged(diagram.with_values(values))))
+        placed = {family.symbols[n]: as_written(v) for n, v in values.items()}
+        for here, exact in (
+            (family.linear.blocks, there.blocks),
+            (family.linear.actuation, there.actuation),
+        ):
+            if here.keys() != exact.keys():
+                return False
+            pairs = ((sp.sympify(here[n]).subs(placed), exact[n]) for n in here)
+            if any(a != b and sp.cancel(sp.together(a - b)) != 0 for a, b in pairs):
+                return False
+    return True

@@ -1,0 +1,123 @@
+"""Friction and its cancellation over a box: vertices decide where each condition is monotone.
+
+A Dahl or bounded cancellation (f_D, sigma_D) of Coulomb or Dahl friction (f_C, sigma_p) is passive
+if f_D <= f_C and sigma_D^2 f_C <= sigma_p^2 f_D (`theorems/dahl_compensation.py`). Written as
+f_C - f_D >= 0 and sigma_p^2 f_D - sigma_D^2 f_C >= 0, each side is monotone in each of the four
+positive values by itself, so that its least value over a box is at a vertex. What is linear beside
+it is judged over its own values. Any other friction is settled at vertices and in the middle alone.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...blocks import Body
+from ...diagrams import Diagram
+from ..claims.claim import Claim
+from ..diagram_claims import composed_claim
+from ..friction_pairs import FrictionPair, friction_pairs, pair_claims
+from ..ports import judged, nonlinear_parts, ports, without_friction
+from .box import ValueBox
+from .conditions import Conditions, one_port_is_passive, two_port_is_passive
+from .family import family_of
+
+#: effects and laws of which the conditions above are all that is asked, with their values
+_FRICTION: dict[str, tuple[str, ...]] = {"coulomb": ("level",), "presliding": ("stiffness",)}
+_LAWS: dict[str, tuple[str, ...]] = {
+    "dahl": ("level", "stiffness"),
+    "coulomb": ("level",),
+    "smoothed_coulomb": ("level",),
+}
+
+
+def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> dict[str, Any]:
+    """What is known of the passivity of a diagram with friction over a box; see `_made`."""
+    points = [*box.vertices(), box.centre]
+    answers = [(point, *_at(middle.with_values(box.named(point)))) for point in points]
+    made: dict[str, Any] = {
+        "statement": f"its ports are {'together ' * (claim == 'passive')}{claim}",
+        "worst": box.named(box.centre),
+        "margin": float("nan"),
+        "unit": "",
+        "proved_margin": float("nan"),
+        "points": len(points),
+    }
+    for point, whole, others in answers:
+        # what takes energy out of friction at one port need not make any termination unstable
+        against = [c for c in others if c.status == "refuted" and claim == "passive"]
+        if whole is None and against:
+            how = f"{against[0].statement}: {against[0].verdict}"
+            named = box.named(point)
+            return {**made, "status": "refuted", "worst": named, "how": how, "at_worst": against[0]}
+    if any(whole is None for _, whole, _ in answers):
+        why = "at some vertex neither a theorem nor a motion settles friction with its cancellation"
+        return {**made, "status": "unknown", "how": why}
+    if _vertices_decide(middle, box) and _rest_is_passive(middle, box):
+        how = (
+            "each condition on friction and cancellation is monotone in each value, so that the "
+            f"{len(points) - 1} vertices decide; the linear rest by Bernstein coefficients"
+        )
+        return {**made, "status": "proved", "how": how, "at_worst": answers[-1][1]}
+    how = "proved at each of these points alone"
+    return {**made, "status": "evidence", "how": how, "at_worst": answers[-1][1]}
+
+
+def _at(diagram: Diagram) -> tuple[Claim | None, list[Claim]]:
+    """The composed proof at a point, None where there is none, and claims on its friction."""
+    there = judged(diagram)
+    pairs = friction_pairs(there)
+    composed = composed_claim(there, ports(there), pairs)
+    others = [one.claim for pair in pairs for one in pair_claims(pair, simulated=False)]
+    return (composed.claim if composed else None), others
+
+
+def _vertices_decide(middle: Diagram, box: ValueBox) -> bool:
+    """Whether every varied value of friction stands in the two conditions alone."""
+    for pair in friction_pairs(judged(middle)):
+        body, law = pair.body.body, pair.cancellation
+        assert isinstance(body, Body)
+        effects = {e.name for e in body.effects if e.role.startswith("friction")}
+        if not effects <= set(_FRICTION) or body.parameters.get("presliding.bristle_damping"):
+            return False
+        if law is not None and (pair.stage is None or pair.stage.law.name not in _LAWS):
+            return False
+        for name in box.names:
+            block, _, rest = name.partition(".")
+            if law is not None and block == law.name and not _is_of(rest, _LAWS):
+                return False
+    return bool(len(box.vertices()) == 2 ** len(box.names))
+
+
+def _is_of(name: str, known: dict[str, tuple[str, ...]]) -> bool:
+    part, _, value = name.rpartition(".")
+    return value in known.get(part, ())
+
+
+def _in_friction(name: str, pairs: list[FrictionPair]) -> bool:
+    """Whether a value is one of friction or its cancellation, and not of the linear rest."""
+    block, _, rest = name.partition(".")
+    laws = [pair.cancellation.name for pair in pairs if pair.cancellation is not None]
+    bodies = [pair.body.name for pair in pairs]
+    return block in laws or (block in bodies and _is_of(rest, _FRICTION))
+
+
+def _rest_is_passive(middle: Diagram, box: ValueBox) -> bool:
+    """Whether what is left without friction and its cancellation is passive over its own values."""
+    rest = judged(middle)
+    pairs = friction_pairs(rest)
+    for pair in pairs:
+        gone = [pair.cancellation.name] if pair.cancellation else []
+        rest = without_friction(rest, pair.body.motion, *gone)
+    own_values = tuple(n for n in box.names if not _in_friction(n, pairs))
+    if nonlinear_parts(rest):
+        return False
+    if not own_values:
+        return True  # it is proved in the composed claim
+    family = family_of(rest, box.only(own_values))
+    if family is None or not family.is_rational:
+        return False
+    ask, z = Conditions.over(box.only(own_values), family.symbols), family.impedance()
+    shape = np.shape(z)
+    return one_port_is_passive(ask, z[0, 0]) if shape == (1, 1) else two_port_is_passive(ask, z)

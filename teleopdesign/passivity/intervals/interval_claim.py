@@ -1,0 +1,97 @@
+"""A claim over intervals of values: what is known of it, where it is worst, and how it is known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from ...by_value import ByValue
+from ...notebook import html_table
+from ..claims.claim import Claim
+from .box import ValueBox
+from .worst import Worst
+
+Status = Literal["proved", "refuted", "evidence", "unknown"]
+
+
+@dataclass(frozen=True, eq=False)
+class IntervalClaim(ByValue):
+    """A claim over intervals of values.
+
+    status: "proved" over the whole box; "refuted" at `worst`; "evidence": holds at all points that
+        were looked at; "unknown"
+    margin: the least that was found, at `worst`, in `unit`
+    proved_margin: what the margin is proved to be at least, over the whole box; NaN: none is
+    points: at which it was looked at;  how: in words;  at_worst: the claim at `worst` alone
+    """
+
+    statement: str
+    status: Status
+    intervals: Mapping[str, tuple[float, float]]
+    worst: Mapping[str, float]
+    margin: float
+    unit: str
+    proved_margin: float
+    points: int
+    how: str
+    units: Mapping[str, str] = field(default_factory=dict)
+    at_worst: Claim | None = None
+
+    @property
+    def holds(self) -> bool | None:
+        """Whether it holds, as far as is known; None where it is unknown."""
+        return {"proved": True, "evidence": True, "refuted": False}.get(self.status)
+
+    @property
+    def known(self) -> str:
+        """How it is known, in the words that every report of it has."""
+        return {
+            "proved": "proved over the whole box",
+            "refuted": "refuted at a point of the box",
+            "evidence": f"checked numerically at {self.points} points, worst found there",
+            "unknown": "unknown",
+        }[self.status]
+
+    def __repr__(self) -> str:
+        measures = {n: f" {u}" if (u := self.units.get(n, "1")) != "1" else "" for n in self.worst}
+        where = ", ".join(f"{n} = {v:.6g}{measures[n]}" for n, v in self.worst.items())
+        lines = [f"{self.known}: {self.statement}", f"    {self.how}"]
+        unit = f" {self.unit}" if self.unit not in ("", "1") else ""
+        if not np.isnan(self.margin):
+            lines.append(f"    worst margin {self.margin:.6g}{unit} at {where or 'its values'}")
+        if not np.isnan(self.proved_margin):
+            lines.append(f"    proved to be at least {self.proved_margin:.6g}{unit}")
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (n, f"{low:g}", f"{high:g}", f"{self.worst[n]:.6g}", self.units.get(n, ""))
+            for n, (low, high) in self.intervals.items()
+        ]
+        head = ("value", "from", "to", "at the worst point", "unit")
+        note = f"{self.statement}; margin {self.margin:.6g} {self.unit}. {self.how}"
+        return html_table(self.known, head, rows, note=note)
+
+
+#: what is made of a claim over a box before it has units and all its intervals
+Parts = dict[str, Any]
+
+
+def parts_of(
+    statement: str, status: Status, worst: Worst, box: ValueBox, unit: str, how: str, **more: Any
+) -> Parts:
+    """Status, worst point and words of a claim over a box."""
+    return {
+        "statement": statement,
+        "status": status,
+        "worst": box.named(worst.point),
+        "margin": worst.margin,
+        "unit": unit,
+        "proved_margin": float("nan"),
+        "points": worst.points,
+        "how": how,
+        **more,
+    }

@@ -1,0 +1,166 @@
+"""Claims about linear diagrams over a box: exact where the diagram is rational, else at points."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import sympy as sp
+
+from ...controllers import as_written
+from ...diagrams import Diagram
+from ...errors import ModelError
+from ...realise.lti import S
+from ..claims.claim import Claim, Unknown
+from ..diagram_claims import linear_claims
+from ..linear.polynomials import is_hurwitz
+from ..ports import judged, nonlinear_parts, ports
+from .at_points import judge_at_points
+from .box import ValueBox
+from .conditions import Conditions, one_port_is_passive, two_port_is_passive, two_port_is_stable
+from .family import family_of
+from .interval_claim import Parts, Status, parts_of
+from .worst import pole_margin, port_margin, search_worst
+
+#: claims that the package knows, and the unit of their margins
+CLAIMS = {"passive": "N s/m", "absolutely stable": "1", "stable": "1/s"}
+#: shares of the worst margin found that are tried as its proved bound, the best first
+_SHARES = (0.999, 0.9, 0.5)
+
+
+def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> Parts:
+    statement = "every pole has a negative real part"
+    if bent := nonlinear_parts(judged(middle)):
+        raise ModelError(f"{middle.name}: stable: {', '.join(bent)} has no linear form")
+    family = family_of(middle, box)
+    if family is None or not family.is_rational:
+        raise ModelError(
+            f"{middle.name}: stable: expected rational blocks whose values are in their linear form"
+        )
+    ask = Conditions.over(box, family.symbols)
+    polynomial = ask.poly(family.characteristic())
+    worst = search_worst(pole_margin(polynomial, ask.symbols), box, points=points, seed=seed)
+    if worst.margin <= 0 and not is_hurwitz(_at(polynomial, ask, worst.point)):
+        how = (
+            f"a pole with real part {-worst.margin:.6g} 1/s; not Hurwitz by Routh's scheme, exactly"
+        )
+        return parts_of(statement, "refuted", worst, box, "1/s", how)
+    if not ask.is_hurwitz(polynomial):
+        return parts_of(statement, "evidence", worst, box, "1/s", _no_proof(ask))
+    how = _how(ask, "its characteristic polynomial is nowhere zero on the axis")
+    shares = (Fraction(str(round(share, 6))) for share in _SHARES)
+    shifts = (Fraction(worst.margin).limit_denominator(10**6) * share for share in shares)
+    bound = next((c for c in shifts if c > 0 and ask.is_hurwitz(_shifted(polynomial, c))), 0)
+    return parts_of(statement, "proved", worst, box, "1/s", how, proved_margin=float(bound))
+
+
+def _shifted(polynomial: sp.Poly, left: Fraction) -> sp.Poly:
+    """The polynomial whose roots lie further right by that much."""
+    expression = polynomial.as_expr().subs(S, S - sp.Rational(str(left)))
+    return sp.Poly(expression, *polynomial.gens, domain="QQ")
+
+
+def _at(polynomial: sp.Poly, ask: Conditions, point: np.ndarray) -> sp.Poly:
+    values = {x: as_written(float(v)) for x, v in zip(ask.symbols, point, strict=True)}
+    return sp.Poly(polynomial.as_expr().subs(values), S, domain="QQ")
+
+
+def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: int) -> Parts:
+    """Passivity or absolute stability of a linear diagram at its ports."""
+    statement = f"its ports are {'together ' * (claim == 'passive')}{claim}"
+    family = family_of(alone, box)
+    if family is None:
+        return _point_by_point(alone, box, claim, points, seed, statement)
+    z = family.impedance()
+    stable = claim == "absolutely stable"
+    ask = Conditions.over(box, family.symbols)
+    poles = []
+    if family.is_rational:
+        poles = [ask.poly(sp.fraction(sp.cancel(e))[1]) for e in z]
+    margin = port_margin(family, z, stable=stable, poles=poles, box=box)
+    worst = search_worst(margin, box, points=points, seed=seed)
+    exact = _settle(alone, box, worst.point, claim)
+    unit = CLAIMS[claim]
+    if exact.status == "refuted":
+        how = str(exact.verdict)
+        worst = worst if worst.margin < 0 else replace(worst, margin=-np.inf)
+        return parts_of(statement, "refuted", worst, box, unit, how, at_worst=exact)
+    if family.is_rational and _proved(ask, z, claim):
+        bound = 0.0 if stable else _bound(ask, z, worst.margin)
+        how = _how(ask, "its conditions are polynomials of one sign")
+        worst = replace(worst, margin=max(worst.margin, bound))
+        return parts_of(
+            statement, "proved", worst, box, unit, how, proved_margin=bound, at_worst=exact
+        )
+    status: Status = "evidence" if exact.holds else "unknown"
+    worst = replace(worst, margin=max(worst.margin, 0.0)) if exact.holds else worst
+    how = _no_proof(ask) if family.is_rational else "with a dead time nothing is proved over a box"
+    if status == "unknown":
+        how = f"at the worst point found: {exact.verdict}"
+    return parts_of(statement, status, worst, box, unit, how, at_worst=exact)
+
+
+def _proved(ask: Conditions, z: sp.Matrix, claim: str) -> bool:
+    if z.shape == (1, 1):
+        return one_port_is_passive(ask, z[0, 0])
+    return (two_port_is_stable if claim == "absolutely stable" else two_port_is_passive)(ask, z)
+
+
+def _bound(ask: Conditions, z: sp.Matrix, margin: float) -> float:
+    """What Z may lose in damping at every port and is still proved to be passive, N s/m."""
+    if not 0 < margin < np.inf:
+        return 0.0
+    show = one_port_is_passive if z.shape == (1, 1) else two_port_is_passive
+    entries = z[0, 0] if z.shape == (1, 1) else z
+    for share in _SHARES:
+        excess = Fraction(margin * share).limit_denominator(10**6)
+        if 0 < excess <= margin and show(ask, entries, margin=excess):
+            return float(excess)
+    return 0.0
+
+
+def _settle(alone: Diagram, box: ValueBox, point: np.ndarray, claim: str) -> Claim:
+    """The claim at a point alone, by the exact tests."""
+    there = judged(alone.with_values(box.named(point)))
+    try:
+        claims = linear_claims(there, ports(there))
+    except ModelError as problem:  # dead times of a form that the tests at a point do not take
+        return Claim(f"{alone.name}: {claim}", Unknown(str(problem)))
+    return claims[-1 if claim == "absolutely stable" else 0].claim
+
+
+def _point_by_point(
+    alone: Diagram, box: ValueBox, claim: str, points: int, seed: int, statement: str
+) -> Parts:
+    """Where the values are not in the linear form as such: each point by itself."""
+
+    def one(diagram: Diagram) -> Claim:
+        there = judged(diagram)
+        return linear_claims(there, ports(there))[-1 if claim == "absolutely stable" else 0].claim
+
+    made = judge_at_points(alone, box, one, points, seed)
+    how = "its values are not in the linear forms as such: every point is settled by itself"
+    refuted = made["status"] == "refuted"
+    settled_there = one(alone.with_values(made["worst"]))
+    return {
+        **made,
+        "statement": statement,
+        "unit": CLAIMS[claim],
+        "how": str(settled_there.verdict) if refuted else how,
+        "at_worst": settled_there,
+    }
+
+
+def _how(ask: Conditions, what: str) -> str:
+    return (
+        f"{what}: {ask.effort.polynomials} shown by Bernstein coefficients on "
+        f"{ask.effort.cells} parts of the box, in exact arithmetic"
+    )
+
+
+def _no_proof(ask: Conditions) -> str:
+    return (
+        f"no proof over the whole box: not shown on {ask.effort.cells} parts of it, or poles on "
+        "the axis that no condition covers"
+    )

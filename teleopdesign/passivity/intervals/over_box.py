@@ -1,0 +1,85 @@
+"""What is known of a claim over a box of values: the worst case, and how it is known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from ...arguments import checked
+from ...diagrams import Diagram
+from ...diagrams.units import first_axis, unit_of_value
+from ...errors import ModelError
+from ...expectations import described
+from ..claims.axis_units import in_rotary_units
+from ..ports import judged, nonlinear_parts, ports, without_holding
+from .at_points import judge_at_points
+from .box import box_of
+from .friction import judge_friction
+from .interval_claim import IntervalClaim, Parts
+from .linear import CLAIMS, judge_linear, judge_stability
+
+
+@checked
+def claim_over_intervals(
+    diagram: Diagram,
+    intervals: Mapping[str, tuple[float, float]],
+    *,
+    claim: str | Callable[[Diagram], Any] = "passive",
+    points: int = 64,
+    seed: int = 0,
+) -> IntervalClaim:
+    """Does a claim hold for all values within intervals, and where is it worst?
+
+    intervals: names of `diagram.values` -> (low, high), SI; hand and environment as others
+    claim: "passive": at all ports together, hands and environments (`Z_H`, `Z_E`) left out;
+        "absolutely stable": two ports between any passive terminations; "stable": every pole of the
+        whole diagram, hand and environment with it, has a negative real part; or a function of a
+        diagram that gives a margin (>= 0: it holds) or a `Claim`
+    points: looked at beside the vertices and the middle;  seed: of these
+    returns: proved over the whole box where exact reasoning shows it (linear, without dead times;
+        friction with its cancellation by the theorems on them), refuted at a point, or checked
+        numerically. Controllers act in continuous time
+    raises ModelError: an unknown value or claim, an interval that is none, no port
+    """
+    middle, box = box_of(diagram, intervals)
+    if callable(claim):
+        return _finish(diagram, intervals, judge_at_points(middle, box, claim, points, seed))
+    if claim not in CLAIMS:
+        raise ModelError(f"claim: found {described(claim)}, expected {', '.join(CLAIMS)}")
+    if claim == "stable":
+        return _finish(diagram, intervals, judge_stability(middle, box, points, seed))
+    alone = without_holding(judged(middle))
+    away = [n for n in box.names if not without_holding(middle).has(n.partition(".")[0])]
+    if away:
+        raise ModelError(f'{away[0]}: holds a port, and no part of what is "{claim}": see "stable"')
+    at = ports(alone)
+    if len(at) > 2 or (claim == "absolutely stable" and len(at) != 2):
+        raise ModelError(f'{diagram.name}: "{claim}" is for two ports at most, found {len(at)}')
+    if nonlinear_parts(alone):
+        return _finish(diagram, intervals, judge_friction(without_holding(middle), box, claim))
+    return _finish(
+        diagram, intervals, judge_linear(without_holding(middle), box, claim, points, seed)
+    )
+
+
+def _finish(
+    diagram: Diagram, intervals: Mapping[str, tuple[float, float]], made: Parts
+) -> IntervalClaim:
+    """With every value that was given, in units of the axis."""
+    given_values = {n: float(a) for n, (a, _) in intervals.items()}
+    worst = {n: made["worst"].get(n, v) for n, v in given_values.items()}
+    within = ", ".join(f"{n} {a:g} to {b:g}" for n, (a, b) in intervals.items())
+    axis = first_axis(diagram)
+    turned = in_rotary_units if axis == "revolute" else str
+    unit = turned(f"1 {made['unit']}")[2:]
+    return IntervalClaim(
+        **{
+            **made,
+            "statement": f"{diagram.name}: {made['statement']}, for all {within or 'its values'}",
+            "intervals": {n: (float(a), float(b)) for n, (a, b) in intervals.items()},
+            "worst": worst,
+            "unit": unit,
+            "how": turned(made["how"]),
+            "units": {n: unit_of_value(diagram, n) for n in intervals},
+        }
+    )

@@ -1,0 +1,66 @@
+"""Energy tanks at the ends of a channel: they are never overdrawn, however the channel behaves.
+
+Before a sample a tank holds W = E_0 + arrived - given, and the held force f obeys abs(f) d <= W, or
+f = 0 where W < 0. Over a travel x with abs(x) <= d it gives f x <= abs(f) d <= W. So given is never
+above E_0 + the largest count that has arrived, late, in any order, held or interpolated, and that
+is at most what is taken at the other end by now, for a count that only grows. The sum over both
+ends: what the computers give to the bodies, less what they take from them, is at most 2 E_0.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy as sp
+
+from ..claims.certificate import storage_certificate
+from ..claims.claim import Claim, Proof
+from ..linear.impedance import decimal, exact
+from ._hypotheses import NOT_NEGATIVE, POSITIVE, under
+from ._theorem import Theorem
+
+
+@under(reserve=NOT_NEGATIVE, travel=POSITIVE)
+def energy_tank(*, reserve: Any, travel: Any) -> Claim:
+    """What do two ends with energy tanks (`energy_tanks`) give out at most?
+
+    reserve: E_0, J, in each;  travel: d, m or rad, largest of any sample
+    returns: proved, for exact positions, forces that act as commanded and at their sample, and
+        counts of energy that arrive no larger than they were sent: late, jittered, lost and held
+    """
+    reserve, travel = exact(reserve), exact(travel)
+    statement = (
+        f"two ends with energy tanks of {decimal(reserve)} J give their bodies at most "
+        f"{decimal(2 * reserve)} J more than they take from them, as long as no sample's travel "
+        f"exceeds {decimal(travel)} m, positions are exact and commands act from their sample on"
+    )
+    tank, size, force, way, most = sp.symbols("W F f x d", real=True)
+    half = sp.Rational(1, 2)
+    certificate = storage_certificate(
+        "a force f within F = W/d leaves W - f x >= 0 after a travel x within d",
+        supply=tank - force * way,
+        constants=("d",),
+        nonnegative={
+            "enough": tank - size * most,
+            "force_above": size - force,
+            "force_below": size + force,
+            "travel_above": most - way,
+            "travel_below": most + way,
+        },
+        proofs={
+            "supply": {
+                "": [
+                    (1, {"enough": 1}, 1),
+                    (half, {"force_above": 1, "travel_below": 1}, 1),
+                    (half, {"force_below": 1, "travel_above": 1}, 1),
+                ]
+            },
+            "storage": {"": ()},
+        },
+        example={"W": reserve, "F": reserve / travel, "f": reserve / travel, "x": 0, "d": travel},
+    )
+    method = "what a held force gives over the largest travel, and counts that only grow"
+    return Claim(statement, Proof(method, (certificate,), equality="at the largest travel"))
+
+
+THEOREM = Theorem(mathematics=(energy_tank,), order=73)

@@ -1,0 +1,160 @@
+"""Waves to and fro: the channel takes energy at its ends, whatever passive stands at them.
+
+With W_1 = b v_m + F_c, W_2 = b v_d - F_P at the ends and f W_1(t - T_1), f W_2(t - T_2) as they
+arrive, the power into the channel is
+
+    F_c v_m - F_P v_d = (W_1^2 - f^2 W_2(t - T_2)^2 + W_2^2 - f^2 W_1(t - T_1)^2)/(4 b)
+
+On its way is E = 1/(4 b) (integral of W_1^2 over t - T_1 to t, of W_2^2 over t - T_2 to t) >= 0,
+whose rate has (1 - dT/dt) W(t - T)^2 for what arrives (Leibniz). So the power is at least dE/dt,
+with waves at rest before the start, where f^2 <= 1 - dT/dt: f = 1 for constant delays, of any
+length, known to nobody (Niemeyer, Slotine, IEEE J. Oceanic Eng. 16 (1991) 145), and a scale below 1
+for delays that grow no faster than d (Lozano, Chopra, Spong, Mechatronics 2002). Waves that arrive
+at a jump of T, or that are lost and made up from others, are outside of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import sympy as sp
+
+from ...diagrams import Diagram, Moving, wave_variables
+from ...errors import ModelError
+from ...realise.lti import S, linear_blocks
+from ..claims.certificate import Certificate, storage_certificate
+from ..claims.claim import Claim, Proof, Unknown
+from ..linear.impedance import decimal, exact
+from ..linear.positive_real import positive_real
+from ..ports import judged, without_holding
+from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, under
+from ._theorem import Theorem
+
+
+@under(wave_impedance=POSITIVE, scale=NOT_NEGATIVE, delay_growth=NOT_NEGATIVE)
+def wave_channel(*, wave_impedance: Any, scale: Any = 1, delay_growth: Any = 0) -> Claim:
+    """Does a channel of waves give out no more than came in, at both ends together?
+
+    wave_impedance: b, N s/m;  scale: f, of waves as they arrive
+    delay_growth: d, most that a delay grows in a second, s/s; delays are continuous, of any length
+    returns: proved where f^2 <= 1 - d, else unknown: no motion is sought
+    """
+    b, f, d = map(exact, (wave_impedance, scale, delay_growth))
+    grows = f"grow by {decimal(d)} s a second at most" if d else "are constant or fall"
+    statement = (
+        f"a channel of waves of {decimal(b)} N s/m, scaled by {decimal(f)}, with delays that "
+        f"{grows}, gives out no more energy at both ends than came in, in continuous time"
+    )
+    if f**2 > 1 - d:
+        return Claim(statement, Unknown("scale^2 is above 1 - delay_growth"))
+    method = "the energy of the waves on their way, whose rate is at most the power that comes in"
+    certificate = _certificate({"b": b, "f": f, "d": d})
+    equality = "for constant delays: it is lossless" if f == 1 else ""
+    return Claim(statement, Proof(method, (certificate,), float(1 - d - f**2), "", equality))
+
+
+def _certificate(values: dict[str, sp.Expr]) -> Certificate:
+    """Power at both ends, less the rate of the energy on its way, is not negative.
+
+    values: b, f, d;  late_1, late_2: W_1(t - T_1) and W_2(t - T_2);  g_1, g_2: dT_1/dt, dT_2/dt
+    """
+    b, f, d, g1, g2 = sp.symbols("b f d g_1 g_2", real=True)
+    w1, w2, late1, late2 = sp.symbols("W_1 W_2 late_1 late_2", real=True)
+    v_m, f_c = (w1 + f * late2) / (2 * b), (w1 - f * late2) / 2
+    v_d, f_p = (f * late1 + w2) / (2 * b), (f * late1 - w2) / 2
+    stored = (w1**2 - (1 - g1) * late1**2 + w2**2 - (1 - g2) * late2**2) / (4 * b)
+    quarter = sp.Rational(1, 4)
+    terms = [
+        (quarter, {factor: 1, "b": -1}, late)
+        for late, grows in ((late1, "slow_1"), (late2, "slow_2"))
+        for factor in (grows, "enough")
+    ]
+    return storage_certificate(
+        "F_c v_m - F_P v_d is not below the rate of 1/(4 b) times what is on its way",
+        supply=f_c * v_m - f_p * v_d - stored,
+        constants=("b", "d", "f"),
+        positive={"b": b},
+        nonnegative={"enough": 1 - d - f**2, "slow_1": d - g1, "slow_2": d - g2},
+        proofs={"supply": {"": terms}, "storage": {"": ()}},
+        example={**values, "g_1": 0, "g_2": 0, "W_1": 1, "W_2": 1, "late_1": 1, "late_2": 1},
+    )
+
+
+@under(master=FREE, slave=FREE, coupling=FREE, wave_impedance=POSITIVE)
+def wave_teleoperator(*, master: Any, slave: Any, coupling: Any, wave_impedance: Any) -> Claim:
+    """Is the teleoperator passive at hand and environment, for constant delays of any length?
+
+    master, slave: impedances, force over velocity;  coupling: of the slave's controller, too, from
+        v_d - v_s to F_P;  wave_impedance: b, N s/m
+    Energies add: F_m v_m + F_s v_s is what goes into master, slave, controller and channel.
+    returns: proved where each part is positive real, else unknown: the whole may still be passive
+    """
+    channel = wave_channel(wave_impedance=wave_impedance)
+    statement = (
+        f"the teleoperator of waves of {decimal(exact(wave_impedance))} N s/m is passive at both "
+        "ports together, for all constant delays of its channel, in continuous time"
+    )
+    certificates = list(channel.certificates)
+    for name, part in (("master", master), ("slave", slave), ("coupling", coupling)):
+        claim = positive_real(part)
+        if not isinstance(claim.verdict, Proof):
+            return Claim(statement, Unknown(f"the {name} alone is not proved: {claim.statement}"))
+        certificates += claim.certificates
+    method = "energies of master, slave, the slave's controller and the channel, which add"
+    return Claim(statement, Proof(method, tuple(certificates)))
+
+
+def wave_claim(diagram: Diagram) -> Claim:
+    """`wave_teleoperator` of a diagram wired by `wave_variables`, controllers in continuous time.
+
+    Hand and environment are no part of what is judged. Coulomb friction may be there beside the
+    impedances: its force is against the velocity, so that it takes energy.
+    raises ModelError: another wiring, a block without values, two wave impedances that differ
+    """
+    alone = without_holding(judged(diagram))
+    wave_impedance = _wave_impedance(alone)
+    linear = linear_blocks(alone)
+    claim = wave_teleoperator(
+        master=linear.blocks["Z_m"] / S,
+        slave=linear.blocks["Z_s"] / S,
+        coupling=exact(wave_impedance) * linear.blocks["P"],
+        wave_impedance=wave_impedance,
+    )
+    bent = [n for n in linear.left_out if n not in ("Z_m.coulomb", "Z_s.coulomb")]
+    bent += [f"the actuator of {n}" for n, stage in linear.actuation.items() if stage != 1]
+    # the channel acts on one side of a compliance, the hand on the other: two ports, not one
+    bent += [
+        f"{b.name}.{effect.name}"
+        for b in alone.bodies
+        for effect in getattr(b.body, "effects", ())
+        if effect.role == "structure"
+    ]
+    if bent and isinstance(claim.verdict, Proof):
+        why = f"not in the impedances that were judged: {', '.join(bent)}"
+        return Claim(claim.statement, Unknown(why))
+    return claim
+
+
+def _wave_impedance(diagram: Diagram) -> float:
+    """b of a diagram without hand and environment that is wired as `wave_variables` does it."""
+    bodies = {b.name: b.body for b in diagram.blocks if isinstance(b, Moving)}
+    controls = {c.name: replace(c, analog=False) for c in diagram.controls}
+    impedance = diagram.values.get("b_m.spring_damper.damping", 0.0)
+    if {"Z_m", "Z_s"} <= set(bodies) and "P" in controls and impedance > 0:
+        made = wave_variables(
+            bodies["Z_m"],
+            bodies["Z_s"],
+            wave_impedance=impedance,
+            coupling=controls["P"].controller,
+            delay={n: controls[n].dead_time or 0.0 for n in ("T_1", "T_2") if n in controls},
+        )
+        blocks = tuple(controls.get(b.name, b) for b in diagram.blocks)
+        if replace(diagram, name=made.name, texts=made.texts, blocks=blocks) == made:
+            return impedance
+    raise ModelError(
+        f"{diagram.name}: not wired as `wave_variables` does it, with one b on both sides"
+    )
+
+
+THEOREM = Theorem(mathematics=(wave_channel, wave_teleoperator), order=71)

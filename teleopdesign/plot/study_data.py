@@ -1,0 +1,123 @@
+"""Axes and measures of a study's data by their names, and the words of their labels."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import ModelError, did_you_mean
+from .design import unit_text
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+#: ratios of neighbours that differ by less than this are those of a logarithmic axis
+_EVEN = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class StudyData:
+    """What a study's figures read: each method takes names of axes and measures.
+
+    raises ModelError: no such axis or measure
+    """
+
+    data: xarray.Dataset
+
+    @property
+    def axes(self) -> list[str]:
+        """Names of the parameters, in the order of the study."""
+        return list(json.loads(self.data.attrs["axes"]))
+
+    def name(self, name: str) -> str:
+        """What a parameter or measure is called in a label."""
+        return words(self.data[name].attrs.get("long_name") or name)
+
+    def is_number(self, *names: str) -> bool:
+        """Whether the values of all of them are numbers, not words."""
+        return all(self.data[n].dtype.kind in "biuf" for n in names)
+
+    def measure(self, name: str) -> xarray.DataArray:
+        """The measure of that name;  "": the first one in numbers."""
+        known = [str(n) for n in self.data.data_vars if n != "failure" and self.is_number(str(n))]
+        if not name and known:
+            name = known[0]
+        if name not in known:
+            raise ModelError(
+                f'study: no measure "{name}" in numbers, has {listed(known)}'
+                f"{did_you_mean(name, known)}"
+            )
+        return self.data[name]
+
+    def at(self, values: xarray.DataArray, at: Mapping[str, float] | None) -> xarray.DataArray:
+        """The values nearest to those of `at`, without the axes that have one value left."""
+        for name, value in (at or {}).items():
+            self.require(name, [str(d) for d in values.dims])
+            if self.data[name].dtype.kind in "biuf":
+                values = values.sel({name: value}, method="nearest")
+            else:
+                values = values.sel({name: value})
+        return values.squeeze(drop=True)
+
+    def require(self, name: str, known: Sequence[str]) -> None:
+        """Refuse a name that is none of the known axes."""
+        if name not in known:
+            raise ModelError(
+                f'study: no axis "{name}", has {listed(known)}{did_you_mean(name, known)}'
+            )
+
+    def pair(self, values: xarray.DataArray, x: str, y: str) -> tuple[str, str]:
+        """The axes of a map, across and up: those asked for, else the last two."""
+        dims = [str(d) for d in values.dims]
+        if len(dims) != 2:
+            raise ModelError(
+                f"study: a map has two axes, found {listed(dims) or 'none'}: give values of the "
+                "others: at=..."
+            )
+        for name in (x, y):
+            if name:
+                self.require(name, dims)
+        across = x or next(d for d in reversed(dims) if d != y)
+        up = y or next(d for d in dims if d != across)
+        return across, up
+
+    def label_axis(self, axis: Axes, which: str, name: str) -> None:
+        """Label one axis of a panel, "x" or "y"; logarithmic where the values are spaced so."""
+        values = self.data[name].values
+        if values.dtype.kind in "biuf" and len(values) > 2 and (values > 0).all():
+            ratios = values[1:] / values[:-1]
+            if np.ptp(ratios) < _EVEN * ratios[0] and ratios[0] > 1.01:
+                axis.set(**{f"{which}scale": "log"})
+        axis.set(**{f"{which}label": label(self.data[name])})
+
+
+def label(array: xarray.DataArray) -> str:
+    """Name and unit."""
+    unit = array.attrs.get("units", "")
+    name = words(array.attrs.get("long_name") or str(array.name))
+    return f"{name} ({unit_text(unit)})" if unit else name
+
+
+def words(name: str) -> str:
+    """The name with spaces; what has a dot is a path of the model and stays."""
+    return name.replace("_", " ") if "." not in name else name
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names in a message."""
+    return ", ".join(names)
+
+
+def number(value: Any) -> str:
+    """Four digits; a word stays."""
+    return value if isinstance(value, str) else f"{float(value):.4g}"
+
+
+def spread(count: int, most: int) -> list[int]:
+    """At most that many of `count` places, evenly."""
+    return sorted({round(k) for k in np.linspace(0, count - 1, min(count, most))})

@@ -1,0 +1,184 @@
+"""Maps of parameter studies: a measure as colour over two parameters, one map or several."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .design import ONE_COLUMN, STYLE, TWO_COLUMNS, unit_text
+from .onset import hatch_region
+from .study_data import StudyData, label, number, spread
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+    import xarray
+    from matplotlib.axes import Axes
+
+    #: where a theorem holds: a measure that is "proved" there, an array that is true there, or the
+    #: upper limit of y as a function of x
+    Proved = str | xarray.DataArray | Callable[[np.ndarray], np.ndarray]
+
+#: panels side by side that can still be read on a page
+MOST_PANELS = 9
+
+
+@dataclass(frozen=True)
+class Overlay:
+    """What is drawn over a map: see `StudyPlots.map`."""
+
+    proved: Any
+    proved_label: str
+    onset: float | None
+    onset_label: str
+
+
+def draw_map(
+    study: StudyData,
+    measure: str,
+    along: tuple[str, str],
+    at: Mapping[str, float] | None,
+    over: Overlay,
+) -> matplotlib.figure.Figure:
+    """One map;  along: axes across and up, "" for the default: see `StudyPlots.map`."""
+    import matplotlib.pyplot as plt
+
+    values = study.at(study.measure(measure), at)
+    across, up = study.pair(values, *along)
+    with plt.style.context(STYLE):
+        figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.9))
+        mesh = _draw_mesh(study, axis, values, across, up, _limits(values, over.onset))
+        _draw_marks(study, axis, values, (across, up), over, at)
+        figure.colorbar(mesh, ax=axis, label=label(values))
+        _draw_legend(figure, axis)
+    return figure
+
+
+def draw_panels(
+    study: StudyData,
+    measure: str,
+    along: tuple[str, str, str],
+    at: Mapping[str, float] | None,
+    over: Overlay,
+) -> matplotlib.figure.Figure:
+    """Maps side by side;  along: axes across, up and by: see `StudyPlots.panels`."""
+    import matplotlib.pyplot as plt
+
+    *plane, by = along
+    whole = study.measure(measure)
+    third = by or str(whole.dims[0])
+    study.require(third, [str(d) for d in whole.dims])
+    values = study.at(whole, at)
+    shown = spread(values.sizes[third], MOST_PANELS)
+    across, up = study.pair(values.isel({third: 0}), *plane)
+    columns = min(len(shown), 3)
+    rows = -(-len(shown) // columns)
+    with plt.style.context(STYLE):
+        figure, axes = plt.subplots(
+            rows,
+            columns,
+            sharex=True,
+            sharey=True,
+            squeeze=False,
+            figsize=(TWO_COLUMNS, 0.7 + 1.9 * rows),
+        )
+        limits = _limits(values, over.onset)
+        for letter, k, axis in zip("abcdefghi", shown, axes.flat, strict=False):
+            one = values.isel({third: k})
+            mesh = _draw_mesh(study, axis, one, across, up, limits)
+            where = {**(at or {}), third: study.data[third].values[k]}
+            _draw_marks(study, axis, one, (across, up), over, where)
+            unit = unit_text(study.data[third].attrs.get("units", ""))
+            title = f"({letter}) {study.name(third)} = {number(study.data[third].values[k])} {unit}"
+            axis.set_title(title, loc="left", pad=3)
+            axis.label_outer()
+        for axis in axes.flat[len(shown) :]:
+            axis.remove()
+        figure.colorbar(mesh, ax=axes, label=label(whole))
+        _draw_legend(figure, axes[0, 0])
+    return figure
+
+
+def _draw_mesh(
+    study: StudyData,
+    axis: Axes,
+    values: xarray.DataArray,
+    across: str,
+    up: str,
+    limits: tuple[float, float],
+) -> Any:
+    mesh = axis.pcolormesh(
+        study.data[across].values,
+        study.data[up].values,
+        np.ma.masked_invalid(values.transpose(up, across).values),
+        shading="nearest",
+        cmap="RdBu_r" if limits[0] < 0 and limits[1] == -limits[0] else "viridis",
+        vmin=limits[0],
+        vmax=limits[1],
+        rasterized=True,
+    )
+    study.label_axis(axis, "x", across)
+    study.label_axis(axis, "y", up)
+    return mesh
+
+
+def _draw_marks(
+    study: StudyData,
+    axis: Axes,
+    values: xarray.DataArray,
+    along: tuple[str, str],
+    over: Overlay,
+    at: Mapping[str, float] | None,
+) -> None:
+    """Hatched region and line of onset over a map."""
+    (across, up), proved, onset = along, over.proved, over.onset
+    x, y = study.data[across].values, study.data[up].values
+    box = axis.get_xlim(), axis.get_ylim()
+    if callable(proved):
+        limit = np.minimum(np.broadcast_to(proved(x), x.shape), box[1][1])
+        hatch_region(axis, _edges(x, box[0]), box[1][0], _edges(limit), over.proved_label)
+        axis.collections[-1].set_facecolor("none")
+        axis.collections[-1].set_edgecolor("black")
+    elif proved is not None:
+        held = study.data[proved] == "proved" if isinstance(proved, str) else proved
+        inside = study.at(held, {k: v for k, v in (at or {}).items() if k in held.dims})
+        shown = np.ma.masked_where(~inside.transpose(up, across).values.astype(bool), inside.T)
+        axis.pcolor(x, y, shown, shading="nearest", hatch="///", alpha=0.0)
+        axis.fill_between(
+            [], [], facecolor="none", edgecolor="black", hatch="///", label=over.proved_label
+        )
+    if onset is not None:
+        field = values.transpose(up, across).values
+        if np.nanmin(field) < onset < np.nanmax(field):
+            field = np.where(np.isinf(field), np.nanmax(field[np.isfinite(field)]), field)
+            axis.contour(x, y, field, [onset], colors="black", linewidths=1.2)
+            axis.plot([], [], color="black", linewidth=1.2, label=over.onset_label)
+    axis.set(xlim=box[0], ylim=box[1])
+
+
+def _draw_legend(figure: Any, axis: Axes) -> None:
+    handles, labels = axis.get_legend_handles_labels()
+    if handles:
+        figure.legend(handles, labels, loc="outside lower center", ncols=2)
+
+
+def _limits(values: xarray.DataArray, onset: float | None) -> tuple[float, float]:
+    """Scale of colours: of all numbers; even about 0 where the onset is at 0.
+
+    There the 95th percentile of sizes: swings that explode would leave no colour for the rest.
+    """
+    finite = values.values[np.isfinite(values.values)]
+    if not finite.size:
+        return 0.0, 1.0
+    if onset == 0.0 and finite.min() < 0 < finite.max():
+        most = float(np.percentile(np.abs(finite), 95))
+        return -most, most
+    return float(finite.min()), float(finite.max())
+
+
+def _edges(values: np.ndarray, ends: tuple[float, float] | None = None) -> np.ndarray:
+    """Points, with the ends of the axis (or the last values again) on both sides."""
+    first, last = ends or (values[0], values[-1])
+    return np.concatenate([[first], values, [last]])

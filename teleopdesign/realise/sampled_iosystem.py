@@ -1,0 +1,213 @@
+"""A diagram with its computer as a python-control system in discrete time.
+
+One step is one sample of the simulation: the computer reads its sensors and acts, then bodies and
+analog blocks go on by inner steps of the same loop (`integrator.py`), all inputs held. What a later
+sample needs is a state: those of bodies and controllers, the commands that are held, the positions
+that were read last, and what a delay block keeps.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..diagrams import Diagram
+from ..errors import GrowsWithoutBound, ModelError
+from .delays import late_samples
+from .kernel import FASTEST, RELOAD, Program, fastest_rate, program, refine_factor, too_long
+from .simulated import in_computer
+
+if TYPE_CHECKING:
+    import control
+
+#: by how much an inner step may be divided where bristles or fast oscillations ask for it
+_MOST_DIVIDED = 200
+#: most memory of samples that one delay block may add to the state
+_MOST_KEPT = 1000
+
+
+def sampled_iosystem(diagram: Diagram, dt: float, step: float) -> control.NonlinearIOSystem:
+    """The system of a diagram whose bodies are as they are simulated (`simulated`).
+
+    dt: of a step, the computer's period, s;  step: longest inner step, s
+    raises ModelError: what is late lies between samples
+    """
+    import control
+
+    form = in_computer(diagram, dt)
+    made = program(form, jit=False)
+    if made.layout.late:
+        raise ModelError(
+            f"{diagram.name}: an analog signal that is late has no state of a fixed size between "
+            "samples: use `simulate`, or delay_order for a delay block"
+        )
+    one = _Sample(made, dt, step, _late(made, form, dt))
+    names = (*made.layout.inputs, *made.layout.sampled_inputs)
+    inputs = [name for name in diagram.outside if name in names]
+    return control.nlsys(
+        lambda t, x, u, params: one(t, x, dict(zip(inputs, u, strict=True)), params).after,
+        lambda t, x, u, params: one(t, x, dict(zip(inputs, u, strict=True)), params).signals,
+        inputs=inputs,
+        outputs=[name for name in made.layout.columns if name not in inputs],
+        states=one.state_names or None,
+        params={name: form.values[name] for name in made.layout.parameters},
+        name=diagram.name.replace(" ", "_"),
+        dt=dt,
+    )
+
+
+def _late(made: Program, form: Diagram, dt: float) -> tuple[float, ...]:
+    """By how many samples each late signal of the computer is late."""
+    e, values = made.equations, form.values
+    at = {x: values[n] for x, n in e.parameters.items()}
+    counts = tuple(
+        late_samples(float(d.subs(at)), dt, what=form.name) for _, d in e.computer.late.values()
+    )
+    if max(counts, default=0.0) > _MOST_KEPT:
+        raise ModelError(
+            f"{form.name}: a delay of {max(counts):.0f} samples is as many states: expected at "
+            f"most {_MOST_KEPT}"
+        )
+    return counts
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """signals: outputs at the sample;  after: state at the next one."""
+
+    signals: np.ndarray
+    after: np.ndarray
+
+
+class _Held:
+    """Inputs that are the same in each column: a table that is as long as it is read."""
+
+    def __init__(self, values: np.ndarray) -> None:
+        self.values = values
+
+    def __getitem__(self, place: tuple[int, int]) -> float:
+        return float(self.values[place[0]])
+
+
+class _Sample:
+    """One sample of the loop, as a function of state, inputs and parameters."""
+
+    def __init__(self, made: Program, dt: float, step: float, late: tuple[float, ...]) -> None:
+        self.made, self.dt, self.late = made, dt, np.array(late, dtype=float)
+        self.least = max(math.ceil(dt / step * (1 - 1e-9)), 1)
+        layout, at = made.layout, made.functions
+        self.slots = int(max(late, default=0.0)) + 2
+        motions = [f"{name}_read" for name in self._motions()]
+        groups = {
+            "STATES": layout.states,
+            "COMPUTER_STATES": layout.computer_states,
+            "COMMANDS": tuple(f"{name}_held" for name in layout.commands),
+            "SEEN": tuple(motions),
+        }
+        self.rows = np.concatenate(
+            [at[first] + np.arange(len(names)) for first, names in groups.items()]
+        ).astype(int)
+        kept = [f"late_{i}_{k}" for k in range(1, self.slots) for i in range(len(late))]
+        self.state_names = [*(n for names in groups.values() for n in names), *kept]
+        self.inner: dict[tuple[float, ...], int] = {}
+        self.last: tuple[Any, _Answer] | None = None
+
+    def _motions(self) -> tuple[str, ...]:
+        """Motions whose readings the computer keeps, by the names of the user."""
+        e, layout = self.made.equations, self.made.layout
+        if not layout.commands:
+            return ()
+        # columns begin with position, velocity and acceleration of each motion
+        return tuple(layout.columns[3 * i] for i in range(len(e.motions)))
+
+    def __call__(
+        self, t: float, x: np.ndarray, inputs: Mapping[str, float], params: Mapping[str, float]
+    ) -> _Answer:
+        layout = self.made.layout
+        values = tuple(float(params[name]) for name in layout.parameters)
+        key = (float(t), np.asarray(x, dtype=float).tobytes(), tuple(inputs.values()), values)
+        if self.last is None or self.last[0] != key:
+            self.last = (key, self._answer(t, np.asarray(x, dtype=float), inputs, values))
+        return self.last[1]
+
+    def _answer(
+        self, t: float, x: np.ndarray, inputs: Mapping[str, float], values: tuple[float, ...]
+    ) -> _Answer:
+        if values not in self.inner:
+            self.inner[values] = self._first_inner(values)
+        inner = self.inner[values]
+        while True:
+            answer, worst = self._advanced(t, x, inputs, values, inner)
+            if not np.isfinite(answer.after).all():
+                raise GrowsWithoutBound(f"to_iosystem: the state is no finite number at {t:g} s")
+            if worst <= RELOAD:
+                return answer
+            inner *= refine_factor(worst, RELOAD, 2)
+            self._check(inner)
+
+    def _first_inner(self, values: tuple[float, ...]) -> int:
+        """Inner steps that resolve the fastest rate at rest."""
+        named = dict(zip(self.made.layout.parameters, values, strict=True))
+        rate, _ = fastest_rate(self.made, named)
+        measure = rate * self.dt / self.least
+        inner = self.least * (refine_factor(measure, FASTEST, 1) if measure > FASTEST else 1)
+        self._check(inner)
+        return inner
+
+    def _check(self, inner: int) -> None:
+        if inner > _MOST_DIVIDED * self.least:
+            raise too_long(self.dt / self.least, self.dt / inner, "is far too long")
+
+    def _advanced(
+        self,
+        t: float,
+        x: np.ndarray,
+        inputs: Mapping[str, float],
+        values: tuple[float, ...],
+        inner: int,
+    ) -> tuple[_Answer, float]:
+        """The sample with that many inner steps, and how well they resolve bristles."""
+        at, layout, h = self.made.functions, self.made.layout, self.dt / inner
+        memory, parameters = np.zeros(at["ROWS"]), np.array(values)
+        memory[self.rows] = x[: len(self.rows)]
+        past = self._ring(x[len(self.rows) :])
+        analog = _Held(np.array([inputs[name] for name in layout.inputs]))
+        sampled = _Held(np.array([inputs[name] for name in layout.sampled_inputs]))
+        with np.errstate(all="ignore"):  # plain Python warns where compiled code gives inf
+            if at["COMPUTER"]:
+                at["sample"](
+                    *(False, round(t / self.dt), self.slots, t, self.dt, 0.0, 0.0, analog, 0),
+                    *(sampled, self.late, past, self.slots, parameters, memory, 0),
+                )
+                new, many = at["NEW_COMMANDS"], len(layout.commands)
+                memory[at["COMMANDS"] : at["COMMANDS"] + many] = memory[new : new + many]
+            else:
+                arguments = (t, at["STATES"], at["BRISTLES"], analog, 0, at["LATE"])
+                at["signals"](*arguments, parameters, memory, at["NOW"], 0)
+            at["record"](analog, 0, memory, at["COLUMNS"], 0)
+            rows = memory[at["COLUMNS"] : at["COLUMNS"] + len(layout.columns)]
+            signals = np.array(
+                [x for x, name in zip(rows, layout.columns, strict=True) if name not in inputs]
+            )
+            for j in range(inner):
+                at["step"](j == 0, t + j * h, h, analog, 0, parameters, memory, 0)
+        worst = memory[at["WORST"] : at["WORST"] + len(layout.exponential)].max(initial=0.0)
+        after = np.concatenate([memory[self.rows], self._kept(past)])
+        return _Answer(signals, after), float(worst)
+
+    def _ring(self, kept: np.ndarray) -> np.ndarray:
+        """What is late, as the loop keeps it; the sample that is made has the place `slots`."""
+        many = len(self.late)
+        past = np.zeros((self.slots, many))
+        for age in range(1, self.slots):
+            past[-age % self.slots] = kept[(age - 1) * many : age * many]
+        return past.reshape(-1)
+
+    def _kept(self, past: np.ndarray) -> np.ndarray:
+        """The samples of the ring by their age at the next sample, from 1 on."""
+        ring = past.reshape(self.slots, len(self.late))
+        return np.concatenate([ring[-age % self.slots] for age in range(self.slots - 1)])

@@ -1,0 +1,106 @@
+"""What records cannot tell of parameters is said, and no model keeps what is not surely there."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from teleopdesign.diagnose.answer import answer, write_answer
+from teleopdesign.diagnose.answers import restored
+from teleopdesign.diagnose.answers.saved import load_answer
+from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.conclusion import doubtful
+from teleopdesign.diagnose.diagnosis import SetAside, Untold
+from teleopdesign.diagnose.identifiability import doubt
+from teleopdesign.diagnose.ladder_text import ladder_text
+from teleopdesign.diagnose.plausibility import implausible_effects
+from teleopdesign.diagnose.untold import best_product, known_together
+from teleopdesign.effects import EFFECTS
+
+
+@given(power=st.floats(0.3, 3.0), noise=st.floats(1e-4, 1e-2))
+def test_the_product_that_a_record_tells_is_found(power, noise):
+    """Columns that are alike up to a little: one combination is told, the other hardly."""
+    rng = np.random.default_rng(1)
+    one, little = rng.standard_normal(500), noise * rng.standard_normal(500)
+    columns = np.column_stack([one, power * one + little])
+    covariance = np.linalg.inv(columns.T @ columns)
+    powers, known = best_product(columns, np.sqrt(np.diag(covariance)))
+    expected = np.array([1.0, power]) / max(1.0, power)
+    np.testing.assert_allclose(powers, expected, rtol=0.05)
+    assert known < 0.1 * np.sqrt(np.diag(covariance)).min()
+
+
+def stribeck_of(diagnosis):
+    return next(r.added for r in diagnosis.rungs if r.added is not None)
+
+
+def with_errors(fit, times):
+    """The fit with standard errors of `stribeck` so many times its values."""
+    values = {
+        n: replace(v, stderr=times * abs(v.value))
+        for n, v in fit.model.parameters.items()
+        if ".stribeck." in n
+    }
+    return replace(fit, model=fit.model.with_values(values))
+
+
+def test_parameters_that_are_well_known_are_not_called_open(diagnosis):
+    assert known_together(with_errors(diagnosis.after, 0.01), stribeck_of(diagnosis)) == ""
+
+
+def test_an_effect_whose_strength_no_error_tells_from_absence_is_doubtful(diagnosis, prepared_case):
+    added, fit = stribeck_of(diagnosis), diagnosis.after
+    assert doubt(with_errors(fit, 0.3), added) == ""
+    assert "extra_static_level" in doubt(with_errors(fit, 1.5), added)
+    rungs = diagnosis.rungs
+    assert doubtful(rungs, prepared_case) is None
+    unsure = (*rungs[:-1], replace(rungs[-1], fit=with_errors(fit, 1.5)))
+    rung, why = doubtful(unsure, prepared_case)
+    assert rung.added == added and "not told from absence" in why
+
+
+def test_what_was_set_aside_or_is_untold_stands_in_text_and_answer(diagnosis, experiment, tmp_path):
+    added, gone = stribeck_of(diagnosis), Candidate(EFFECTS["backlash"], "device")
+    whole = replace(
+        diagnosis,
+        untold=(Untold(added, "the level at rest is not told"),),
+        set_aside=(SetAside(gone, 0.03, "gap = 0.1 +- 0.2 m is not told from absence"),),
+    )
+    text = ladder_text(whole)
+    assert "cannot be told: the level at rest" in text
+    assert "set aside: backlash at device (3.00 %): gap" in text
+    content = answer(whole)
+    assert content["cannot_tell"][0]["effect"] == "stribeck"
+    assert content["set_aside"][0]["reason"].startswith("gap")
+    write_answer(whole, tmp_path / "answer.json")
+    again = restored(load_answer(tmp_path / "answer.json"), experiment)
+    assert [str(one) for one in again.untold] == [str(one) for one in whole.untold]
+    assert [str(one) for one in again.set_aside] == [str(one) for one in whole.set_aside]
+
+
+@pytest.fixture(scope="module")
+def prepared_case(experiment):
+    from teleopdesign.diagnose.prepare import prepare
+
+    return prepare(experiment)
+
+
+def test_two_forces_that_take_each_other_away_are_neither_of_them(diagnosis, prepared_case):
+    """Any force, a user's own too: none varies by more than all that act."""
+    model = diagnosis.before.model
+    there = model.with_effect(EFFECTS["spring"], at="device", values={"stiffness": 5.0})
+    assert implausible_effects(there, prepared_case) == {}
+    much = there.with_effect(EFFECTS["hardening_spring"], at="device")
+    much = much.with_values(
+        {
+            "device.spring.stiffness": 1e6,
+            "device.hardening_spring.stiffness": 1e-3,
+            "device.hardening_spring.neutral": 0.0,
+        }
+    )
+    said = implausible_effects(much, prepared_case)
+    assert "only their sum is known" in said["spring", "device"]
+    assert ("hardening_spring", "device") not in said or "neutral" in str(said)

@@ -1,0 +1,129 @@
+"""A disturbance observer: its closed form, its delay margin, and what it does to friction."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from devices import body
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from teleopdesign.controllers import controller
+from teleopdesign.derive import transfer_function
+from teleopdesign.diagrams import (
+    Diagram,
+    Junction,
+    Moving,
+    disturbance_observer,
+    haptic_interface,
+    read_diagram,
+    teleoperator,
+    write_diagram,
+)
+from teleopdesign.errors import ModelError
+from teleopdesign.frequency import delay_margin, loop_gain
+from teleopdesign.passivity import diagram_claims, ports
+from teleopdesign.passivity.ports import impedance_matrix
+from teleopdesign.realise.lti import S
+from teleopdesign.simulate import Sampling, simulate
+
+BANDWIDTH = 20.0
+POLE = 2 * np.pi * BANDWIDTH
+
+
+def axis(made):
+    """A body with a commanded force from outside, and a port."""
+    return Diagram(
+        "axis",
+        (Moving("M", made, "x", "u", {"f": 1}, "f"),),
+        (Junction("u", {"w": 1}),),
+        {"f": "force", "w": "force"},
+        measured=("x",),
+    )
+
+
+def observed(made, *, inertia, damping=0.0):
+    return disturbance_observer(
+        axis(made), body="M", inertia=inertia, damping=damping, bandwidth=BANDWIDTH
+    )
+
+
+sizes = st.floats(0.05, 5.0).map(lambda x: round(x, 3))
+
+
+@settings(max_examples=6)
+@given(mass=sizes, viscous=sizes, inertia=sizes, damping=sizes)
+def test_to_its_port_it_is_a_damper_and_a_spring(mass, viscous, inertia, damping):
+    """Z = M s + B + g (M_n + B_n/s), passive for any nominal body; 1e-12: rounding of pi."""
+    made = observed(body(mass, viscous__damping=viscous), inertia=inertia, damping=damping)
+    form = impedance_matrix(made, ports(made))[0, 0]
+    for s in (0.3 + 2j, 40j, 5.0):
+        expected = mass * s + viscous + POLE * (inertia + damping / s)
+        assert complex(form.subs(S, s)) == pytest.approx(expected, rel=1e-12)
+    claims = diagram_claims(made, rng=np.random.default_rng(0)).claims
+    assert [one.claim.status for one in claims] == ["proved"]
+
+
+def test_of_the_true_inertia_the_command_moves_the_body_as_without_friction():
+    made = observed(body(0.4, viscous__damping=3.0), inertia=0.4, damping=3.0)
+    moved, _ = transfer_function(made, output="x", input="w")
+    for s in (1j, 30j, 400j):
+        assert moved(s) == pytest.approx(1 / (0.4 * s**2 + 3.0 * s), rel=1e-9)
+
+
+@settings(max_examples=6)
+@given(mass=sizes, inertia=sizes)
+def test_its_loop_bears_the_delay_of_an_integrator(mass, inertia):
+    """Gain g M_n/(M s): a quarter of a turn at its crossover."""
+    loop = loop_gain(observed(body(mass), inertia=inertia), controller="N_M")
+    assert sp.simplify(loop.expression * S * sp.nsimplify(mass)).is_number
+    assert delay_margin(loop) == pytest.approx(np.pi / 2 / (POLE * inertia / mass), rel=1e-6)
+
+
+@pytest.mark.parametrize(("share", "grows"), [(0.7, False), (1.3, True)])
+def test_a_computer_later_than_that_margin_makes_it_grow(share, grows):
+    """g M_n/M = 126 rad/s: 12.5 ms, of which hold and difference take one period of 0.5 ms."""
+    made = observed(body(0.5), inertia=0.5)
+    late = round(share * np.pi / 2 / POLE / 5e-4) * 5e-4
+    found = simulate(
+        made,
+        duration=1.0,
+        inputs={"f": lambda t: 1.0 * (t < 0.01)},
+        computer=Sampling(period=5e-4, delay=late, velocity="difference"),
+        jit=False,
+        step=5e-4,
+    )
+    speed = np.abs(found["x_velocity"].values)
+    assert bool(speed[-400:].max() > speed[:400].max()) is grows
+
+
+def test_friction_hardly_holds_a_body_back_that_has_one():
+    """0.4 N of Coulomb friction, pushed by 0.5 N: 0.1 N are left without an observer.
+
+    10 %: the bristle of 10 um gives before it slides, which leaves 5 mm/s; g = 126 1/s.
+    """
+    made = body(0.3, coulomb__level=0.4)
+    ways = {}
+    for name, diagram in (("bare", axis(made)), ("observed", observed(made, inertia=0.3))):
+        found = simulate(diagram, duration=0.5, inputs={"w": 0.5}, jit=False, step=2.5e-4)
+        ways[name] = float(found["x"].values[-1])
+    ideal = 0.5 * 0.5 / 0.3 * 0.5**2
+    assert ways["bare"] == pytest.approx(0.2 * ideal, rel=0.1)
+    assert ways["observed"] == pytest.approx(ideal, rel=0.1)
+
+
+def test_it_goes_around_the_bodies_of_shipped_wirings_and_into_files(tmp_path):
+    made = body(0.3, viscous__damping=1.0)
+    spring = controller("spring_damper", {"stiffness": 100.0, "damping": 2.0})
+    for diagram, name in (
+        (teleoperator(made, made, coupling=spring), "Z_s"),
+        (haptic_interface(made, cancellation=spring), "Z_M"),
+        (haptic_interface(made), "Z_M"),
+    ):
+        other = disturbance_observer(diagram, body=name, inertia=0.2, bandwidth=5.0)
+        write_diagram(other, tmp_path / "loop.toml")
+        assert read_diagram(tmp_path / "loop.toml") == other
+        assert simulate(other, duration=0.01, jit=False)[f"d_{name}"].attrs["units"] == "N"
+        with pytest.raises(ModelError, match="already"):
+            disturbance_observer(other, body=name, inertia=0.2, bandwidth=5.0)
+    with pytest.raises(ModelError, match="no body that forces move"):
+        disturbance_observer(teleoperator(made, made), body="P", inertia=0.2, bandwidth=5.0)

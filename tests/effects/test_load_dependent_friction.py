@@ -1,0 +1,77 @@
+"""Friction of the load: it opposes the motion, and is told by who drives whom and how fast."""
+
+import math
+
+import numpy as np
+import pytest
+import sympy as sp
+from effects.along import body_of, encoded, motion_along, signals
+from hypothesis import given
+from hypothesis import strategies as st
+
+from teleopdesign.effects import EFFECTS, SIGNALS
+from teleopdesign.realise.along_motion import residual_along
+
+EFFECT = EFFECTS["load_dependent_friction"]
+USED = ("acting_force", "velocity", "direction")
+LAW = sp.lambdify(
+    [*(SIGNALS[n] for n in USED), *EFFECT.symbols().values()], EFFECT.expression(), "math"
+)
+PARTS = st.floats(-1.0, 1.0)
+SPEEDS = st.floats(1e-6, 5.0)
+
+
+def level(force, velocity, *, mu, d=0.0, e=0.0, slow=0.1):
+    return float(LAW(force, velocity, math.copysign(1.0, velocity), mu, d, e, slow))
+
+
+@given(force=st.floats(-50, 50), v=SPEEDS, mu=st.floats(0, 1), d=PARTS, e=st.floats(0, 5))
+def test_it_takes_energy_out_whoever_drives(force, v, mu, d, e):
+    for velocity in (v, -v):
+        friction = level(force, velocity, mu=mu, d=d, e=e) * math.copysign(1.0, velocity)
+        assert friction * velocity >= 0.0
+
+
+@given(force=st.floats(-50, 50), v=SPEEDS, mu=st.floats(0, 1), d=PARTS, e=st.floats(0, 5))
+def test_a_machine_seen_from_the_other_side_has_the_same_level(force, v, mu, d, e):
+    """Even where force and motion both turn round."""
+    here, there = (level(s * force, s * v, mu=mu, d=d, e=e) for s in (1, -1))
+    assert here == pytest.approx(there)
+
+
+@given(force=st.floats(0.1, 50), v=SPEEDS, mu=st.floats(0.01, 1), d=PARTS)
+def test_the_difference_of_the_directions_is_odd_in_who_drives(force, v, mu, d):
+    driving, driven = level(force, v, mu=mu, d=d), level(force, -v, mu=mu, d=d)
+    assert driving + driven == pytest.approx(2 * mu * force)
+    assert driving - driven == pytest.approx(2 * mu * d * force, abs=1e-9)
+
+
+@given(force=st.floats(0.1, 50), mu=st.floats(0.01, 1), e=st.floats(0.1, 5))
+def test_the_extra_at_rest_is_whole_at_rest_and_gone_at_speed(force, mu, e):
+    assert level(force, 1e-9, mu=mu, e=e) == pytest.approx(mu * (1 + e) * force)
+    assert level(force, 1.0, mu=mu, e=e) == pytest.approx(mu * force)
+
+
+def test_without_its_optional_parameters_it_is_a_part_of_the_acting_force():
+    plain = EFFECT
+    for name, parameter in EFFECT.parameters.items():
+        plain = plain.without(name) if parameter.optional else plain
+    force, mu = SIGNALS["acting_force"], EFFECT.symbols()["coefficient"]
+    assert plain.expression() == mu * sp.Abs(force)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"driving_difference": 0.0, "extra_at_rest": 0.0, "stribeck_velocity": 0.0},
+        {"driving_difference": 0.3, "extra_at_rest": 0.0, "stribeck_velocity": 0.0},
+        {"driving_difference": 0.0, "extra_at_rest": 0.5, "stribeck_velocity": 0.05},
+    ],
+)
+def test_its_optional_parameters_may_be_zero_along_a_motion(values):
+    x, u, f = signals()
+    motion = motion_along(encoded(x), u, f, resolution=1e-6)
+    numbers = {f"{EFFECT.name}.{n}": v for n, v in values.items()}
+    wrt = tuple(f"{EFFECT.name}.{n}" for n in EFFECT.parameters)
+    along = residual_along(body_of("coulomb", EFFECT.name, values=numbers), motion, wrt)
+    assert np.isfinite(along.residual.value).all() and np.isfinite(along.residual.tangent).all()

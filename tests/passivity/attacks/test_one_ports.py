@@ -1,0 +1,133 @@
+"""Claims on one port: no point of the right half plane has a negative real part where it is proved.
+
+Z is passive if and only if it is analytic in the open right half plane with Re Z >= 0 there; beside
+a pole the real part takes both signs, so that one search finds all that is wrong.
+"""
+
+from collections import Counter
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+from passivity.attacks.budget import attacked
+from passivity.attacks.rational import (
+    KINDS,
+    at,
+    expression,
+    plus,
+    random_ratio,
+    suspects,
+    times,
+    values,
+)
+
+from teleopdesign.passivity import damping_excess, positive_real, storage_function
+
+DIGITS = 60
+
+
+def active_point(rng, ratio, certain=()):
+    """s with Re s > 0 and Re Z(s) < 0, seen again to sixty digits; None where none was found."""
+    s = np.concatenate([suspects(ratio, rng), np.array(certain, dtype=complex)])
+    z = values(ratio, s)
+    z = np.where(np.isfinite(z) & (z != 0), z, 1.0)
+    share = z.real / np.abs(z)
+    for k in np.argsort(share)[:12]:
+        if share[k] < 1e-3 and _is_active(ratio, mpmath.mpc(s[k].real, s[k].imag)):
+            return s[k]
+    for point in _dips(ratio):
+        if _is_active(ratio, point):
+            return complex(point)
+    return None
+
+
+def _is_active(ratio, s):
+    with mpmath.workdps(DIGITS):
+        try:
+            return at(ratio, s).real < 0
+        except ZeroDivisionError:
+            return False
+
+
+def _dips(ratio):
+    """Beside the frequencies at which the real part on the axis is smallest."""
+    p, q = ratio
+    turned = [c * (-1) ** (len(q) - 1 - k) for k, c in enumerate(q)]
+    even = times(p, turned)
+    even = [c if (len(even) - 1 - k) % 2 == 0 else Fraction(0) for k, c in enumerate(even)]
+    slope = [c * (len(even) - 1 - k) for k, c in enumerate(even[:-1])]
+    for r in np.concatenate([_float_roots(slope), _float_roots(even)]):
+        w = abs(r.imag)
+        if w > 0:
+            for share in (1e-3, 1e-6, 1e-9, 1e-13):
+                yield mpmath.mpc(w * share, w)
+
+
+def _float_roots(p):
+    p = np.trim_zeros(np.array([float(c) for c in p]))
+    return np.roots(p) if len(p) > 1 and np.all(np.isfinite(p)) else np.zeros(0)
+
+
+def judged(rng, kind):
+    ratio = random_ratio(rng, kind)
+    claim = positive_real(expression(*ratio))
+    found = active_point(rng, ratio)
+    if claim.status == "proved":
+        assert found is None, (kind, ratio, found)
+        # what may be taken away by its margin leaves it passive
+        margin = claim.verdict.margin
+        if np.isfinite(margin):
+            lower = damping_excess(expression(*ratio)).lower
+            less = plus(ratio[0], [lower * c for c in ratio[1]], -1), ratio[1]
+            assert active_point(rng, less) is None, (kind, ratio, margin)
+    else:
+        assert claim.status == "refuted", (kind, ratio, claim)
+        wave = claim.record
+        with mpmath.workdps(DIGITS):
+            s = mpmath.mpc(
+                *(mpmath.mpf(x.numerator) / x.denominator for x in (wave.rate, wave.frequency))
+            )
+            assert s.real > 0 > at(ratio, s).real, (kind, ratio)
+        assert gives_out(wave) > 0, (kind, ratio)
+    return claim.status, found is not None
+
+
+def gives_out(wave):
+    """Energy given out, J, of v = Re V e^(s t) up to t = 0, by an own quadrature of its power."""
+    s, z = wave.s, wave.value
+    v = np.array(wave.velocity)
+    turns = min(12 / s.real * s.imag / (2 * np.pi), 200)
+    span = 12 / s.real if s.imag == 0 else turns * 2 * np.pi / s.imag
+    t, weight = np.polynomial.legendre.leggauss(16)
+    edges = np.linspace(-span, 0, max(int(8 * turns), 40) + 1)
+    middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
+    time = (middle[:, None] + half[:, None] * t).ravel()
+    moved = np.exp(s * time)[:, None] * v
+    power = (moved.real * (moved @ z.T).real).sum(axis=1).reshape(len(half), -1)
+    return float(-(power @ weight) @ half)
+
+
+@attacked(48, 600)
+def test_no_growing_wave_gives_out_energy_where_a_port_is_proved_passive(seed, number):
+    rng = np.random.default_rng(seed)
+    counts = Counter(judged(rng, KINDS[k % len(KINDS)]) for k in range(number))
+    print(dict(counts))
+    assert counts["proved", False] > number / 5
+    # the attacker sees what there is to see, or its silence would say nothing
+    assert counts["refuted", True] > 20 * counts["refuted", False]
+
+
+@attacked(8, 60)
+def test_a_storage_function_is_found_for_no_port_that_gives_out_energy(seed, number):
+    pytest.importorskip("cvxpy", reason="the extra `lmi` is not installed")
+    rng = np.random.default_rng(seed)
+    counts = Counter()
+    for k in range(number):
+        ratio = random_ratio(rng, KINDS[k % len(KINDS)])
+        status = storage_function(expression(*ratio)).status
+        if status == "proved":
+            assert active_point(rng, ratio) is None, ratio
+        counts[status] += 1
+    print(dict(counts))
+    assert counts["proved"] > 0

@@ -1,0 +1,168 @@
+"""Claims over intervals of values: never proved where a sample of the box shows the contrary."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import sympy as sp
+from devices import body
+from passivity.interval_boxes import DIAGRAMS, HAND, failure, random_case
+
+import teleopdesign as td
+from teleopdesign.diagrams import four_channel
+from teleopdesign.errors import ModelError
+from teleopdesign.passivity import claim_over_intervals
+from teleopdesign.passivity.intervals.bernstein import (
+    ProofEffort,
+    excludes_zero_over,
+    is_non_negative_over,
+)
+from teleopdesign.passivity.linear.polynomials import X
+
+Y = sp.Symbol("y")
+UNIT = [(Fraction(-1), Fraction(1))]
+
+
+def poly(expression):
+    return sp.Poly(expression, X, Y, domain="QQ")
+
+
+@pytest.mark.parametrize(
+    ("expression", "holds"),
+    [
+        (X + Y + 2, True),
+        (X**2 + Y**2, True),
+        (X * (Y + 1), True),  # zero at an end of the interval
+        ((X - 3) ** 2 * (Y + 1), True),  # a square is left out
+        (X**2 - X * Y + Y**2, True),  # zero at one corner of x alone, inside the interval of y
+        (X + Y, False),
+        (X**2 - sp.Rational(1, 10**6) * X, False),  # negative between 0 and 1e-6 alone
+        (5 - X, False),  # negative beyond every bound of x
+    ],
+)
+def test_a_sign_is_shown_where_it_holds_and_only_there(expression, holds):
+    shown = is_non_negative_over(poly(expression), UNIT, Fraction(1), ProofEffort(left=100_000))
+    assert shown is holds or (holds and expression == X**2 - X * Y + Y**2)
+
+
+def test_two_polynomials_that_meet_at_zero_inside_are_not_called_apart():
+    assert excludes_zero_over((poly(X - 1), poly(Y - 2)), UNIT, Fraction(1), ProofEffort())
+    assert not excludes_zero_over(
+        (poly(X - 1), poly(Y)), UNIT, Fraction(1), ProofEffort(left=20_000)
+    )
+
+
+def attack(seed, *names):
+    """The claim over a random box, and the lowest that 60 points of it show by other formulas."""
+    rng = np.random.default_rng(seed)
+    name, diagram, box, claim = random_case(rng, *names)
+    answer = claim_over_intervals(diagram, box, claim=claim)
+    lowest = np.inf
+    for k in range(60):
+        share = rng.random(len(box)) if k % 3 else rng.integers(0, 2, len(box))
+        ends = zip(box.items(), share, strict=True)
+        point = {n: low + (high - low) * u for (n, (low, high)), u in ends}
+        lowest = min(lowest, failure(name, {**diagram.values, **point}, claim))
+    # 1e-9: rounding of roots and of margins, which are of the order of 1
+    if answer.status == "proved":
+        assert lowest > -1e-9, (seed, answer)
+        if claim != "absolutely stable":
+            assert lowest > answer.proved_margin * (1 - 1e-6) - 1e-9, (seed, answer)
+    if answer.status == "refuted":
+        assert failure(name, {**diagram.values, **answer.worst}, claim) < 1e-6, (seed, answer)
+    return answer.status
+
+
+def test_no_random_box_that_is_proved_holds_a_point_where_it_fails():
+    assert {attack(seed, "interface") for seed in range(3)} <= {"proved", "refuted"}
+
+
+@pytest.mark.slow
+def test_no_more_random_boxes_that_are_proved_hold_a_point_where_they_fail():
+    statuses = [attack(seed) for seed in range(4, 18)]
+    assert statuses.count("proved") >= 7 and "refuted" in statuses
+
+
+def test_hands_within_bounds_are_intervals_of_their_values():
+    hands = {
+        "Z_H.inertia": (0.05, 0.2),
+        "Z_H.viscous.damping": (1.0, 10.0),
+        "Z_H.spring.stiffness": (100.0, 600.0),
+    }
+    claim = claim_over_intervals(DIAGRAMS["interface"], hands, claim="stable")
+    assert claim.status == "proved" and claim.known == "proved over the whole box"
+    assert 0 < claim.proved_margin <= claim.margin
+    # the slowest is the softest hand with the least damping, or the stiffest one with much mass
+    assert claim.worst["Z_H.viscous.damping"] == 1.0
+    strong = DIAGRAMS["interface"].with_values({"H.gain.gain": 5.0, "Z_M.inertia": 0.4})
+    claim = claim_over_intervals(strong, hands, claim="stable")
+    assert claim.status == "refuted"
+    assert failure("interface", {**strong.values, **claim.worst}, "stable") < 0
+
+
+def test_a_hand_is_no_part_of_what_is_passive():
+    with pytest.raises(ModelError, match='holds a port, and no part of what is "passive"'):
+        claim_over_intervals(DIAGRAMS["interface"], {"Z_H.inertia": (0.1, 0.2)})
+
+
+def rubbing(level, stiffness):
+    device = body(0.15, viscous__damping=1.0, coulomb__level=0.5, presliding__stiffness=2e4)
+    law = td.controller("dahl", {"level": level, "stiffness": stiffness})
+    return td.haptic_interface(device, hand=HAND, cancellation=law)
+
+
+def test_vertices_decide_how_much_friction_may_be_cancelled():
+    inertia = {"Z_M.inertia": (0.1, 0.3)}
+    claim = claim_over_intervals(rubbing(0.3, 1e4), {"C.dahl.level": (0.2, 0.4), **inertia})
+    assert claim.status == "proved" and "vertices decide" in claim.how
+    # 1e4^2 0.5 <= 2e4^2 f_D fails below f_D = 0.125 N
+    claim = claim_over_intervals(rubbing(0.3, 1e4), {"C.dahl.level": (0.1, 0.4), **inertia})
+    assert claim.status == "refuted" and claim.worst["C.dahl.level"] == 0.1
+    assert claim.at_worst.record.replay() > 0
+    # f_D <= f_C fails inside, where the level of friction is least
+    varied = {"C.dahl.level": (0.2, 0.4), "Z_M.coulomb.level": (0.3, 0.6)}
+    claim = claim_over_intervals(rubbing(0.3, 1e4), varied)
+    assert claim.status == "refuted" and claim.worst["Z_M.coulomb.level"] == 0.3
+
+
+def test_what_no_exact_reasoning_covers_is_checked_numerically_and_says_so():
+    def headroom(diagram):
+        return 0.3 - diagram.values["Z_M.inertia"]
+
+    device = DIAGRAMS["interface"]
+    claim = claim_over_intervals(device, {"Z_M.inertia": (0.1, 0.25)}, claim=headroom, points=4)
+    assert claim.status == "evidence"
+    assert claim.known == f"checked numerically at {claim.points} points, worst found there"
+    assert claim.margin == pytest.approx(0.05) and claim.worst == {"Z_M.inertia": 0.25}
+    claim = claim_over_intervals(device, {"Z_M.inertia": (0.1, 0.4)}, claim=headroom, points=4)
+    assert claim.status == "refuted" and claim.worst == {"Z_M.inertia": 0.4}
+    assert "proved" not in repr(claim)
+
+
+def test_a_delay_leaves_numbers_and_no_proof():
+    spring = td.controller("spring_damper", {"stiffness": 100.0, "damping": 1.0})
+    side, none = body(0.15, viscous__damping=8.0), td.controller("gain", {"gain": 0.0})
+    channels = {"C_1": spring, "C_2": none, "C_3": none, "C_4": spring}
+    diagram = four_channel(
+        side, side, master_control=spring, slave_control=spring, channels=channels, delay=0.005
+    )
+    claim = claim_over_intervals(diagram, {"Z_m.inertia": (0.1, 0.2)}, points=4)
+    assert claim.status != "proved" and np.isnan(claim.proved_margin)
+
+
+@pytest.mark.parametrize(
+    ("intervals", "words"),
+    [
+        ({"Z_M.inertio": (0.1, 0.2)}, 'did you mean "Z_M.inertia"'),
+        ({"Z_M.inertia": (0.2, 0.1)}, "expected low <= high"),
+        ({"Z_M.inertia": (0.2, float("inf"))}, "expected low <= high"),
+    ],
+)
+def test_an_interval_that_is_none_is_refused(intervals, words):
+    with pytest.raises(ModelError, match=words):
+        claim_over_intervals(DIAGRAMS["interface"], intervals)
+
+
+def test_an_interval_without_width_is_a_value():
+    claim = claim_over_intervals(DIAGRAMS["interface"], {"Z_M.inertia": (0.2, 0.2)}, claim="stable")
+    assert claim.status == "proved" and claim.worst == {"Z_M.inertia": 0.2} and claim.points == 1

@@ -1,0 +1,85 @@
+"""A nonlinear law takes what another block or a sum computes, as it takes what is measured."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from devices import body
+
+from teleopdesign.controllers import controller
+from teleopdesign.diagrams import Control, Junction, haptic_interface
+from teleopdesign.errors import ModelError
+from teleopdesign.simulate import Sampling, simulate, sine
+
+LIMIT = controller("karnopp", {"level": 0.3, "band": 10.0})
+DOUBLED = controller("gain", {"gain": 2.0})
+
+
+def moved(diagram, computer):
+    found = simulate(
+        diagram,
+        duration=0.05,
+        inputs={"R_D": lambda t: np.sin(60 * t)},
+        motion={"L": sine(amplitude=0.01, frequency=5.0)},
+        computer=computer,
+        jit=False,
+    )
+    return found["R_MBC"].values
+
+
+def in_two_blocks():
+    made = haptic_interface(body(0.1), cancellation=LIMIT)
+    blocks = [replace(b, input="doubled") if b.name == "C" else b for b in made.blocks]
+    return replace(made, blocks=(*blocks, Control("G", DOUBLED, "R_D", "doubled")))
+
+
+@pytest.mark.parametrize("computer", [Sampling(), "continuous"])
+def test_two_blocks_are_the_series_of_their_laws(computer):
+    """A limit of 0.3 N behind a gain of 2, which is reached."""
+    series = haptic_interface(body(0.1), cancellation=DOUBLED.then(LIMIT))
+    blocks = tuple(replace(b, input="R_D") if b.name == "C" else b for b in series.blocks)
+    expected = moved(replace(series, blocks=blocks), computer)
+    assert np.abs(expected).max() == pytest.approx(0.3)
+    np.testing.assert_allclose(moved(in_two_blocks(), computer), expected, rtol=0, atol=1e-15)
+
+
+def test_a_limit_by_another_signal_is_exact():
+    """(abs(f + l) - abs(f - l))/2 with l = 0.2 abs(L) N/mm."""
+    made = haptic_interface(body(0.1), cancellation=controller("magnitude", {"gain": 200.0}))
+    half = controller("magnitude", {"gain": 0.5})
+    bounded = replace(
+        made,
+        blocks=(
+            *made.blocks,
+            Control("A", half, "more", "more_half"),
+            Control("B", half, "less", "less_half"),
+        ),
+        junctions=(
+            *(j for j in made.junctions if j.output != "R_A"),
+            Junction("more", {"R_D": 1, "R_MBC": 1}),
+            Junction("less", {"R_D": 1, "R_MBC": -1}),
+            Junction("R_A", {"more_half": 1, "less_half": -1}),
+        ),
+    )
+    found = simulate(
+        bounded,
+        duration=0.2,
+        inputs={"R_D": lambda t: np.sin(60 * t)},
+        motion={"L": sine(amplitude=0.01, frequency=5.0)},
+        jit=False,
+    )
+    wanted, limit = (found["more"].values + found["less"].values) / 2, found["R_MBC"].values
+    expected = np.clip(wanted, -limit, limit)
+    np.testing.assert_allclose(found["R_A"].values, expected, rtol=0, atol=1e-12)
+
+
+def test_a_law_of_its_own_output_is_refused_in_one_line():
+    made = in_two_blocks()
+    loop = replace(
+        made,
+        blocks=tuple(replace(b, input="sum") if b.name == "C" else b for b in made.blocks),
+        junctions=(*made.junctions, Junction("sum", {"doubled": 1, "R_MBC": 0.5})),
+    )
+    with pytest.raises(ModelError, match="enters an equation other than linearly") as caught:
+        moved(loop, Sampling())
+    assert "\n" not in str(caught.value)

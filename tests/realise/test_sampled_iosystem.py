@@ -1,0 +1,169 @@
+"""A diagram with its computer as a python-control system in discrete time."""
+
+import control
+import numpy as np
+import pytest
+from devices import body
+
+from teleopdesign.controllers import controller, from_control
+from teleopdesign.diagrams import Control, Diagram, Junction, Moving, haptic_interface
+from teleopdesign.errors import ModelError
+from teleopdesign.realise.iosystem import to_iosystem
+from teleopdesign.simulate import Sampling, simulate
+
+DT = 1e-3
+MASS, DAMPING = 0.2, 4.0
+DISCRETE = control.tf([-90.0, 80.0], [1.0, -0.6], DT)
+SATURATED = control.nlsys(
+    lambda t, x, u, p: np.clip(0.9 * x + u, -1e-2, 1e-2),
+    lambda t, x, u, p: -150.0 * x - 20.0 * u,
+    inputs=1,
+    outputs=1,
+    states=1,
+    dt=DT,
+)
+
+
+def rod(law, *, analog=False, late=0.0, damping=DAMPING):
+    """A rod that a law pulls, its reading late."""
+    blocks = [
+        Moving("M", body(MASS, viscous__damping=damping), "x", "u", {"f": 1}, "f"),
+        Control("K", law, "x_late" if late else "x", "u", "x", analog),
+    ]
+    if late:
+        blocks.append(Control("T", controller("delay", {"time": late}), "x", "x_late", "", analog))
+    return Diagram("rod", tuple(blocks), (), {"f": "force"}, measured=("x",))
+
+
+def discrete_steps(system, forces, **options):
+    time = DT * np.arange(len(forces))
+    found = control.input_output_response(system, time, [forces], **options)
+    return found, {name: found.outputs[i] for i, name in enumerate(system.output_labels)}
+
+
+def exact_steps(law, forces):
+    """The rod by its exact step for held forces, a discrete state space for its law; no package."""
+    rate = DAMPING / MASS
+    e = np.exp(-rate * DT)
+    a = np.array([[1.0, (1 - e) / rate], [0.0, e]])
+    b = np.array([(DT - (1 - e) / rate) / DAMPING, (1 - e) / DAMPING])
+    law = control.ss(law)
+    x, z, out = np.zeros(2), np.zeros(law.nstates), []
+    for force in forces:
+        u = float((law.C @ z + law.D[:, 0] * x[0]).item())
+        out.append(x[0])
+        z, x = law.A @ z + law.B[:, 0] * x[0], a @ x + b * (force + u)
+    return np.array(out)
+
+
+def test_it_is_the_exact_discrete_system_where_that_is_known():
+    """1e-9 of the range: order four at 0.1 ms, for a time constant of 50 ms."""
+    forces = np.random.default_rng(3).normal(size=120)
+    system = to_iosystem(rod(from_control(DISCRETE)), dt=DT)
+    assert system.dt == DT
+    _, signals = discrete_steps(system, forces)
+    expected = exact_steps(DISCRETE, forces)
+    assert np.abs(signals["x"] - expected).max() < 1e-9 * np.ptp(expected)
+
+
+def test_its_linearisation_has_the_poles_of_the_exact_loop():
+    """Poles by differences, 1e-5; a state that is only remembered adds poles at zero."""
+    system = to_iosystem(rod(from_control(DISCRETE)), dt=DT)
+    found = control.linearize(system, np.zeros(system.nstates), [0.0], eps=1e-6).poles()
+    plant = control.sample_system(control.tf([1.0], [MASS, DAMPING, 0.0]), DT, method="zoh")
+    for pole in control.feedback(plant, DISCRETE, sign=1).poles():
+        assert np.abs(found - pole).min() < 1e-5
+
+
+LAWS = {
+    "from_control, discrete": from_control(DISCRETE),
+    "from_control, continuous": from_control(control.tf([-300.0, -9e3], [1.0, 200.0])),
+    "nonlinear, discrete": from_control(SATURATED),
+    "dahl": controller("dahl", {"level": 0.3, "stiffness": 5e3}),
+    "spring_damper": controller("spring_damper", {"stiffness": -200.0, "damping": -2.0}),
+    "low_pass": controller("low_pass", {"bandwidth": 30.0}),
+}
+
+
+@pytest.mark.parametrize("late", [0.0, 4e-3, 2.3e-3])
+@pytest.mark.parametrize("name", LAWS)
+def test_its_steps_are_the_samples_of_the_simulation(name, late):
+    """The same loop, so to rounding; a constant force, which both hold."""
+    diagram = rod(LAWS[name], late=late)
+    run = simulate(diagram, duration=0.03, inputs={"f": 1.5}, computer=Sampling(DT), jit=False)
+    system = to_iosystem(diagram, dt=DT)
+    _, signals = discrete_steps(system, np.full(31, 1.5))
+    for signal in ("x", "x_velocity", "u"):
+        np.testing.assert_allclose(signals[signal], run[signal].values, rtol=1e-9, atol=1e-13)
+
+
+def test_friction_and_a_reading_of_force_are_there_too():
+    """Dry friction, a hybrid compensation that reads the force: sensors see the command held."""
+    diagram = haptic_interface(
+        body(0.1, coulomb__level=0.4, viscous__damping=0.5),
+        hand=body(0.05, viscous__damping=3.0, spring__stiffness=400.0),
+        cancellation=controller("dahl", {"level": 0.3, "stiffness": 5e3}),
+        force_feedback=controller("low_pass", {"bandwidth": 10.0}),
+    )
+    inputs = {"R_V": 2.0, "R_D": 0.7}
+    run = simulate(diagram, duration=0.03, inputs=inputs, computer=Sampling(DT), jit=False)
+    system = to_iosystem(diagram, dt=DT)
+    time = DT * np.arange(31)
+    given = [np.full(31, inputs.get(name, 0.0)) for name in system.input_labels]
+    found = control.input_output_response(system, time, given)
+    for name in ("L", "E", "R_M", "Z_M_friction"):
+        ours = found.outputs[system.output_labels.index(name)]
+        size = np.abs(run[name].values).max()
+        np.testing.assert_allclose(ours, run[name].values, rtol=0, atol=1e-9 * size)
+
+
+def test_parameters_are_its_params():
+    system = to_iosystem(rod(LAWS["spring_damper"]), dt=DT)
+    changed = {"M.inertia": 0.5, "K.spring_damper.stiffness": -50.0}
+    other = to_iosystem(rod(LAWS["spring_damper"]).with_values(changed), dt=DT)
+    forces = np.ones(21)
+    one, two = (
+        discrete_steps(s, forces, params=p)[1]["x"] for s, p in ((system, changed), (other, {}))
+    )
+    np.testing.assert_allclose(one, two, rtol=1e-12)
+    assert abs(one[-1] / discrete_steps(system, forces)[1]["x"][-1] - 1) > 0.1
+
+
+@pytest.mark.parametrize(
+    ("diagram", "options", "words"),
+    [
+        (rod(LAWS["low_pass"]), {"dt": 0.0}, "dt: found 0 s, expected more than 0"),
+        (rod(LAWS["low_pass"]), {"dt": DT, "prescribed": ("x",)}, "x cannot be prescribed"),
+        (rod(LAWS["low_pass"], late=2e-3, analog=True), {"dt": DT}, "T: python-control holds no"),
+        (rod(LAWS["low_pass"], late=2e-4), {"dt": DT}, "below the computer's period"),
+        (rod(from_control(DISCRETE)), {"dt": 2e-3}, "is sampled every 1 ms, the computer every 2"),
+    ],
+)
+def test_what_cannot_be_sampled_is_refused_in_one_line(diagram, options, words):
+    with pytest.raises(ModelError, match=words) as caught:
+        to_iosystem(diagram, **options)
+    assert "\n" not in str(caught.value)
+
+
+def test_an_analog_delay_gives_way_to_an_approximation_that_is_asked_for():
+    """3 ms by Pade of order 4 in an analog loop of 5 rad/s: 1e-5 of the range of the delay."""
+    diagram = rod(controller("gain", {"gain": -8.0}), late=3e-3, analog=True)
+    system = to_iosystem(diagram, dt=DT, delay_order=4)
+    _, signals = discrete_steps(system, np.ones(101))
+    run = simulate(diagram, duration=0.1, inputs={"f": 1.0}, jit=False)["x"].values
+    assert np.abs(signals["x"] - run).max() < 1e-5 * np.ptp(run)
+
+
+def test_a_diagram_without_a_computer_has_its_bodies_sampled():
+    free = Diagram(
+        "free",
+        (Moving("M", body(MASS, viscous__damping=DAMPING), "x", "u", {"f": 1}, "f"),),
+        (Junction("u", {}),),
+        {"f": "force"},
+        measured=("x",),
+    )
+    forces = np.random.default_rng(3).normal(size=60)
+    _, signals = discrete_steps(to_iosystem(free, dt=DT), forces)
+    nothing = control.tf([0.0], [1.0], DT)
+    expected = exact_steps(nothing, forces)
+    assert np.abs(signals["x"] - expected).max() < 1e-9 * np.ptp(expected)
