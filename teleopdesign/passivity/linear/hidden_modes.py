@@ -24,7 +24,7 @@ from ...controllers import (
 )
 from ...derive import symbol_values
 from ...derive.elimination import rows
-from ...diagrams import Diagram
+from ...diagrams import Control, Diagram
 from ...realise.lti import S, linear_blocks
 from ...realise.tips import with_tips
 from ..checker.polynomials import is_free_of_growth, polynomial
@@ -67,13 +67,18 @@ def _characteristic(diagram: Diagram) -> sp.Poly | None:
     determinant = DomainMatrix(matrix, (size, size), ring).to_field().det()
     whole = sp.Poly(ring.to_sympy(ring.convert_from(determinant, ring.get_field())), S, domain="QQ")
     for part in diagram.controls:
-        assert isinstance(part.controller, Controller)
-        cancelled = sp.Poly(sp.fraction(sp.cancel(linear.blocks[part.name]))[1], S, domain="QQ")
-        uncancelled = sp.Poly(1, S, domain="QQ")
-        for stage in part.controller.stages:
-            uncancelled *= _denominator(stage, part.name)
-        whole *= uncancelled.quo(cancelled)
+        whole *= cancelled_poles(part, linear.blocks[part.name])
     return whole if not whole.is_zero else None
+
+
+def cancelled_poles(part: Control, form: sp.Expr) -> sp.Poly:
+    """What the denominators of a controller's stages have more than its linear form, in S."""
+    assert isinstance(part.controller, Controller)
+    kept = sp.Poly(sp.fraction(sp.cancel(form))[1], S, domain="QQ")
+    whole = sp.Poly(1, S, domain="QQ")
+    for stage in part.controller.stages:
+        whole *= _denominator(stage, part.name)
+    return whole.quo(kept)
 
 
 def _denominator(stage: Stage, prefix: str) -> sp.Poly:
