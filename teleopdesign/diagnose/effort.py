@@ -23,6 +23,9 @@ class Efforts:
     held_out: Effort = Effort(1e-3, 5)
     #: candidates before they are ranked: closer than they differ
     rough: Effort = Effort(1e-4, 12)
+    #: candidates that were followed to the optimum on few samples: what all samples move is less
+    #: than that; those that contend are fitted finely afterwards
+    near: Effort = Effort(1e-3, 6)
     #: readings of a simulated motion: closer than their spread
     again: Effort = Effort(1e-5, 12)
     #: what is reported: far below standard errors

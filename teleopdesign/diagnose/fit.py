@@ -19,7 +19,6 @@ from .least_squares import minimise
 from .prepare import Prepared, Stretch, folds
 from .record_shift import LARGEST, RecordShifts, record_shifts
 from .residual import both_residuals, relative_residuals, residuals
-from .scales import scales
 from .shared_links import best_links
 
 #: seconds over which residuals count as one observation in standard errors and tests
@@ -114,7 +113,7 @@ class Solution:
     """Free parameters at the optimum, with weighted residual and jacobian by value / scale.
 
     model: with these values, and the shifts of the records
-    by_shift: (rows, k) of the residual by `shifts`, in samples;  shift_at_bound: (k,) of them
+    by_shift: (rows, k) of the residual by `shifts`, in rows of a record;  shift_at_bound: (k,)
     """
 
     model: Model
@@ -134,9 +133,13 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine)
     Without check records, blocks of the fit records are held out in turn: what is reported as
     check then comes from fits that have not seen those blocks.
     """
-    stretches = prepared.of("fit")
-    free = free_parameters(model)
-    solution = solve(model, free, prepared, stretches, effort)
+    solution = solve(model, free_parameters(model), prepared, prepared.of("fit"), effort)
+    return fit_of(solution, prepared)
+
+
+def fit_of(solution: Solution, prepared: Prepared) -> Fit:
+    """The fit that a solution on the fit records is, with its errors on both uses."""
+    stretches, free = prepared.of("fit"), free_parameters(solution.model)
     blocks = block_numbers(stretches)
     fitted = with_errors(solution, free, blocks).canonical()
     check = prepared.of("check")
@@ -161,6 +164,15 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine)
         scale=solution.scale,
         by_shift=solution.by_shift[:, ~solution.shift_at_bound],
     )
+
+
+def rough_fit(model: Model, prepared: Prepared) -> Fit:
+    """A fit close enough to be ranked: sought on few samples, then estimated on all of them."""
+    coarse, free = prepared.coarse, free_parameters(model)
+    if coarse is prepared:
+        return estimate(model, prepared, effort=EFFORTS.rough)
+    there = solve(model, free, coarse, coarse.of("fit"), EFFORTS.rough)
+    return estimate(there.model, prepared, effort=EFFORTS.near)
 
 
 def with_errors(solution: Solution, free: tuple[str, ...], blocks: NDArray[np.intp]) -> Model:
@@ -245,7 +257,7 @@ class _SearchSpace:
 
 def _search_space(model: Model, free: tuple[str, ...], prepared: Prepared) -> _SearchSpace:
     """Where the free parameters of a model are searched, by the scales of the fit records."""
-    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
+    unit = prepared.scales
     declared = [model.declared(n) for n in free]
     scale = np.array([unit[d.scale] for d in declared])
     decades = np.array([over_decades(model, n) for n in free], dtype=bool)
@@ -270,7 +282,7 @@ def solve(
 ) -> Solution:
     """Bounded least squares on the relative residuals of these stretches, by shifts as well."""
     space = _search_space(model, free, prepared)
-    p, lasts = len(free), sum(s.weight * len(s.keep) * s.motion.sample_time for s in stretches)
+    p, lasts = len(free), sum(s.weight * len(s.keep) * s.row for s in stretches)
     shifts = record_shifts(stretches, round(lasts / BLOCK), model)
     lower = np.append(space.lower, np.full(len(shifts.bodies), -LARGEST))
     upper = np.append(space.upper, np.full(len(shifts.bodies), LARGEST))

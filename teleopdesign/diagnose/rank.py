@@ -11,15 +11,14 @@ from ..model import Model
 from .candidates import Candidate, candidates, measured_at
 from .criteria import CRITERIA, Criteria
 from .decision import rank_key, refusal, superfluous_beside
-from .effort import EFFORTS
 from .evidence import check_score, check_squares, whole_score
-from .fit import Fit, estimate, fit_squares
+from .fit import Fit, estimate, fit_squares, rough_fit
 from .identifiability import is_identifiable
 from .plausibility import implausible_effects
 from .prepare import Prepared
 from .progress import ProgressLine
 from .ranking import Ranked, Ranking
-from .search import at_stated, estimate_from_starts
+from .search import base_of, estimate_from_starts, from_stated
 from .search_plan import PLAN
 from .threads import in_threads
 
@@ -48,7 +47,7 @@ def _from_kin(
         n: kin_fit.model.parameters[n.replace(there, other, 1)].value
         for n in rough.model.parameters
     }
-    again = estimate(rough.model.with_values(values), prepared, effort=EFFORTS.rough)
+    again = rough_fit(rough.model.with_values(values), prepared)
     return candidate, min((rough, again), key=fit_squares)
 
 
@@ -65,15 +64,7 @@ def _refined(
     if not present or fit_squares(rough) > leading:
         return attempt
     if stated is not None:
-        model = at_stated(rough.model, stated)
-        # an effect stated without values was led astray by what is missing: it starts anew as well
-        again = (
-            estimate_from_starts(model, prepared)
-            if model.absent
-            else estimate(model, prepared, effort=EFFORTS.rough)
-        )
-        if fit_squares(again) < fit_squares(rough):
-            rough = again
+        rough = from_stated(rough, prepared, stated)
     if fit_squares(rough) > worthless:
         return candidate, rough
     return candidate, estimate(rough.model, prepared)
@@ -100,13 +91,14 @@ def rank_candidates(
     """
     worth = criteria.worth if worth is None else worth
     begun = count(1)
+    start = base_of(base, prepared)
 
     def fit_candidate(candidate: Candidate) -> tuple[Candidate, Fit]:
         if progress is not None:
             line = ProgressLine(str(candidate), begun=next(begun), total=len(possible))
             progress(line)
         added = base.model.with_effect(candidate.effect, at=candidate.at)
-        return candidate, estimate_from_starts(added, prepared, base, stated, worth=worth)
+        return candidate, estimate_from_starts(added, prepared, start, stated, worth=worth)
 
     possible = candidates(
         base.model,

@@ -118,7 +118,7 @@ def record_shifts(
     row: dict[str, float] = {}
     for s in stretches:
         if np.ptp(s.motion.command) > 0.0:
-            row[s.motion.body] = min(s.motion.sample_time, row.get(s.motion.body, np.inf))
+            row[s.motion.body] = min(s.row, row.get(s.motion.body, np.inf))
     late = {} if model is None else model.record_shift
     held = np.array([body in late and late[body].fixed for body in row], dtype=bool)
     return RecordShifts(tuple(row), np.array(list(row.values())), max(count, 1), held)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -19,52 +19,126 @@ from ..measurement.filtering import Array
 from ..model import Model
 from .candidates import started
 from .criteria import CRITERIA
-from .effort import EFFORTS
-from .fit import Fit, estimate, fit_squares, free_parameters, solve
+from .effort import EFFORTS, Effort
+from .fit import Fit, Solution, estimate, fit_of, fit_squares, free_parameters, solve
 from .linear_start import linear_starts
 from .prepare import Prepared
 from .residual import relative_residuals
-from .scales import scales
 from .search_plan import PLAN
+
+
+@dataclass(frozen=True)
+class Base:
+    """The model without its new effects, fitted.
+
+    fit: on all samples;  coarse: on the few of `Prepared.coarse`, where effects are sought
+    """
+
+    fit: Fit
+    coarse: Fit
+
+    def least(self, worth: float) -> float:
+        """Squares on few samples from which a gain of this part of the base's is left out.
+
+        Few samples may leave more than all of them, which no effect can take away.
+        """
+        few = fit_squares(self.coarse)
+        return few - worth * min(few, fit_squares(self.fit))
+
+
+def base_of(fit: Fit, prepared: Prepared) -> Base:
+    """A fit, and what the same model leaves at its optimum on few samples."""
+    coarse = prepared.coarse
+    if coarse is prepared:
+        return Base(fit, fit)
+    there = solve(fit.model, fit.free, coarse, coarse.of("fit"), EFFORTS.rough)
+    return Base(
+        fit,
+        replace(
+            fit,
+            model=there.model,
+            fit_residual=there.residual,
+            jacobian=there.jacobian,
+            scale=there.scale,
+            by_shift=there.by_shift[:, ~there.shift_at_bound],
+        ),
+    )
 
 
 def estimate_from_starts(
     model: Model,
     prepared: Prepared,
-    base: Fit | None = None,
+    base: Fit | Base | None = None,
     stated: Model | None = None,
     *,
     worth: float = CRITERIA.worth,
 ) -> Fit:
     """The best fit of a model, from every starting value of the effects that are still absent.
 
+    Starts are followed on few samples; the best is estimated on all of them.
     base: a fit of the model without them: then the best stays rough, to be ranked first
     stated: the model as its user gave it: what the base moved far from it starts there too
     worth: part of the base's squares that one linear step must promise to take away
     """
-    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
-    models = started(model, unit)
+    coarse = prepared.coarse
+    if isinstance(base, Fit):
+        base = base_of(base, prepared)
+    if base is not None:
+        model = with_parameters_of(model, base.coarse.model)
+    models = started(model, prepared.scales)
     absent = [model.body(at).effect(name) for name, at in model.absent]
     rugged = any(e.corrections() and not e.linear for e in absent)
     kept = PLAN.corrected_stepped if rugged else PLAN.curved_stepped
     if base is not None:
-        curved = _with_strength(model, base) is None
+        curved = _with_strength(model) is None
         kept = kept if curved else PLAN.stepped
-        if curved and stated is not None and _moved(base, stated):
+        if curved and stated is not None and _moved(base.coarse, stated):
             models += [at_stated(m, stated) for m in models]
         most = PLAN.corrected_predicted if rugged else PLAN.curved_predicted
-        models = _promising(model, models, prepared, base, unit, most=most, worth=worth)
+        models = _promising(model, models, coarse, base, most=most, worth=worth)
         if not models:
-            return unchanged(model, base)
+            return unchanged(model, base.fit)
     elif len(models) == 1:
         return estimate(model, prepared)
     if len(models) > kept + 1:
-        models = _best_stepped(models, prepared, kept, promised=base is not None)
-    rough = [estimate(m, prepared, effort=EFFORTS.rough) for m in models]
-    best = min(rough, key=fit_squares)
-    if rugged and base is not None and fit_squares(best) < PLAN.jolted * fit_squares(base):
-        best = _jolted(best, model.absent, prepared)
-    return best if base is not None else estimate(best.model, prepared, effort=EFFORTS.fine)
+        models = _best_stepped(models, coarse, kept, promised=base is not None)
+    best = min((_followed(m, coarse, EFFORTS.rough) for m in models), key=_squares)
+    if rugged and base is not None and _squares(best) < PLAN.jolted * fit_squares(base.coarse):
+        best = _jolted(best, model.absent, coarse)
+    if base is not None and coarse is prepared:
+        return fit_of(best, prepared)
+    return estimate(best.model, prepared, effort=EFFORTS.fine if base is None else EFFORTS.near)
+
+
+def from_stated(fit: Fit, prepared: Prepared, stated: Model) -> Fit:
+    """The fit, or the one that its user's values lead to where that leaves less.
+
+    An effect stated without values was led astray by what is missing: it starts anew as well. Both
+    are followed on few samples; only what leaves less there is estimated on all of them.
+    """
+    coarse = prepared.coarse
+    models = started(at_stated(fit.model, stated), prepared.scales)
+    if len(models) > PLAN.curved_stepped + 1:
+        models = _best_stepped(models, coarse, PLAN.curved_stepped, promised=False)
+    other = min((_followed(m, coarse, EFFORTS.rough) for m in models), key=_squares)
+    here = _followed(fit.model, coarse, EFFORTS.rough)
+    if _squares(other) > (1.0 - PLAN.elsewhere) * _squares(here):
+        return fit
+    return min((fit, estimate(other.model, prepared, effort=EFFORTS.rough)), key=fit_squares)
+
+
+def _followed(model: Model, prepared: Prepared, effort: Effort) -> Solution:
+    """Where a start leads on these records."""
+    return solve(model, free_parameters(model), prepared, prepared.of("fit"), effort)
+
+
+def _squares(solution: Solution) -> float:
+    return float(solution.residual @ solution.residual)
+
+
+def with_parameters_of(model: Model, other: Model) -> Model:
+    """The model with the parameters, and shifts of the records, that another of its effects has."""
+    return model.with_values(dict(other.parameters)).with_record_shift(other.record_shift)
 
 
 def at_stated(model: Model, stated: Model) -> Model:
@@ -77,16 +151,14 @@ def at_stated(model: Model, stated: Model) -> Model:
 
 def unchanged(model: Model, base: Fit) -> Fit:
     """The fit of a model whose new effects stay absent: the residual of the base."""
-    there = model.with_values(dict(base.model.parameters))
-    return replace(base, model=there.with_record_shift(base.model.record_shift))
+    return replace(base, model=with_parameters_of(model, base.model))
 
 
 def _promising(
     model: Model,
     models: list[Model],
     prepared: Prepared,
-    base: Fit,
-    unit: dict[str, float],
+    base: Base,
     *,
     most: int,
     worth: float,
@@ -95,11 +167,11 @@ def _promising(
 
     most: how many, for an effect that has no strength
     """
-    linear = _with_strength(model, base)
+    linear = _with_strength(model)
     if linear is not None:
         return _by_strength(models, *linear, prepared, base, worth)
-    promised = sorted((_promise(m, prepared, base, unit), i) for i, m in enumerate(models))
-    if promised[0][0] > (1.0 - worth) * fit_squares(base):
+    promised = sorted((_promise(m, prepared, base.coarse), i) for i, m in enumerate(models))
+    if promised[0][0] > base.least(worth):
         return []
     return _varied(model, [models[i] for _, i in promised])[:most]
 
@@ -124,7 +196,7 @@ def _varied(model: Model, ordered: list[Model]) -> list[Model]:
     return [*first.values(), *rest]
 
 
-def _with_strength(model: Model, base: Fit) -> tuple[Effect, str] | None:
+def _with_strength(model: Model) -> tuple[Effect, str] | None:
     """The one effect that is still absent, and its place, where it has a strength that is free."""
     absent = [(model.body(place).effect(name), place) for name, place in model.absent]
     if len(absent) != 1 or absent[0][0].strength is None:
@@ -142,7 +214,7 @@ def _moved(base: Fit, stated: Model) -> bool:
 
 
 def _by_strength(
-    models: list[Model], effect: Effect, at: str, prepared: Prepared, base: Fit, worth: float
+    models: list[Model], effect: Effect, at: str, prepared: Prepared, base: Base, worth: float
 ) -> list[Model]:
     """The best starts of an effect that is linear in its strength; none if no gain is expected."""
     strength = f"{at}.{effect.name}.{effect.strength}"
@@ -150,15 +222,15 @@ def _by_strength(
     for model in models:
         others = {n: v.value for n, v in model.parameters.items() if n != strength}
         distinct.setdefault(tuple(others.values()), model)
-    starts = linear_starts(list(distinct.values()), effect, at, prepared, base)
-    if starts[0].promised > (1.0 - worth) * fit_squares(base):
+    starts = linear_starts(list(distinct.values()), effect, at, prepared, base.coarse)
+    if starts[0].promised > base.least(worth):
         return []
     return [s.model for s in starts[: PLAN.predicted]]
 
 
-def _promise(model: Model, prepared: Prepared, base: Fit, unit: dict[str, float]) -> float:
+def _promise(model: Model, prepared: Prepared, base: Fit) -> float:
     """Sum of squares after one linear step from this start, by all parameters."""
-    stretches = prepared.of("fit")
+    stretches, unit = prepared.of("fit"), prepared.scales
     values, before = model.parameters, base.model.parameters
     same = all(values[n].value == before[n].value for n in base.free)
     wanted = [n for n in free_parameters(model) if not (same and n in base.free)]
@@ -188,33 +260,30 @@ def _best_stepped(
     promised: whether the first is the one that promised most: it is kept too, for steps that begin
         far from an optimum may lie above those that never leave the base
     """
-    stretches, solutions = prepared.of("fit"), []
+    solutions = []
     for i, model in enumerate(models):
-        free = free_parameters(model)
-        solution = solve(model, free, prepared, stretches, EFFORTS.first_steps)
-        squares = float(solution.residual @ solution.residual)
-        solutions.append((squares, i, solution.model))
+        solution = _followed(model, prepared, EFFORTS.first_steps)
+        solutions.append((_squares(solution), i, solution.model))
     solutions.sort(key=lambda f: f[:2])
     best = solutions[:kept] + [f for f in solutions[kept:] if promised and f[1] == 0]
     return [there for _, _, there in best]
 
 
-def _jolted(fit: Fit, new: Sequence[tuple[str, str]], prepared: Prepared) -> Fit:
-    """The best fit near by: a rugged sum of squares has many shallow minima.
+def _jolted(best: Solution, new: Sequence[tuple[str, str]], prepared: Prepared) -> Solution:
+    """The best solution near by: a rugged sum of squares has many shallow minima.
 
     new: (effect, place) whose parameters are jolted, one at a time
     """
-    stretches, free = prepared.of("fit"), free_parameters(fit.model)
+    free = free_parameters(best.model)
     names = [n for effect, at in new for n in free if n.startswith(f"{at}.{effect}.")]
-    model, least = fit.model, fit_squares(fit)
+    model, least = best.model, _squares(best)
     for _ in range(PLAN.sweeps):
         before = least
         for name, factor in product(names, PLAN.jolts):
             jolted = model.with_values({name: model.parameters[name].value * factor})
-            solution = solve(jolted, free, prepared, stretches, EFFORTS.first_steps)
-            squares = float(solution.residual @ solution.residual)
-            if squares < least:
-                least, model = squares, solution.model
+            solution = _followed(jolted, prepared, EFFORTS.first_steps)
+            if _squares(solution) < least:
+                least, model = _squares(solution), solution.model
         if least > (1.0 - PLAN.onward) * before:
             break
-    return fit if model is fit.model else estimate(model, prepared, effort=EFFORTS.rough)
+    return best if model is best.model else _followed(model, prepared, EFFORTS.rough)

@@ -44,6 +44,9 @@ class SearchPlan:
     onward: float = 0.1
     #: part of the squares before that such an effect leaves at most where jolts are worth the time
     jolted: float = 0.5
+    #: part of the squares by which two fits must differ to be told for two places: ten times what a
+    #: rough fit leaves open
+    elsewhere: float = 1e-3
     #: squares on the fit records above the best candidate's, as a part of these, up to which
     #: another candidate is fitted finely too
     contending: float = 0.5

@@ -59,6 +59,7 @@ class Motion(ByValue):
     rows: the samples' place in the record;  bandwidth: of the comparison, Hz
     further: of channels besides: "temperature", "other_position" and its rates, smoothed alike
     command_late: s by which the log of the command is later than that of the position
+    merged: rows of the record from one sample to the next: 1 unless samples were left out
     links: of the arm that the body is a joint of;  carried: (n,) the force that they need here
     """
 
@@ -77,6 +78,7 @@ class Motion(ByValue):
     smoothing: Array
     bandwidth: float
     command_late: float = 0.0
+    merged: int = 1
     further: Mapping[str, Array] = field(default_factory=dict)
     links: LinkForces | None = None
     carried: Array | None = None
