@@ -29,7 +29,7 @@ The names that a user types:
                   simulate_diagram, simulate_many, Simulation, Sampling, sine, to_iosystem
     design        design_compensation, Design, Assumptions
     studies       study, Study, read_study, measure, MEASURES, latin_hypercube, sobol,
-                  random_samples, sensitivity_samples
+                  random_samples, sensitivity_samples, tune, limit, trade_off
     passivity     diagram_claims, positive_real, Claim, Certificate
     errors        TeleopDesignError, ExperimentError, ModelError
 
@@ -131,12 +131,15 @@ if TYPE_CHECKING:
         MEASURES,
         Study,
         latin_hypercube,
+        limit,
         measure,
         random_samples,
         read_study,
         sensitivity_samples,
         sobol,
         study,
+        trade_off,
+        tune,
     )
     from .unexplained import describe
 
@@ -188,6 +191,7 @@ __all__ = [
     "hand",
     "haptic_interface",
     "latin_hypercube",
+    "limit",
     "load_controller",
     "load_effect",
     "load_experiment",
@@ -207,7 +211,9 @@ __all__ = [
     "study",
     "teleoperator",
     "to_iosystem",
+    "trade_off",
     "transfer_functions",
+    "tune",
     "write_diagram",
 ]
 
@@ -292,6 +298,9 @@ GROUPS: dict[str, dict[str, str]] = {
         "sobol": "studies",
         "random_samples": "studies",
         "sensitivity_samples": "studies",
+        "tune": "studies",
+        "limit": "studies",
+        "trade_off": "studies",
     },
     "passivity": {
         "diagram_claims": "passivity",

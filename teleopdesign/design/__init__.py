@@ -13,8 +13,8 @@ from .from_answer import DiagnosedModel, diagnosed_model, read_answer
 from .outcome import Design
 from .prediction import CasePrediction, Prediction
 from .propose import design
+from .refine import TunedControllers, refine
 from .residual_friction import ResidualFriction, residual_friction
-from .tune import TunedControllers, tune
 
 __all__ = [
     "Assumptions",
@@ -31,7 +31,7 @@ __all__ = [
     "diagnosed_model",
     "read_answer",
     "residual_friction",
-    "tune",
+    "refine",
 ]
 
 check_arguments(globals(), __all__)

@@ -19,19 +19,27 @@ from .chosen_measures import Measure, measure
 from .diagnosed import diagnosed
 from .from_toml import read_study_file
 from .journal import PointOutcome
+from .limits import TuningLimit, limit
 from .measures import MEASURES
 from .onset import growth, least_that_grows
 from .point import Amount, Point
 from .progress import Progress
+from .recheck import CheckedLimit
 from .result import Study, read_study
 from .run import study
 from .samples import Samples, latin_hypercube, random_samples, sensitivity_samples, sobol
 from .sensitivity import sensitivity
+from .trade_off import ParetoFront, trade_off
+from .tune import Tuned, tune
 
 __all__ = [
     "MEASURES",
     "Amount",
+    "CheckedLimit",
     "SimulatedCase",
+    "ParetoFront",
+    "Tuned",
+    "TuningLimit",
     "Measure",
     "PointOutcome",
     "Point",
@@ -41,6 +49,7 @@ __all__ = [
     "diagnosed",
     "growth",
     "latin_hypercube",
+    "limit",
     "least_that_grows",
     "measure",
     "random_samples",
@@ -50,6 +59,8 @@ __all__ = [
     "sensitivity_samples",
     "sobol",
     "study",
+    "trade_off",
+    "tune",
 ]
 
 check_arguments(globals(), __all__)

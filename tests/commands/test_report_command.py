@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from pathlib import Path
 
 import pytest
 
@@ -21,10 +22,9 @@ def diagnosed(short_rod, tmp_path_factory):
 
 
 @pytest.fixture
-def answer(diagnosed, tmp_path):
-    """A copy of that answer, with the rod where it says that the rod is."""
-    shutil.copytree(diagnosed, tmp_path, dirs_exist_ok=True)
-    return tmp_path / "saved" / "answer.json"
+def answer(diagnosed, rod, tmp_path):
+    """A copy of that answer, beside a copy of the rod, where it says that the rod is."""
+    return Path(shutil.copytree(diagnosed / "saved", tmp_path / "saved")) / "answer.json"
 
 
 def data_of(page):

@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 
+import control as ct
 import numpy as np
 import pytest
 import sympy as sp
@@ -9,7 +10,8 @@ from devices import body
 from passivity.interval_boxes import DIAGRAMS, HAND, failure, random_case
 
 import teleopdesign as td
-from teleopdesign.diagrams import four_channel
+from teleopdesign.controllers import from_control
+from teleopdesign.diagrams import Control, Diagram, Junction, Moving, four_channel
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity import claim_over_intervals
 from teleopdesign.passivity.intervals.bernstein import (
@@ -17,7 +19,9 @@ from teleopdesign.passivity.intervals.bernstein import (
     excludes_zero_over,
     is_non_negative_over,
 )
+from teleopdesign.passivity.intervals.conditions import Conditions
 from teleopdesign.passivity.linear.polynomials import X
+from teleopdesign.realise.lti import S
 
 Y = sp.Symbol("y")
 UNIT = [(Fraction(-1), Fraction(1))]
@@ -52,6 +56,31 @@ def test_two_polynomials_that_meet_at_zero_inside_are_not_called_apart():
     )
 
 
+def test_no_polynomial_with_a_small_dip_inside_is_called_non_negative():
+    rng = np.random.default_rng(1)
+    for _ in range(60):
+        x0, y0 = (sp.Rational(int(n), 97) for n in rng.integers(1, 90, 2))
+        a, b = (sp.Rational(int(n), 10) for n in rng.integers(-20, 20, 2))
+        dip = sp.Rational(1, 10 ** int(rng.integers(2, 12)))
+        p = ((X - x0) + a * (Y - y0)) ** 2 + ((Y - y0) * (1 + X) + b * (X - x0)) ** 2 - dip
+        scale = Fraction(2) ** int(rng.integers(-6, 6))
+        assert not is_non_negative_over(poly(sp.expand(p)), UNIT, scale, ProofEffort(left=2000))
+
+
+@pytest.mark.parametrize("width", [1, 1000])
+def test_a_family_that_touches_the_axis_at_one_value_inside_is_not_called_hurwitz(width):
+    rng = np.random.default_rng(2)
+    for _ in range(12):
+        y0 = sp.Rational(int(rng.integers(-90, 90)), 97)
+        w = sp.Rational(int(rng.integers(1, 50)), 7) * width
+        touching = (S**2 + (Y - y0) ** 2 * S + w**2) * (S + 1 + Y**2)
+        ask = Conditions([Y], UNIT, ProofEffort(left=4000))
+        assert not ask.is_hurwitz(ask.poly(sp.expand(touching)))
+        apart = (S**2 + (sp.Rational(1, 5) + (Y - y0) ** 2) * S + w**2) * (S + 1 + Y**2)
+        ask = Conditions([Y], UNIT)
+        assert width > 1 or ask.is_hurwitz(ask.poly(sp.expand(apart)))
+
+
 def attack(seed, *names):
     """The claim over a random box, and the lowest that 60 points of it show by other formulas."""
     rng = np.random.default_rng(seed)
@@ -79,8 +108,8 @@ def test_no_random_box_that_is_proved_holds_a_point_where_it_fails():
 
 @pytest.mark.slow
 def test_no_more_random_boxes_that_are_proved_hold_a_point_where_they_fail():
-    statuses = [attack(seed) for seed in range(4, 18)]
-    assert statuses.count("proved") >= 7 and "refuted" in statuses
+    statuses = [attack(seed) for seed in range(4, 14)]
+    assert statuses.count("proved") >= 5 and "refuted" in statuses
 
 
 def test_hands_within_bounds_are_intervals_of_their_values():
@@ -90,7 +119,9 @@ def test_hands_within_bounds_are_intervals_of_their_values():
         "Z_H.spring.stiffness": (100.0, 600.0),
     }
     claim = claim_over_intervals(DIAGRAMS["interface"], hands, claim="stable")
-    assert claim.status == "proved" and claim.known == "proved over the whole box"
+    assert claim.status == "proved" and claim.known.startswith(
+        "proved over the whole box (in continuous time)"
+    )
     assert 0 < claim.proved_margin <= claim.margin
     # the slowest is the softest hand with the least damping, or the stiffest one with much mass
     assert claim.worst["Z_H.viscous.damping"] == 1.0
@@ -98,6 +129,13 @@ def test_hands_within_bounds_are_intervals_of_their_values():
     claim = claim_over_intervals(strong, hands, claim="stable")
     assert claim.status == "refuted"
     assert failure("interface", {**strong.values, **claim.worst}, "stable") < 0
+
+
+def test_what_no_computer_samples_is_proved_in_any_time():
+    side, spring = body(0.15, viscous__damping=2.0), body(0.1, spring__stiffness=100.0)
+    diagram = td.haptic_interface(side, hand=spring)
+    claim = claim_over_intervals(diagram, {"Z_M.inertia": (0.1, 0.2)})
+    assert claim.known == "proved over the whole box"
 
 
 def test_a_hand_is_no_part_of_what_is_passive():
@@ -125,6 +163,31 @@ def test_vertices_decide_how_much_friction_may_be_cancelled():
     assert claim.status == "refuted" and claim.worst["Z_M.coulomb.level"] == 0.3
 
 
+@pytest.mark.slow
+def test_friction_that_is_proved_over_a_box_is_so_at_points_inside():
+    rng = np.random.default_rng(3)
+    statuses = []
+    for _ in range(12):
+        middle = {
+            "C.dahl.level": rng.uniform(0.1, 0.6),
+            "C.dahl.stiffness": rng.uniform(5e3, 2e4),
+            "Z_M.coulomb.level": rng.uniform(0.3, 0.8),
+            "Z_M.presliding.stiffness": rng.uniform(1e4, 4e4),
+        }
+        names = rng.choice(list(middle), 2, replace=False)
+        box = {str(n): (0.9 * middle[n], 1.1 * middle[n]) for n in names}
+        diagram = rubbing(0.3, 1e4).with_values(middle)
+        claim = claim_over_intervals(diagram, box)
+        statuses.append(claim.status)
+        for _ in range(20):
+            v = {**diagram.values, **{n: rng.uniform(*ends) for n, ends in box.items()}}
+            level, friction = v["C.dahl.level"], v["Z_M.coulomb.level"]
+            ratio = v["C.dahl.stiffness"] / v["Z_M.presliding.stiffness"]
+            passive = level <= friction and ratio**2 * friction <= level
+            assert passive or claim.status == "refuted"
+    assert {"proved", "refuted"} <= set(statuses)
+
+
 def test_what_no_exact_reasoning_covers_is_checked_numerically_and_says_so():
     def headroom(diagram):
         return 0.3 - diagram.values["Z_M.inertia"]
@@ -139,11 +202,12 @@ def test_what_no_exact_reasoning_covers_is_checked_numerically_and_says_so():
     assert "proved" not in repr(claim)
 
 
+@pytest.mark.slow
 def test_a_delay_leaves_numbers_and_no_proof():
-    spring = td.controller("spring_damper", {"stiffness": 100.0, "damping": 1.0})
+    values = {"stiffness": 100.0, "damping": 1.0, "bandwidth": 500.0}
+    spring = td.controller("proportional_derivative", values)
     side, none = body(0.15, viscous__damping=8.0), td.controller("gain", {"gain": 0.0})
-    across = td.controller("gain", {"gain": 100.0})  # no motion is wired along a channel
-    channels = {"C_1": across, "C_2": none, "C_3": none, "C_4": across}
+    channels = {"C_1": spring, "C_2": none, "C_3": none, "C_4": spring}
     diagram = four_channel(
         side, side, master_control=spring, slave_control=spring, channels=channels, delay=0.005
     )
@@ -167,3 +231,35 @@ def test_an_interval_that_is_none_is_refused(intervals, words):
 def test_an_interval_without_width_is_a_value():
     claim = claim_over_intervals(DIAGRAMS["interface"], {"Z_M.inertia": (0.2, 0.2)}, claim="stable")
     assert claim.status == "proved" and claim.worst == {"Z_M.inertia": 0.2} and claim.points == 1
+
+
+GROWS, ENDS = ([1.0], [1.0, -1.0]), ([1.0, -1.0], [1.0, 1.0])
+
+
+@pytest.mark.parametrize("within", [False, True], ids=["between two blocks", "within one"])
+def test_nothing_is_proved_over_a_box_in_which_a_hidden_mode_grows(within):
+    """A pole at 1 1/s that a zero cancels: at the port, a spring behind a low-pass."""
+    first, second = (from_control(ct.tf(*ratio), name="law") for ratio in (GROWS, ENDS))
+    laws = [first.then(second)] if within else [first, second]
+    names = ["x", *(f"y{k}" for k in range(len(laws)))]
+    controls = [Control(f"C{k}", law, names[k], names[k + 1], "x") for k, law in enumerate(laws)]
+    device = Moving("M", body(0.15, viscous__damping=2.0), "x", "u", {"f": 1}, "f")
+    minus = Junction("u", {names[-1]: -1})
+    diagram = Diagram("hidden", (device, *controls), (minus,), {"f": "force"}, ())
+    box = {"M.inertia": (0.1, 0.3)}
+    assert claim_over_intervals(diagram, box).status == "unknown"
+    assert claim_over_intervals(diagram, box, claim="stable").status == "refuted"
+
+
+def test_a_damper_along_another_motion_is_judged_at_every_point_by_itself():
+    """Its spring reads a filtered position, its damper the velocity now: two forms of one value."""
+    damper = td.controller("spring_damper", {"stiffness": 0.0, "damping": 1.0})
+    low_pass = td.controller("low_pass", {"bandwidth": 5.0})
+    device = Moving("M", body(0.15, viscous__damping=2.0), "x", "u", {"f": 1}, "f")
+    controls = (Control("Q", low_pass, "x", "y"), Control("C", damper, "y", "F", "x"))
+    minus = Junction("u", {"F": -1})
+    diagram = Diagram("damped", (device, *controls), (minus,), {"f": "force"}, ())
+    claim = claim_over_intervals(diagram, {"C.spring_damper.damping": (0.0, 5.0)}, points=4)
+    assert claim.status == "evidence" and claim.margin == pytest.approx(2.0, rel=1e-3)
+    claim = claim_over_intervals(diagram, {"C.spring_damper.damping": (-5.0, 5.0)}, points=4)
+    assert claim.status == "refuted"

@@ -14,10 +14,11 @@ from ...controllers import Controller, as_written, in_exact_numbers, parameter_s
 from ...derive import symbol_values
 from ...derive.elimination import rows
 from ...diagrams import Control, Diagram
-from ...diagrams.second_input import acts_along_another
 from ...realise.lti import LinearBlocks, S, linear_blocks
+from ...realise.simulated import without_absent
 from ...realise.tips import with_tips
-from ..ports import impedance_matrix, judged, ports
+from ..linear.hidden_modes import cancelled_poles
+from ..ports import impedance_matrix, ports
 from .box import ValueBox
 
 #: points inside the box at which the family is held against the diagram; each costs about 0.1 s
@@ -39,7 +40,7 @@ class Family:
     def is_rational(self) -> bool:
         """Whether no dead time is in it."""
         linear = self.linear
-        forms = (*linear.blocks.values(), *linear.actuation.values(), *linear.along.values())
+        forms = (*linear.blocks.values(), *linear.along.values(), *linear.actuation.values())
         return not self.linear.dead_times and not any(sp.sympify(f).has(sp.exp) for f in forms)
 
     def impedance(self) -> sp.Matrix:
@@ -49,7 +50,8 @@ class Family:
     def characteristic(self) -> sp.Expr:
         """Determinant of all equations, times the blocks' denominators: its zeros are the poles.
 
-        Those that no port sees are among them. In S and the symbols
+        Those that no port sees are among them, and those that a zero of the same block cancels, but
+        for blocks whose values are symbols: in general these cancel nothing. In S and the symbols
         """
         free = set(self.diagram.outside)
         unknown = [s for s in self.diagram.signals if s not in free]
@@ -60,22 +62,28 @@ class Family:
             below = sp.lcm_list([sp.fraction(c)[1] for c in terms.values()])
             equations.append([sp.cancel(terms.get(s, sp.S(0)) * below) for s in unknown])
         matrix = DomainMatrix.from_Matrix(sp.Matrix(equations)).to_field()
-        return matrix.domain.to_sympy(matrix.det())
+        whole = matrix.domain.to_sympy(matrix.det())
+        varied = {n.partition(".")[0] for n in self.symbols}
+        for part in self.diagram.controls:
+            if part.dead_time is None and part.name not in varied:
+                whole *= cancelled_poles(part, self.linear).as_expr()
+        return whole
 
 
 def family_of(diagram: Diagram, box: ValueBox) -> Family | None:
     """The diagram with the box's values as symbols.
 
     None where it has no such form: a value that a block does not show in its linear form (of a
-    body's structure, of a system given by numbers), or one whose form changes within the box
+    body's structure, of a system given by numbers), one whose form changes within the box, or one
+    of a law that takes the velocity of another motion than its input
     raises ModelError: a block known by its name only
     """
-    whole = with_tips(judged(diagram))
+    whole = _apart(diagram)
     linear = linear_blocks(whole)
     symbols = {n: sp.Dummy(f"v{k}", real=True) for k, n in enumerate(box.names)}
     blocks, actuation = dict(linear.blocks), dict(linear.actuation)
     for name in {n.partition(".")[0] for n in box.names}:
-        if not whole.has(name):
+        if not whole.has(name) or name in linear.along:
             return None
         of_block = {n.partition(".")[2]: s for n, s in symbols.items() if n.startswith(f"{name}.")}
         forms = _forms(whole, name, of_block)
@@ -97,8 +105,6 @@ def _forms(
         law = part.controller
         if not isinstance(law, Controller) or part.dead_time is not None:
             return None
-        if acts_along_another(diagram, part):
-            return None  # two forms, from two signals
         form = law.linear_form(part.name, S, sp.S(0))
         if form is None:
             return None
@@ -119,22 +125,36 @@ def _forms(
     return first, second
 
 
+def _apart(diagram: Diagram) -> Diagram:
+    """As `judged` has it, bodies with a structure apart; no linear form is made."""
+    for part in diagram.bodies:
+        if isinstance(part.body, Body):
+            diagram = diagram.with_block(part.name, without_absent(part.body))
+    return with_tips(diagram)
+
+
 def _agrees(family: Family, diagram: Diagram, box: ValueBox) -> bool:
     """Whether its blocks are exactly those of the diagram, inside and at two opposite vertices.
 
     An effect that its values make absent is so at an end of an interval.
     """
+    varied = {n.partition(".")[0] for n in box.names}
+    # a body that is parted at its structure is several blocks: all are compared then
+    parted = any(family.diagram.has(f"{name}_tip") for name in varied)
+    blocks_compared = ("",) if parted else tuple(varied)
     for point in (np.array(box.low), np.array(box.high), *box.inside(_COMPARED, 0)):
         values = box.named(point)
-        there = linear_blocks(with_tips(judged(diagram.with_values(values))))
+        there = _apart(diagram.with_values(values))
         placed = {family.symbols[n]: as_written(v) for n, v in values.items()}
-        for here, exact in (
-            (family.linear.blocks, there.blocks),
-            (family.linear.actuation, there.actuation),
-        ):
-            if here.keys() != exact.keys():
-                return False
-            pairs = ((sp.sympify(here[n]).subs(placed), exact[n]) for n in here)
-            if any(a != b and sp.cancel(sp.together(a - b)) != 0 for a, b in pairs):
-                return False
+        for one in blocks_compared:
+            exact = linear_blocks(there, only=one)
+            for here, forms in (
+                (family.linear.blocks, exact.blocks),
+                (family.linear.actuation, exact.actuation),
+            ):
+                if not (one or here.keys() == forms.keys()) or not forms.keys() <= here.keys():
+                    return False
+                pairs = ((sp.sympify(here[n]).subs(placed), form) for n, form in forms.items())
+                if any(a != b and sp.cancel(sp.together(a - b)) != 0 for a, b in pairs):
+                    return False
     return True

@@ -26,6 +26,7 @@ class IntervalClaim(ByValue):
     margin: the least that was found, at `worst`, in `unit`
     proved_margin: what the margin is proved to be at least, over the whole box; NaN: none is
     points: at which it was looked at;  how: in words;  at_worst: the claim at `worst` alone
+    time: of the controllers: "any" where no computer samples one
     """
 
     statement: str
@@ -39,6 +40,7 @@ class IntervalClaim(ByValue):
     how: str
     units: Mapping[str, str] = field(default_factory=dict)
     at_worst: Claim | None = None
+    time: Literal["continuous", "any"] = "any"
 
     @property
     def holds(self) -> bool | None:
@@ -46,10 +48,15 @@ class IntervalClaim(ByValue):
         return {"proved": True, "evidence": True, "refuted": False}.get(self.status)
 
     @property
+    def limited(self) -> str:
+        """What a proof adds to its words where a computer samples some controller."""
+        return " (in continuous time)" if self.time == "continuous" else ""
+
+    @property
     def known(self) -> str:
         """How it is known, in the words that every report of it has."""
         return {
-            "proved": "proved over the whole box",
+            "proved": f"proved over the whole box{self.limited}",
             "refuted": "refuted at a point of the box",
             "evidence": f"checked numerically at {self.points} points, worst found there",
             "unknown": "unknown",

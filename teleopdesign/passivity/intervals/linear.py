@@ -19,9 +19,9 @@ from ..ports import judged, nonlinear_parts, ports
 from .at_points import judge_at_points
 from .box import ValueBox
 from .conditions import Conditions, one_port_is_passive, two_port_is_passive, two_port_is_stable
-from .family import family_of
+from .family import Family, family_of
 from .interval_claim import Parts, Status, parts_of
-from .worst import pole_margin, port_margin, search_worst
+from .worst import Margin, pole_margin, port_margin, search_worst
 
 #: claims that the package knows, and the unit of their margins
 CLAIMS = {"passive": "N s/m", "absolutely stable": "1", "stable": "1/s"}
@@ -30,6 +30,7 @@ _SHARES = (0.999, 0.9, 0.5)
 
 
 def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> Parts:
+    """Whether every pole of the whole diagram lies left of the axis."""
     statement = "every pole has a negative real part"
     if bent := nonlinear_parts(judged(middle)):
         raise ModelError(f"{middle.name}: stable: {', '.join(bent)} has no linear form")
@@ -75,18 +76,14 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
     z = family.impedance()
     stable = claim == "absolutely stable"
     ask = Conditions.over(box, family.symbols)
-    poles = []
-    if family.is_rational:
-        poles = [ask.poly(sp.fraction(sp.cancel(e))[1]) for e in z]
-    margin = port_margin(family, z, stable=stable, poles=poles, box=box)
-    worst = search_worst(margin, box, points=points, seed=seed)
+    worst = search_worst(_margin(family, z, box, claim), box, points=points, seed=seed)
     exact = _settle(alone, box, worst.point, claim)
     unit = CLAIMS[claim]
     if exact.status == "refuted":
         how = str(exact.verdict)
         worst = worst if worst.margin < 0 else replace(worst, margin=-np.inf)
         return parts_of(statement, "refuted", worst, box, unit, how, at_worst=exact)
-    if family.is_rational and _proved(ask, z, claim):
+    if family.is_rational and _proved(ask, z, claim) and _hides_no_growth(ask, family, z):
         bound = 0.0 if stable else _bound(ask, z, worst.margin)
         how = _how(ask, "its conditions are polynomials of one sign")
         worst = replace(worst, margin=max(worst.margin, bound))
@@ -101,10 +98,45 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
     return parts_of(statement, status, worst, box, unit, how, at_worst=exact)
 
 
+def margin_over(family: Family, box: ValueBox, claim: str) -> Margin:
+    """The margin of a claim as a function of the box's values; numerical, compiled once."""
+    if claim == "stable":
+        ask = Conditions.over(box, family.symbols)
+        return pole_margin(ask.poly(family.characteristic()), ask.symbols)
+    return _margin(family, family.impedance(), box, claim)
+
+
+def _margin(family: Family, z: sp.Matrix, box: ValueBox, claim: str) -> Margin:
+    ask, poles = Conditions.over(box, family.symbols), []
+    if family.is_rational:
+        poles = [ask.poly(sp.fraction(sp.cancel(e))[1]) for e in z]
+    stable = claim == "absolutely stable"
+    return port_margin(family, z, stable=stable, poles=poles, box=box)
+
+
 def _proved(ask: Conditions, z: sp.Matrix, claim: str) -> bool:
     if z.shape == (1, 1):
         return one_port_is_passive(ask, z[0, 0])
     return (two_port_is_stable if claim == "absolutely stable" else two_port_is_passive)(ask, z)
+
+
+def _hides_no_growth(ask: Conditions, family: Family, z: sp.Matrix) -> bool:
+    """Whether all modes that the ports, left free, do not show are shown to die out; 0 may stay.
+
+    An impedance is what ports do from rest: what a zero cancels in it may grow by itself inside.
+    """
+    whole = sp.fraction(sp.cancel(family.characteristic()))[0]
+    shown = sp.fraction(sp.cancel(z.det()))[0]
+    if shown == 0:
+        return False
+    hidden = ask.poly(sp.fraction(sp.cancel(whole / shown))[0])
+    s = ask.poly(S)
+    while hidden.degree() > 0:
+        rest, at_zero = sp.div(hidden, s)
+        if not at_zero.is_zero:
+            break
+        hidden = rest
+    return ask.is_hurwitz(hidden)
 
 
 def _bound(ask: Conditions, z: sp.Matrix, margin: float) -> float:
@@ -162,5 +194,5 @@ def _how(ask: Conditions, what: str) -> str:
 def _no_proof(ask: Conditions) -> str:
     return (
         f"no proof over the whole box: not shown on {ask.effort.cells} parts of it, or poles on "
-        "the axis that no condition covers"
+        "the axis that no condition covers, or modes inside that no port shows"
     )

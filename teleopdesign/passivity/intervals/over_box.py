@@ -80,6 +80,7 @@ def _finish(
             "worst": worst,
             "unit": unit,
             "how": turned(made["how"]),
+            "time": "continuous" if any(not c.analog for c in diagram.controls) else "any",
             "units": {n: unit_of_value(diagram, n) for n in intervals},
         }
     )

@@ -25,8 +25,8 @@ from ...controllers import (
 )
 from ...derive import symbol_values
 from ...derive.elimination import rows
-from ...diagrams import Diagram
-from ...realise.lti import S, linear_blocks
+from ...diagrams import Control, Diagram
+from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.tips import with_tips
 from ..checker.polynomials import is_free_of_growth, polynomial
 from .impedance import exact
@@ -68,15 +68,19 @@ def _characteristic(diagram: Diagram) -> sp.Poly | None:
     determinant = DomainMatrix(matrix, (size, size), ring).to_field().det()
     whole = sp.Poly(ring.to_sympy(ring.convert_from(determinant, ring.get_field())), S, domain="QQ")
     for part in diagram.controls:
-        assert isinstance(part.controller, Controller)
-        cancelled = _common_denominator(
-            (linear.blocks[part.name], linear.along.get(part.name, sp.S(0)))
-        )
-        uncancelled = sp.Poly(1, S, domain="QQ")
-        for stage in part.controller.stages:
-            uncancelled *= _denominator(stage, part.name)
-        whole *= uncancelled.quo(cancelled)
+        whole *= cancelled_poles(part, linear)
     return whole if not whole.is_zero else None
+
+
+def cancelled_poles(part: Control, linear: LinearBlocks) -> sp.Poly:
+    """What the denominators of a controller's stages have more than its linear forms, in S."""
+    assert isinstance(part.controller, Controller)
+    forms = linear.blocks[part.name], linear.along.get(part.name, sp.S(0))
+    kept = _common_denominator(forms)
+    whole = sp.Poly(1, S, domain="QQ")
+    for stage in part.controller.stages:
+        whole *= _denominator(stage, part.name)
+    return whole.quo(kept)
 
 
 def _denominator(stage: Stage, prefix: str) -> sp.Poly:

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from teleopdesign.design import tune
+from teleopdesign.design import refine
 from teleopdesign.design.cancellation import smoothed_cancellation
 from teleopdesign.design.chosen import Reason
 
 
 def test_tuning_lowers_the_force_error_within_the_conditions(designed):
-    found = tune(designed, simulations=25)
+    found = refine(designed, simulations=25)
     assert found.after <= found.before
     h, proposed = found.force_feedback.names(), designed.force_feedback.controller.names()
     k, b = h["velocity_schedule.gain"], h["velocity_schedule.scheduling_velocity"]
@@ -24,7 +24,7 @@ def test_tuning_lowers_the_force_error_within_the_conditions(designed):
 
 
 def test_the_error_before_is_the_one_predicted(designed):
-    found = tune(designed, simulations=4)
+    found = refine(designed, simulations=4)
     assert found.before == pytest.approx(designed.prediction.cases["hybrid"].simulated, rel=1e-9)
 
 
@@ -37,7 +37,7 @@ def test_a_smoothed_cancellation_keeps_its_velocity_above_the_encoders(designed)
     hybrid = designed.prediction.hybrid.with_block("C", smoothed.controller)
     prediction = replace(designed.prediction, hybrid=hybrid)
     made = replace(designed, cancellation=smoothed, prediction=prediction)
-    found = tune(made, simulations=25)
+    found = refine(made, simulations=25)
     a = smoothed.controller.names()["smoothed_coulomb.smoothing_velocity"]
     assert found.cancellation.names()["smoothed_coulomb.smoothing_velocity"] >= a * (1 - 1e-9)
     h = found.force_feedback.names()
@@ -46,4 +46,4 @@ def test_a_smoothed_cancellation_keeps_its_velocity_above_the_encoders(designed)
 
 
 def test_a_design_without_cancellation_tunes_force_feedback_alone(unsure):
-    assert tune(unsure, simulations=6).cancellation is None
+    assert refine(unsure, simulations=6).cancellation is None

@@ -52,7 +52,7 @@ class TunedControllers(ByValue):
         )
 
 
-def tune(design: Design, *, simulations: int = 60) -> TunedControllers:
+def refine(design: Design, *, simulations: int = 60) -> TunedControllers:
     """Search for a smaller force error from the numbers of a design; every condition still holds.
 
     simulations: most that are run
@@ -82,7 +82,7 @@ def tune(design: Design, *, simulations: int = 60) -> TunedControllers:
     at = np.log([start[n] for n in names])
     before = error(at)
     if not math.isfinite(before):
-        raise ModelError("tune: the controllers that were proposed cannot be simulated")
+        raise ModelError("refine: the controllers that were proposed cannot be simulated")
     # a simplex that reaches into the range from the proposal, which lies on some of its bounds
     steps = np.where(at - low > high - at, -1.0, 1.0) * np.minimum(0.4, (high - low) / 2)
     simplex = np.vstack([at, at + np.diag(steps)])

@@ -1,0 +1,47 @@
+"""Figure of two measures against each other. Nothing is computed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .design import ONE_COLUMN, STYLE, unit_text
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+    import numpy as np
+
+    from ..studies import ParetoFront
+
+#: evaluated points further than this many lengths of the front from it are outside the picture
+_BESIDE = 1.5
+GREY, BEST, BEFORE = "#BFBFBF", "#0072B2", "#D55E00"
+
+
+def plot_pareto(front: ParetoFront) -> matplotlib.figure.Figure:
+    """The front as steps; points that keep the limits in grey; the diagram's own as a cross."""
+    import matplotlib.pyplot as plt
+    import numpy as np
+
+    x, y = front.objectives.T
+    with plt.style.context(STYLE):
+        figure, axes = plt.subplots(figsize=(ONE_COLUMN, 0.8 * ONE_COLUMN), layout="constrained")
+        axes.plot(*front.evaluated.T, ".", color=GREY, markersize=2.5, label="keeps the limits")
+        axes.step(*front.tried_best.T, where="post", color=BEST, label="best found")
+        axes.plot(x, y, "o", color=BEST, markersize=4, zorder=3, label="checked once more")
+        if np.isfinite(front.before).all():
+            axes.plot(*front.before, "x", color=BEFORE, zorder=4, label="before")
+        axes.set_xlim(right=min(axes.get_xlim()[1], _farthest(x)))
+        axes.set_ylim(top=min(axes.get_ylim()[1], _farthest(y)))
+        first, second = (
+            f"{name.replace('_', ' ')} ({unit_text(unit or '1')})"
+            for name, unit in zip(front.names, front.units, strict=True)
+        )
+        axes.set_xlabel(first)
+        axes.set_ylabel(second)
+        axes.legend()
+    return figure
+
+
+def _farthest(values: np.ndarray) -> float:
+    """What is still in the picture."""
+    return float(values.max() + _BESIDE * ((values.max() - values.min()) or abs(values.max()) or 1))

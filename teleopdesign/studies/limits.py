@@ -1,0 +1,150 @@
+"""What a tuned diagram must keep to: a claim, a margin of a loop, or a measure within a bound.
+
+limit("passive")                                     at all ports, margin >= 0
+limit("passive", over={"Z_M.inertia": (0.1, 0.3)})   for all values in the intervals
+limit("delay margin", least=2e-3, controller="H")    s
+limit("tracking_error", most=1e-3)                   any measure, or a function of the result
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..arguments import checked
+from ..by_value import ByValue
+from ..diagrams import Diagram
+from ..errors import ModelError
+from ..frequency import delay_margin, loop_gain
+from ..passivity.intervals.box import ValueBox
+from ..passivity.intervals.family import family_of
+from ..passivity.intervals.linear import CLAIMS, margin_over
+from ..passivity.intervals.over_box import claim_over_intervals
+from ..passivity.ports import judged, nonlinear_parts, without_holding
+from .chosen_measures import Measure, measures_of
+
+#: margins of the loop of a controller, and their units
+LOOP_MARGINS = {"delay margin": "s", "gain margin": "1", "phase margin": "deg"}
+#: order of the Pade approximation of dead times in gain and phase margins
+_PADE = 8
+
+
+@dataclass(frozen=True, eq=False)
+class TuningLimit(ByValue):
+    """A bound on a claim's margin, a loop's margin or a measure, from below or from above.
+
+    over: intervals of values for all of which it is to hold;  controller: whose loop
+    measure: what is measured; None: `name` is a claim or a margin of a loop
+    """
+
+    name: str
+    bound: float
+    from_above: bool
+    over: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    controller: str = "H"
+    measure: Measure | None = None
+
+    @property
+    def unit(self) -> str:
+        """Of its margin; of a measure it is known when it is measured."""
+        return {**CLAIMS, **LOOP_MARGINS}.get(self.name, "")
+
+    def excess(self, value: float) -> float:
+        """How far a value is within the bound; < 0: beyond it."""
+        excess = self.bound - value if self.from_above else value - self.bound
+        return float(excess) if not np.isnan(excess) else -np.inf
+
+    def __repr__(self) -> str:
+        unit = f" {self.unit}" if self.unit not in ("", "1") else ""
+        within = ", ".join(f"{n} {a:g} to {b:g}" for n, (a, b) in self.over.items())
+        side = "<=" if self.from_above else ">="
+        return f"{self.name} {side} {self.bound:g}{unit}{f', for all {within}' if within else ''}"
+
+
+@checked
+def limit(
+    what: Any,
+    *,
+    least: float | None = None,
+    most: float | None = None,
+    over: Mapping[str, tuple[float, float]] | None = None,
+    controller: str = "H",
+) -> TuningLimit:
+    """A limit for `tune`.
+
+    what: "passive", "absolutely stable" or "stable" (margins in N s/m, 1 and 1/s, at least 0);
+        "delay margin" (s), "gain margin" (factor up or down), "phase margin" (degrees); a measure
+    least, most: one of them, in SI;  over: intervals of values for all of which it is to hold
+    controller: whose loop a margin is of
+    raises ModelError: no measure of that name, no bound or two
+    """
+    known = isinstance(what, str) and what in (*CLAIMS, *LOOP_MARGINS)
+    if known and what in CLAIMS and least is None:
+        least = 0.0
+    if (least is None) == (most is None):
+        raise ModelError(f"limit {what}: expected least or most, found {least} and {most}")
+    if known and most is not None:
+        raise ModelError(f"limit {what}: a margin is to be large: expected least, found most")
+    bound = float(most if most is not None else least)  # type: ignore[arg-type]
+    measure = None if known else measures_of([what])[0]
+    name = what if known else measure.name  # type: ignore[union-attr]
+    return TuningLimit(name, bound, most is not None, dict(over or {}), controller, measure)
+
+
+def limit_of(content: Any) -> TuningLimit:
+    """A limit, or the name of a claim as one."""
+    return content if isinstance(content, TuningLimit) else limit(content)
+
+
+def loop_margin(diagram: Diagram, name: str, controller: str) -> float:
+    """Margin of a controller's loop; -inf where it is unstable, inf where nothing limits it."""
+    import control
+
+    loop = loop_gain(diagram, controller=controller)
+    try:
+        late = delay_margin(loop)
+    except ModelError as problem:
+        if "unstable" in str(problem):
+            return -np.inf
+        raise
+    if name == "delay margin":
+        return late
+    system = loop.transfer_function(delay_order=_PADE)
+    gains, phases, *_ = control.stability_margins(system, returnall=True)
+    if name == "phase margin":
+        turned = np.abs((np.asarray(phases) + 180) % 360 - 180)
+        return float(turned.min()) if len(turned) else np.inf
+    factors = np.asarray(gains)
+    factors = np.maximum(factors, 1 / factors)
+    return float(factors.min()) if len(factors) else np.inf
+
+
+def margin_function(
+    limited: TuningLimit, diagram: Diagram, box: ValueBox
+) -> Callable[[dict[str, float]], float]:
+    """The margin of a claim or a loop at values of a diagram, made once for a whole search.
+
+    box: of all values that vary: of a linear diagram the margin is compiled over it
+    """
+    if limited.name in LOOP_MARGINS:
+        return lambda v: loop_margin(diagram.with_values(v), limited.name, limited.controller)
+    whole = diagram if limited.name == "stable" else without_holding(diagram)
+    kept = tuple(n for n in box.names if n in whole.values)
+    if not nonlinear_parts(judged(whole)):
+        within = box.only(kept)
+        middle = whole.with_values(within.named(within.centre))
+        family = family_of(middle, within)
+        if family is not None and (family.is_rational or limited.name != "stable"):
+            margin = margin_over(family, within, limited.name)
+            return lambda v: margin(np.array([v[n] for n in kept]))
+
+    def settle(values: dict[str, float]) -> float:
+        claim = claim_over_intervals(diagram.with_values(values), {}, claim=limited.name, points=0)
+        if not np.isnan(claim.margin):
+            return claim.margin
+        return 0.0 if claim.holds else -1.0
+
+    return settle

@@ -1,0 +1,250 @@
+"""What a search asks of points: limits first, then what has to be simulated, many side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import ModelError
+from ..expectations import described
+from ..passivity.intervals.box import ValueBox
+from .case import SimulatedCase
+from .chosen_measures import Measure
+from .evaluate import StudyTask
+from .journal import PointOutcome
+from .limits import TuningLimit, margin_function
+from .points import points_of
+from .processes import run_on_this_machine
+from .samples import Samples
+from .side_by_side import units_of
+
+#: vertices of the intervals of a limit that the search looks at, beside their middle
+_MOST_VERTICES = 16
+#: intervals whose ends differ by more than this factor are searched in logarithms
+_WIDE = 9.9
+#: N s/m, 1 or 1/s: rounding of a claim's margin where it is zero
+_ROUNDING = 1e-9
+#: of the spread of a claim's margins: what the best point has at least, as the last check is exact
+_SLACK = 1e-6
+
+
+@dataclass(frozen=True)
+class TrialPoint:
+    """A point that was tried.
+
+    excesses: of every limit, < 0 where it is beyond its bound, NaN where it was not looked at
+    objectives: NaN where not measured, as a limit was missed or the simulation failed
+    """
+
+    values: tuple[float, ...]
+    excesses: tuple[float, ...]
+    objectives: tuple[float, ...]
+
+    @property
+    def violation(self) -> float:
+        """0 where every limit is kept and all objectives are numbers."""
+        missed = [x for x in self.excesses if not x >= 0]
+        if not missed and all(np.isfinite(self.objectives)):
+            return 0.0
+        sizes = [min(-x, 1e12) if np.isfinite(x) else 1e12 for x in missed if not np.isnan(x)]
+        return float(sum(s / (1 + s) for s in sizes)) if sizes else 1.0
+
+
+@dataclass
+class Problem:
+    """Parameters, objectives and limits of a search, and every point that was tried."""
+
+    case: SimulatedCase
+    parameters: ValueBox
+    objectives: tuple[Measure, ...]
+    limits: tuple[TuningLimit, ...]
+    seed: int
+    workers: int
+    trials: dict[tuple[float, ...], TrialPoint] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
+    simulated: int = 0
+    reason: str = ""
+
+    def __post_init__(self) -> None:
+        self.scenarios = [self._scenarios(one) for one in self.limits]
+        self.margins = [self._margin(one) for one in self.limits]
+        self.slack = [_SLACK] * len(self.limits)
+
+    @property
+    def wide(self) -> np.ndarray:
+        """Which parameters are searched in logarithms, (n,)."""
+        low, high = np.array(self.parameters.low), np.array(self.parameters.high)
+        return np.asarray((low > 0) & (high > _WIDE * low))
+
+    def values(self, unit: np.ndarray) -> np.ndarray:
+        """Values from shares of the intervals, (..., n)."""
+        low, high, wide = np.array(self.parameters.low), np.array(self.parameters.high), self.wide
+        safe = np.where(wide, low, 1.0)
+        ratio = np.where(wide, high / safe, 1.0)
+        share = np.clip(unit, 0, 1)
+        inside = np.where(wide, safe * ratio**share, low + share * (high - low))
+        return np.asarray(np.clip(inside, low, high))
+
+    def share(self, values: np.ndarray) -> np.ndarray:
+        """The shares of the intervals that values are, (n,)."""
+        low, high, wide = np.array(self.parameters.low), np.array(self.parameters.high), self.wide
+        safe, x = np.where(wide, low, 1.0), np.clip(values, low, high)
+        logarithmic = np.log(np.where(wide, x, 1.0) / safe) / np.log(np.where(wide, high / safe, 2))
+        return np.asarray(np.where(wide, logarithmic, (x - low) / (high - low)))
+
+    def tries(self, points: np.ndarray) -> list[TrialPoint]:
+        """Each point tried once; those that keep the claims are simulated side by side."""
+        keys = [tuple(map(float, p)) for p in points]
+        new = [k for k in dict.fromkeys(keys) if k not in self.trials]
+        excesses = {k: self._claims(k) for k in new}
+        able = [k for k in new if all(x >= 0 for x in excesses[k] if not np.isnan(x))]
+        measured = self._measured(able)
+        for k in new:
+            amounts = measured.get(k, {})
+            objectives = tuple(amounts.get(m.name, np.nan) for m in self.objectives)
+            kept = tuple(
+                one.excess(amounts.get(one.measure.name, np.nan)) if one.measure and amounts else x
+                for one, x in zip(self.limits, excesses[k], strict=True)
+            )
+            self.trials[k] = TrialPoint(k, kept, objectives)
+        return [self.trials[k] for k in keys]
+
+    def measured_at(
+        self, values: tuple[float, ...], others: dict[str, float], one: TuningLimit
+    ) -> float:
+        """The measure of a limit at a point, with other values as said."""
+        assert one.measure is not None
+        return self._study([values], others, (one.measure,))[values].get(one.name, np.nan)
+
+    def start_values(self) -> np.ndarray:
+        """The case's own values of the parameters, brought into their intervals."""
+        listed = [self.case.value(n) for n in self.parameters.names]
+        numbers = [np.nan if x is None else float(x) for x in listed]
+        centre = self.parameters.centre
+        inside = np.where(np.isnan(numbers), centre, numbers)
+        return np.asarray(np.clip(inside, self.parameters.low, self.parameters.high))
+
+    def start(self) -> TrialPoint:
+        """The case's own values, tried."""
+        return self.tries(self.start_values()[None])[0]
+
+    def within(self, values: Sequence[float]) -> SimulatedCase:
+        """The case at these values."""
+        return self.case.with_values(self.parameters.named(np.array(values)))
+
+    def best(self, key: Callable[[TrialPoint], float] | None = None) -> TrialPoint:
+        """Of all that keep the limits the least objective; where none does, the least violation."""
+        if kept := self.kept():
+            return min(kept, key=key or (lambda t: t.objectives[0]))
+        return min(self.trials.values(), key=lambda t: t.violation)
+
+    def kept(self) -> list[TrialPoint]:
+        """Points that keep all limits, claims by more than rounding where there are such points."""
+        kept = [t for t in self.trials.values() if t.violation == 0]
+        least = [
+            share * self.spread(k) if one.measure is None else 0.0
+            for k, (one, share) in enumerate(zip(self.limits, self.slack, strict=True))
+        ]
+        clear = [t for t in kept if all(x >= y for x, y in zip(t.excesses, least, strict=True))]
+        return clear or kept
+
+    def spread(self, k: int) -> float:
+        """Between the largest and the smallest excess of that limit, of all points."""
+        finite = [x for t in self.trials.values() if np.isfinite(x := t.excesses[k])]
+        return max(finite) - min(finite) if finite else 0.0
+
+    def _claims(self, key: tuple[float, ...]) -> tuple[float, ...]:
+        """Excess of each limit over its scenarios; NaN of measures, and after one that fails."""
+        here = self.parameters.named(np.array(key))
+        within = {n: v for n, v in here.items() if n in self.case.diagram.values}
+        excesses = []
+        failed = False
+        for one, margin, points in zip(self.limits, self.margins, self.scenarios, strict=True):
+            excess = np.nan
+            if margin is not None and not failed:
+                excess = min(one.excess(margin({**within, **point})) for point in points)
+                # rounding of a margin that is zero: the last check is exact
+                excess = max(excess, 0.0) if excess > -_ROUNDING else excess
+                failed = excess < 0
+            excesses.append(excess)
+        return tuple(excesses)
+
+    def _measured(
+        self, keys: Sequence[tuple[float, ...]]
+    ) -> dict[tuple[float, ...], dict[str, float]]:
+        """Name of a measure -> its number, the worst over the scenarios of a limit on it."""
+        amounts = self._study(list(keys), {}) if keys else {}
+        for one, points in zip(self.limits, self.scenarios, strict=True):
+            if one.measure is None or not one.over or not keys:
+                continue
+            worst = max if one.from_above else min
+            for point in points:
+                there = self._study(list(keys), point, (one.measure,))
+                for k in keys:
+                    values = [amounts[k].get(one.name, np.nan), there[k].get(one.name, np.nan)]
+                    finite = not np.isnan(values).any()
+                    amounts[k][one.name] = worst(values) if finite else np.nan
+        return amounts
+
+    def _study(
+        self,
+        keys: list[tuple[float, ...]],
+        values: dict[str, float],
+        measures: tuple[Measure, ...] = (),
+    ) -> dict[tuple[float, ...], dict[str, float]]:
+        """The measures at these points, other values as said."""
+        self.simulated += len(keys)
+        limited = [one.measure for one in self.limits if one.measure is not None]
+        listed = measures or tuple({m.name: m for m in (*self.objectives, *limited)}.values())
+        names = self.parameters.names
+        points = Samples(names, np.array(keys), ("",) * len(names), "random", self.seed)
+        axes = points_of([points, values])
+        task = StudyTask(self.case, self.case.settings(), axes, listed, self.seed)
+        outcomes: dict[int, PointOutcome] = {}
+
+        def keep(outcome: PointOutcome) -> None:
+            outcomes[outcome.point] = outcome
+
+        run_on_this_machine(task, units_of(task, range(len(keys))), keep, self.workers)
+        return {k: self._numbers(outcomes[i]) for i, k in enumerate(keys)}
+
+    def _numbers(self, outcome: PointOutcome) -> dict[str, float]:
+        """Number by measure of a point; none where it failed."""
+        numbers = {}
+        for (name, kind, unit, *_), value in zip(outcome.form, outcome.values, strict=True):
+            if kind != "number" or isinstance(value, tuple):
+                raise ModelError(f"tune: {name}: found {described(value)}, expected one number")
+            self.units[name] = unit or self.units.get(name, "")
+            numbers[name] = float(value)
+        self.reason = outcome.reason or self.reason
+        return numbers
+
+    def _scenarios(self, one: TuningLimit) -> list[dict[str, float]]:
+        if not one.over:
+            return [{}]
+        box = box_over(one)
+        points = [*box.vertices()[:_MOST_VERTICES], box.centre]
+        return [box.named(p) for p in points]
+
+    def _margin(self, one: TuningLimit) -> Callable[[dict[str, float]], float] | None:
+        """Of a claim or a loop; None of a measure."""
+        if one.measure is not None:
+            return None
+        diagram = self.case.diagram
+        both = {n: (a, b) for n, a, b in zip(*self._sides(), strict=True) if n in diagram.values}
+        both |= dict(one.over)
+        box = ValueBox(
+            tuple(both), tuple(a for a, _ in both.values()), tuple(b for _, b in both.values())
+        )
+        return margin_function(one, diagram, box)
+
+    def _sides(self) -> tuple[tuple[str, ...], tuple[float, ...], tuple[float, ...]]:
+        return self.parameters.names, self.parameters.low, self.parameters.high
+
+
+def box_over(one: TuningLimit) -> ValueBox:
+    """The box of a limit's intervals."""
+    ends = one.over.values()
+    return ValueBox(tuple(one.over), tuple(a for a, _ in ends), tuple(b for _, b in ends))

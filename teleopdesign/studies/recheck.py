@@ -1,0 +1,89 @@
+"""The limits of a tuned point once more, each by the strictest method that there is for it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..by_value import ByValue
+from ..passivity.intervals.linear import CLAIMS
+from ..passivity.intervals.over_box import claim_over_intervals
+from ..passivity.intervals.worst import search_worst
+from .limits import LOOP_MARGINS, TuningLimit, loop_margin
+from .problem import Problem, TrialPoint, box_over
+
+#: points inside the intervals of a limit, beside vertices and middle
+_POINTS = 32
+#: share of all margins that the search saw: nearer to its bound, a limit is called active
+_ACTIVE = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class CheckedLimit(ByValue):
+    """A limit at the point: its worst value, where in its intervals, and how that is known.
+
+    active: whether it holds the search back: its value is beside the bound
+    """
+
+    limit: TuningLimit
+    value: float
+    unit: str
+    holds: bool
+    how: str
+    worst: Mapping[str, float] = field(default_factory=dict)
+    active: bool = False
+
+    def __repr__(self) -> str:
+        unit = f" {self.unit}" if self.unit not in ("", "1") else ""
+        state = "active" if self.active else "kept" if self.holds else "missed"
+        at = ", ".join(f"{n} = {v:.4g}" for n, v in self.worst.items())
+        where = f" at {at}" if at else ""
+        number = "" if np.isnan(self.value) else f": {self.value:.5g}{unit}{where}"
+        return f"{state}: {self.limit}{number}; {self.how}"
+
+
+def recheck(problem: Problem, trial: TrialPoint) -> tuple[CheckedLimit, ...]:
+    """Every limit at that point."""
+    return tuple(_check(problem, trial, k) for k in range(len(problem.limits)))
+
+
+def _check(problem: Problem, trial: TrialPoint, k: int) -> CheckedLimit:
+    one = problem.limits[k]
+    diagram = problem.within(trial.values).diagram
+    active = _is_active(problem, trial, k)
+    if one.name in CLAIMS and one.measure is None:
+        claim = claim_over_intervals(diagram, one.over, claim=one.name)
+        proved = claim.status == "proved" and (one.bound <= 0 or claim.proved_margin >= one.bound)
+        holds = bool(claim.holds) and (np.isnan(claim.margin) or one.excess(claim.margin) >= 0)
+        how = claim.known if one.over or not proved else f"proved at this point{claim.limited}"
+        if holds and not proved:
+            how = f"checked numerically at {claim.points} points, worst found there"
+        return CheckedLimit(one, claim.margin, claim.unit, holds, how, claim.worst, active)
+    box = box_over(one)
+
+    def margin(point: np.ndarray) -> float:
+        values = box.named(point)
+        if one.name in LOOP_MARGINS and one.measure is None:
+            return loop_margin(diagram.with_values(values), one.name, one.controller)
+        return one.excess(problem.measured_at(trial.values, values, one))
+
+    worst = search_worst(margin, box, points=_POINTS if one.over else 0, seed=0, downhill=False)
+    looped = one.name in LOOP_MARGINS and one.measure is None
+    value = worst.margin if looped else _value(one, worst.margin)
+    unit = one.unit or problem.units.get(one.name, "")
+    how = f"checked numerically at {worst.points} points, worst found there"
+    how = how if one.over else "computed at this point"
+    holds = one.excess(value) >= 0
+    return CheckedLimit(one, value, unit, holds, how, box.named(worst.point), active)
+
+
+def _value(one: TuningLimit, excess: float) -> float:
+    """The measure whose excess that is."""
+    return one.bound - excess if one.from_above else one.bound + excess
+
+
+def _is_active(problem: Problem, trial: TrialPoint, k: int) -> bool:
+    spread = problem.spread(k)
+    return bool(trial.excesses[k] <= _ACTIVE * spread) if spread else False

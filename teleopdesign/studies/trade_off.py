@@ -1,0 +1,170 @@
+"""Two measures against each other: the points of which no other one is better in both.
+
+The second objective is bounded at levels between the best of either (epsilon-constraint), and the
+first is searched at each, as in `tune`; every point that was tried on the way counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from ..arguments import checked
+from ..by_value import ByValue
+from ..diagrams import Diagram
+from ..errors import ModelError
+from ..simulate import Sampling, Trajectory
+from ..simulate.sampling import SAMPLED
+from .case import SimulatedCase
+from .problem import Problem, TrialPoint
+from .recheck import recheck
+from .tune import Tuned, case_of, problem_of, search, tuned_of
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+
+#: share of all points that the search for the best of either objective gets, each
+_ENDS = 0.25
+
+
+@dataclass(frozen=True, eq=False)
+class ParetoFront(ByValue):
+    """The best trade-offs found between two measures that are to be small.
+
+    points: each with its limits checked once more, by increasing first objective
+    objectives: (k, 2) of the points;  before: (2,), with the diagram's own values, NaN where none
+    evaluated: (m, 2), of all points that were tried and keep the limits;  tried_best: (j, 2), of
+        those that no other one beats in both: `points` are spread along them
+    number: of points that were tried;  dropped: those whose limits failed in the last check
+    """
+
+    names: tuple[str, str]
+    units: tuple[str, str]
+    points: tuple[Tuned, ...]
+    objectives: np.ndarray
+    evaluated: np.ndarray
+    tried_best: np.ndarray
+    before: np.ndarray
+    number: int
+    dropped: int
+    seed: int
+
+    def plot(self) -> matplotlib.figure.Figure:
+        """Both measures, the front as a line, all points that keep the limits in grey."""
+        from ..plot.pareto import plot_pareto
+
+        return plot_pareto(self)
+
+    def __repr__(self) -> str:
+        units = [f" {u}" if u not in ("", "1") else "" for u in self.units]
+        head = (
+            f"The best trade-offs found of {self.number} points (seed {self.seed}), "
+            f"{self.names[0]} against {self.names[1]}"
+        )
+        lines = [head + (f"; {self.dropped} failed the last check" if self.dropped else "")]
+        for point, (x, y) in zip(self.points, self.objectives, strict=True):
+            numbers = ", ".join(f"{n} = {v:.4g}" for n, v in point.values.items())
+            lines.append(f"  {x:.4g}{units[0]}, {y:.4g}{units[1]}: {numbers}")
+        return "\n".join(lines)
+
+
+@checked
+def trade_off(
+    diagram: Diagram | SimulatedCase,
+    parameters: Mapping[str, tuple[float, float]],
+    objectives: Sequence[Any],
+    *,
+    subject_to: Sequence[Any] = (),
+    duration: float = 0.0,
+    inputs: Mapping[str, Any] | None = None,
+    motion: Mapping[str, Trajectory] | None = None,
+    initial: Mapping[str, float] | None = None,
+    computer: Sampling | Literal["continuous"] = SAMPLED,
+    step: float = 1e-4,
+    points: int = 8,
+    evaluations: int = 400,
+    seed: int = 0,
+    workers: int = 1,
+) -> ParetoFront:
+    """Search for the best trade-offs between two measures, within limits; arguments as of `tune`.
+
+    objectives: two measures;  points: at most, of the front
+    evaluations: points that are tried in all
+    raises ModelError: not two objectives, no point that keeps the limits, and as `tune`
+    """
+    if len(objectives) != 2:
+        raise ModelError(f"trade_off: found {len(objectives)} objectives, expected two")
+    case = case_of(
+        diagram,
+        duration=duration,
+        inputs=inputs,
+        motion=motion,
+        initial=initial,
+        computer=computer,
+        step=step,
+    )
+    problem = problem_of(case, parameters, objectives, subject_to, seed, workers)
+    before = problem.start()
+    for number in (0, 1):
+        search(problem, round(_ENDS * evaluations), number=number)
+    kept = problem.kept()
+    if not kept:
+        raise ModelError(f"trade_off: none of {len(problem.trials)} points keeps all limits")
+    at = np.array([t.objectives for t in kept])
+    ends = at[at.argmin(axis=0), 1]
+    inner = np.linspace(ends[0], ends[1], points)[1:-1]
+    for level in inner:
+        share = (1 - 2 * _ENDS) * evaluations / max(len(inner), 1)
+        search(problem, max(1, round(share)), most=float(level))
+    return _front(problem, before, points)
+
+
+def _front(problem: Problem, before: TrialPoint, points: int) -> ParetoFront:
+    kept = problem.kept()
+    evaluated = np.array([t.objectives for t in kept])
+    best = best_in_both(evaluated)
+    chosen = _spread([kept[i] for i in best], points)
+    results = []
+    for trial in chosen:
+        limits = recheck(problem, trial)
+        results.append(tuned_of(problem, trial, before, limits))
+    good = [(t, r) for t, r in zip(chosen, results, strict=True) if r.keeps_limits]
+    first, second = (m.name for m in problem.objectives)
+    return ParetoFront(
+        (first, second),
+        (problem.units.get(first, ""), problem.units.get(second, "")),
+        tuple(r for _, r in good),
+        np.array([t.objectives for t, _ in good]).reshape(-1, 2),
+        evaluated,
+        evaluated[best],
+        np.array(before.objectives),
+        len(problem.trials),
+        len(chosen) - len(good),
+        problem.seed,
+    )
+
+
+def best_in_both(objectives: np.ndarray) -> list[int]:
+    """Rows of (m, 2) that no other one beats in both, by increasing first column."""
+    front: list[int] = []
+    lowest = np.inf
+    for i in np.lexsort((objectives[:, 1], objectives[:, 0])):
+        if objectives[i, 1] < lowest:
+            lowest = float(objectives[i, 1])
+            front.append(int(i))
+    return front
+
+
+def _spread(front: list[TrialPoint], points: int) -> list[TrialPoint]:
+    """At most so many of them, evenly along the front; both ends are in."""
+    if len(front) <= points:
+        return front
+    at = np.array([t.objectives for t in front])
+    size = np.ptp(at, axis=0)
+    steps = np.hypot(*(np.diff(at, axis=0) / np.where(size > 0, size, 1.0)).T)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    wanted = np.linspace(0, along[-1], points)
+    return [front[i] for i in dict.fromkeys(int(np.abs(along - w).argmin()) for w in wanted)]

@@ -1,0 +1,299 @@
+"""Search the values of a diagram for the least of a measure, within limits.
+
+    td.tune(
+        diagram,
+        {"C.dahl.level": (0.1, 1.0), "H.gain.gain": (0.1, 10.0)},
+        "force_error",
+        subject_to=["passive", td.limit("delay margin", least=2e-3)],
+        duration=1.0,
+        motion={"L": td.sine(amplitude=0.01, frequency=1.0)},
+    )
+
+Differential evolution, as measures of simulations are neither smooth nor convex, then a simplex
+from the best point. Points that miss a claim or a margin are not simulated. What comes out is the
+best of the points that were tried; its limits are checked once more, by the strictest method.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from ..arguments import checked
+from ..by_value import ByValue
+from ..diagrams import Diagram
+from ..errors import ModelError
+from ..expectations import described
+from ..notebook import html_table
+from ..passivity.intervals.box import ValueBox
+from ..simulate import Sampling, Trajectory
+from ..simulate.sampling import SAMPLED
+from .case import SimulatedCase
+from .chosen_measures import measures_of
+from .limits import limit_of
+from .problem import Problem, TrialPoint
+from .recheck import CheckedLimit, recheck
+
+#: times that the worst point of an interval, which the search had not looked at, joins it
+_ROUNDS = 3
+#: the factor by which the best point keeps further away from a claim that the last check refutes
+_FURTHER = 100.0
+#: share of the points that the simplex gets
+_POLISH = 0.25
+#: of a parameter's interval: nearer to an end, it is said to be there
+AT_END = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Tuned(ByValue):
+    """The best point that a search came to.
+
+    diagram: with `values`;  objective: the measure there, of `before` with the diagram's own values
+        (NaN where it is not measured there);  limits: checked once more at `values`
+    number: of points that were tried;  simulated: simulations, or evaluations of measures
+    at_ends: parameters at an end of their interval
+    """
+
+    diagram: Diagram
+    values: Mapping[str, float]
+    name: str
+    objective: float
+    before: float
+    unit: str
+    limits: tuple[CheckedLimit, ...]
+    at_ends: tuple[str, ...]
+    number: int
+    simulated: int
+    seed: int
+
+    @property
+    def keeps_limits(self) -> bool:
+        """Whether no limit is missed at the point, by the last check."""
+        return np.isfinite(self.objective) and all(one.holds for one in self.limits)
+
+    @property
+    def active(self) -> tuple[str, ...]:
+        """Limits that hold the search back."""
+        return tuple(str(one.limit) for one in self.limits if one.active)
+
+    def __repr__(self) -> str:
+        numbers = ", ".join(f"{n} = {v:.5g}" for n, v in self.values.items())
+        unit = f" {self.unit}" if self.unit not in ("", "1") else ""
+        best = f"The best found of {self.number} points (seed {self.seed})"
+        head = (
+            best
+            if self.keeps_limits
+            else f"No point of {self.number} keeps all limits; the nearest"
+        )
+        before = f"{self.before:.5g} -> " if np.isfinite(self.before) else ""
+        lines = [f"{head}: {self.name} {before}{self.objective:.5g}{unit}", f"  {numbers}"]
+        lines += [f"  {one}" for one in self.limits]
+        if self.at_ends:
+            lines.append(f"  at an end of the interval: {', '.join(self.at_ends)}")
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        rows = [(n, f"{v:.5g}") for n, v in self.values.items()]
+        rows += [(str(one.limit), str(one)) for one in self.limits]
+        return html_table(f"The best found: {self.name} {self.objective:.5g}", ("", ""), rows)
+
+
+@checked
+def tune(
+    diagram: Diagram | SimulatedCase,
+    parameters: Mapping[str, tuple[float, float]],
+    objective: Any,
+    *,
+    subject_to: Sequence[Any] = (),
+    duration: float = 0.0,
+    inputs: Mapping[str, Any] | None = None,
+    motion: Mapping[str, Trajectory] | None = None,
+    initial: Mapping[str, float] | None = None,
+    computer: Sampling | Literal["continuous"] = SAMPLED,
+    step: float = 1e-4,
+    evaluations: int = 200,
+    seed: int = 0,
+    workers: int = 1,
+) -> Tuned:
+    """Search for the values with the least objective that keep all limits.
+
+    parameters: names of `SimulatedCase` -> (low, high); in logarithms where high is 10 low or more
+    objective: a measure, as in `study`: a name, `measure(...)`, or a function of the result
+    subject_to: `limit(...)`, or names of claims ("passive", "absolutely stable", "stable")
+    duration ... step: how the diagram is simulated, see `study`
+    evaluations: points that are tried in one round; a round more where a limit over intervals fails
+        at a point of these that the search had not looked at
+    seed: the same one gives the same answer, whatever `workers` (processes) is
+    returns: the best point found, never "the optimum": nothing is said of points not tried
+    raises ModelError: an unknown parameter or measure, an interval that is none
+    """
+    if isinstance(objective, list | tuple):
+        raise ModelError(f"tune: found {len(objective)} objectives, expected one; see `trade_off`")
+    case = case_of(
+        diagram,
+        duration=duration,
+        inputs=inputs,
+        motion=motion,
+        initial=initial,
+        computer=computer,
+        step=step,
+    )
+    problem = problem_of(case, parameters, [objective], subject_to, seed, workers)
+    start = problem.start()
+    checked_limits = search_with_rounds(problem, evaluations)
+    if not any(np.isfinite(t.objectives).all() for t in problem.trials.values()) and problem.reason:
+        raise ModelError(f"tune: no point was measured: {problem.reason}")
+    return tuned_of(problem, problem.best(), start, checked_limits)
+
+
+def case_of(diagram: Diagram | SimulatedCase, **settings: Any) -> SimulatedCase:
+    """The diagram and how it is simulated; a case as it is."""
+    if isinstance(diagram, SimulatedCase):
+        return diagram
+    kept = {n: v for n, v in settings.items() if v is not None}
+    return SimulatedCase(diagram, **kept)
+
+
+def problem_of(
+    case: SimulatedCase,
+    parameters: Mapping[str, tuple[float, float]],
+    objectives: Sequence[Any],
+    subject_to: Sequence[Any],
+    seed: int,
+    workers: int,
+) -> Problem:
+    """The search that is asked for; raises ModelError where its parts do not fit the case."""
+    case.check_names(parameters)
+    if not parameters:
+        raise ModelError("tune: found no parameter, expected a name with (low, high)")
+    for name, ends in parameters.items():
+        if len(ends) != 2 or not all(map(np.isfinite, ends)) or not ends[0] < ends[1]:
+            raise ModelError(f"tune: {name}: found {described(ends)}, expected (low, high)")
+    low, high = (tuple(float(ends[k]) for ends in parameters.values()) for k in (0, 1))
+    box = ValueBox(tuple(parameters), low, high)
+    measures = tuple(measures_of([one])[0] for one in objectives)
+    limits = tuple(map(limit_of, subject_to))
+    for one in limits:
+        if both := set(one.over) & set(parameters):
+            raise ModelError(f"tune: {min(both)}: is tuned, and an interval of {one.name}")
+        case.check_names(one.over)
+    return Problem(case, box, measures, limits, seed, workers)
+
+
+def search_with_rounds(problem: Problem, evaluations: int) -> tuple[CheckedLimit, ...]:
+    """Search, check the best point, and search on where a limit fails at a point not looked at."""
+    for left in reversed(range(_ROUNDS)):
+        if not problem.trials or left == _ROUNDS - 1:
+            search(problem, evaluations)
+        results = recheck(problem, problem.best())
+        missed = [(k, one) for k, one in enumerate(results) if not one.holds]
+        if problem.best().violation > 0 or not missed or not left:
+            break
+        new = [(k, dict(one.worst)) for k, one in missed if one.worst]
+        new = [(k, point) for k, point in new if point not in problem.scenarios[k]]
+        for k, point in new:
+            problem.scenarios[k].append(point)
+        if new:
+            problem.trials.clear()  # all points are judged anew, at that point too
+            continue
+        for k, _ in missed:
+            problem.slack[k] *= _FURTHER
+    return results
+
+
+def search(problem: Problem, evaluations: int, *, number: int = 0, most: float = np.inf) -> None:
+    """Try points: differential evolution, then a simplex; all are kept in the problem.
+
+    number: of the objective that is made small;  most: bound on the other one
+    """
+    from scipy.optimize import differential_evolution, minimize
+
+    size = len(problem.parameters.names)
+    population = max(8, 5 * size)
+    scale = _Scale()
+
+    def merit(points: np.ndarray) -> np.ndarray:
+        trials = problem.tries(problem.values(points))
+        return np.array([scale.merit(t, number, most) for t in trials])
+
+    generations = max(1, round((1 - _POLISH) * evaluations / population) - 1)
+    best = problem.best() if problem.trials else None
+    evolve: Any = differential_evolution  # its types know no vectorised function
+    evolved = evolve(
+        lambda u: merit(u.T),
+        [(0.0, 1.0)] * size,
+        rng=np.random.default_rng(problem.seed),
+        init=_first(problem, population, best),
+        maxiter=generations,
+        vectorized=True,
+        updating="deferred",
+        polish=False,
+        tol=1e-6,
+    )
+    minimize(  # type: ignore[call-overload]
+        lambda u: float(merit(np.clip(u, 0, 1)[None])[0]),
+        evolved.x,
+        method="Nelder-Mead",
+        bounds=[(0.0, 1.0)] * size,
+        options={"maxfev": max(1, round(_POLISH * evaluations)), "xatol": 1e-4, "fatol": 1e-9},
+    )
+
+
+def _first(problem: Problem, population: int, best: TrialPoint | None) -> np.ndarray:
+    """Sobol points of the first generation; the diagram's own values and the best so far are in."""
+    unit = ValueBox(problem.parameters.names, *zip(*[(0.0, 1.0)] * len(problem.wide), strict=True))
+    points = unit.inside(population, problem.seed)
+    points[0] = problem.share(problem.start_values())
+    if best is not None:
+        points[1] = problem.share(np.array(best.values))
+    return points
+
+
+@dataclass
+class _Scale:
+    """One number to search by: below 1 where all limits are kept, from 1 to 2 where not."""
+
+    size: float = 0.0
+
+    def merit(self, trial: TrialPoint, number: int, most: float) -> float:
+        beyond = 0.0
+        if np.isfinite(most) and trial.violation == 0:
+            other = trial.objectives[1 - number]
+            beyond = max(0.0, (other - most) / (abs(most) or 1.0))
+        violation = trial.violation + beyond
+        if violation > 0:
+            return 1 + violation / (1 + violation)
+        value = trial.objectives[number]
+        self.size = self.size or abs(value) or 1.0
+        return value / self.size / (1 + abs(value / self.size))
+
+
+def tuned_of(
+    problem: Problem,
+    trial: TrialPoint,
+    start: TrialPoint,
+    limits: tuple[CheckedLimit, ...],
+    number: int = 0,
+) -> Tuned:
+    """The result at a point."""
+    share = problem.share(np.array(trial.values))
+    ends = [
+        n for n, u in zip(problem.parameters.names, share, strict=True) if min(u, 1 - u) < AT_END
+    ]
+    name = problem.objectives[number].name
+    return Tuned(
+        problem.within(trial.values).diagram,
+        problem.parameters.named(np.array(trial.values)),
+        name,
+        trial.objectives[number],
+        start.objectives[number],
+        problem.units.get(name, ""),
+        limits,
+        tuple(ends),
+        len(problem.trials),
+        problem.simulated,
+        problem.seed,
+    )
