@@ -14,7 +14,6 @@ from ...controllers import Controller, as_written, in_exact_numbers, parameter_s
 from ...derive import symbol_values
 from ...derive.elimination import rows
 from ...diagrams import Control, Diagram
-from ...diagrams.second_input import acts_along_another
 from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.simulated import without_absent
 from ...realise.tips import with_tips
@@ -106,8 +105,6 @@ def _forms(
         law = part.controller
         if not isinstance(law, Controller) or part.dead_time is not None:
             return None
-        if acts_along_another(diagram, part):
-            return None  # two forms, from two signals
         form = law.linear_form(part.name, S, sp.S(0))
         if form is None:
             return None
