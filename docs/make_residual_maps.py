@@ -34,7 +34,7 @@ SAMPLE_TIME = 1e-3  # s
 DURATION = 8.0  # s
 #: the device: kg, N, N s/m
 PLAIN = {"inertia": 0.2, "coulomb.level": 0.6, "viscous.damping": 1.5}
-#: SI values at which each effect is a good part of the friction
+#: SI values at which each effect is a good part of the friction; optional ones are zero
 VALUES: Mapping[str, Mapping[str, float]] = {
     "stribeck": {"extra_static_level": 0.3, "stribeck_velocity": 0.02},
     "presliding": {"stiffness": 1500.0, "bristle_damping": 0.0},
@@ -71,7 +71,10 @@ def hand(t: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def body(name: str | None) -> Body:
     """The plain device, with one effect beside."""
-    numbers = dict(PLAIN) | {f"{name}.{p}": v for p, v in VALUES.get(name or "", {}).items()}
+    numbers = dict(PLAIN)
+    if name is not None:
+        own = td.EFFECTS[name].parameters
+        numbers |= {f"{name}.{p}": VALUES[name].get(p, 0.0) for p in own}
     names = ("coulomb", "viscous", *((name,) if name else ()))
     parameters = {n: Value(v) for n, v in numbers.items()}
     return Body("prismatic", parameters, tuple(td.EFFECTS[n] for n in names))
