@@ -154,20 +154,18 @@ def _table(required: Mapping[str, Check], optional: Mapping[str, Check] | None =
 
 
 _PLACE = _table({"effect": _text, "at": _text})
-_MISSING = _table({"effect": _text, "at": _text}, {"instead_of": _text})
 _SIZE = _number(low=0.0)
 #: null where there is no such record
 _ERROR = _number(low=0.0, null=True)
 _PARAMETER = _table(
     {"value": _number(null=True), "stderr": _number(low=0.0, null=True), "unit": _text}
 )
-_TIME = _table({"value": _number()})
 #: what a model's bodies hold in detail is for the reader of bodies to say
 _BODIES = _table_of(_table({}))
 
 _REQUIRED: dict[str, Check] = {
     "verdict": _one_of(*VERDICTS),
-    "missing": _list_of(_MISSING),
+    "missing": _list_of(_table({"effect": _text, "at": _text}, {"instead_of": _text})),
     "ladder": _list_of(
         _table(
             {"added": _or_null(_PLACE), "fit_error": _ERROR, "check_error": _ERROR},
@@ -201,8 +199,7 @@ _LATER: dict[str, Check] = {
             {
                 "record": _text,
                 "at": _text,
-                "begin": _TIME,
-                "end": _TIME,
+                **dict.fromkeys(("begin", "end"), _table({"value": _number()})),
                 "left_over_noise_floors_without": _SIZE,
             }
         )
