@@ -49,10 +49,13 @@ def haptic_interface(
 
     device, hand: Z_M and Z_H, impedances relative to position;  cancellation: C, from the motion
     to a force;  force_feedback: H, from the force error R_D - R_M to a force;
-    position_loop: K, from the position error to R_D;  passivity: P, from R_M to a force, such as
+    position_loop: K, from the position error to R_D: a law that takes no velocity but the rate of
+    its input (`lead`, `proportional_derivative`), for that of the device has the other sign;
+    passivity: P, from R_M to a force, such as
     `passivity_controller`
     analog: controllers among "C", "H", "K" that no computer samples
     ANY stands for a block of which nothing but its place is known.
+    raises ModelError: `analog` names no controller, or the position loop takes a velocity
     """
     for name in analog:
         if name not in ("C", "H", "K"):
@@ -76,6 +79,13 @@ def haptic_interface(
     if position_loop is None:
         outside["R_D"] = "force"
     else:
+        if isinstance(position_loop, Controller) and position_loop.sees_velocity:
+            laws = ", ".join(stage.law.name for stage in position_loop.stages)
+            raise ModelError(
+                f"haptic interface: position_loop: {laws} takes the device's velocity, and its "
+                "damper would push along it: expected proportional_derivative or another law that "
+                "differentiates its input"
+            )
         blocks.append(Control("K", position_loop, "L_E", "R_D", "L", "K" in analog))
         junctions.append(Junction("L_E", {"L_D": 1, "L": -1}))
         outside["L_D"] = "position"

@@ -89,6 +89,12 @@ def test_a_diagram_says_what_it_is():
         (lambda: controller("low_pass", {"bandwidth": -1.0}), "is outside 0 .. inf"),
         (lambda: haptic_interface(analog=("X",)), 'no controller "X"'),
         (
+            lambda: haptic_interface(
+                position_loop=controller("spring_damper", {"stiffness": 100.0, "damping": 1.0})
+            ),
+            "its damper would push along it: expected proportional_derivative",
+        ),
+        (
             lambda: scheduled_force_feedback(
                 gain=1, scheduling_velocity=1, bandwidth=1, schedule="between"
             ),

@@ -119,7 +119,7 @@ def _relay(m: Relay) -> Pair:
 
 
 def _late(m: LateSpring) -> Pair:
-    spring = controller("spring_damper", {"stiffness": m.stiffness, "damping": 0.0})
+    spring = controller("gain", {"gain": m.stiffness})
     device = body(m.mass, actuation_delay__delay=m.delay)
     return Pair(
         haptic_interface(device, position_loop=spring),

@@ -37,7 +37,7 @@ def test_a_command_is_held_for_a_period():
     """A spring as the position loop of a device that is led: each command is the spring's force at
     the last sample.
     """
-    law = controller("spring_damper", {"stiffness": 1000.0, "damping": 0.0})
+    law = controller("gain", {"gain": 1000.0})
     diagram = haptic_interface(body(), position_loop=law)
     motion = sine(amplitude=0.01, frequency=2.0)
     simulation = simulate(
