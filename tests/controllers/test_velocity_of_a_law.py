@@ -58,6 +58,10 @@ FREQUENCY = 3.0  # Hz
 SPRING = controller("spring_damper", {"stiffness": 300.0, "damping": 5.0})
 LAWS = {name: probe(law) for name, law in CONTROLLERS.items() if law.linear} | {
     "spring_damper": SPRING,
+    # its transients are as fast as those of the others
+    "virtual_admittance": controller(
+        "virtual_admittance", {"inertia": 0.1, "damping": 5.0, "stiffness": 100.0}
+    ),
     "spring behind a low-pass": controller("low_pass", {"bandwidth": 9.0}).then(SPRING),
     "low-pass behind a spring": SPRING.then(controller("low_pass", {"bandwidth": 9.0})),
     "a user's own": Controller((Stage(FORCE_AND_DAMPER, {"share": 0.4, "damping": 3.0}),)),
