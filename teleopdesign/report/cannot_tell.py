@@ -28,6 +28,8 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
     """Effects, parameters and candidates that these records cannot decide; may be empty."""
     groups = [_group(r) for r in diagnosis.rungs if r.added is not None and r.alternatives]
     rest = [
+        *_untold(diagnosis),
+        *_set_aside(diagnosis),
         *_at_bound(diagnosis),
         *_clock(diagnosis),
         *_open_parameters(diagnosis),
@@ -38,6 +40,26 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
         *_unchecked(diagnosis),
     ]
     return (*groups, *rest)
+
+
+def _untold(diagnosis: Diagnosis) -> list[Finding]:
+    """Of effects that stand: which of their parameters' values do not."""
+    return [Finding("values that are not told", "warning", f"{one}.") for one in diagnosis.untold]
+
+
+def _set_aside(diagnosis: Diagnosis) -> list[Finding]:
+    """Effects that lowered the error and were taken out of the model again."""
+    return [
+        Finding(
+            topic="effects set aside",
+            concern="note",
+            sentence=f"{one.candidate} lowered the error to {percent(one.check_error)} and was "
+            f"taken out again: {one.reason}.",
+            numbers={"check_error": one.check_error},
+            where=one.candidate.at,
+        )
+        for one in diagnosis.set_aside
+    ]
 
 
 def _clock(diagnosis: Diagnosis) -> list[Finding]:

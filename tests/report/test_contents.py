@@ -7,6 +7,7 @@ import pytest
 
 from teleopdesign.blocks import Value
 from teleopdesign.diagnose.comparison import residual_data
+from teleopdesign.diagnose.diagnosis import SetAside, Untold
 from teleopdesign.report.candidate_table import candidate_rows
 from teleopdesign.report.cannot_tell import cannot_tell
 from teleopdesign.report.page import page_of
@@ -106,6 +107,24 @@ def test_a_parameter_at_its_bound_or_left_open_is_said_to_be(diagnosis):
     unsure = cannot_tell(with_value(diagnosis, name, Value(0.1, stderr=1.0)))
     found = next(f for f in unsure if f.topic == "a parameter left open")
     assert "device.viscous.damping is not determined: 0.1 ± 1.0 N·s/m" in found.sentence
+
+
+def test_values_that_are_not_told_and_effects_set_aside_stand_on_the_page(diagnosis):
+    added = diagnosis.rungs[1].added
+    other = diagnosis.rungs[1].ranking.ranked[-1].candidate
+    both = replace(
+        diagnosis,
+        untold=(Untold(added, "the level at rest is not told"),),
+        set_aside=(SetAside(other, 0.034, "it is not told from absence"),),
+    )
+    found = {f.topic: f for f in cannot_tell(both)}
+    assert found["values that are not told"].sentence == f"{added}: the level at rest is not told."
+    aside = found["effects set aside"]
+    assert aside.sentence == (
+        f"{other} lowered the error to 3.40\u202f% and was taken out again: it is not told from "
+        "absence."
+    )
+    assert aside.numbers == {"check_error": 0.034} and aside.where == other.at
 
 
 def test_estimates_that_move_together_are_named_as_a_pair(diagnosis):
