@@ -79,13 +79,7 @@ def haptic_interface(
     if position_loop is None:
         outside["R_D"] = "force"
     else:
-        if isinstance(position_loop, Controller) and position_loop.sees_velocity:
-            laws = ", ".join(stage.law.name for stage in position_loop.stages)
-            raise ModelError(
-                f"haptic interface: position_loop: {laws} takes the device's velocity, and its "
-                "damper would push along it: expected proportional_derivative or another law that "
-                "differentiates its input"
-            )
+        _check_position_loop(position_loop)
         blocks.append(Control("K", position_loop, "L_E", "R_D", "L", "K" in analog))
         junctions.append(Junction("L_E", {"L_D": 1, "L": -1}))
         outside["L_D"] = "position"
@@ -99,6 +93,17 @@ def haptic_interface(
         measured=("L", "R_M"),
         texts={name: text for name, text in TEXTS.items() if name in made},
     )
+
+
+def _check_position_loop(law: Controller | AnyBlock) -> None:
+    """ModelError where a damper would act along the device's velocity, with the error's sign."""
+    if isinstance(law, Controller) and law.sees_velocity:
+        laws = ", ".join(stage.law.name for stage in law.stages)
+        raise ModelError(
+            f"haptic interface: position_loop: {laws} takes the device's velocity, and its damper "
+            "would push along it: expected proportional_derivative or another law that "
+            "differentiates its input"
+        )
 
 
 def four_cases(hybrid: Diagram) -> dict[str, Diagram]:
