@@ -22,6 +22,7 @@ from ..ports import judged, nonlinear_parts, ports, without_friction
 from .box import ValueBox
 from .conditions import Conditions, one_port_is_passive, two_port_is_passive
 from .family import family_of
+from .linear import hides_no_growth
 
 #: effects and laws of which the conditions above are all that is asked, with their values
 _FRICTION: dict[str, tuple[str, ...]] = {"coulomb": ("level",), "presliding": ("stiffness",)}
@@ -119,5 +120,6 @@ def _rest_is_passive(middle: Diagram, box: ValueBox) -> bool:
     if family is None or not family.is_rational:
         return False
     ask, z = Conditions.over(box.only(own_values), family.symbols), family.impedance()
-    shape = np.shape(z)
-    return one_port_is_passive(ask, z[0, 0]) if shape == (1, 1) else two_port_is_passive(ask, z)
+    one_port = np.shape(z) == (1, 1)
+    passive = one_port_is_passive(ask, z[0, 0]) if one_port else two_port_is_passive(ask, z)
+    return passive and hides_no_growth(ask, family, z)

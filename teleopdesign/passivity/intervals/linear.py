@@ -83,7 +83,7 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
         how = str(exact.verdict)
         worst = worst if worst.margin < 0 else replace(worst, margin=-np.inf)
         return parts_of(statement, "refuted", worst, box, unit, how, at_worst=exact)
-    if family.is_rational and _proved(ask, z, claim) and _hides_no_growth(ask, family, z):
+    if family.is_rational and _proved(ask, z, claim) and hides_no_growth(ask, family, z):
         bound = 0.0 if stable else _bound(ask, z, worst.margin)
         how = _how(ask, "its conditions are polynomials of one sign")
         worst = replace(worst, margin=max(worst.margin, bound))
@@ -120,7 +120,7 @@ def _proved(ask: Conditions, z: sp.Matrix, claim: str) -> bool:
     return (two_port_is_stable if claim == "absolutely stable" else two_port_is_passive)(ask, z)
 
 
-def _hides_no_growth(ask: Conditions, family: Family, z: sp.Matrix) -> bool:
+def hides_no_growth(ask: Conditions, family: Family, z: sp.Matrix) -> bool:
     """Whether all modes that the ports, left free, do not show are shown to die out; 0 may stay.
 
     An impedance is what ports do from rest: what a zero cancels in it may grow by itself inside.
