@@ -3,6 +3,7 @@
 from dataclasses import replace
 from functools import cache
 
+import control
 import numpy as np
 import pytest
 import sympy as sp
@@ -10,7 +11,7 @@ from devices import body
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.controllers import controller
+from teleopdesign.controllers import controller, from_control
 from teleopdesign.derive import two_port_functions
 from teleopdesign.diagrams import ANY, Junction, four_channel, shipped, wave_variables
 from teleopdesign.effects import EFFECTS
@@ -172,6 +173,14 @@ def test_no_effect_of_the_catalogue_is_passed_over_by_the_proof(beside):
         expected = "proved" if {*beside, name} <= counted else "unknown"
         assert wave_claim(diagram).status == expected, name
     assert tried > 10
+
+
+def test_a_mode_that_grows_within_the_coupling_leaves_the_whole_unknown():
+    """(s - 1)/((s - 1)(s + 1)): from rest a passive low-pass."""
+    law = from_control(control.tf([1.0, -1.0], [1.0, 0.0, -1.0]), name="law")
+    arm = body(0.3, **SIDE)
+    claim = wave_claim(wave_variables(arm, arm, wave_impedance=10.0, coupling=law, delay=0.05))
+    assert claim.status == "unknown" and "growing mode within P" in str(claim.verdict)
 
 
 def test_parts_that_are_not_passive_alone_leave_the_whole_unknown():

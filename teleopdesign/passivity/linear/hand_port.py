@@ -2,7 +2,8 @@
 
 With R_D = 0 the hand's force on the device is Zhat_M L, so force over velocity is Zhat_M/s; of a
 device with a compliant transmission the motion is the tip's. Blocks are linear forms: what has none
-(Coulomb friction among them) is left out, and named.
+(Coulomb friction among them) is left out, and named. What a zero cancels is not in it either: that
+no mode grows inside, which the hand does not feel from rest, is asked by `diagram_claims`.
 """
 
 from __future__ import annotations

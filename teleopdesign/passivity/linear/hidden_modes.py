@@ -39,11 +39,18 @@ def growth_within(diagram: Diagram) -> float | None:
     diagram: with values, linear and without dead times (of others nothing is known here: None)
     """
     whole = _characteristic(with_tips(diagram))
-    if whole is None or is_free_of_growth(
-        polynomial(fraction(c) for c in whole.all_coeffs()[::-1])
-    ):
+    if whole is None or _is_free_of_growth(whole):
         return None
     return float(np.roots([float(c) for c in whole.sqf_part().monic().all_coeffs()]).real.max())
+
+
+def hides_growth(part: Control, linear: LinearBlocks) -> bool:
+    """Whether a mode grows within a controller that its linear form does not show."""
+    return not _is_free_of_growth(cancelled_poles(part, linear))
+
+
+def _is_free_of_growth(p: sp.Poly) -> bool:
+    return is_free_of_growth(polynomial(fraction(c) for c in p.all_coeffs()[::-1]))
 
 
 def _characteristic(diagram: Diagram) -> sp.Poly | None:

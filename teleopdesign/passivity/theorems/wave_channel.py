@@ -25,6 +25,7 @@ from ...errors import ModelError
 from ...realise.lti import S, linear_blocks
 from ..claims.certificate import Certificate, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
+from ..linear.hidden_modes import hides_growth
 from ..linear.impedance import decimal, exact
 from ..linear.positive_real import positive_real
 from ..ports import judged, without_holding
@@ -123,6 +124,11 @@ def wave_claim(diagram: Diagram) -> Claim:
     )
     bent = [n for n in linear.left_out if n not in ("Z_m.coulomb", "Z_s.coulomb")]
     bent += [f"the actuator of {n}" for n, stage in linear.actuation.items() if stage != 1]
+    bent += [
+        f"a growing mode within {part.name} that a zero cancels"
+        for part in alone.controls
+        if part.dead_time is None and hides_growth(part, linear)
+    ]
     # the channel acts on one side of a compliance, the hand on the other: two ports, not one
     bent += [
         f"{b.name}.{effect.name}"
