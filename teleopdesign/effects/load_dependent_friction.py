@@ -7,7 +7,8 @@ is what they carry as the actuator feels it: gravity, inertia and the hand on th
 d tells an actuator that drives (d > 0: more friction) from one that is driven back; e is the extra
 at rest of contacts that slide better as speed grows. Told from `coulomb` by commands that vary at
 equal speed, d by loads both with and against the motion. From mu = 1 on no acting force moves the
-body.
+body. mu d takes u as an `actuator_gain` does, and e is told from `stribeck` by loads alone: so d, e
+and v_S are estimated where a model states them, and a search leaves them at zero.
 """
 
 from sympy import exp, sign
@@ -28,9 +29,10 @@ def law(now, p):
     return level
 
 
-def of_load(quantity, meaning, start, **bounds):
-    search = FitSearch(starts=(start,))
-    return Parameter(quantity, meaning, optional=True, search=search, **bounds)
+def of_load(quantity, meaning, start, upper=float("inf"), lower=0.0):
+    """A parameter that is estimated where the user states it, and no part of a search."""
+    search = FitSearch(starts=(start,), chosen=True)
+    return Parameter(quantity, meaning, lower, upper, optional=True, search=search)
 
 
 EFFECT = Effect(
@@ -42,13 +44,9 @@ EFFECT = Effect(
             "dimensionless", "mu: level per force carried", search=FitSearch(within=1.0)
         ),
         "driving_difference": of_load(
-            "dimensionless",
-            "d: half of driving minus driven back, over the mean",
-            0.0,
-            lower=-1.0,
-            upper=1.0,
+            "dimensionless", "d: half of driving minus driven back, over the mean", 0.0, 1.0, -1.0
         ),
-        "extra_at_rest": of_load("dimensionless", "e: extra at rest, over the sliding part", 0.3),
+        "extra_at_rest": of_load("dimensionless", "e: extra at rest, over the sliding part", 0.0),
         "stribeck_velocity": of_load("velocity", "v_S: that extra down to 1/e", 0.1),
     },
     absent={"coefficient": 0.0},

@@ -154,7 +154,7 @@ def sampled_velocity_pair(rng):
 
 @attacked(8, 80)
 def test_no_samples_beat_a_law_of_velocity_that_is_proved_in_a_computer(seed, number):
-    counted(number, sampled_velocity_pair, np.random.default_rng(seed), seen=0.1)
+    counted(number, sampled_velocity_pair, np.random.default_rng(seed), seen=0.05)
 
 
 def lugre(rng):
