@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import pickle
 import queue
+import signal
 import subprocess
 import sys
 import threading
@@ -75,6 +76,23 @@ def packed(task: StudyTask) -> bytes:
             f"study: the model or a measure cannot be sent to another process: {error}; take "
             "workers=1, or define it at the top of a module"
         ) from error
+
+
+@contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """A process started meanwhile never hears Ctrl-C, not even before its first line of Python.
+
+    Ctrl-C goes to all processes of a terminal; the one that asked decides what happens. It hears
+    its Ctrl-C afterwards.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager
@@ -188,12 +206,13 @@ class _Pool:
             f"import sys; sys.path[:] = {sys.path!r}; "
             "from teleopdesign.studies.worker import main; main()"
         )
-        process = subprocess.Popen(
-            [sys.executable, "-c", code],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env={**os.environ, **_ONE_THREAD},
-        )
+        with _deaf_to_ctrl_c():
+            process = subprocess.Popen(
+                [sys.executable, "-c", code],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                env={**os.environ, **_ONE_THREAD},
+            )
         worker = _Worker(process)
         self.workers.append(worker)
         threading.Thread(target=self._listen, args=(worker,), daemon=True).start()

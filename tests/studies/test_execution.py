@@ -52,6 +52,20 @@ def test_functions_without_a_name_go_to_other_processes_too():
     assert list(found["measure"].values) == [4.0, 5.0]
 
 
+def test_ctrl_c_while_a_process_still_starts_costs_no_point_and_prints_nothing(monkeypatch, capfd):
+    start = subprocess.Popen
+
+    def start_and_interrupt(*arguments, **given):
+        process = start(*arguments, **given)
+        process.send_signal(signal.SIGINT)  # before Python has read its first line
+        return process
+
+    monkeypatch.setattr(subprocess, "Popen", start_and_interrupt)
+    found = td.study(models.product, AXES, measures=models.value, workers=2)
+    np.testing.assert_allclose(found["value"].values, EXPECTED, rtol=1e-15)
+    assert capfd.readouterr().err == ""
+
+
 @pytest.mark.slow
 def test_a_point_whose_process_is_killed_is_computed_again(tmp_path):
     axes = {**AXES, "folder": str(tmp_path)}
