@@ -7,7 +7,7 @@ crosses v_S slowly, both ways, and travels many bristle lengths between reversal
 rest is told where a speed far below v_S was seen, or a force of that size.
 """
 
-import math
+from types import SimpleNamespace
 
 from sympy import exp
 
@@ -23,7 +23,7 @@ def untold(p, facts):
     if at_rest <= facts.force:
         return None
     slowest = facts.slowest
-    there = p.extra_static_level * math.exp(-((slowest / p.stribeck_velocity) ** 2))
+    there = float(law(SimpleNamespace(velocity=slowest), p))
     return (
         f"friction of {facts.text(at_rest, 'force')} at rest is more than any force measured, "
         f"{facts.text(facts.force, 'force')}: the level at rest is not told, nor v_S apart from "
