@@ -17,6 +17,7 @@ from sympy import Abs
 from ..effects import Parameter
 from . import passivity_controller
 from ._controller import ControlLaw, ControllerState
+from ._memory import nothing
 
 
 def _power(force, velocity, p):
@@ -43,7 +44,7 @@ CONTROLLER = ControlLaw(
     takes="force",
     states={
         "energy": ControllerState("energy", energy, energy_after),
-        "held": ControllerState("force", passivity_controller.nothing, law),
+        "held": ControllerState("force", nothing, law),
     },
     parameters={
         "counted_level": Parameter("force", "F_C: friction that is counted on"),

@@ -7,10 +7,11 @@ A share of the samples is lost, by a sequence that looks random and is the same 
 that jitter. In continuous time nothing is lost.
 """
 
-from sympy import Piecewise, S, pi, sin
+from sympy import Piecewise, pi, sin
 
 from ..effects import Parameter
 from ._controller import ControlLaw, ControllerState
+from ._memory import nothing
 
 
 def law(now, p):
@@ -23,10 +24,6 @@ def law(now, p):
 def chance(now, p):
     x = p.seed + now.chance
     return 4 * x * (1 - x) - p.seed
-
-
-def nothing(now, p):
-    return S.Zero
 
 
 CONTROLLER = ControlLaw(

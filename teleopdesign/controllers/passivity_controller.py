@@ -14,10 +14,11 @@ velocity of the last; r far above the sampling rate makes a deficit up within on
 Hannaford and Ryu do. The device's inertia has to be put in first: what it gives back is not excess.
 """
 
-from sympy import Max, Min, S, exp
+from sympy import Max, Min, exp
 
 from ..effects import Parameter
 from ._controller import ControlLaw, ControllerState
+from ._memory import last, nothing
 
 _STANDSTILL = 1e-30  # (m/s)^2: alpha stays finite there, and acts on no velocity
 
@@ -52,14 +53,6 @@ def energy(now, p):
 def energy_after(now, p):
     power = -(now.input + now.last) / 2 * now.travel_rate
     return now.energy + now.period * kept(now, p, power)
-
-
-def last(now, p):
-    return now.input
-
-
-def nothing(now, p):
-    return S.Zero  # in continuous time there is no last sample
 
 
 PARAMETERS = {

@@ -9,10 +9,11 @@ a channel sends this, not the net energy. In a computer the force is held from a
 and acts along the travel between them, so that the count is exact, at the sample itself.
 """
 
-from sympy import Max, S
+from sympy import Max
 
 from ..effects import Parameter
 from ._controller import ControlLaw, ControllerState
+from ._memory import last, nothing
 
 
 def law(now, p):
@@ -25,14 +26,6 @@ def energy(now, p):
 
 def energy_after(now, p):
     return now.energy + now.period * Max(p.sign * now.last * now.travel_rate, 0)
-
-
-def last(now, p):
-    return now.input
-
-
-def nothing(now, p):
-    return S.Zero  # in continuous time there is no last sample
 
 
 CONTROLLER = ControlLaw(

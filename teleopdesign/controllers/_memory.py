@@ -1,0 +1,13 @@
+"""What laws in a computer keep from one sample to the next."""
+
+from sympy import S
+
+
+def last(now, p):
+    """The input, for the next sample."""
+    return now.input
+
+
+def nothing(now, p):
+    """In continuous time there is no last sample."""
+    return S.Zero
