@@ -22,6 +22,10 @@ class ModelError(TeleopDesignError):
     """A model, diagram or effect is put together in a way that has no meaning."""
 
 
+class UnstableLoop(ModelError):
+    """A loop that is unstable as it is: it has no margin."""
+
+
 class GrowsWithoutBound(ModelError):
     """Signals of a simulation grow beyond all bounds: the loop is unstable.
 

@@ -12,7 +12,7 @@ from ..controllers import Controller
 from ..derive import symbol_values
 from ..derive.elimination import round_trip
 from ..diagrams import Control, Diagram
-from ..errors import ModelError
+from ..errors import ModelError, UnstableLoop
 from ..realise.lti import as_transfer_function, linear_blocks, numerical
 from ..realise.tips import linear_tips
 
@@ -91,8 +91,8 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
 def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
     """Dead time (s) in the loop at which it begins to oscillate; inf where its gain stays below 1.
 
-    raises ModelError: the loop is unstable without any delay; a controller was left out of it; its
-        gain is above 1 where its samples no longer tell a frequency from others
+    raises ModelError: the loop is unstable without any delay (`UnstableLoop`); a controller was
+        left out of it; its gain is above 1 where its samples no longer tell a frequency from others
     """
     import control
 
@@ -106,7 +106,7 @@ def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
     else:
         whole = loop
     if (np.real(control.feedback(whole, 1).poles()) >= 0).any():
-        raise ModelError("delay margin: the loop is unstable without delay")
+        raise UnstableLoop("delay margin: the loop is unstable without delay")
     if isinstance(loop, LoopGain) and loop.has_delay:
         phase, crossing = _crossings(loop)
     else:

@@ -17,7 +17,7 @@ import numpy as np
 from ..arguments import checked
 from ..by_value import ByValue
 from ..diagrams import Diagram
-from ..errors import ModelError
+from ..errors import ModelError, UnstableLoop
 from ..frequency import delay_margin, loop_gain
 from ..passivity.intervals.box import ValueBox
 from ..passivity.intervals.family import family_of
@@ -106,10 +106,8 @@ def loop_margin(diagram: Diagram, name: str, controller: str) -> float:
     loop = loop_gain(diagram, controller=controller)
     try:
         late = delay_margin(loop)
-    except ModelError as problem:
-        if "unstable" in str(problem):
-            return -np.inf
-        raise
+    except UnstableLoop:
+        return -np.inf
     if name == "delay margin":
         return late
     system = loop.transfer_function(delay_order=_PADE)
