@@ -167,6 +167,10 @@ def _from_control(system: Any) -> Impedance:
     return from_state_space(system.A, system.B, system.C, system.D)
 
 
+#: why nothing is proved of a system for which `grows_unseen` holds
+UNSEEN = "from rest its impedance is that of a passive one, but a mode that no port shows grows"
+
+
 def grows_unseen(system: Any) -> bool:
     """Whether a system of python-control has a mode that grows, seen at its port or not.
 

@@ -22,7 +22,7 @@ from ...by_value import ByValue
 from ...errors import ModelError
 from ..claims.certificate import Term, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
-from .impedance import Impedance, Motion, grows_unseen, impedance
+from .impedance import UNSEEN, Impedance, Motion, grows_unseen, impedance
 from .polynomials import fraction
 from .squares import sum_of_squares
 
@@ -155,7 +155,7 @@ def storage_function(system: Any, *, motion: Motion = "velocity") -> Claim:
     if made is None:
         return Claim(statement, Unknown("grows faster than s, or as -s: no storage function"))
     if grows_unseen(system):
-        return Claim(statement, Unknown("a mode that the port does not show grows"))
+        return Claim(statement, Unknown(UNSEEN))
     for p in _candidates(made):
         storage, loss = _matrices(made, p)
         squares = sum_of_squares(storage), sum_of_squares(loss)

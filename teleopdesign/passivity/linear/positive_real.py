@@ -17,13 +17,11 @@ import sympy as sp
 from ..claims.certificate import positive_real_certificate
 from ..claims.claim import Claim, Proof, Refutation, Unknown
 from ..search.growing_wave import GrowingWave, growing_wave
-from .impedance import Impedance, Motion, exact, gaussian, grows_unseen, impedance
+from .impedance import UNSEEN, Impedance, Motion, exact, gaussian, grows_unseen, impedance
 from .polynomials import X, even_part, is_hurwitz, is_non_negative, positive_roots, value
 
 #: relative; coefficients are known no better than some operations on floats leave them, 2^-53 each
 NEARBY = 2.0**-50
-#: why nothing is proved of a system whose impedance alone is that of a passive one
-UNSEEN = "from rest its impedance is that of a passive one, but a mode that no port shows grows"
 
 
 def is_positive_real(z: Impedance) -> bool:
