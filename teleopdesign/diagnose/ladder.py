@@ -16,10 +16,6 @@ from .moves import add, remove
 from .pairs import add_pair, replace_by_pair
 from .search_plan import PLAN, SearchPlan
 
-#: effects that may be set aside with the search going on without them. One: each asks for all
-#: candidates to be ranked again, and what comes in its place is often as little there
-SEARCHED_ON = 1
-
 
 def find_missing(
     experiment: Experiment,
@@ -47,7 +43,8 @@ def find_missing(
     state = begin(search)
     while True:
         while (
-            len(state.set_aside) <= SEARCHED_ON and (moved := next_move(search, state)) is not None
+            len(state.set_aside) <= plan.searched_on
+            and (moved := next_move(search, state)) is not None
         ):
             state = look(search, moved.rungs, moved)
         rungs = with_last_corrected(search, state)

@@ -21,6 +21,9 @@ class SearchPlan:
     trials: int = 3
     #: most exchanges of an accepted effect for another: few, so that two effects cannot take turns
     exchanges: int = 2
+    #: effects that may be set aside with the search going on without them. One: each asks for all
+    #: candidates to be ranked again, and what comes in its place is often as little there
+    searched_on: int = 1
     #: starts kept after the prediction by one linear step, of an effect linear in its strength
     predicted: int = 2
     #: of these, starts kept after the first real steps
