@@ -171,7 +171,9 @@ def contradiction(rng, z, point, case=()):
     return "negative" if llewellyn < 0 else "not negative"
 
 
-@pytest.mark.parametrize(("name", "by"), [("llewellyn", -2.0), ("llewellyn", 2.0), ("passive", 1.0)])
+@pytest.mark.parametrize(
+    ("name", "by"), [("llewellyn", -2.0), ("llewellyn", 2.0), ("passive", 1.0)]
+)
 def test_the_attack_beats_a_map_that_is_wrong(name, by):
     """Of a spring both ways: signs turned, or a margin higher than the least eigenvalue."""
     rng = np.random.default_rng(1)
