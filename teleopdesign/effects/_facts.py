@@ -78,6 +78,17 @@ class RecordFacts:
         whole = len(values) * float(np.var(values))
         return within / whole if whole > 0.0 else 1.0
 
+    def bend(self, pattern: Callable[[Array], Array]) -> float:
+        """Share (rms) of the variation of a function of the place that no straight line has.
+
+        1 without samples or travel
+        """
+        if len(self.places) < 3 or not np.ptp(self.places) > 0.0:
+            return 1.0
+        values = pattern(self.places)
+        line = np.polynomial.Polynomial.fit(self.places, values, 1)
+        return float(np.std(values - line(self.places)) / np.std(values))
+
     def text(self, value: float, quantity: str) -> str:
         """A value of that quantity with its unit on the body's axis."""
         return f"{value:.3g} {unit_of(quantity, self.axis)}"
