@@ -9,9 +9,8 @@ all loops. Element 1 carries what the others leave of the level. Seen where the 
 from sympy import Max
 
 from ._effect import Effect, FitSearch, Parameter, State
+from ._elements import MORE, softest_first
 from ._facts import slip_is_seen
-
-MORE = (2, 3, 4)
 
 
 def law(now, p):
@@ -29,19 +28,6 @@ def element(i):
 def of_element(i, quantity, meaning, *starts):
     search = FitSearch(starts=starts, within=1e4 if i > 2 else float("inf"))  # 3, 4: may be rigid
     return Parameter(quantity, f"{meaning} of element {i}", optional=i > 2, search=search)
-
-
-def softest_first(p, body):
-    """Elements 3 and 4 are the stiff ones, which may be rigid, and 1 and 2 those that are told."""
-    level = {i: p[f"level_{i}"] for i in MORE}
-    level[1] = max(body["coulomb.level"] - sum(level.values()), 0.0)
-    by_stiffness = sorted(level, key=lambda i: (level[i] == 0.0, p[f"stiffness_{i}"]))
-    values = dict(p)
-    for i, element in enumerate(by_stiffness, 1):
-        values[f"stiffness_{i}"] = p[f"stiffness_{element}"]
-        if i in MORE:
-            values[f"level_{i}"] = level[element]
-    return values
 
 
 def plausible(p, facts):

@@ -147,8 +147,8 @@ def driven_to_its_bound(found, relative):
     fit, name = found[1].before, "device.viscous.damping"
     value = fit.model.parameters[name]
     sure = replace(value, stderr=relative * abs(value.value))
-    model = replace(fit.model, bodies=fit.model.bodies).with_values({name: sure})
-    candidate = next(r for r in found[1].last.ranked if r.counts)
+    model = fit.model.with_values({name: sure})
+    candidate = next(r for r in found[1].rungs[1].ranking.ranked if r.counts)
     there = replace(candidate.fit, at_bound=(name,))
     return replace(fit, model=model, at_bound=()), replace(candidate, fit=there)
 
