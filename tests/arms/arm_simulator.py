@@ -193,9 +193,13 @@ def hidden_force(name, strength, x, v, load, friction, step):
     raise ValueError(name)
 
 
-def write_experiment(folder: Path, arm, generator, hidden=None, *, seconds=30.0, rate=100.0):
+def write_experiment(
+    folder: Path, arm, generator, hidden=None, *, seconds=30.0, rate=100.0, late=0.0
+):
     """A folder with URDF, experiment.toml and two records; hidden: (name, joint number, strength).
 
+    late: rows by which every command is logged late, in quarters of a row; seconds: with one, whole
+    periods of the paths (10 s), so that the record begins with what ends it
     The user's model has the true kinematics, zero inertial values, Coulomb and viscous friction.
     truth.json says what is hidden, and rms of its force over that of its joint on the last record.
     """
@@ -221,6 +225,7 @@ def write_experiment(folder: Path, arm, generator, hidden=None, *, seconds=30.0,
             )
             motor[j] += force
             size = float(np.sqrt(np.mean(force**2) / np.mean(motor[j] ** 2)))
+        motor = np.roll(motor, round(late * PARTS), axis=1)
         command = motor.reshape(k, n, PARTS).mean(axis=2)
         noise = 0.01 * np.std(command, axis=1)
         command += noise[:, None] * generator.normal(size=(k, n))
