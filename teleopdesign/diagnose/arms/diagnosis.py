@@ -106,8 +106,8 @@ class ArmDiagnosis(ByValue):
         for j, diagnosis in self.joints.items():
             lines.append(f"{j}: {sentence(diagnosis)}")
         aside = [str(one) for d in self.joints.values() for one in d.set_aside]
-        told = [str(one) for d in self.joints.values() for one in d.untold]
-        lines += [f"cannot be told: {one}" for one in told]
+        untold = [str(one) for d in self.joints.values() for one in d.untold]
+        lines += [f"cannot be told: {one}" for one in untold]
         lines += [f"set aside: {one}" for one in aside]
         lines += [f"left out: {words}" for words in self.left_out]
         names = ", ".join(map(str, self.missing))

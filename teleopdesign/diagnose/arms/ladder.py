@@ -94,9 +94,9 @@ def find_missing_in_arm(
     said("all joints together")
     rungs = _rungs(joints, order, first, prepared)
     diagnosis = _conclude(experiment, prepared, joints, rungs)
-    told = {j: saying_what_was_tried(among, d) for j, d in diagnosis.joints.items()}
-    motors = {j: stated.parameters[f"{j}.inertia"].value for j in told}
-    return with_final_bodies(replace(diagnosis, joints=told), motors)
+    limited = {j: saying_what_was_tried(among, d) for j, d in diagnosis.joints.items()}
+    motors = {j: stated.parameters[f"{j}.inertia"].value for j in limited}
+    return with_final_bodies(replace(diagnosis, joints=limited), motors)
 
 
 def _begun(name: str, search: LadderSearch, prepared: Prepared, model: Model) -> _Joint:
