@@ -100,8 +100,8 @@ def _shifts_from(shifts: Table) -> dict[str, Value]:
     return {
         place: Value(
             table.number("value"),
-            table.content.get("fixed", False),
-            table.content.get("stderr", math.nan),
+            table.flag("fixed", False),
+            math.nan if (error := table.number_or_none("stderr")) is None else error,
         )
         for place, table in tables.items()
     }
