@@ -4,9 +4,10 @@ Arms of 2 to 4 joints, a few of 6, are drawn by a simulator that shares no code 
 (`tests/arms/arm_simulator.py`): links in any direction, Fourier paths of all joints at once. The
 user knows the kinematics, no inertial value, and states `coulomb` and `viscous` at each joint. In
 two cases of three one joint has one effect more, in the third none has. The joints are recorded at
-100 Hz with 1 % of noise on the force; the parameters of all are estimated on one path, and effects
-are judged on another. Right is: that effect at that joint and nothing else; without one, no name
-and the verdict that the model is adequate.
+100 Hz with 1 % of noise on the force, in every second case with all commands up to a row late or
+early; the parameters of all are estimated on one path, and effects are judged on another. Right is:
+that effect at that joint and nothing else; without one, no name and the verdict that the model is
+adequate.
 
 What was found is in docs/arms.md.
 
@@ -31,7 +32,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from _one_case import write_json
 from _recovery_tables import line
-from _scoring import FOUND, Truth, judge, load_answer, share
+from _scoring import Truth, judge, load_answer, share
 from matplotlib.figure import Figure
 
 import teleopdesign as td
@@ -48,6 +49,8 @@ LEVELS = ("clear", "null", "clear")
 STRENGTH = (0.7, 1.5)
 #: effects that are one force while a joint slides with `coulomb`: right is to list them together
 SAME = ("bias", "coulomb_asymmetry")
+#: outcomes that count: it alone, or listed with the one that is the same force
+RIGHT = ("right", "look-alike")
 #: s of each record
 SECONDS = 30.0
 #: Hz, of the rows
@@ -56,11 +59,15 @@ RATE = 100.0
 
 @dataclass(frozen=True)
 class Case:
-    """One arm: its number, joints, and what is hidden (name, number of the joint, strength)."""
+    """One arm: its number, joints, and what is hidden (name, number of the joint, strength).
+
+    late: rows by which its commands are logged late
+    """
 
     number: int
     joints: int
     hidden: tuple[str, int, float] | None
+    late: float = 0.0
 
     @property
     def name(self) -> str:
@@ -109,7 +116,8 @@ def plan(number: int, seed: int, joints: Sequence[int] = JOINTS) -> list[Case]:
             strength = float(generator.uniform(*STRENGTH))
             hidden = (HIDDEN[order[place]], int(generator.integers(n)), strength)
             count += 1
-        cases.append(Case(k, n, hidden))
+        late = float(generator.integers(-4, 5)) / 4.0 if k // 2 % 2 else 0.0
+        cases.append(Case(k, n, hidden, late))
     return cases
 
 
@@ -123,7 +131,9 @@ def run(case: Case, seed: int, folder: Path, seconds: float) -> None:
     generator = np.random.default_rng([seed, case.number, 1])
     arm = random_arm(generator, case.joints)
     experiment = folder / "cases" / case.name
-    write_experiment(experiment, arm, generator, case.hidden, seconds=seconds, rate=RATE)
+    write_experiment(
+        experiment, arm, generator, case.hidden, seconds=seconds, rate=RATE, late=case.late
+    )
     begin = time.process_time()
     diagnosis = td.find_missing_in_arm(td.load_experiment(experiment))
     spent = time.process_time() - begin
@@ -165,7 +175,7 @@ def summary(rows: Sequence[Row]) -> str:
         lines.append(
             [
                 "all" if n is None else str(n),
-                str(share(r.outcome in FOUND for r in hidden)),
+                str(share(r.outcome in RIGHT for r in hidden)),
                 str(share(r.outcome != "right" for r in adequate)),
                 f"{np.median([r.seconds for r in mine]):.0f} s",
             ]
@@ -181,8 +191,9 @@ def details(rows: Sequence[Row]) -> str:
         hidden = "-" if r.case.hidden is None else "{} at {}".format(*_place(r.case.hidden))
         errors = [f"{100 * x:.2f}" for x in (r.before, r.after, r.floor)]
         size = f"{100 * r.size:.1f}"
-        lines.append([r.case.name, str(r.case.joints), hidden, size, r.said, r.outcome, *errors])
-    head = ["case", "joints", "hidden", "its force, %", "said", "outcome"]
+        about = [r.case.name, str(r.case.joints), f"{r.case.late:g}", hidden, size]
+        lines.append([*about, r.said, r.outcome, *errors])
+    head = ["case", "joints", "rows late", "hidden", "its force, %", "said", "outcome"]
     return _table([*head, "before, %", "after, %", "floor, %"], lines)
 
 
@@ -198,7 +209,7 @@ def plot(rows: Sequence[Row]) -> Figure:
     """Error of the arm before and after, over the size of what is hidden."""
     figure, axes = plt.subplots(figsize=(4.2, 3.2), layout="constrained")
     for mark, found, label in (("o", True, "right"), ("x", False, "not right")):
-        mine = [r for r in rows if (r.outcome in (*FOUND,)) == found]
+        mine = [r for r in rows if (r.outcome in RIGHT) == found]
         size, before, after = (
             [100 * getattr(r, name) for r in mine] for name in ("size", "before", "after")
         )
@@ -222,6 +233,7 @@ def write(rows: Sequence[Row], output: Path) -> str:
             "case": r.case.name,
             "joints": r.case.joints,
             "hidden": r.case.hidden,
+            "late": r.case.late,
             "outcome": r.outcome,
             "said": r.said,
             "errors": [r.before, r.after, r.floor],
@@ -256,7 +268,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         rows = []
         for case in cases:
             if not options.score_only:
-                run(case, options.seed, folder, 12.0 if options.quick else SECONDS)
+                run(case, options.seed, folder, 10.0 if options.quick else SECONDS)
             if (row := judged(case, folder)) is not None:
                 rows.append(row)
                 print(case.name, case.joints, case.hidden, row.said, row.outcome, flush=True)

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import ExperimentError, did_you_mean
 from ..plain_data import replacing, write_json
-from ._arms import add_body
+from ._arms import add_body, arm_diagnosis_of
 from ._diagnosis import add_experiment, diagnosis_of, experiment_and_answer, print_diagnosis
 from ._options import check_output, say
 
 if TYPE_CHECKING:
+    from ..diagnose import ArmDiagnosis
     from ..measurement import Experiment
     from ..next_experiment import Limits, SimulatedDiagnosis
 
@@ -85,6 +86,8 @@ def run(options: argparse.Namespace) -> int:
     from ..next_experiment import propose, show_in_simulation, write_reference
 
     experiment = experiment_and_answer(options)
+    if experiment.arm is not None and options.body is None:
+        return _run_arm(experiment, options)
     limits = _limits(_read_limits(options.limit, experiment), experiment)
     diagnosis = diagnosis_of(experiment, options)
     proposal = propose(diagnosis, duration=options.duration, limits=limits, progress=say)
@@ -111,6 +114,40 @@ def run(options: argparse.Namespace) -> int:
         with replacing(options.figure) as part:
             proposal.plot().savefig(part)
     return 0
+
+
+def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
+    """Paths of all joints of an arm; with --body it is the motion of one joint that is planned."""
+    from ..next_experiment import propose_paths, write_reference
+
+    for value, option in ((options.figure, "--figure"), (options.simulate, "--simulate")):
+        if value is not None:
+            raise ExperimentError(f"{option}: not there for an arm: use --output, or --body JOINT")
+    stated = _read_limits(options.limit, experiment)
+    diagnosis = arm_diagnosis_of(experiment, options)
+    shown = {j: _shown_limits(diagnosis, j) for j in stated}
+    limits = {j: shown[j].with_values(**values) for j, values in stated.items()}
+    paths = propose_paths(diagnosis, duration=options.duration, limits=limits, progress=say)
+    say("")
+    print_diagnosis(diagnosis)
+    print(f"\n{_wrap('next experiment: ' + repr(paths))}")
+    if options.output is not None and paths.is_useful:
+        write_reference(paths.reference, experiment, options.output)
+        print(f"\nwritten: {options.output}")
+    elif options.output is not None:
+        print(f"\nnot written: {options.output}, for no motion is proposed")
+    if options.json is not None:
+        numbers = {"condition": paths.condition, "recorded": paths.recorded}
+        content = {**numbers, "period": paths.period, "standard_errors": dict(paths.errors)}
+        write_json(options.json, content)
+    return 0
+
+
+def _shown_limits(diagnosis: ArmDiagnosis, joint: str) -> Limits:
+    """The limits that the records of an arm have shown at one joint."""
+    from ..next_experiment import shown_limits
+
+    return shown_limits(diagnosis.prepared.joints[joint])[joint]
 
 
 def _wrap(text: str) -> str:

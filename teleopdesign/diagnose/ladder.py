@@ -42,7 +42,11 @@ def find_missing(
         model = trying(among, model or Model.from_experiment(experiment))
     search = search_for(experiment, model, progress=progress, seed=seed, plan=plan)
     state, rungs = climb(search, begin(search), with_last_corrected)
-    diagnosis = conclude(search, state, rungs)
+    return saying_what_was_tried(among, conclude(search, state, rungs))
+
+
+def saying_what_was_tried(among: Collection[str] | None, diagnosis: Diagnosis) -> Diagnosis:
+    """The diagnosis with the effects that it was restricted to; among: None for no restriction."""
     if among is None:
         return diagnosis
     words = f"only these effects were tried: {', '.join(sorted(among))}"

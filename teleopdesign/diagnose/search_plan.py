@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -21,6 +21,9 @@ class SearchPlan:
     trials: int = 3
     #: most exchanges of an accepted effect for another: few, so that two effects cannot take turns
     exchanges: int = 2
+    #: joints up to which pairs and exchanges are sought at each joint of an arm: a real arm always
+    #: leaves more than noise, so at each they are sought, and six joints took over twice the time
+    whole_at: int = 3
     #: effects that may be set aside with the search going on without them. One: each asks for all
     #: candidates to be ranked again, and what comes in its place is often as little there
     searched_on: int = 1
@@ -62,6 +65,11 @@ class SearchPlan:
     tone_estimates: int = 2
     #: most models that one open question holds: each is told from the others by an experiment
     rivals: int = 4
+
+    def for_joints(self, count: int) -> SearchPlan:
+        """The plan for each joint of an arm with so many; its records are searched whole."""
+        plan = replace(self, long=SearchPlan.long, windows=SearchPlan.windows)
+        return plan if count <= self.whole_at else replace(plan, trials=0, exchanges=0)
 
     def omissions(self) -> tuple[str, ...]:
         """What it leaves out of the search with `PLAN`, in words; none where it is that one."""

@@ -7,6 +7,7 @@ show_in_simulation(proposal)                # each rival is made the truth, and 
 """
 
 from ..arguments import check_arguments
+from .arm_paths import ArmPaths, propose_paths
 from .in_simulation import SimulatedDiagnosis, show_in_simulation
 from .limits import Limits, shown_limits
 from .prediction import DeterminedParameter, Separation
@@ -18,6 +19,7 @@ from .rivals import Rival
 from .words import proposal_data
 
 __all__ = [
+    "ArmPaths",
     "DeterminedParameter",
     "Limits",
     "Proposal",
@@ -28,6 +30,7 @@ __all__ = [
     "SimulatedDiagnosis",
     "proposal_data",
     "propose",
+    "propose_paths",
     "show_in_simulation",
     "shown_limits",
     "write_reference",

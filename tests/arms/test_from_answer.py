@@ -118,6 +118,15 @@ def test_a_pose_gives_the_inertia_that_the_links_have_there(folder, answer, tmp_
     assert f"{expected:.5g}" in capsys.readouterr().out
 
 
+def test_the_body_of_a_joint_has_the_inertia_of_the_final_links(folder, answer):
+    """The first links, without the spring, were wrong by more than that."""
+    model, experiment = load_answer(answer).model(), td.load_experiment(folder)
+    poses = np.array([experiment.records[0].signals[f"joint{k}.position"][::20] for k in (1, 2)])
+    expected = inertias_at(experiment, model.links, poses).mean(axis=1)
+    for k, joint in enumerate(("joint1", "joint2")):
+        assert model.parameters[f"{joint}.inertia"].value == pytest.approx(expected[k], rel=0.02)
+
+
 @pytest.mark.parametrize("pose", ["joint3=1", "joint1=fast", "joint1=1m"])
 def test_a_bad_pose_is_one_line(answer, capsys, pose):
     arguments = ["--to", "urdf", "--body", "joint1", "--pose", pose, "--output", "x.urdf"]

@@ -158,7 +158,7 @@ def test_an_experiment_on_an_arm_pickles_and_says_itself(folder):
     assert pickle.loads(pickle.dumps(model)).parameters == model.parameters
 
 
-@pytest.mark.parametrize("command", ["describe", "next", "design", "passivity", "export --to mjcf"])
+@pytest.mark.parametrize("command", ["describe", "design", "passivity", "export --to mjcf"])
 def test_a_command_on_one_joint_asks_for_it_in_one_line(folder, capsys, command):
     assert main([*command.split(), str(folder)]) == 2
     said = capsys.readouterr().err.strip().splitlines()

@@ -67,7 +67,7 @@ def arm_answer(diagnosis: ArmDiagnosis) -> dict[str, Any]:
         },
         "experiment": experiment_data(diagnosis.experiment),
         "reading": reading_data(diagnosis.experiment.reading),
-    }
+    } | ({"left_out": list(diagnosis.left_out)} if diagnosis.left_out else {})
 
 
 def _missing(rung: ArmRung) -> dict[str, str]:

@@ -76,6 +76,11 @@ class ArmDiagnosis(ByValue):
         return max(d.left for d in self.joints.values())
 
     @property
+    def left_out(self) -> tuple[str, ...]:
+        """What was not searched at its joints though it usually is, in words."""
+        return tuple(dict.fromkeys(words for d in self.joints.values() for words in d.left_out))
+
+    @property
     def base_parameters(self) -> dict[str, tuple[float, float, str]]:
         """Base parameter -> (value, standard error, unit), SI; empty where none are estimated."""
         base = self.prepared.base
@@ -100,6 +105,11 @@ class ArmDiagnosis(ByValue):
         lines.append("")
         for j, diagnosis in self.joints.items():
             lines.append(f"{j}: {sentence(diagnosis)}")
+        aside = [str(one) for d in self.joints.values() for one in d.set_aside]
+        untold = [str(one) for d in self.joints.values() for one in d.untold]
+        lines += [f"cannot be told: {one}" for one in untold]
+        lines += [f"set aside: {one}" for one in aside]
+        lines += [f"left out: {words}" for words in self.left_out]
         names = ", ".join(map(str, self.missing))
         lines += ["", f"verdict: {self.verdict}{': ' + names if names else ''}"]
         return "\n".join(lines)

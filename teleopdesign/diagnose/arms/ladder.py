@@ -16,14 +16,15 @@ from ..conclusion import conclude
 from ..decision import is_better
 from ..diagnosis import Diagnosis, SetAside
 from ..fit import Fit, estimate, fit_squares
-from ..ladder import climb
+from ..ladder import climb, saying_what_was_tried
 from ..ladder_state import LadderSearch, LadderState, look, trying
 from ..prepare import Prepared
 from ..rung import Rung
 from ..search_plan import PLAN, SearchPlan
+from .bodies import as_bodies, with_final_bodies
 from .diagnosis import ArmDiagnosis, ArmRung
 from .fit import ArmFit, estimate_arm, knowledge, link_errors, misfits, with_others
-from .prepared import PreparedArm, alone, mean_inertias, prepare_arm, with_inertias
+from .prepared import PreparedArm, alone, prepare_arm
 
 #: why an effect that one joint's records supported is not there
 NO_HELP = "it helps no more with all joints estimated together"
@@ -75,7 +76,7 @@ def find_missing_in_arm(
     }
     said("re-estimating the model")
     first = estimate_arm(models, prepared)
-    prepared, models = _as_bodies(prepared, first)
+    prepared, models = as_bodies(prepared, first)
     first = estimate_arm(models, prepared, rounds=1)
     joints: dict[str, _Joint] = {}
     for j in prepared.joints:
@@ -85,31 +86,17 @@ def find_missing_in_arm(
             prepared=first.prepared[j],
             stated=models[j],
             seed=seed,
-            plan=plan,
+            plan=plan.for_joints(len(prepared.joints)),
             progress=lambda text, j=j: said(f"{j}: {text}"),  # type: ignore[misc]
         )
         joints[j] = _begun(j, search, first.prepared[j], first.fits[j].model)
     order = _climb(joints, prepared)
     said("all joints together")
     rungs = _rungs(joints, order, first, prepared)
-    return _conclude(experiment, prepared, joints, rungs)
-
-
-def _as_bodies(prepared: PreparedArm, first: ArmFit) -> tuple[PreparedArm, dict[str, Model]]:
-    """Records and models in which each joint's body has the mean inertia of its links.
-
-    So structures and checks of plausibility see a body of the size that moves.
-    """
-    inertias = mean_inertias(prepared, first.links)
-    models = {}
-    for j, fit in first.fits.items():
-        name = f"{j}.inertia"
-        inertias[j] += fit.model.parameters[name].value
-        value = replace(fit.model.parameters[name], value=inertias[j])
-        models[j] = fit.model.with_values({name: value})
-    motors = {j: f.model.parameters[f"{j}.inertia"].value for j, f in first.fits.items()}
-    extra = {j: inertias[j] - motors[j] for j in inertias}
-    return with_inertias(prepared, extra), models
+    diagnosis = _conclude(experiment, prepared, joints, rungs)
+    limited = {j: saying_what_was_tried(among, d) for j, d in diagnosis.joints.items()}
+    motors = {j: stated.parameters[f"{j}.inertia"].value for j in limited}
+    return with_final_bodies(replace(diagnosis, joints=limited), motors)
 
 
 def _begun(name: str, search: LadderSearch, prepared: Prepared, model: Model) -> _Joint:

@@ -111,20 +111,23 @@ def with_inertias(prepared: PreparedArm, inertias: Mapping[str, float]) -> Prepa
 
     inertias: joint -> what its body has, in its model too; the force of its links is less by that
     """
-    joints = {}
-    for j, one in prepared.joints.items():
-        stretches = []
-        for stretch in one.stretches:
-            links = stretch.motion.links
-            assert links is not None
-            links = replace(
-                links,
-                inertia=inertias[j],
-                drawn=tuple(replace(d, inertia=inertias[j]) for d in links.drawn),
-            )
-            stretches.append(replace(stretch, motion=replace(stretch.motion, links=links)))
-        joints[j] = replace(one, stretches=tuple(stretches))
+    joints = {j: with_inertia(one, inertias[j]) for j, one in prepared.joints.items()}
     return replace(prepared, joints=joints)
+
+
+def with_inertia(records: Prepared, inertia: float) -> Prepared:
+    """A joint's records with so much of its links as the inertia of its body."""
+    stretches = []
+    for stretch in records.stretches:
+        links = stretch.motion.links
+        assert links is not None
+        links = replace(
+            links,
+            inertia=inertia,
+            drawn=tuple(replace(d, inertia=inertia) for d in links.drawn),
+        )
+        stretches.append(replace(stretch, motion=replace(stretch.motion, links=links)))
+    return replace(records, stretches=tuple(stretches))
 
 
 def mean_inertias(prepared: PreparedArm, links: tuple[float, ...]) -> dict[str, float]:
