@@ -88,6 +88,10 @@ class Effect:
     effect out, and says so. It is never found by differentiating sgn.
     absent: parameter values at which the effect is not there at all.
     canonical: of parameter values that mean the same, those to report.
+    order: order(p, body), of parts that may change places, the same law with its parts in the order
+        that their numbers say; body: the numbers of the body by their names, "coulomb.level". None:
+        no parts do
+    after: effects that a search tries first: without them this one stands for them
     needs: effects that the model must have for this one to mean anything; where a body has one of a
         role at most, another of that role will do.
     counts_as: effects that it takes the place of for those that need them, where their laws hold
@@ -117,6 +121,8 @@ class Effect:
     elsewhere: Mapping[str, str] = field(default_factory=dict)
     always: frozenset[str] = frozenset()
     canonical: Callable[[Mapping[str, float]], dict[str, float]] = dict
+    order: Callable[[Mapping[str, float], Mapping[str, float]], dict[str, float]] | None = None
+    after: frozenset[str] = frozenset()
     led: Callable[[Any], sp.Expr] | None = None
     coupling: Callable[[Any, Any], sp.Expr] | None = None
     plausible: Callable[[Any, RecordFacts], str | None] | None = None
