@@ -2,11 +2,13 @@
 
 from ..arguments import check_arguments
 from ..effects import BLOCK_EFFECTS, with_block_effects
-from .body import NINETY_FIVE, Body, BodyEquation, Value
+from .body import Body
+from .body_equation import BodyEquation
 from .environment import CONTACT
 from .environments import free_space, hunt_crossley, soft_rubber, spring_damper
 from .hand import hand
 from .matrix_impedance import MatrixImpedance, matrix_impedance
+from .value import NINETY_FIVE, Value
 
 ARM = BLOCK_EFFECTS["arm"]
 CONTACT_HYSTERESIS = BLOCK_EFFECTS["contact_hysteresis"]

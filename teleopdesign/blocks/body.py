@@ -10,18 +10,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 
 import sympy as sp
 
 from ..arguments import checked, instance, number
-from ..by_value import ByValue
-from ..effects import EFFECTS, SIGNALS, Effect, Parameter, ordered
+from ..effects import EFFECTS, Effect, Parameter, ordered
 from ..errors import ModelError, did_you_mean, quoted
 from ..frozen import Frozen
 from ..notebook import html_table
 from ..quantity import AXES, unit_of
+from .body_equation import (
+    BodyEquation,
+    actuation_of,
+    body_symbols,
+    compose_equation,
+    friction_level,
+    impedance_of,
+)
 from .environment import contact_force
+from .value import Value
 
 #: roles that one effect of a body can have, in the words of messages
 ONE_ONLY = {
@@ -31,47 +38,6 @@ ONE_ONLY = {
     "contact_shape": "shapes of the contact force",
 }
 INERTIA = Parameter("inertia", "inertia of the body", lower=0.0)
-
-
-#: standard errors to either side of a value that hold it 95 times in 100 (normal)
-NINETY_FIVE = 1.96
-
-
-@dataclass(frozen=True, eq=False)
-class Value(ByValue):
-    """A parameter's value (SI); fixed: known, not to be re-estimated; stderr: NaN where unknown."""
-
-    value: float
-    fixed: bool = False
-    stderr: float = float("nan")
-
-    def __post_init__(self) -> None:
-        if type(self.value) is not float:
-            object.__setattr__(self, "value", number(self.value, "Value: value"))
-        if type(self.fixed) is not bool:
-            instance(self.fixed, bool, "Value: fixed", expected="True or False")
-
-    def __hash__(self) -> int:
-        return hash((self.value, self.fixed))
-
-
-@dataclass(frozen=True)
-class BodyEquation:
-    """The composed equation of one body, in sympy, on the symbols of `effects.SIGNALS`.
-
-    inertia: total inertia;  force: forces subtracted, without their share in the acceleration
-    level: friction level;  friction: friction force, level in place (sgn v times level by default)
-    acting: force that acts, from `command`, with `delayed(...)` where a delay is in the chain
-    rates: hidden state -> rate of change;  stages: states of the actuation chain among them
-    """
-
-    inertia: sp.Expr
-    force: sp.Expr
-    level: sp.Expr
-    friction: sp.Expr
-    acting: sp.Expr
-    rates: Mapping[sp.Symbol, sp.Expr]
-    stages: tuple[sp.Symbol, ...]
 
 
 @dataclass(frozen=True, repr=False)
@@ -236,7 +202,7 @@ class Body:
 
     def symbols(self) -> dict[str, sp.Symbol]:
         """Parameter name -> sympy symbol of the equation: "coulomb.level" -> coulomb_level."""
-        return dict(_symbols(self.effects))
+        return dict(body_symbols(self.effects))
 
     def numbers(self) -> dict[sp.Symbol, float]:
         """Parameter symbol -> value, to substitute in the equation."""
@@ -247,7 +213,7 @@ class Body:
 
         A factor scales the levels that it needs ("coulomb"), all of them where it needs none.
         """
-        return _level(self.effects)
+        return friction_level(self.effects)
 
     def tip_level(self) -> sp.Expr:
         """Level of the dry friction that holds the tip of a structure."""
@@ -259,66 +225,18 @@ class Body:
 
     def equation(self) -> BodyEquation:
         """Compose the effects by role into the body's equation."""
-        acceleration, velocity = SIGNALS["acceleration"], SIGNALS["velocity"]
-        forces = [*ordered(self.effects, "force"), *ordered(self.effects, "structure")]
-        force = sp.expand(sum((e.expression() for e in forces), sp.S(0)))
-        share = force.coeff(acceleration, 1)
-        rates: dict[sp.Symbol, sp.Expr] = {}
-        level = self.level()
-        friction = level * sp.sign(velocity)
-        acting: sp.Expr = SIGNALS["command"]
-        stages: list[sp.Symbol] = []
-        for effect in self.effects:
-            level_symbol = {"level": level} if effect.role == "friction_shape" else {}
-            if effect.role == "actuation":
-                continue
-            symbols = effect.state_symbols()
-            rates |= {symbols[n]: r for n, r in effect.rates(level_symbol).items()}
-            if effect.role == "friction_shape":
-                friction = effect.expression(level_symbol)
-        for effect in ordered(self.effects, "actuation"):
-            symbols = effect.state_symbols()
-            rates |= {symbols[n]: r for n, r in effect.rates({"command": acting}).items()}
-            acting = effect.expression({"command": acting})
-            stages += symbols.values()
-        return BodyEquation(
-            inertia=self.symbols()["inertia"] + share,
-            force=sp.expand(force - share * acceleration) + self.contact(),
-            level=level,
-            friction=friction,
-            acting=acting,
-            rates=Frozen(rates),
-            stages=tuple(stages),
-        )
+        return compose_equation(self.effects)
 
     def impedance(self, s: sp.Symbol) -> tuple[sp.Expr, tuple[str, ...]]:
         """Impedance relative to position, Z(s) (force per position), and the effects left out.
 
         The linear forms that effects declare, inertia s^2 included.
         """
-        z: sp.Expr = self.symbols()["inertia"] * s**2
-        left_out = []
-        for effect in self.effects:
-            if effect.role == "actuation":
-                continue
-            part = effect.linear_form(s)
-            if part is None:
-                left_out.append(effect.name)
-            else:
-                z += part
-        return z, tuple(left_out)
+        return impedance_of(self.effects, s)
 
     def actuation(self, s: sp.Symbol) -> tuple[sp.Expr, tuple[str, ...]]:
         """Transfer function from command to acting force, and the effects left out."""
-        transfer: sp.Expr = sp.S(1)
-        left_out = []
-        for effect in ordered(self.effects, "actuation"):
-            part = effect.linear_form(s)
-            if part is None:
-                left_out.append(effect.name)
-            else:
-                transfer *= part
-        return transfer, tuple(left_out)
+        return actuation_of(self.effects, s)
 
     def __repr__(self) -> str:
         rows = [f"  {n} = {v:.5g} {self.unit(n)}" for n, v in self._plain().items()]
@@ -361,27 +279,3 @@ def _effects(effects: object) -> tuple[Effect, ...]:
     for i, effect in enumerate(effects):
         instance(effect, Effect, f"Body: effects[{i}]", expected="an Effect, of EFFECTS or a file")
     return tuple(effects)
-
-
-__all__ = ["INERTIA", "Body", "BodyEquation", "Value"]
-
-
-# laws on symbols are asked for at every evaluation of a residual: they are built once
-
-
-@lru_cache(maxsize=256)
-def _symbols(effects: tuple[Effect, ...]) -> dict[str, sp.Symbol]:
-    of_effects = {f"{e.name}.{n}": s for e in effects for n, s in e.symbols().items()}
-    return {"inertia": sp.Symbol("inertia", real=True), **of_effects}
-
-
-@lru_cache(maxsize=256)
-def _level(effects: tuple[Effect, ...]) -> sp.Expr:
-    factors = ordered(effects, "friction_factor")
-    level = sp.S(0)
-    for effect in ordered(effects, "friction_level"):
-        of_this_level = [f.expression() for f in factors if not f.needs or effect.name in f.needs]
-        level += effect.expression() * sp.Mul(*of_this_level)
-    for effect in ordered(effects, "friction_speed"):
-        level = level.subs(SIGNALS["velocity"], effect.expression())
-    return level

@@ -12,7 +12,8 @@ from ..effects import Effect, Parameter, find_effect
 from ..errors import ExperimentError, ModelError, did_you_mean
 from ..measurement.description import BodyDescription, Effects, ModelValue
 from ..quantity import unit_of
-from .body import INERTIA, Body, Value
+from .body import INERTIA, Body
+from .value import Value
 
 
 def body_of(

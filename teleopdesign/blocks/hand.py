@@ -14,7 +14,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..effects import BLOCK_EFFECTS, EFFECTS
-from .body import Body, Value
+from .body import Body
+from .value import Value
 
 
 def hand(

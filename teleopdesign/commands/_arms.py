@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from ..errors import ExperimentError, did_you_mean, quoted
 
 if TYPE_CHECKING:
-    from ..diagnose import ArmDiagnosis
     from ..measurement import Experiment
     from ..model import Model
 
@@ -46,18 +45,6 @@ def joint_of(experiment: Experiment, options: argparse.Namespace) -> str:
             f"{did_you_mean(chosen, joints)}"
         )
     return str(chosen)
-
-
-def arm_diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> ArmDiagnosis:
-    """The diagnosis of an arm: as the answer tells, or made now, with progress said."""
-    from ..diagnose.answers import load_answer
-    from ..diagnose.arms import find_missing_in_arm
-    from ..diagnose.arms.restored import restored_arm
-    from ._diagnosis import known_of, searched
-
-    if options.answer is not None:
-        return restored_arm(load_answer(options.answer), experiment, known_of(options))
-    return searched(find_missing_in_arm, experiment, options)
 
 
 def posed(model: Model, experiment: Experiment, joint: str, options: argparse.Namespace) -> Model:

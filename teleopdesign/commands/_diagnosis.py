@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from ..errors import ExperimentError, ModelError, did_you_mean
-from ._arms import arm_diagnosis_of, inertia_line, joint_of, posed
+from ._arms import inertia_line, joint_of, posed
 from ._options import add_effect_files, add_folder
 from ._progress import Reporter
 from ._terminal import print_styled
@@ -169,6 +169,17 @@ def diagnosed(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
     from ..diagnose import find_missing
 
     return searched(find_missing, experiment, options)
+
+
+def arm_diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> ArmDiagnosis:
+    """The diagnosis of an arm: as the answer tells, or made now, with progress said."""
+    from ..diagnose.answers import load_answer
+    from ..diagnose.arms import find_missing_in_arm
+    from ..diagnose.arms.restored import restored_arm
+
+    if options.answer is not None:
+        return restored_arm(load_answer(options.answer), experiment, known_of(options))
+    return searched(find_missing_in_arm, experiment, options)
 
 
 def searched(

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from ..errors import ExperimentError, quoted
 from .channel import Channel
 from .reading import ReadingStep, count_of
+from .record_clock import RecordClock, counted_time, segments_of
 from .tables import LogColumns
-from .time_grid import DATE, EVEN, RecordClock, clock_of, counted_time, segments_of, stamps_are_true
+from .time_grid import DATE, EVEN, clock_of, stamps_are_true
 
 Array = NDArray[np.float64]
 

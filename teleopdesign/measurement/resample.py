@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .time_grid import RecordClock
+from .record_clock import RecordClock
 
 Array = NDArray[np.float64]
 Rule = Literal["held", "position", "line"]

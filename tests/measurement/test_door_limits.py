@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.io import savemat
 
 from teleopdesign.errors import ExperimentError
-from teleopdesign.measurement.doors.text import stamps_of
+from teleopdesign.measurement.doors._stamps import stamps_of
 from teleopdesign.measurement.tables import open_log, read_columns
 
 

@@ -6,42 +6,26 @@ units below it are found from the first rows. A time may be written as a date or
 
 from __future__ import annotations
 
-import csv
-import gzip
 import io
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, cast
 
 import numpy as np
 
 from ...errors import ExperimentError, quoted
-from ...quantity import is_unit
+from ._dialect import (
+    COMMENTS,
+    LOOKED_AT,
+    NUMBER,
+    SEPARATORS,
+    Dialect,
+    cells_of,
+    dialect_of,
+    is_number,
+    open_bytes,
+)
 from ._log import MOST_BYTES, Array, Log, refuse_size
-
-_COMMENTS = ("#", "%", "//")
-_SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
-#: bytes from which the dialect is read
-_LOOKED_AT = 65_536
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?$|[-+]?(nan|inf|infinity)$", re.I)
-_DAY = re.compile(r"(\d{1,2})\.(\d{1,2})\.(\d{4})[ T](.*)$")
-_ZONE = re.compile(r"(Z|[-+]\d{2}:?\d{2})$")
-_TIME_OF_DAY = re.compile(r"(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)$")
-
-
-@dataclass(frozen=True)
-class Dialect:
-    """How a table is written. `first`: line of the first row of numbers, from 0."""
-
-    encoding: str
-    separator: str
-    comma: bool
-    header: tuple[str, ...]
-    units: tuple[str, ...]
-    first: int
-    named: bool = True
+from ._stamps import stamps_of
 
 
 def open_text(path: Path, file: str) -> Log:
@@ -54,7 +38,7 @@ def open_text(path: Path, file: str) -> Log:
     notes = []
     if dialect.separator != "," or dialect.comma:
         comma = ", decimal comma" if dialect.comma else ""
-        notes.append(f"{_SEPARATORS[dialect.separator]} between columns{comma}")
+        notes.append(f"{SEPARATORS[dialect.separator]} between columns{comma}")
     if dialect.encoding not in ("utf-8", "utf-8-sig"):
         notes.append(f"text in {dialect.encoding}")
     if _is_cut_off(path, dialect):
@@ -71,192 +55,17 @@ def _is_cut_off(path: Path, dialect: Dialect) -> bool:
         return False
     with path.open("rb") as stream:
         stream.seek(0, 2)
-        stream.seek(max(0, stream.tell() - _LOOKED_AT))
+        stream.seek(max(0, stream.tell() - LOOKED_AT))
         tail = stream.read().decode(dialect.encoding.removesuffix("-sig"), errors="ignore")
     lines = [line for line in tail.replace("\r", "\n").split("\n") if line.strip()]
-    cells = _cells(lines[-1], dialect.separator) if len(lines) > 1 else []
+    cells = cells_of(lines[-1], dialect.separator) if len(lines) > 1 else []
     return 0 < len(cells) < len(dialect.header)
-
-
-def dialect_of(path: Path, file: str) -> Dialect:
-    """How the file is written."""
-    with _opened_bytes(path) as stream:
-        raw = stream.read(_LOOKED_AT)
-        whole = len(raw) < _LOOKED_AT
-    encoding = _encoding(raw, file)
-    text = raw.decode(encoding, errors="ignore").replace("\r\n", "\n").replace("\r", "\n")
-    lines = text.split("\n")
-    if not whole:
-        lines = lines[:-1]
-    if not any(line.strip() for line in lines):
-        raise ExperimentError(
-            f"{file}: found no header, expected a first row that names the columns"
-        )
-    body = [line for line in lines if line.strip() and not line.lstrip().startswith(_COMMENTS)]
-    separator, comma = _separator(body[1:] or body)
-    first = next(
-        (
-            k
-            for k, line in enumerate(lines)
-            if line.strip()
-            and not line.lstrip().startswith(_COMMENTS)
-            and _is_data(_cells(line, separator), comma)
-        ),
-        len(lines),
-    )
-    if first >= len(lines):
-        _refuse_without_rows(lines, separator, file)
-    width = len(_cells(lines[first], separator))
-    header, units = _header(lines[:first], separator, width, lines[first])
-    named = bool(header)
-    if not named:
-        header = tuple(f"column {k + 1}" for k in range(width))
-    return Dialect(encoding, separator, comma, header, units, first, named)
-
-
-def _refuse_without_rows(lines: Sequence[str], separator: str, file: str) -> None:
-    filled = [line for line in lines if line.strip()]
-    if len(filled) <= 1:
-        raise ExperimentError(f"{file}: found a header and no rows, expected at least 64")
-    cell = next((c for c in _cells(filled[1], separator) if c), "")
-    raise ExperimentError(
-        f"{file}: not a table of numbers: row 1: found {quoted(cell)}, expected a number"
-    )
-
-
-def _encoding(raw: bytes, file: str) -> str:
-    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return "utf-16"
-    if raw[:3] == b"\xef\xbb\xbf":
-        return "utf-8-sig"
-    if b"\x00" in raw:
-        raise ExperimentError(f"{file}: not a text (byte {raw.index(0)} is 0)")
-    try:
-        raw[: -4 if len(raw) > 4 else None].decode("utf-8")
-        return "utf-8"
-    except UnicodeDecodeError:
-        return "cp1252" if not set(raw) & {0x81, 0x8D, 0x8F, 0x90, 0x9D} else "latin-1"
-
-
-def _separator(lines: Sequence[str]) -> tuple[str, bool]:
-    """The separator and whether the decimal sign is a comma: what leaves most numbers a row."""
-    some = lines[-40:]
-    best, chosen = (-1.0, 0), (",", False)
-    for separator in _SEPARATORS:
-        for comma in (False, True):
-            if comma and separator == ",":
-                continue
-            rows = [_cells(line, separator) for line in some]
-            widths = [len(row) for row in rows]
-            width = max(set(widths), key=widths.count) if widths else 0
-            cells = [c for row in rows for c in row if c]
-            good = sum(_is_value(c, comma) for c in cells) / max(len(cells), 1)
-            even = widths.count(width) / max(len(widths), 1)
-            score = (round(good * even, 3), width)
-            # one column of numbers is no better than several texts: a table has two
-            if width > 1 and score > best:
-                best, chosen = score, (separator, comma)
-    return chosen
-
-
-def _cells(line: str, separator: str) -> list[str]:
-    line = line.strip("\r\n")
-    if separator == " ":
-        return line.split()
-    if '"' in line:
-        return [
-            c.strip() for c in next(csv.reader([line], delimiter=separator, skipinitialspace=True))
-        ]
-    cells = [c.strip() for c in line.split(separator)]
-    return cells
-
-
-def _is_number(cell: str, comma: bool) -> bool:
-    return bool(_NUMBER.match(cell.replace(",", ".") if comma else cell))
-
-
-def _is_value(cell: str, comma: bool) -> bool:
-    return _is_number(cell, comma) or seconds_of(cell) is not None
-
-
-def _is_data(cells: Sequence[str], comma: bool) -> bool:
-    """A row of numbers and dates; a broken cell among many does not make it a header."""
-    filled = [c for c in cells if c]
-    return bool(filled) and sum(_is_value(c, comma) for c in filled) > 0.5 * len(filled)
-
-
-def _header(
-    before: Sequence[str], separator: str, width: int, row: str
-) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Names and units from the lines before the first row of numbers."""
-    plain = [line for line in before if line.strip()]
-    rows = []
-    for line in plain:
-        text = line.lstrip()
-        for mark in _COMMENTS:
-            text = text.removeprefix(mark)
-        cells = _cells(text.strip() if separator == " " else text.strip("\n"), separator)
-        while len(cells) > width and not cells[-1]:
-            cells = cells[:-1]
-        if len(cells) == width:
-            rows.append(tuple(cells))
-    if not rows:
-        last = plain[-1] if plain and not plain[-1].lstrip().startswith(_COMMENTS) else ""
-        return (tuple(_cells(last, separator)) if last else ()), ()
-    if len(rows) > 1 and all(_is_unit_cell(c) for c in rows[-1]) and any(rows[-1]):
-        return rows[-2], tuple(c.strip("[]() ") for c in rows[-1])
-    return rows[-1], ()
-
-
-def _is_unit_cell(cell: str) -> bool:
-    bare = cell.strip("[]() ")
-    return not bare or bare in ("-", "counts", "ticks") or is_unit(bare)
-
-
-def seconds_of(cell: str) -> float | None:
-    """A date or a time of day as seconds; None: it is neither."""
-    if ":" not in cell and "T" not in cell and cell.count("-") < 2:
-        return None
-    stamp = stamps_of([cell])
-    return None if stamp is None else float(stamp[0])
-
-
-def stamps_of(cells: Sequence[str]) -> Array | None:
-    """Dates or times of day as seconds, from midnight or the first day; None: some are neither."""
-    day = _TIME_OF_DAY.match(cells[0])
-    try:
-        if day is not None:
-            parts = [c.replace(",", ".").split(":") for c in cells]
-            return np.array([3600.0 * int(h) + 60.0 * int(m) + float(s) for h, m, s in parts])
-        written = [_ZONE.sub("", _turned(c)).replace(",", ".") for c in cells]
-        stamps = np.array(written, dtype="datetime64[ns]")
-    except (ValueError, IndexError):
-        return None
-    if np.isnat(stamps).any():
-        return None
-    seconds: Array = (stamps - stamps[0].astype("datetime64[D]")).astype(np.int64) * 1e-9
-    return seconds
-
-
-def _turned(cell: str) -> str:
-    """A date that begins with the day, as one that begins with the year."""
-    match = _DAY.match(cell)
-    if match is None:
-        return cell.replace(" ", "T", 1)
-    day, month, year, rest = match.groups()
-    return f"{year}-{int(month):02d}-{int(day):02d}T{rest}"
-
-
-def _opened_bytes(path: Path) -> IO[bytes]:
-    if path.name.lower().endswith(".gz"):
-        return cast(IO[bytes], gzip.open(path, "rb"))
-    return path.open("rb")
 
 
 def _read(path: Path, file: str, dialect: Dialect, wanted: Mapping[str, str]) -> dict[str, Array]:
     places = [_place(dialect.header, name, file) for name in wanted]
     try:
-        with _opened_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
+        with open_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
             table = np.loadtxt(
                 _lines(stream, dialect, file),
                 delimiter=None if dialect.separator == " " else dialect.separator,
@@ -290,7 +99,7 @@ def _lines(stream: Iterable[str], dialect: Dialect, file: str) -> Iterator[str]:
     for k, line in enumerate(stream):
         if k < dialect.first or not line.strip():
             continue
-        if line.lstrip().startswith(_COMMENTS):
+        if line.lstrip().startswith(COMMENTS):
             continue
         if held:
             yield held
@@ -330,9 +139,9 @@ def _read_cell_by_cell(
 ) -> dict[str, Array]:
     """The slow way: empty cells are NaN, dates become seconds, other texts are named."""
     cells: list[list[str]] = [[] for _ in wanted]
-    with _opened_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
+    with open_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
         for line in _lines(stream, dialect, file):
-            row = _cells(line, dialect.separator)
+            row = cells_of(line, dialect.separator)
             for into, place in zip(cells, places, strict=True):
                 into.append(row[place] if place < len(row) else "")
     return {
@@ -343,7 +152,7 @@ def _read_cell_by_cell(
 
 def _numbers(cells: Sequence[str], where: str) -> Array:
     filled = next((c for c in cells if c), "")
-    if filled and not _is_number(filled, comma=False):
+    if filled and not is_number(filled, comma=False):
         stamps = stamps_of(cells)
         if stamps is not None:
             return stamps
@@ -351,7 +160,7 @@ def _numbers(cells: Sequence[str], where: str) -> Array:
     for k, cell in enumerate(cells):
         if not cell:
             continue
-        if not _NUMBER.match(cell):
+        if not NUMBER.match(cell):
             raise ExperimentError(f"{where}, row {k + 1}: found {quoted(cell)}, expected a number")
         out[k] = float(
             cell.replace("d", "e").replace("D", "e") if "n" not in cell.lower() else cell

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from ...errors import ExperimentError
+from ._dialect import is_unit_cell
 from ._log import MOST_BYTES, Log, optional, refuse_size
-from .text import _is_unit_cell
 
 #: rows above the first row of numbers that may be titles, names and units
 _TOP = 50
@@ -57,7 +57,7 @@ def _is_data(row: Sequence[Any]) -> bool:
 def _log(rows: Sequence[Sequence[Any]], first: int, notes: tuple[str, ...]) -> Log:
     above = [[_text(c) for c in row] for row in rows[:first] if any(c is not None for c in row)]
     units: list[str] = []
-    if len(above) > 1 and all(map(_is_unit_cell, above[-1])):
+    if len(above) > 1 and all(map(is_unit_cell, above[-1])):
         units = [c.strip("[]() ") for c in above.pop()]
     header = above[-1] if above else []
     width = max(len(row) for row in rows[first : first + _TOP])

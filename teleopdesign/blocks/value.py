@@ -1,0 +1,29 @@
+"""A number with what is known of it: whether it is fixed, and its standard error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..arguments import instance, number
+from ..by_value import ByValue
+
+#: standard errors to either side of a value that hold it 95 times in 100 (normal)
+NINETY_FIVE = 1.96
+
+
+@dataclass(frozen=True, eq=False)
+class Value(ByValue):
+    """A parameter's value (SI); fixed: known, not to be re-estimated; stderr: NaN where unknown."""
+
+    value: float
+    fixed: bool = False
+    stderr: float = float("nan")
+
+    def __post_init__(self) -> None:
+        if type(self.value) is not float:
+            object.__setattr__(self, "value", number(self.value, "Value: value"))
+        if type(self.fixed) is not bool:
+            instance(self.fixed, bool, "Value: fixed", expected="True or False")
+
+    def __hash__(self) -> int:
+        return hash((self.value, self.fixed))

@@ -1,0 +1,179 @@
+"""How a table of text is written, found from its first rows: separator, decimal sign, encoding."""
+
+from __future__ import annotations
+
+import csv
+import gzip
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, cast
+
+from ...errors import ExperimentError, quoted
+from ...quantity import is_unit
+from ._stamps import seconds_of
+
+COMMENTS = ("#", "%", "//")
+SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
+#: bytes from which the dialect is read
+LOOKED_AT = 65_536
+NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?$|[-+]?(nan|inf|infinity)$", re.I)
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """How a table is written. `first`: line of the first row of numbers, from 0."""
+
+    encoding: str
+    separator: str
+    comma: bool
+    header: tuple[str, ...]
+    units: tuple[str, ...]
+    first: int
+    named: bool = True
+
+
+def dialect_of(path: Path, file: str) -> Dialect:
+    """How the file is written."""
+    with open_bytes(path) as stream:
+        raw = stream.read(LOOKED_AT)
+        whole = len(raw) < LOOKED_AT
+    encoding = _encoding(raw, file)
+    text = raw.decode(encoding, errors="ignore").replace("\r\n", "\n").replace("\r", "\n")
+    lines = text.split("\n")
+    if not whole:
+        lines = lines[:-1]
+    if not any(line.strip() for line in lines):
+        raise ExperimentError(
+            f"{file}: found no header, expected a first row that names the columns"
+        )
+    body = [line for line in lines if line.strip() and not line.lstrip().startswith(COMMENTS)]
+    separator, comma = _separator(body[1:] or body)
+    first = next(
+        (
+            k
+            for k, line in enumerate(lines)
+            if line.strip()
+            and not line.lstrip().startswith(COMMENTS)
+            and _is_data(cells_of(line, separator), comma)
+        ),
+        len(lines),
+    )
+    if first >= len(lines):
+        _refuse_without_rows(lines, separator, file)
+    width = len(cells_of(lines[first], separator))
+    header, units = _header(lines[:first], separator, width, lines[first])
+    named = bool(header)
+    if not named:
+        header = tuple(f"column {k + 1}" for k in range(width))
+    return Dialect(encoding, separator, comma, header, units, first, named)
+
+
+def _refuse_without_rows(lines: Sequence[str], separator: str, file: str) -> None:
+    filled = [line for line in lines if line.strip()]
+    if len(filled) <= 1:
+        raise ExperimentError(f"{file}: found a header and no rows, expected at least 64")
+    cell = next((c for c in cells_of(filled[1], separator) if c), "")
+    raise ExperimentError(
+        f"{file}: not a table of numbers: row 1: found {quoted(cell)}, expected a number"
+    )
+
+
+def _encoding(raw: bytes, file: str) -> str:
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return "utf-16"
+    if raw[:3] == b"\xef\xbb\xbf":
+        return "utf-8-sig"
+    if b"\x00" in raw:
+        raise ExperimentError(f"{file}: not a text (byte {raw.index(0)} is 0)")
+    try:
+        raw[: -4 if len(raw) > 4 else None].decode("utf-8")
+        return "utf-8"
+    except UnicodeDecodeError:
+        return "cp1252" if not set(raw) & {0x81, 0x8D, 0x8F, 0x90, 0x9D} else "latin-1"
+
+
+def _separator(lines: Sequence[str]) -> tuple[str, bool]:
+    """The separator and whether the decimal sign is a comma: what leaves most numbers a row."""
+    some = lines[-40:]
+    best, chosen = (-1.0, 0), (",", False)
+    for separator in SEPARATORS:
+        for comma in (False, True):
+            if comma and separator == ",":
+                continue
+            rows = [cells_of(line, separator) for line in some]
+            widths = [len(row) for row in rows]
+            width = max(set(widths), key=widths.count) if widths else 0
+            cells = [c for row in rows for c in row if c]
+            good = sum(_is_value(c, comma) for c in cells) / max(len(cells), 1)
+            even = widths.count(width) / max(len(widths), 1)
+            score = (round(good * even, 3), width)
+            # one column of numbers is no better than several texts: a table has two
+            if width > 1 and score > best:
+                best, chosen = score, (separator, comma)
+    return chosen
+
+
+def cells_of(line: str, separator: str) -> list[str]:
+    """The cells of a line, without the space around them."""
+    line = line.strip("\r\n")
+    if separator == " ":
+        return line.split()
+    if '"' in line:
+        return [
+            c.strip() for c in next(csv.reader([line], delimiter=separator, skipinitialspace=True))
+        ]
+    cells = [c.strip() for c in line.split(separator)]
+    return cells
+
+
+def is_number(cell: str, comma: bool) -> bool:
+    """Whether the cell is a number;  comma: the decimal sign is one."""
+    return bool(NUMBER.match(cell.replace(",", ".") if comma else cell))
+
+
+def _is_value(cell: str, comma: bool) -> bool:
+    return is_number(cell, comma) or seconds_of(cell) is not None
+
+
+def _is_data(cells: Sequence[str], comma: bool) -> bool:
+    """A row of numbers and dates; a broken cell among many does not make it a header."""
+    filled = [c for c in cells if c]
+    return bool(filled) and sum(_is_value(c, comma) for c in filled) > 0.5 * len(filled)
+
+
+def _header(
+    before: Sequence[str], separator: str, width: int, row: str
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names and units from the lines before the first row of numbers."""
+    plain = [line for line in before if line.strip()]
+    rows = []
+    for line in plain:
+        text = line.lstrip()
+        for mark in COMMENTS:
+            text = text.removeprefix(mark)
+        cells = cells_of(text.strip() if separator == " " else text.strip("\n"), separator)
+        while len(cells) > width and not cells[-1]:
+            cells = cells[:-1]
+        if len(cells) == width:
+            rows.append(tuple(cells))
+    if not rows:
+        last = plain[-1] if plain and not plain[-1].lstrip().startswith(COMMENTS) else ""
+        return (tuple(cells_of(last, separator)) if last else ()), ()
+    if len(rows) > 1 and all(is_unit_cell(c) for c in rows[-1]) and any(rows[-1]):
+        return rows[-2], tuple(c.strip("[]() ") for c in rows[-1])
+    return rows[-1], ()
+
+
+def is_unit_cell(cell: str) -> bool:
+    """Whether the cell may stand in a row of units: a unit, in brackets or not, or nothing."""
+    bare = cell.strip("[]() ")
+    return not bare or bare in ("-", "counts", "ticks") or is_unit(bare)
+
+
+def open_bytes(path: Path) -> IO[bytes]:
+    """The bytes of a file, unpacked where its name ends with .gz."""
+    if path.name.lower().endswith(".gz"):
+        return cast(IO[bytes], gzip.open(path, "rb"))
+    return path.open("rb")

@@ -1,0 +1,74 @@
+"""Stamps on an even clock, or on one that was rounded: the sample time by least squares."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from .record_clock import Array, RecordClock, check_duration
+
+_JITTER = 0.2  # of a sample time: a step may be that much longer or shorter than the others
+_EQUAL = 0.02  # mean and usual step closer than this: rare odd steps are lost samples, not rounding
+
+
+def even_clock(stamps: Array, segments: tuple[slice, ...], where: str) -> RecordClock | None:
+    """The clock where stamps are even, or even and rounded; None where they are neither."""
+    period = _least_squares_period(stamps, segments)
+    if period is None or not _is_even(stamps, segments, period):
+        return None
+    time = np.empty_like(stamps)
+    for segment in segments:
+        index = np.arange(segment.stop - segment.start)
+        start = np.mean(stamps[segment] - period * index)
+        time[segment] = start + period * index
+    check_duration(len(stamps), period, where)
+    rows = np.arange(len(stamps))
+    jitter = float(np.sqrt(np.mean((stamps - time) ** 2)))
+    return RecordClock(rows, stamps, rows, time, period, segments, segments, jitter=jitter)
+
+
+def _least_squares_period(stamps: Array, segments: Sequence[slice]) -> float | None:
+    above = below = 0.0
+    for segment in segments:
+        index = np.arange(segment.stop - segment.start, dtype=np.float64)
+        index -= index.mean()
+        above += float(index @ (stamps[segment] - stamps[segment.start]))
+        below += float(index @ index)
+    if below == 0 or not math.isfinite(above) or above <= 0:
+        return None
+    # 12 digits: below any clock's error, and 0.001 stays 0.001
+    return float(f"{above / below:.12g}")
+
+
+def _is_even(stamps: Array, segments: Sequence[slice], period: float) -> bool:
+    steps = np.diff(stamps)
+    within = np.ones(len(steps), dtype=bool)
+    within[[segment.start - 1 for segment in segments[1:]]] = False
+    if not within.any():
+        return False
+    usual = float(np.quantile(steps[within], 0.5, method="higher"))  # one that occurs
+    steps = np.where(within, steps, usual)
+    if np.all(np.abs(steps - usual) <= _JITTER * usual):
+        return True
+    return abs(period - usual) > _EQUAL * usual and only_rounded(stamps, segments, period)
+
+
+def only_rounded(stamps: Array, segments: Sequence[slice], period: float) -> bool:
+    """Steps differ because stamps are coarse: each is still next to its place on a uniform grid."""
+    allowed = (0.5 + 1e-3) * _resolution(stamps) + _JITTER * period
+    for segment in segments:
+        deviation = stamps[segment] - period * np.arange(segment.stop - segment.start)
+        if np.max(np.abs(deviation - deviation.mean())) > allowed:
+            return False
+    return True
+
+
+def _resolution(stamps: Array) -> float:
+    """Power of ten in seconds that the stamps are rounded to; 1e-9 s if they are finer."""
+    some = stamps[:1000] - stamps[0]
+    for digits in range(9):
+        if np.all(np.abs(some - np.round(some, digits)) < 1e-3 * 10.0**-digits):
+            return 10.0**-digits
+    return 1e-9

@@ -1,0 +1,73 @@
+"""The clock of a record: which row of the log stands where on one even grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ExperimentError
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.intp]
+_SHORTEST = 1.0  # s, all segments of a record together
+_FEWEST = 64  # samples
+
+
+@dataclass(frozen=True, eq=False)
+class RecordClock:
+    """Which row of the log stands where on the even grid of a record.
+
+    rows: (m,) rows of the log that are used, in order;  stamps: (m,) s, of these
+    places: (m,) sample of the record that the row is next to
+    time: (n,) s, even within each segment with step `sample_time`;  segments: of the n samples
+    of_rows: the same stretches among the m rows
+    exact: every row is a sample, and the other way round, at its time
+    jitter: rms of the stamps about the even clock, s;  dropped, sorted, restarts: how many rows
+    lost: rows that are filled;  gaps: stretches begun at a pause
+    """
+
+    rows: Rows
+    stamps: Array
+    places: Rows
+    time: Array
+    sample_time: float
+    segments: tuple[slice, ...]
+    of_rows: tuple[slice, ...]
+    exact: bool = True
+    jitter: float = 0.0
+    dropped: int = 0
+    sorted: int = 0
+    restarts: int = 0
+    lost: int = 0
+    gaps: int = 0
+    longest_gap: float = 0.0
+    counted: bool = False
+
+
+def segments_of(labels: Array | None, count: int) -> tuple[slice, ...]:
+    """Stretches of consecutive samples: a new one wherever the label changes."""
+    if labels is None:
+        return (slice(0, count),)
+    starts = [0, *(np.flatnonzero(np.diff(labels)) + 1).tolist(), count]
+    return tuple(slice(a, b) for a, b in zip(starts, starts[1:], strict=False))
+
+
+def counted_time(count: int, rate: float, where: str) -> tuple[Array, float]:
+    """Time in s from the sample's number and a rate in Hz, and the sample time in s."""
+    check_size(count, where)
+    check_duration(count, 1 / rate, where)
+    return np.arange(count) / rate, 1 / rate
+
+
+def check_size(count: int, where: str) -> None:
+    if count < _FEWEST:
+        raise ExperimentError(f"{where}: found {count} rows, expected at least {_FEWEST}")
+
+
+def check_duration(count: int, period: float, where: str) -> None:
+    if count * period < _SHORTEST * (1 - 1e-9):
+        raise ExperimentError(
+            f"{where}: found {count * period:.3g} s of samples, expected at least {_SHORTEST:g} s"
+        )

@@ -1,0 +1,204 @@
+"""Stamps with rows lost, twice or out of order, with pauses, or on no even clock at all."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .record_clock import Array, RecordClock, Rows, check_duration, check_size
+
+#: lost rows in a row that are filled; more of them part the record. At 1 kHz six sample times are a
+#: tenth of a period at 16 Hz: what moves in the band of a comparison is still known between them
+MOST_FILLED = 5
+#: rms distance of stamps from an even clock, of a sample time, above which they follow none: stamps
+#: anywhere would be 0.29 off
+NO_CLOCK = 0.2
+#: steps back, in sample times, that are rows out of order; longer ones are a clock set anew
+OUT_OF_ORDER = 5
+#: part of the rows with the stamp of another one above which stamps are too coarse to place rows
+TOO_COARSE = 0.02
+
+
+def rows_in_order(
+    stamps: Array, segments: Sequence[slice], same_as_before: NDArray[np.bool_]
+) -> tuple[list[Rows], int, int, int]:
+    """Rows of each stretch in the order of their stamps, each stamp once.
+
+    returns: the stretches, and how many rows were dropped, moved, and began a new clock
+    """
+    forward = np.diff(stamps)
+    usual = float(np.median(forward[forward > 0]))
+    parts: list[Rows] = []
+    dropped = moved = restarts = 0
+    for segment in segments:
+        rows = np.arange(segment.start, segment.stop)
+        back = np.flatnonzero(np.diff(stamps[rows]) < -(OUT_OF_ORDER + 0.5) * usual) + 1
+        restarts += len(back)
+        for part in np.split(rows, back):
+            order = np.argsort(stamps[part], kind="stable")
+            moved += int(np.sum(order != np.arange(len(part))))
+            part = part[order]
+            again = np.r_[False, np.diff(stamps[part]) <= 0]
+            # a stamp may differ by rounding from its repeat: a row that says the same far too early
+            early = np.r_[False, np.diff(stamps[part]) < 0.25 * usual] & same_as_before[part]
+            dropped += int(np.sum(again | early))
+            parts.append(part[~(again | early)])
+    return [part for part in parts if len(part) > 1], dropped, moved, restarts
+
+
+def sparse_clock(
+    stamps: Array, parts: list[Rows], changes: tuple[int, int, int], where: str
+) -> RecordClock:
+    """The clock of stamps with steps of any length, ascending in each part."""
+    dropped, moved, restarts = changes
+    count = sum(map(len, parts))
+    if dropped > TOO_COARSE * len(stamps):
+        # stamps that many rows share cannot place them: rows are counted at the mean rate
+        return _counted_clock(stamps, where)
+    period = _usual_step([stamps[part] for part in parts])
+    pieces: list[Rows] = []
+    longest = 0.0
+    for part in parts:
+        steps = np.diff(stamps[part])
+        pauses = np.flatnonzero(steps > (MOST_FILLED + 1.5) * period) + 1
+        longest = max(longest, float(steps[pauses - 1].max(initial=0.0)))
+        pieces += [piece for piece in np.split(part, pauses) if len(piece) > 1]
+    gaps = max(0, len(pieces) - len(parts))
+    placed = _places([stamps[piece] for piece in pieces], period)
+    if placed is not None:
+        period, places = placed
+    else:
+        # no even clock: a grid of as many samples as there are rows
+        period = float(
+            f"{sum(np.ptp(stamps[p]) for p in pieces) / max(count - len(pieces), 1):.12g}"
+        )
+        places = [np.rint((stamps[p] - stamps[p[0]]) / period).astype(np.intp) for p in pieces]
+    rows = np.concatenate(pieces)
+    on_clock = placed is not None
+    time, index, segments, of_rows = _grid_of(
+        stamps, pieces, places, period, on_clock=on_clock, goes_on=bool(restarts)
+    )
+    whole = np.concatenate(time)
+    places_of_rows = np.concatenate(index)
+    check_size(len(whole), where)
+    check_duration(len(whole), period, where)
+    off = _off_clock(stamps[rows], whole[places_of_rows], of_rows)
+    return RecordClock(
+        rows=rows,
+        stamps=stamps[rows],
+        places=places_of_rows,
+        time=whole,
+        sample_time=period,
+        segments=tuple(segments),
+        of_rows=tuple(of_rows),
+        exact=False,
+        jitter=float(np.sqrt(np.mean(off**2))) if placed is not None else math.inf,
+        dropped=dropped,
+        sorted=moved,
+        restarts=restarts,
+        lost=len(whole) - len(np.unique(places_of_rows)) if placed is not None else 0,
+        gaps=gaps,
+        longest_gap=longest,
+    )
+
+
+def _grid_of(
+    stamps: Array,
+    pieces: Sequence[Rows],
+    places: Sequence[Rows],
+    period: float,
+    *,
+    on_clock: bool,
+    goes_on: bool,
+) -> tuple[list[Array], list[Rows], list[slice], list[slice]]:
+    """Even time and places of each piece, and where it lies among samples and rows.
+
+    on_clock: the stamps follow an even clock, whose phase is their mean
+    goes_on: a clock that was set back goes on where the stretch before it ended
+    """
+    time: list[Array] = []
+    index: list[Rows] = []
+    segments: list[slice] = []
+    of_rows: list[slice] = []
+    first = row = 0
+    end = -math.inf
+    for piece, place in zip(pieces, places, strict=True):
+        length = int(place[-1]) + 1
+        start = float(np.mean(stamps[piece] - period * place) if on_clock else stamps[piece[0]])
+        start = max(start, end + period) if goes_on else start
+        time.append(np.asarray(start + period * np.arange(length), dtype=np.float64))
+        end = float(time[-1][-1])
+        index.append(first + place)
+        segments.append(slice(first, first + length))
+        of_rows.append(slice(row, row + len(piece)))
+        first, row = first + length, row + len(piece)
+    return time, index, segments, of_rows
+
+
+def _off_clock(stamps: Array, time: Array, stretches: Sequence[slice]) -> Array:
+    """Stamps less the even time, each stretch about its own mean: its clock may have been set."""
+    off = stamps - time
+    for stretch in stretches:
+        off[stretch] -= off[stretch].mean()
+    return off
+
+
+def _counted_clock(stamps: Array, where: str) -> RecordClock:
+    count = len(stamps)
+    period = float(f"{(stamps.max() - stamps.min()) / (count - 1):.12g}")
+    check_duration(count, period, where)
+    rows, whole = np.arange(count), (slice(0, count),)
+    time = stamps.min() + period * rows
+    return RecordClock(rows, time, rows, time, period, whole, whole, counted=True)
+
+
+def _usual_step(pieces: Sequence[Array]) -> float:
+    """The step between neighbouring rows, s: that of the rows that follow each other at once."""
+    steps = np.concatenate([np.diff(piece) for piece in pieces])
+    usual = float(np.median(steps))
+    near = steps[np.abs(steps - usual) < 0.5 * usual]
+    return float(near.mean()) if len(near) else usual
+
+
+def _places(pieces: Sequence[Array], period: float) -> tuple[float, list[Rows]] | None:
+    """An even clock through stretches of stamps with rows missing: its step, s, and the places.
+
+    None: the stamps follow no even clock (rms distance above `NO_CLOCK`, or two rows on one place)
+    """
+    longest = max(pieces, key=len)
+    fit = _line_through(longest, period)
+    if fit is None:
+        return None
+    period = fit
+    places: list[Rows] = []
+    for stamps in pieces:
+        steps = np.diff(stamps) / period
+        # the phase of a stretch: the circular mean of its stamps
+        turns = np.exp(2j * np.pi * (stamps - stamps[0]) / period)
+        phase = float(np.angle(turns.mean()) / (2 * np.pi))
+        place = np.rint((stamps - stamps[0]) / period - phase)
+        off = (stamps - stamps[0]) / period - phase - place
+        if np.sqrt(np.mean(off**2)) > NO_CLOCK or np.any(np.diff(place) < 1) or steps.max() > 1e6:
+            return None
+        places.append((place - place[0]).astype(np.intp))
+    return period, places
+
+
+def _line_through(stamps: Array, period: float) -> float | None:
+    """Step of the even clock through one stretch, from few rows to all: s."""
+    start, count = float(stamps[0]), min(64, len(stamps))
+    while True:
+        some = stamps[:count]
+        place = np.rint((some - start) / period)
+        if place[-1] < 1:
+            return None
+        slope, start = np.polyfit(place, some, 1)
+        if not math.isfinite(slope) or not 0.5 * period < slope < 2.0 * period:
+            return None
+        period = float(slope)
+        if count == len(stamps):
+            return float(f"{period:.12g}")
+        count = min(2 * count, len(stamps))
