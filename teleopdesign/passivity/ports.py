@@ -149,6 +149,10 @@ def impedance_matrix(
         ]
     ).subs(values)
     mobility = mobility.xreplace({x: exact(x) for x in mobility.atoms(sp.Float)})
+    if mobility.shape == (1, 1) and mobility.has(sp.zoo):
+        return sp.zeros(1)  # one port that nothing resists
+    if mobility.has(sp.zoo, sp.nan):
+        raise ModelError(f"{diagram.name}: a port gives way to any force: it has no mobility")
     impedance = _inverse(mobility)
     if impedance is None:
         raise ModelError(f"{diagram.name}: its ports do not move apart: they have no impedance")
