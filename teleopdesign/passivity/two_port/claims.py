@@ -24,17 +24,10 @@ from ..linear.polynomials import halves, where_negative
 from ..linear.positive_real import is_positive_real
 from ..search.growing_wave import GrowingWave, growing_wave, halvings, wave_of
 from .delayed_two_port import late_terms, obstacles
-from .growing_mode import (
-    Gaussian,
-    candidates,
-    entries_of,
-    far_termination,
-    growing_mode,
-    points_near_poles,
-    points_of_growth,
-    rounded,
-    value_at,
-)
+from .exact_complex import Gaussian, rounded, value_at
+from .growing_mode import entries_of, growing_mode
+from .growth_points import candidates, points_near_poles, points_of_growth
+from .termination import far_termination
 from .two_port import TwoPort, passive_margin, stable_margin
 
 _METHOD = (
