@@ -10,6 +10,7 @@ is derived from it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, get_args
@@ -161,6 +162,8 @@ class Stage:
         for name, parameter in declared.items():
             if name not in self.values:
                 raise ModelError(f'{law.name}: parameter "{name}" has no value')
+            if math.isinf(self.values[name]):
+                raise ModelError(f"{law.name}: {name} is infinite, expected a number (SI)")
             if not parameter.lower <= self.values[name] <= parameter.upper:
                 raise ModelError(
                     f"{law.name}: {name} = {self.values[name]:g} is outside "

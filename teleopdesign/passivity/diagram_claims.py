@@ -35,6 +35,7 @@ from .ports import (
 )
 from .search.by_simulation import Computer, SimulatedMotion, search_counterexample
 from .theorems import TopicClaim
+from .theorems.wave_channel import wave_claim
 from .two_port.claims import absolutely_stable, passive
 from .two_port.two_port import two_port
 
@@ -90,7 +91,10 @@ def diagram_claims(
     all_ports, bent = ports(alone), nonlinear_parts(alone)
     claims: list[TopicClaim] = []
     sampled = search.computer != "continuous" and any(not c.analog for c in alone.controls)
-    if not bent:
+    waves = wave_claims(alone)
+    if waves:
+        claims += waves
+    elif not bent:
         claims += linear_claims(alone, all_ports)
     else:
         pairs = friction_pairs(alone)
@@ -105,6 +109,19 @@ def diagram_claims(
     if sampled or not any(s.topic in WHOLE and s.claim.status != "unknown" for s in claims):
         claims += [_searched(whole, port, rng, search) for port in all_ports]
     return DiagramClaims(diagram, all_ports, bent, tuple(claims))
+
+
+def wave_claims(diagram: Diagram) -> list[TopicClaim]:
+    """The theorem about waves, where a diagram is wired by `wave_variables` and it proves it."""
+    if not any(part.dead_time is not None for part in diagram.controls):
+        return []  # without delays the linear tests decide either way
+    try:
+        claim = wave_claim(diagram)
+    except ModelError:  # another wiring
+        return []
+    if not isinstance(claim.verdict, Proof):
+        return []
+    return [TopicClaim(WHOLE[2], claim)]
 
 
 def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import sympy as sp
+from sympy.polys.matrices import DomainMatrix
 
 from ..blocks import Body
 from ..controllers import Controller
@@ -126,10 +127,14 @@ def impedance_matrix(
     """
     diagram = with_tips(diagram)
     linear = linear or linear_blocks(diagram)
-    values = symbol_values(linear)
     # a dead time is a symbol of its own until the matrix is inverted: it commutes, and stays short
     late = {dead_time_symbol(n): sp.Dummy(n) for n in linear.dead_times}
     times = {late[dead_time_symbol(n)]: sp.exp(-S * t) for n, t in linear.dead_times.items()}
+    values = symbol_values(linear)
+    for power in sorted({x for e in values.values() for x in sp.sympify(e).atoms(sp.exp)}, key=str):
+        times[sp.Dummy(f"late_{len(times)}")] = power  # a delay in series with a law
+    within = {power: mark for mark, power in times.items()}
+    values = {n: sp.sympify(e).xreplace(within) for n, e in values.items()}
     forces = tuple(p.force for p in at)
     motions = {m: transfer(diagram, m, forces) for p in at for m in p.weights}
     mobility = sp.Matrix(
@@ -144,11 +149,25 @@ def impedance_matrix(
         ]
     ).subs(values)
     mobility = mobility.xreplace({x: exact(x) for x in mobility.atoms(sp.Float)})
-    mobility = mobility.applyfunc(lambda e: sp.cancel(sp.together(e)))
-    if sp.cancel(mobility.det()) == 0:
+    if mobility.shape == (1, 1) and mobility.has(sp.zoo):
+        return sp.zeros(1)  # one port that nothing resists
+    if mobility.has(sp.zoo, sp.nan):
+        raise ModelError(f"{diagram.name}: a port gives way to any force: it has no mobility")
+    impedance = _inverse(mobility)
+    if impedance is None:
         raise ModelError(f"{diagram.name}: its ports do not move apart: they have no impedance")
-    impedance = mobility.inv().applyfunc(lambda e: sp.cancel(sp.together(e)))
     return impedance.xreplace(times)
+
+
+def _inverse(matrix: sp.Matrix) -> sp.Matrix | None:
+    """Inverse of a matrix of rational functions, each coprime; None: singular."""
+    symbols = sorted(matrix.free_symbols | {S}, key=str)
+    field = sp.QQ.frac_field(*symbols)
+    rows = [[field.from_sympy(sp.sympify(e)) for e in row] for row in matrix.tolist()]
+    made = DomainMatrix(rows, matrix.shape, field)
+    if not made.det():
+        return None
+    return made.inv().to_Matrix()
 
 
 def _marked(form: sp.Expr, late: Mapping[sp.Symbol, sp.Symbol]) -> sp.Expr:

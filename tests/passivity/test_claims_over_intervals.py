@@ -10,8 +10,15 @@ from devices import body
 from passivity.interval_boxes import DIAGRAMS, HAND, failure, random_case
 
 import teleopdesign as td
-from teleopdesign.controllers import from_control
-from teleopdesign.diagrams import Control, Diagram, Junction, Moving, four_channel
+from teleopdesign.controllers import controller, from_control
+from teleopdesign.diagrams import (
+    Control,
+    Diagram,
+    Junction,
+    Moving,
+    four_channel,
+    haptic_interface,
+)
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity import claim_over_intervals
 from teleopdesign.passivity.intervals.bernstein import (
@@ -19,8 +26,11 @@ from teleopdesign.passivity.intervals.bernstein import (
     excludes_zero_over,
     is_non_negative_over,
 )
+from teleopdesign.passivity.intervals.box import box_of
 from teleopdesign.passivity.intervals.conditions import Conditions
+from teleopdesign.passivity.intervals.family import family_of
 from teleopdesign.passivity.linear.polynomials import X
+from teleopdesign.passivity.ports import impedance_matrix, ports
 from teleopdesign.realise.lti import S
 
 Y = sp.Symbol("y")
@@ -263,3 +273,20 @@ def test_a_damper_along_another_motion_is_judged_at_every_point_by_itself():
     assert claim.status == "evidence" and claim.margin == pytest.approx(2.0, rel=1e-3)
     claim = claim_over_intervals(diagram, {"C.spring_damper.damping": (-5.0, 5.0)}, points=4)
     assert claim.status == "refuted"
+
+
+def test_what_a_varied_block_cancels_inside_counts_as_a_mode():
+    """1/(s - 1), then (s - 1)/(s + 2), then the gain that is varied: a pole no port shows."""
+    grows = from_control(ct.tf([1.0], [1.0, -1.0]), name="one")
+    hides = from_control(ct.tf([1.0, -1.0], [1.0, 2.0]), name="two")
+    law = grows.then(hides).then(controller("gain", {"gain": 0.1}))
+    diagram = haptic_interface(body(0.3, viscous__damping=2.0), force_feedback=law)
+    box = {"H.gain.gain": (0.1, 0.2)}
+    family = family_of(*box_of(diagram, box))
+    assert sp.rem(family.characteristic(), S - 1, S) == 0
+    assert claim_over_intervals(diagram, box).status == "unknown"
+
+
+def test_a_port_that_nothing_resists_has_the_impedance_zero():
+    diagram = haptic_interface(body(0.0))
+    assert impedance_matrix(diagram, ports(diagram)) == sp.zeros(1)

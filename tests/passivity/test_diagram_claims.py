@@ -27,7 +27,7 @@ from teleopdesign.diagrams import (
     write_diagram,
 )
 from teleopdesign.errors import ModelError
-from teleopdesign.passivity import Search, diagram_claims, hand_port
+from teleopdesign.passivity import Search, diagram_claims, hand_port, passive, two_port
 from teleopdesign.passivity.diagram_claims import linear_claims
 from teleopdesign.passivity.ports import impedance_matrix, ports
 from teleopdesign.realise.lti import S, linear_blocks
@@ -244,3 +244,26 @@ def test_what_grows_inside_is_proved_nothing_though_no_port_shows_it(stages):
     diagram = Diagram("hidden", (body_alone, *controls), (minus,), {"f": "force"}, ())
     (one,) = linear_claims(diagram, ports(diagram))
     assert one.claim.status == "unknown" and "grows by itself at 1 1/s" in str(one.claim.verdict)
+
+
+def test_a_coupling_with_a_delay_in_series_is_derived_with_its_exponential():
+    """The same matrix as by hand: m s + b and P e^(-s T)/s."""
+    late = controller("delay", {"time": 0.01})
+    law = controller("proportional_derivative", {"stiffness": 200, "damping": 10, "bandwidth": 100})
+    slide = td.Body("prismatic", {"inertia": 0.3}).with_effect(
+        td.EFFECTS["viscous"], {"damping": 2}
+    )
+    coupled = teleoperator(slide, slide, coupling=late.then(law))
+    z = impedance_matrix(coupled, ports(coupled))
+    at = 3.0 + 40.0j
+    corner = 2 * np.pi * 100
+    link = (200 + 10 * corner * at / (at + corner)) * np.exp(-at * 0.01) / at
+    expected = np.array([[0.3 * at + 2 + link, -link], [-link, 0.3 * at + 2 + link]])
+    found = np.array(z.subs(S, at).evalf().tolist(), dtype=complex)
+    assert found == pytest.approx(expected, rel=1e-12)
+    assert passive(two_port(z.tolist())).status == "refuted"
+
+
+def test_a_law_with_an_infinite_number_is_refused():
+    with pytest.raises(ModelError, match="numerator_0 is infinite, expected a number"):
+        from_control(ct.tf([float("inf")], [1, 1]))

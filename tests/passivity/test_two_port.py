@@ -1,6 +1,7 @@
 """Two-ports: Raisbeck's and Llewellyn's criteria, exact, over frequency and with exact delay."""
 
 import json
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from teleopdesign.passivity import (
     two_port,
     write_record,
 )
+from teleopdesign.passivity.search.growing_wave import value_at
 from teleopdesign.passivity.two_port.delayed_two_port import obstacles
 from teleopdesign.realise.lti import S
 
@@ -347,3 +349,14 @@ def test_negative_inertia_or_delay_is_one_clear_line():
 def test_what_is_no_two_port_is_one_clear_line(entries, message):
     with pytest.raises(ModelError, match=message):
         two_port(entries)
+
+
+def test_a_late_two_port_is_refuted_by_no_rounding_beside_zero():
+    """What two dead times and 1/s leave at 1e-9 rad/s agrees in tens of digits: 1 N s/m stay."""
+    late = sp.exp(-S / 20)
+    z = [[3 + (1 - late**2) / S, -1 + late], [-1 + late, 3 + (1 - late**2) / S]]
+    for rate in (1e-12, 1e-9, 1e-6):
+        value = value_at(sp.ImmutableMatrix(z), Fraction(rate), Fraction(rate))
+        series = 3 + 0.1 - 0.1**2 / 2 * rate * (1 + 1j)
+        assert value[0, 0] == pytest.approx(series, rel=1e-9)
+    assert passive(two_port(z)).status != "refuted"

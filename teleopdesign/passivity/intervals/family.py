@@ -10,14 +10,14 @@ import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
 from ...blocks import Body
-from ...controllers import Controller, as_written, in_exact_numbers, parameter_symbol
+from ...controllers import Controller, Stage, as_written, in_exact_numbers, parameter_symbol
 from ...derive import symbol_values
 from ...derive.elimination import rows
 from ...diagrams import Control, Diagram
 from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.simulated import without_absent
 from ...realise.tips import with_tips
-from ..linear.hidden_modes import cancelled_poles
+from ..linear.hidden_modes import cancelled_poles, stage_denominator
 from ..ports import impedance_matrix, ports
 from .box import ValueBox
 
@@ -50,8 +50,8 @@ class Family:
     def characteristic(self) -> sp.Expr:
         """Determinant of all equations, times the blocks' denominators: its zeros are the poles.
 
-        Those that no port sees are among them, and those that a zero of the same block cancels, but
-        for blocks whose values are symbols: in general these cancel nothing. In S and the symbols
+        Those that no port sees are among them, and those that a zero of the same block cancels, of
+        blocks whose values are symbols as well. In S and the symbols
         """
         free = set(self.diagram.outside)
         unknown = [s for s in self.diagram.signals if s not in free]
@@ -65,9 +65,22 @@ class Family:
         whole = matrix.domain.to_sympy(matrix.det())
         varied = {n.partition(".")[0] for n in self.symbols}
         for part in self.diagram.controls:
-            if part.dead_time is None and part.name not in varied:
+            if part.name in varied:
+                whole *= self._cancelled_within(part)
+            elif part.dead_time is None:
                 whole *= cancelled_poles(part, self.linear).as_expr()
         return whole
+
+    def _cancelled_within(self, part: Control) -> sp.Expr:
+        """What the denominators of its stages have more than the form of the whole controller."""
+        assert isinstance(part.controller, Controller)
+        symbols = {n.partition(".")[2]: s for n, s in self.symbols.items()
+                   if n.startswith(f"{part.name}.")}  # fmt: skip
+        product = sp.S(1)
+        for stage in part.controller.stages:
+            product *= _stage_denominator(stage, symbols)
+        below = sp.fraction(sp.cancel(self.linear.blocks[part.name]))[1]
+        return sp.cancel(product / below)
 
 
 def family_of(diagram: Diagram, box: ValueBox) -> Family | None:
@@ -123,6 +136,29 @@ def _forms(
     placed = {x: symbols.get(n, as_written(v)) for x, (n, v) in numbers.items()}
     first, second = (in_exact_numbers(sp.sympify(f).subs(placed)) for f in forms)
     return first, second
+
+
+def _stage_denominator(stage: Stage, symbols: Mapping[str, sp.Symbol]) -> sp.Expr:
+    """Of one stage as it was given, with its parameters that are symbols; nothing is cancelled."""
+
+    def placed(name: str, value: float) -> sp.Expr:
+        return symbols.get(f"{stage.name}.{name}", as_written(value))
+
+    if "denominator_0" in stage.values:
+        return sp.Add(
+            *(
+                placed(name, value) * S ** int(name.rpartition("_")[2])
+                for name, value in stage.values.items()
+                if name.startswith("denominator_")
+            )
+        )
+    if "a_0_0" in stage.values:  # of a system in state space no number is a symbol
+        return stage_denominator(stage, "K").as_expr()
+    alone = Controller((stage,))
+    form = sp.Add(*(alone.linear_parts("K", S, sp.S(0)) or (sp.S(0),)))
+    numbers = {parameter_symbol("K", f"{stage.name}.{n}"): placed(n, v)
+               for n, v in stage.values.items()}  # fmt: skip
+    return sp.fraction(sp.together(in_exact_numbers(sp.sympify(form).subs(numbers))))[1]
 
 
 def _apart(diagram: Diagram) -> Diagram:

@@ -85,12 +85,12 @@ def cancelled_poles(part: Control, linear: LinearBlocks) -> sp.Poly:
     forms = (linear.blocks[part.name], linear.along.get(part.name, sp.S(0)))
     whole = sp.Poly(1, S, domain="QQ")
     for stage in part.controller.stages:
-        whole *= _denominator(stage, part.name)
+        whole *= stage_denominator(stage, part.name)
     return whole.quo(_common_denominator(forms))
 
 
-def _denominator(stage: Stage, prefix: str) -> sp.Poly:
-    """Of one stage: det(s I - A), or the denominator as it was given."""
+def stage_denominator(stage: Stage, prefix: str) -> sp.Poly:
+    """Denominator of one stage: det(s I - A), or as it was given."""
     values = stage.values
     if "denominator_0" in values:
         order = max(int(n.rpartition("_")[2]) for n in values if n.startswith("denominator_"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import gcd, lcm
 
@@ -54,7 +54,7 @@ def has_positive_root(polynomial: sp.Poly) -> bool:
 
 def where_negative(polynomial: sp.Poly) -> list[Fraction]:
     """Points x > 0 at which p(x) < 0, at least one in each gap between neighbouring roots."""
-    for bits in (80, 1000):  # roots that agree in 80 bits need more
+    for bits in (20, 80, 1000):  # roots that agree in so many bits need more
         ends = [Fraction(0), *positive_roots(polynomial, bits=bits)]
         points = [(a + b) / 2 for a, b in zip(ends, ends[1:], strict=False)]
         points.append(2 * ends[-1] + 1)
@@ -69,25 +69,41 @@ def positive_roots(polynomial: sp.Poly, *, bits: int = 80) -> list[Fraction]:
     if polynomial.degree() < 1:
         return []
     plain = polynomial.sqf_part()
+    sign, slope = _sign_of(plain), _sign_of(plain.diff())
+
+    def between(low: Fraction, high: Fraction) -> bool:
+        """Whether the one root above `low` lies at or below `high`; simple roots only."""
+        # at the neighbouring root, exactly: the sign just after it is that of the slope
+        start, end = sign(low) or slope(low), sign(high)
+        return end == 0 or start * end < 0
+
     roots = []
     for low, high in ((fraction(a), fraction(b)) for a, b in plain.intervals(inf=0, sqf=True)):
         while low == 0 and high > 0:  # a relative error needs an end that is not 0
             middle = high / 2
-            low, high = (low, middle) if _between(plain, low, middle) else (middle, high)
+            low, high = (low, middle) if between(low, middle) else (middle, high)
         while (high - low) * 2**bits > high:
             middle = (low + high) / 2
-            low, high = (low, middle) if _between(plain, low, middle) else (middle, high)
+            low, high = (low, middle) if between(low, middle) else (middle, high)
         if high > 0:
             roots.append((low + high) / 2)
     return roots
 
 
-def _between(plain: sp.Poly, low: Fraction, high: Fraction) -> bool:
-    """Whether the one root above `low` lies at or below `high`; simple roots only."""
-    start, end = value(plain, low), value(plain, high)
-    if start == 0:  # the neighbouring root, exactly: the sign just after it is that of the slope
-        start = value(plain.diff(), low)
-    return end == 0 or start * end < 0
+def _sign_of(polynomial: sp.Poly) -> Callable[[Fraction], int]:
+    """The sign of a polynomial at a rational point, in integers alone."""
+    falling = [fraction(c) for c in polynomial.all_coeffs()]
+    below = lcm(*(c.denominator for c in falling))
+    whole = [int(c * below) for c in falling]
+
+    def sign(at: Fraction) -> int:
+        total, power = 0, 1
+        for c in whole:
+            total = total * at.numerator + c * power
+            power *= at.denominator
+        return (total > 0) - (total < 0)
+
+    return sign
 
 
 def value(polynomial: sp.Poly, at: Fraction) -> Fraction:

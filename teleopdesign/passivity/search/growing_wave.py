@@ -16,6 +16,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import cast
 
+import mpmath
 import numpy as np
 import sympy as sp
 from mpmath.libmp import NoConvergence
@@ -25,9 +26,11 @@ from ..linear.impedance import Impedance
 from ..linear.polynomials import even_part, fraction, where_negative
 
 LONGEST = 500  # periods of a wave that are sampled; each of them gives out energy
-_DIGITS = 40  # of numerical values: poles and zeros of badly scaled systems lie close together
+_DIGITS = 40  # of numerical values to begin with
 #: share of abs(Z) below which the sum of a replay in double precision loses Re Z: 1e4 roundings
 _WEAKEST = 1e-11
+#: share of abs(Z) by which Re Z in double precision spares the digits of an exact look
+_PLAIN = 1e-6
 
 
 @dataclass(frozen=True)
@@ -94,16 +97,35 @@ class GrowingWave:
 
 
 def value_at(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> np.ndarray:
-    """Z at rate + j frequency, (n, n), to double precision."""
-    if z.has(sp.exp):
-        return np.array(_numerical(z)(complex(float(rate), float(frequency))), dtype=complex)
-    s = sp.Rational(str(rate)) + sp.I * sp.Rational(str(frequency))
-    return np.array([[complex(e.subs(S, s).evalf(_DIGITS)) for e in row] for row in z.tolist()])
+    """Z at rate + j frequency, (n, n), to double precision; NaN where more digits change that."""
+    # poles and zeros of badly scaled systems lie close together, and near s = 0 dead times leave
+    # differences of numbers that agree in tens of digits
+    few = _evaluated(z, rate, frequency, digits=_DIGITS)
+    for digits in (2 * _DIGITS, 4 * _DIGITS, 8 * _DIGITS):
+        more = _evaluated(z, rate, frequency, digits=digits)
+        if np.allclose(few, more, rtol=1e-12, atol=0):
+            return more
+        few = more
+    return np.full(z.shape, np.nan, dtype=complex)
+
+
+def _evaluated(
+    z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction, *, digits: int
+) -> np.ndarray:
+    """Z there in so many digits, then rounded to complex numbers."""
+    with mpmath.workdps(digits):
+        s = mpmath.mpc(*(mpmath.mpf(x.numerator) / x.denominator for x in (rate, frequency)))
+        try:
+            return np.array([[complex(x) for x in row] for row in _numerical(z)(s)])
+        except (ZeroDivisionError, OverflowError):
+            return np.full(z.shape, np.nan, dtype=complex)
 
 
 @lru_cache(maxsize=8)
-def _numerical(z: sp.ImmutableMatrix) -> Callable[[complex], list[list[complex]]]:
-    return cast("Callable[[complex], list[list[complex]]]", sp.lambdify(S, z.tolist(), "numpy"))
+def _numerical(z: sp.ImmutableMatrix) -> Callable[[mpmath.mpc], list[list[mpmath.mpc]]]:
+    return cast(
+        "Callable[[mpmath.mpc], list[list[mpmath.mpc]]]", sp.lambdify(S, z.tolist(), "mpmath")
+    )
 
 
 def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> GrowingWave | None:
@@ -111,6 +133,8 @@ def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> Growi
 
     To double precision, with a dead time to 1e-9 of Z; `growing_wave` checks exactly.
     """
+    if z.has(sp.exp) and _is_plainly_passive(z, complex(float(rate), float(frequency))):
+        return None
     value = value_at(z, rate, frequency)
     if not np.all(np.isfinite(value)):
         return None
@@ -125,6 +149,23 @@ def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> Growi
         s = complex(float(rate), float(frequency))
         v = v * np.exp(1j * (math.pi - np.angle(v @ value @ v / s)) / 2)
     return GrowingWave(z, rate, frequency, tuple(complex(x) for x in v))
+
+
+def _is_plainly_passive(z: sp.ImmutableMatrix, s: complex) -> bool:
+    """Whether Z + Z* is positive there by far more than rounding takes, in double precision."""
+    with np.errstate(all="ignore"):
+        value = np.array(_in_doubles(z)(np.complex128(s)), dtype=complex)
+    if not np.all(np.isfinite(value)):
+        return False
+    lowest = np.linalg.eigvalsh((value + value.conj().T) / 2)[0]
+    return bool(lowest > _PLAIN * np.abs(value).max())
+
+
+@lru_cache(maxsize=8)
+def _in_doubles(z: sp.ImmutableMatrix) -> Callable[[np.complex128], list[list[complex]]]:
+    return cast(
+        "Callable[[np.complex128], list[list[complex]]]", sp.lambdify(S, z.tolist(), "numpy")
+    )
 
 
 def growing_wave(z: Impedance) -> GrowingWave | None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -55,7 +56,7 @@ def passive(system: TwoPort) -> Claim:
     if margin < 0 or hidden or not system.has_delay:
         rates: list[float] = []
         if not system.has_delay:
-            further, rates = _where_it_gives_out(_rational(system))
+            further, rates = _where_it_gives_out(system)
             frequencies += further
         wave = _wave_between(system, frequencies, rates)
         wave = wave or _best(_wave_at(system.z, f) for f in frequencies)
@@ -149,21 +150,35 @@ def _lowest(system: TwoPort, margin: Any) -> tuple[list[float], float]:
     return [lowest[0], *chosen], lowest[1]
 
 
-def _where_it_gives_out(z: sp.ImmutableMatrix) -> tuple[list[float], list[float]]:
+def _where_it_gives_out(system: TwoPort) -> tuple[list[float], list[float]]:
     """Where Z + Z* is not positive: frequencies (Hz) of the axis, and rates (1/s), wherever.
 
     From exact polynomials in w^2 and in s: a residue that is not Hermitian, or not positive, gives
     out energy only next to its pole, below or above every frequency of a grid.
     """
-    axis = [x for p in _minors(z + z.T.subs(S, -S)) for x in where_negative(halves(p)[0])]
-    rates = [x for p in _minors(z + z.T) for x in where_negative(p)]
+    entries = [[system.entry(i, j) for j in (1, 2)] for i in (1, 2)]
+    below = reduce(sp.lcm, [e.q for row in entries for e in row])
+    above = [[e.p * below.quo(e.q) for e in row] for row in entries]
+    mirror = sp.Poly(-S, S, domain="QQ")
+
+    def turned(p: sp.Poly) -> sp.Poly:
+        return p.compose(mirror)
+
+    # abs(below)^2 > 0 on the axis and below^2 > 0 at a rate: numerators have the signs
+    pairs = [(0, 0), (1, 1), (0, 1), (1, 0)]
+    on_axis = [above[i][j] * turned(below) + turned(above[j][i]) * below for i, j in pairs]
+    plain = [above[i][j] + above[j][i] for i, j in pairs]
+    axis = [x for p in _minors(*on_axis) for x in where_negative(halves(p)[0])]
+    first, second, det = _minors(*plain)
+    rates = [x for p in (first * below, second * below, det) for x in where_negative(p)]
     return [float(x) ** 0.5 / (2 * np.pi) for x in axis], [float(x) for x in rates]
 
 
-def _minors(twice: sp.ImmutableMatrix) -> list[sp.Poly]:
-    """Polynomials of the signs of both diagonal entries and of the determinant."""
-    minors = (sp.fraction(sp.together(m)) for m in (twice[0, 0], twice[1, 1], twice.det()))
-    return [sp.Poly(above * below, S, domain="QQ") for above, below in minors]
+def _minors(
+    first: sp.Poly, second: sp.Poly, upper: sp.Poly, lower: sp.Poly
+) -> tuple[sp.Poly, sp.Poly, sp.Poly]:
+    """Both diagonal entries and the determinant."""
+    return first, second, first * second - upper * lower
 
 
 def _best(waves: Iterable[GrowingWave | None]) -> GrowingWave | None:

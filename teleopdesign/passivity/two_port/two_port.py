@@ -13,8 +13,9 @@ stand in `checker/absolute_stability.py`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -54,8 +55,14 @@ class TwoPort:
         for i in range(2):
             for j in range(2):
                 with np.errstate(all="ignore"):  # a pole is infinite, a late term far out is 0
-                    out[:, i, j] = sp.lambdify(S, self.z[i, j], "numpy")(s)
+                    out[:, i, j] = _function(self.z[i, j])(s)
         return out
+
+
+@lru_cache(maxsize=64)  # one sweep asks a dozen times for the same four
+def _function(entry: sp.Expr) -> Callable[[np.ndarray], np.ndarray]:
+    made: Callable[[np.ndarray], np.ndarray] = sp.lambdify(S, entry, "numpy")
+    return made
 
 
 def two_port(entries: Sequence[Sequence[Any]]) -> TwoPort:
