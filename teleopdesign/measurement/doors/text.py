@@ -9,9 +9,9 @@ from __future__ import annotations
 import csv
 import gzip
 import io
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import IO, cast
 
@@ -19,16 +19,15 @@ import numpy as np
 
 from ...errors import ExperimentError, quoted
 from ...quantity import is_unit
+from ._cells import CellColumns, is_number, seconds_of
 from ._log import MOST_BYTES, Array, Log, refuse_size
 
 _COMMENTS = ("#", "%", "//")
 _SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
 #: bytes from which the dialect is read
 _LOOKED_AT = 65_536
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?$|[-+]?(nan|inf|infinity)$", re.I)
-_DAY = re.compile(r"(\d{1,2})\.(\d{1,2})\.(\d{4})[ T](.*)$")
-_ZONE = re.compile(r"(Z|[-+]\d{2}:?\d{2})$")
-_TIME_OF_DAY = re.compile(r"(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)$")
+#: rows that are read at once: 20 MB of text
+_ROWS = 200_000
 
 
 @dataclass(frozen=True)
@@ -171,12 +170,8 @@ def _cells(line: str, separator: str) -> list[str]:
     return cells
 
 
-def _is_number(cell: str, comma: bool) -> bool:
-    return bool(_NUMBER.match(cell.replace(",", ".") if comma else cell))
-
-
 def _is_value(cell: str, comma: bool) -> bool:
-    return _is_number(cell, comma) or seconds_of(cell) is not None
+    return is_number(cell, comma) or seconds_of(cell) is not None
 
 
 def _is_data(cells: Sequence[str], comma: bool) -> bool:
@@ -213,40 +208,6 @@ def _is_unit_cell(cell: str) -> bool:
     return not bare or bare in ("-", "counts", "ticks") or is_unit(bare)
 
 
-def seconds_of(cell: str) -> float | None:
-    """A date or a time of day as seconds; None: it is neither."""
-    if ":" not in cell and "T" not in cell and cell.count("-") < 2:
-        return None
-    stamp = stamps_of([cell])
-    return None if stamp is None else float(stamp[0])
-
-
-def stamps_of(cells: Sequence[str]) -> Array | None:
-    """Dates or times of day as seconds, from midnight or the first day; None: some are neither."""
-    day = _TIME_OF_DAY.match(cells[0])
-    try:
-        if day is not None:
-            parts = [c.replace(",", ".").split(":") for c in cells]
-            return np.array([3600.0 * int(h) + 60.0 * int(m) + float(s) for h, m, s in parts])
-        written = [_ZONE.sub("", _turned(c)).replace(",", ".") for c in cells]
-        stamps = np.array(written, dtype="datetime64[ns]")
-    except (ValueError, IndexError):
-        return None
-    if np.isnat(stamps).any():
-        return None
-    seconds: Array = (stamps - stamps[0].astype("datetime64[D]")).astype(np.int64) * 1e-9
-    return seconds
-
-
-def _turned(cell: str) -> str:
-    """A date that begins with the day, as one that begins with the year."""
-    match = _DAY.match(cell)
-    if match is None:
-        return cell.replace(" ", "T", 1)
-    day, month, year, rest = match.groups()
-    return f"{year}-{int(month):02d}-{int(day):02d}T{rest}"
-
-
 def _opened_bytes(path: Path) -> IO[bytes]:
     if path.name.lower().endswith(".gz"):
         return cast(IO[bytes], gzip.open(path, "rb"))
@@ -257,21 +218,32 @@ def _read(path: Path, file: str, dialect: Dialect, wanted: Mapping[str, str]) ->
     places = [_place(dialect.header, name, file) for name in wanted]
     try:
         with _opened_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
-            table = np.loadtxt(
-                _lines(stream, dialect, file),
-                delimiter=None if dialect.separator == " " else dialect.separator,
-                comments=None,
-                quotechar='"',
-                usecols=places,
-                ndmin=2,
-            )
-        return {n: np.ascontiguousarray(table[:, k]) for k, n in enumerate(wanted)}
+            parts = [*_parts(_lines(stream, dialect, file), dialect.separator, places)]
+        columns: dict[str, Array] = {}
+        for name in wanted:  # a column at a time: its parts go when it is whole
+            columns[name] = np.concatenate([part.pop(0) for part in parts])
+        return columns
     except UnicodeDecodeError as problem:
         raise ExperimentError(
             f"{file}: not {dialect.encoding.upper()} text (byte {problem.start})"
         ) from None
     except ValueError:
         return _read_cell_by_cell(path, file, dialect, wanted, places)
+
+
+def _parts(lines: Iterator[str], separator: str, places: Sequence[int]) -> Iterator[list[Array]]:
+    """Columns of some rows at a time: a whole table beside its columns takes twice the memory."""
+    yield [np.empty(0) for _ in places]  # of a header without rows
+    while rows := list(islice(lines, _ROWS)):
+        table = np.loadtxt(
+            rows,
+            delimiter=None if separator == " " else separator,
+            comments=None,
+            quotechar='"',
+            usecols=places,
+            ndmin=2,
+        )
+        yield [np.ascontiguousarray(table[:, k]) for k in range(len(places))]
 
 
 def _place(header: Sequence[str], name: str, file: str) -> int:
@@ -329,31 +301,13 @@ def _read_cell_by_cell(
     path: Path, file: str, dialect: Dialect, wanted: Mapping[str, str], places: Sequence[int]
 ) -> dict[str, Array]:
     """The slow way: empty cells are NaN, dates become seconds, other texts are named."""
-    cells: list[list[str]] = [[] for _ in wanted]
+    where = [
+        f"{file}: {channel + ': ' if channel else ''}column {quoted(name)}"
+        for name, channel in wanted.items()
+    ]
+    columns = CellColumns(where)
     with _opened_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
-        for line in _lines(stream, dialect, file):
-            row = _cells(line, dialect.separator)
-            for into, place in zip(cells, places, strict=True):
-                into.append(row[place] if place < len(row) else "")
-    return {
-        name: _numbers(column, f"{file}: {channel + ': ' if channel else ''}column {quoted(name)}")
-        for (name, channel), column in zip(wanted.items(), cells, strict=True)
-    }
-
-
-def _numbers(cells: Sequence[str], where: str) -> Array:
-    filled = next((c for c in cells if c), "")
-    if filled and not _is_number(filled, comma=False):
-        stamps = stamps_of(cells)
-        if stamps is not None:
-            return stamps
-    out = np.full(len(cells), np.nan)
-    for k, cell in enumerate(cells):
-        if not cell:
-            continue
-        if not _NUMBER.match(cell):
-            raise ExperimentError(f"{where}, row {k + 1}: found {quoted(cell)}, expected a number")
-        out[k] = float(
-            cell.replace("d", "e").replace("D", "e") if "n" not in cell.lower() else cell
-        )
-    return out
+        lines = _lines(stream, dialect, file)
+        while rows := [_cells(line, dialect.separator) for line in islice(lines, _ROWS)]:
+            columns.add([[r[k] if k < len(r) else "" for r in rows] for k in places])
+    return dict(zip(wanted, columns.values(), strict=True))
