@@ -33,8 +33,9 @@ def served(tmp_path, request):
         line = process.stdout.readline()
         address = re.search(r"http\S+", line)
         assert address, line
+        assert process.stdout.readline() == "stop with Ctrl-C\n"
         yield address.group(), tmp_path
     finally:
         process.send_signal(signal.SIGINT)
-        process.wait(30)
-        process.stdout.close()
+        said, _ = process.communicate(timeout=300)
+    assert (said, process.returncode) == ("teleopdesign: stopped\n", 130)
