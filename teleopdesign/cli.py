@@ -13,6 +13,7 @@ import signal
 import sys
 import threading
 from contextlib import suppress
+from importlib.machinery import ExtensionFileLoader
 from typing import TYPE_CHECKING, Any
 
 from .commands import STOPPED
@@ -20,6 +21,7 @@ from .commands import STOPPED
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Sequence
+    from types import FrameType
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -61,18 +63,29 @@ def _hear_ctrl_c(request: threading.Event) -> bool:
     """Let Ctrl-C raise KeyboardInterrupt, and none be lost; whether this process hears it at all.
 
     Python only prints what is raised where nothing can catch it: in a `__del__`, in a call from C.
+    Code in C may drop it, or abort, while its module is imported: Ctrl-C waits for that import.
     request: set by Ctrl-C: a library may turn its exception into one of its own
     """
+    loader = ExtensionFileLoader
+    in_c = {loader.create_module.__code__, loader.exec_module.__code__}
 
-    def interrupt(*_: Any) -> None:
+    def interrupt(_: int, frame: FrameType | None) -> None:
+        while frame is not None and frame.f_code not in in_c:
+            frame = frame.f_back
+        if frame is not None:
+            interrupt_later(0.01)
+            return
         request.set()
         raise KeyboardInterrupt
 
+    def interrupt_later(seconds: float) -> None:
+        again = threading.Timer(seconds, _interrupt_main)
+        again.daemon = True
+        again.start()
+
     def lost(unraisable: Any) -> None:
         if issubclass(unraisable.exc_type, KeyboardInterrupt):
-            again = threading.Timer(0.001, _interrupt_main)  # s: once this call is over
-            again.daemon = True
-            again.start()
+            interrupt_later(0.001)  # s: once this call is over
         else:
             sys.__unraisablehook__(unraisable)
 

@@ -37,7 +37,7 @@ def stopped(name, sources, folder, *, after, number):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "number"),
-    [("passivity", signal.SIGTERM), ("study", signal.SIGKILL), ("study", signal.SIGINT)],
+    [("passivity", signal.SIGTERM), ("study", signal.SIGKILL)],
 )
 def test_a_stopped_command_leaves_whole_files_and_goes_on(name, number, sources, tmp_path):
     wrong, _ = stopped(name, sources, tmp_path, after=2.0, number=number)
