@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 
 import numpy as np
 import pytest
@@ -215,6 +216,8 @@ def test_ctrl_c_ends_in_one_line_and_the_same_command_goes_on(folder):
         "stderr": subprocess.PIPE,
         "text": True,
         "start_new_session": True,
+        # tests that run in the background of a shell are deaf to Ctrl-C: the study is not
+        "preexec_fn": partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
     }
     with subprocess.Popen([*command, "--workers", "2"], **given) as process:
         end = time.monotonic() + 300

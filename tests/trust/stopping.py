@@ -31,7 +31,8 @@ FEW = ["--only", "stribeck", "presliding"]
 #: raises the signal itself at its n-th look at a file or module (0: never; -n: the n-th after its
 #: command is done); writes a byte, at the first of them, and how many the command took, into a pipe
 CHILD = """
-import os, sys
+import os, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # the tests may run where it is ignored
 at, pipe = int(sys.argv[1]), int(sys.argv[2])
 del sys.argv[1:3]
 count = 0

@@ -24,6 +24,7 @@ BETWEEN = float(os.environ.get("TELEOPDESIGN_MOMENTS", "0"))
 #: every so often a copy of the process is interrupted there; what becomes of it goes into a folder
 SWEEP = """
 import os, signal, sys, threading
+signal.signal(signal.SIGINT, signal.default_int_handler)  # the tests may run where it is ignored
 folder, between = sys.argv[1], float(sys.argv[2])
 del sys.argv[1:3]
 all_copies = open(os.path.join(folder, "all"), "w")
@@ -111,6 +112,7 @@ def ctrl_c_heard(code):
         "made = types.ModuleType('teleopdesign.commands._command_line')\n"
         "sys.modules['teleopdesign.commands._command_line'] = made\n"
         "import os, signal, time\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "def ctrl_c(): os.kill(os.getpid(), signal.SIGINT)\n"
         "def run(arguments, is_stopped):\n    "
     )
