@@ -1,99 +1,130 @@
-"""The command `teleopdesign`; each of its commands is a file of `commands`."""
+"""The command `teleopdesign`; each of its commands is a file of `commands`.
+
+Ctrl-C at any moment ends in one line and status 130. What takes time to import is imported within
+`main`, where Ctrl-C is heard.
+"""
 
 from __future__ import annotations
 
-import argparse
+import _thread
+import atexit
 import os
-import pkgutil
+import signal
 import sys
-import traceback
-from collections.abc import Sequence
+import threading
 from contextlib import suppress
-from importlib import import_module
+from importlib.machinery import ExtensionFileLoader
+from typing import TYPE_CHECKING, Any
 
-from . import __version__, commands
-from .commands._failures import TRACEBACK, failure
-from .commands._paths import check_paths
-from .commands._terminal import printable_streams
+from .commands import STOPPED
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Sequence
+    from types import FrameType
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit status.
 
+    arguments: None: those of the process, of which nothing is left to do afterwards: from then on
+        Ctrl-C ends it at once, with this status
     0: done; 2: bad input, or a file that cannot be read or written (one line says which); 70: a
     mistake of the package (one line says where); 130: stopped
     """
-    with printable_streams():
-        return _run(arguments)
-
-
-def _run(arguments: Sequence[str] | None) -> int:
-    options = None
+    request = threading.Event()
+    is_heard = arguments is None and _hear_ctrl_c(request)
+    status = 1  # of Python, where something is raised that is not named here
     try:
-        try:
-            options = _parser().parse_args(arguments)
-        finally:  # also where help was shown, or a wrong argument refused
-            _flush()
-        check_paths(options)
-        status: int = options.run(options)
-        _flush()
-        return status
-    except BrokenPipeError:
-        _close_output()  # who reads has enough, as `head` does
-        return 0
+        from .commands._command_line import run
+
+        status = run(arguments, request.is_set)
     except KeyboardInterrupt:
-        print("teleopdesign: stopped", file=sys.stderr)
-        return 130
-    except BaseException as error:  # a user's file may raise anything, SystemExit included
-        if options is None and isinstance(error, SystemExit):
-            raise
-        if getattr(options, "traceback", False) or os.environ.get(TRACEBACK):
-            traceback.print_exc()
-        line, status = failure(error, options)
-        with suppress(OSError):
-            print(f"teleopdesign: {line}", file=sys.stderr)
-        try:
-            _flush()
-        except OSError:
-            _close_output()
-        return status
-
-
-def _flush() -> None:
-    if sys.stdout is not None:  # None: it was closed before Python began
-        sys.stdout.flush()
-
-
-def _close_output() -> None:
-    """What is left to write goes nowhere: Python would try it once more, and fail, at its end."""
-    with suppress(OSError, ValueError, AttributeError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        status = STOPPED
+        if is_heard:
+            _end_at_once(status)
+        _say_stopped()
+    except SystemExit as end:  # help was shown, or a wrong argument refused
+        status = end.code if isinstance(end.code, int) else 0
+        raise
+    finally:
+        if is_heard:
+            _end_at_once(status)
+    return status
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="teleopdesign",
-        description="Friction in haptic interfaces and teleoperators: find what a model lacks.",
-    )
-    parser.add_argument("--version", action="version", version=f"teleopdesign {__version__}")
-    parser.add_argument(
-        "--traceback",
-        action="store_true",
-        help=f"print Python's traceback of an error too (as the environment's {TRACEBACK}=1 does)",
-    )
-    subparsers = parser.add_subparsers(required=True, metavar="COMMAND")
-    for module in pkgutil.iter_modules(commands.__path__):
-        if module.name.startswith("_"):
-            continue
-        command = import_module(f"{commands.__name__}.{module.name}")
-        subparser = subparsers.add_parser(module.name.replace("_", "-"), help=command.__doc__)
-        command.add(subparser)
-        if examples := getattr(command, "EXAMPLES", ""):
-            subparser.epilog = f"examples:\n{examples.rstrip().lstrip(chr(10))}"
-            subparser.formatter_class = argparse.RawDescriptionHelpFormatter
-        subparser.description = command.__doc__
-        subparser.set_defaults(run=command.run, parser=parser)
-    return parser
+    from .commands._command_line import parser
+
+    return parser()
+
+
+def _hear_ctrl_c(request: threading.Event) -> bool:
+    """Let Ctrl-C raise KeyboardInterrupt, and none be lost; whether this process hears it at all.
+
+    Python only prints what is raised where nothing can catch it: in a `__del__`, in a call from C.
+    Code in C may drop it, or abort, while its module is imported: Ctrl-C waits for that import.
+    request: set by Ctrl-C: a library may turn its exception into one of its own
+    """
+    loader = ExtensionFileLoader
+    in_c = {loader.create_module.__code__, loader.exec_module.__code__}
+
+    def interrupt(_: int, frame: FrameType | None) -> None:
+        while frame is not None and frame.f_code not in in_c:
+            frame = frame.f_back
+        if frame is not None:
+            interrupt_later(0.01)
+            return
+        request.set()
+        raise KeyboardInterrupt
+
+    def interrupt_later(seconds: float) -> None:
+        again = threading.Timer(seconds, _interrupt_main)
+        again.daemon = True
+        again.start()
+
+    def lost(unraisable: Any) -> None:
+        if issubclass(unraisable.exc_type, KeyboardInterrupt):
+            interrupt_later(0.001)  # s: once this call is over
+        else:
+            sys.__unraisablehook__(unraisable)
+
+    if threading.current_thread() is not threading.main_thread():
+        return False
+    if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:  # who asked decides
+        return False
+    signal.signal(signal.SIGINT, interrupt)
+    sys.unraisablehook = lost
+    # Python takes its handlers away before it ends; registered first, this is done last
+    atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)
+    return True
+
+
+def _interrupt_main() -> None:
+    """As Ctrl-C does: it ends a wait of the main thread too."""
+    main = threading.main_thread().ident
+    if hasattr(signal, "pthread_kill") and main is not None:
+        signal.pthread_kill(main, signal.SIGINT)
+    else:  # Windows
+        _thread.interrupt_main()
+
+
+def _end_at_once(status: int) -> None:
+    """Let Ctrl-C end the process without a word from here on: all is done or told."""
+    leave = os._exit  # names of modules may be gone at the end
+    signal.signal(signal.SIGINT, lambda *_: leave(status))
+
+
+def _say_stopped() -> None:
+    with suppress(OSError, ValueError, AttributeError):  # its reader is stopped too, or closed
+        print("teleopdesign: stopped", file=sys.stderr)
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except (OSError, ValueError):
+        from .commands._command_line import close_output
+
+        close_output()
 
 
 if __name__ == "__main__":

@@ -13,12 +13,15 @@ import os
 from collections.abc import Iterator, Mapping, Set
 from contextlib import contextmanager, suppress
 from pathlib import Path, PurePath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
 import numpy as np
 
 from .errors import ExperimentError
+
+if TYPE_CHECKING:
+    import xarray
 
 _TRIAL = 4096  # bytes that a trial writes: a block, which a full disk has not
 
@@ -71,6 +74,12 @@ def write_text(path: str | Path, text: str) -> None:
     with replacing(path) as part:
         # backslashes: a file name that is no UTF-8 comes as halves of pairs, which UTF-8 lacks
         part.write_bytes(text.encode("utf-8", "backslashreplace"))
+
+
+def write_netcdf(path: str | Path, data: xarray.Dataset) -> None:
+    """Write a data set as netCDF; raises ExperimentError where the file cannot be written."""
+    with replacing(path) as part:
+        data.to_netcdf(part)
 
 
 @contextmanager

@@ -13,14 +13,16 @@ from pathlib import Path
 import pytest
 from devices import CANCELLATION, FEEDBACK, LOOP, LUGRE, body
 from few_effects import FEW
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 from teleopdesign.diagrams import haptic_interface
 
 sys.path.insert(0, str(Path(__file__).parent / "hidden"))
 
-settings.register_profile("ci", derandomize=True, deadline=None, max_examples=50)
-settings.register_profile("here", deadline=None, max_examples=50)
+#: both would measure the load of the machine: a time for each example, and for drawing the first
+TIMELESS = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
+settings.register_profile("ci", derandomize=True, max_examples=50, **TIMELESS)
+settings.register_profile("here", max_examples=50, **TIMELESS)
 settings.load_profile("ci" if os.environ.get("CI") else "here")
 
 #: folder of tests -> what it shares with other folders and costs seconds: they stay together

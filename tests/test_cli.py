@@ -29,7 +29,7 @@ def run(*arguments):
         [sys.executable, "-m", "teleopdesign.cli", *map(str, arguments)],
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=300,
     )
 
 
@@ -63,7 +63,7 @@ def test_help_answers_without_loading_anything_heavy(arguments):
         "heavy = [m for m in ('numba', 'control', 'matplotlib', 'scipy') if m in sys.modules]\n"
         "sys.exit(f'loaded {heavy}' if heavy else 0)"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     assert "teleopdesign" in done.stdout
 

@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 from ..errors import ExperimentError
+from ..plain_data import replacing
 
 #: endings of files that may be dropped on the page
 LOGS = (".csv", ".txt", ".tsv", ".gz", ".parquet", ".xlsx", ".mat", ".npz", ".h5", ".hdf5", ".bag")
@@ -70,5 +71,6 @@ def keep_dropped(folder: Path, name: str, content: bytes) -> str:
     while path.exists():
         number += 1
         path = target / f"{Path(plain).stem}-{number}{Path(plain).suffix}"
-    path.write_bytes(content)
+    with replacing(path) as part:
+        part.write_bytes(content)
     return str(path.relative_to(folder))

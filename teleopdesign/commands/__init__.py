@@ -4,3 +4,6 @@ Each has add(parser), which gives the parser its arguments, and run(options), wh
 and returns the exit status. Its docstring's first line is the help. What takes time to import is
 imported in run, so that every other command stays instant.
 """
+
+#: exit status of what Ctrl-C stopped
+STOPPED = 130

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError
 from ..plain_data import harmless_cell, write_text
+from . import STOPPED
 from ._diagnosis import known_of, tried_effects
 from ._failures import BAD_INPUT
 from ._options import make_folder
@@ -56,7 +57,7 @@ def diagnose_all(options: argparse.Namespace) -> int:
             "from there",
             file=sys.stderr,
         )
-        return 130
+        return STOPPED
     reporter.clear()
     print("\n".join(table_lines(rows)))
     write_text(output / TABLE, table_csv(rows))

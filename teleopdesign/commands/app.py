@@ -5,9 +5,12 @@ from __future__ import annotations
 import argparse
 import os
 import secrets
+import sys
 from pathlib import Path
+from typing import NoReturn
 
 from ..errors import ExperimentError
+from . import STOPPED
 from ._diagnosis import add_tried, tried_effects
 
 #: the machine itself: the page runs code, nobody else may reach it
@@ -37,7 +40,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def run(options: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> NoReturn:
     """Serve the page until Ctrl-C."""
     folder = options.folder
     if not folder.is_dir():
@@ -57,5 +60,8 @@ def run(options: argparse.Namespace) -> int:
     os.environ[FOLDER] = str(folder.resolve())
     os.environ[EFFECTS] = ",".join(among or ())
     token = secrets.token_urlsafe(24)
-    server.serve(LOOPBACK, options.port, token, open_browser=not options.no_browser)
-    return 0
+    try:
+        server.serve(LOOPBACK, options.port, token, open_browser=not options.no_browser)
+    except KeyboardInterrupt:
+        print("teleopdesign: stopped", file=sys.stderr, flush=True)
+        os._exit(STOPPED)  # no wait for kernels of open pages: what they write is written whole

@@ -12,8 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import ExperimentError, did_you_mean
 from ..plain_data import replacing, write_json
-from ._arms import add_body, arm_diagnosis_of
-from ._diagnosis import add_experiment, diagnosis_of, experiment_and_answer, print_diagnosis
+from ._arms import add_body
+from ._diagnosis import (
+    add_experiment,
+    arm_diagnosis_of,
+    diagnosis_of,
+    experiment_and_answer,
+    print_diagnosis,
+)
 from ._options import check_output, say
 
 if TYPE_CHECKING:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ExperimentError, did_you_mean
+from . import STOPPED
 from ._options import add_effect_files, check_output, count_argument, say
 from ._progress import PointReporter
 
@@ -73,7 +74,7 @@ def run(options: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         say("")
         print(f"teleopdesign: stopped{_kept(options.out, reporter)}", file=sys.stderr)
-        return 130
+        return STOPPED
     say("")
     print(result)
     _print_failures(result)

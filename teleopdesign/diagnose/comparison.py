@@ -13,6 +13,7 @@ from ..errors import ModelError
 from ..measurement.experiment import Experiment
 from ..model import Model
 from ..notebook import html_table
+from ..plain_data import write_netcdf
 from ..quantity import unit_of
 from ..realise.along_motion import residual_along
 from .by_simulation import RecordedLoop, SimulationComparison, compare_by_simulation
@@ -51,7 +52,7 @@ class Comparison(ByValue):
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the data with its units."""
-        self.data.to_netcdf(path)
+        write_netcdf(path, self.data)
 
     def _repr_html_(self) -> str:
         rows = [("fit error", self.fit_error), ("check error", self.check_error)]

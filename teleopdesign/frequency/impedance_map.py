@@ -11,7 +11,7 @@ import numpy as np
 
 from ..by_value import ByValue
 from ..errors import ModelError
-from ..plain_data import write_json
+from ..plain_data import write_json, write_netcdf
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -103,7 +103,7 @@ class ImpedanceMap(ByValue):
         """Write everything with units to a netCDF file, the impedance as two real parts."""
         z = self.data["impedance"]
         parts = {f"impedance_{n}": p.assign_attrs(z.attrs) for n, p in _parts(z).items()}
-        self.data.drop_vars("impedance").assign(parts).to_netcdf(path)
+        write_netcdf(path, self.data.drop_vars("impedance").assign(parts))
 
     def to_json(self, path: str | Path) -> None:
         """Write size, phase, distortion and settling of every point to a JSON file, with units."""

@@ -13,6 +13,7 @@ from ..by_value import ByValue
 from ..derive import with_values
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
+from ..plain_data import write_netcdf
 from ..realise.lti import numerical
 from ..realise.tips import linear_tips
 from .cases import cases_of
@@ -84,7 +85,7 @@ class FrequencyResponse(ByValue):
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write magnitude and phase with their units to a netCDF file."""
-        self.data.to_netcdf(path)
+        write_netcdf(path, self.data)
 
     def __repr__(self) -> str:
         f = self.data["frequency"].values

@@ -70,10 +70,14 @@ def explain_forces(pairs: Sequence[tuple[Array, Array]], sample_time: float) -> 
         inner = slice(trim, -trim)
         rows.append(np.stack([a, direction, v, np.ones(len(v))])[:, inner])
         targets.append(s.multiply(force, s.lowpass(band))[inner])
+    nothing = FirstGuess(0.0, 0.0, 0.0, 0.0, (np.inf, np.inf, np.inf))
     if not rows:
-        return FirstGuess(0.0, 0.0, 0.0, 0.0, (np.inf, np.inf, np.inf))
+        return nothing
     columns, target = np.concatenate(rows, axis=1), np.concatenate(targets)
-    scale = np.sqrt(np.mean(columns**2, axis=1))
+    with np.errstate(over="ignore", invalid="ignore"):
+        scale = np.sqrt(np.mean(columns**2, axis=1))
+        if not np.isfinite([*scale, np.mean(target**2)]).all():  # values beyond 1e150
+            return nothing
     scale[scale == 0] = 1.0
     normal = columns / scale[:, None]
     solution, *_ = np.linalg.lstsq(normal.T, target, rcond=1e-8)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import ExperimentError
+from ..plain_data import replacing, write_text
 from .channel import channels_from, sample_rate_from
 from .description import bodies_from
 from .first_guess import FirstGuess, guess_from
@@ -50,8 +51,13 @@ def make_folder(
         folder.mkdir(parents=True, exist_ok=True)
         for log in logs:
             target = folder / log.name
-            if log.resolve() != target.resolve():
-                (shutil.copytree if log.is_dir() else shutil.copyfile)(log, target)
+            if log.resolve() == target.resolve():
+                continue
+            if log.is_dir():
+                shutil.copytree(log, target)
+                continue
+            with replacing(target) as part:
+                shutil.copyfile(log, part)
     except OSError as problem:
         raise ExperimentError(f"{folder.name}: cannot be written: {problem.strerror}") from None
     records = _records(survey, names, spans)
@@ -63,7 +69,7 @@ def make_folder(
     text = experiment_text(
         survey, records, title=title, inertia=inertia, first=first, effects=effects
     )
-    (folder / _FILE).write_text(text, encoding="utf-8")
+    write_text(folder / _FILE, text)
     return folder
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import ExperimentError
+from ..plain_data import replacing, write_text
 from ..quantity import unit_of
 from .channel import BODY_QUANTITIES
 from .description import BodyDescription, ModelValue
@@ -43,9 +44,11 @@ def write_experiment(experiment: Experiment, folder: str | Path) -> Path:
             text = io.StringIO()
             text.write(",".join(columns) + "\n")
             np.savetxt(text, np.column_stack(list(columns.values())), fmt="%.17g", delimiter=",")
-            (folder / name).write_bytes(gzip.compress(text.getvalue().encode(), 6, mtime=0))
+            packed = gzip.compress(text.getvalue().encode(), 6, mtime=0)
+            with replacing(folder / name) as part:
+                part.write_bytes(packed)
         toml = experiment_text(experiment, names)
-        (folder / "experiment.toml").write_text(toml, encoding="utf-8")
+        write_text(folder / "experiment.toml", toml)
     except OSError as problem:
         raise ExperimentError(f"{folder.name}: cannot be written: {problem.strerror}") from None
     return folder

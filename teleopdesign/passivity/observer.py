@@ -21,6 +21,7 @@ from ..blocks import NINETY_FIVE
 from ..by_value import ByValue
 from ..errors import ExperimentError, ModelError
 from ..measurement import Experiment, Record
+from ..plain_data import write_netcdf
 from ..simulate import Simulation
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ class PortEnergy(ByValue):
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write energy, error and power with their units."""
-        self.data.to_netcdf(path)
+        write_netcdf(path, self.data)
 
     def __repr__(self) -> str:
         final = float(self.data["energy"][-1])

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..by_value import ByValue
 from ..errors import ModelError
-from ..plain_data import write_json
+from ..plain_data import write_json, write_netcdf
 from .simulation import Simulation
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ class ForceVelocity(ByValue):
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the curves with their units to a netCDF file."""
-        self.data.to_netcdf(path)
+        write_netcdf(path, self.data)
 
     def to_json(self, path: str | Path) -> None:
         """Write the figures of each case to a JSON file."""

@@ -14,6 +14,7 @@ from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
 from ..notebook import html_table
+from ..plain_data import write_netcdf
 from .sampling import SAMPLED, Sampling
 from .setup import Input, Setup, prepare
 from .trajectory import Trajectory
@@ -66,7 +67,7 @@ class Simulation(ByValue):
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the signals with their units to a netCDF file."""
-        self.data.to_netcdf(path)
+        write_netcdf(path, self.data)
 
     def _repr_html_(self) -> str:
         t = self.data["time"].values

@@ -36,12 +36,12 @@ def served(tmp_path, request):
         line = process.stdout.readline()
         address = re.search(r"http\S+", line)
         assert address, line
+        assert process.stdout.readline() == "stop with Ctrl-C\n"
         yield address.group(), tmp_path
     finally:
         process.send_signal(signal.SIGINT)
         try:
-            process.wait(30)
+            said, _ = process.communicate(timeout=300)
         finally:
             process.kill()  # no server stays behind
-            process.wait()
-            process.stdout.close()
+    assert (said, process.returncode) == ("teleopdesign: stopped\n", 130)

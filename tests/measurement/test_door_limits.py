@@ -2,6 +2,7 @@
 
 import gzip
 import pickle
+import tracemalloc
 
 import h5py
 import numpy as np
@@ -11,7 +12,9 @@ from hypothesis import strategies as st
 from scipy.io import savemat
 
 from teleopdesign.errors import ExperimentError
-from teleopdesign.measurement.doors._stamps import stamps_of
+from teleopdesign.measurement.doors import text
+from teleopdesign.measurement.doors._cells import stamps_of
+from teleopdesign.measurement.doors.text import open_text
 from teleopdesign.measurement.tables import open_log, read_columns
 
 
@@ -114,3 +117,51 @@ def test_a_packed_table_that_ends_early_is_one_line(tmp_path):
     packed = gzip.compress(("t,x\n" + "0.1,2\n" * 50_000).encode())
     path.write_bytes(packed[: len(packed) // 2])
     assert "cannot be read" in refused(path, "t", "x")
+
+
+TABLES = {
+    "numbers": "t,u,x\n" + "".join(f"{k},{k % 7},{-k}\n" for k in range(40)),
+    "empty cells": "t,u,x\n" + "".join(f"{k},{k % 7 or ''},{-k}\n" for k in range(40)),
+    "dates": "t,u,x\n" + "".join(f"2020-01-01 00:00:{k:02d},{k},\n" for k in range(40)),
+}
+
+
+def columns_of(path):
+    log = open_text(path, path.name)
+    return log.read(dict.fromkeys(log.names, ""))
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_a_table_that_is_read_a_few_rows_at_a_time_is_the_same(table, tmp_path, monkeypatch):
+    path = tmp_path / "r.csv"
+    path.write_text(TABLES[table])
+    whole = columns_of(path)
+    monkeypatch.setattr(text, "_ROWS", 7)
+    pieces = columns_of(path)
+    assert list(whole) == list(pieces)
+    for name, values in whole.items():
+        np.testing.assert_array_equal(pieces[name], values)
+        assert len(values) == 40
+
+
+def test_a_cell_that_is_no_number_is_named_by_its_row_in_the_whole_table(tmp_path, monkeypatch):
+    path = tmp_path / "r.csv"
+    path.write_text(TABLES["empty cells"].replace("\n30,2,-30", "\n30,two,-30"))
+    monkeypatch.setattr(text, "_ROWS", 7)
+    with pytest.raises(ExperimentError, match='column "u", row 31: found "two"'):
+        columns_of(path)
+
+
+def test_cells_one_by_one_take_no_ten_times_the_memory_of_their_numbers(tmp_path, monkeypatch):
+    path = tmp_path / "r.csv"
+    rows, width = 20_000, 3
+    path.write_text("t,u,x\n1,,2\n" + "".join(f"{k}.125,{k}.25,{k}.5\n" for k in range(rows)))
+    monkeypatch.setattr(text, "_ROWS", 500)
+    tracemalloc.start()
+    try:
+        columns_of(path)
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    # 8 bytes a number, twice while a column is put together, and half a megabyte beside
+    assert most < 2 * 8 * rows * width + 5e5

@@ -2,6 +2,7 @@ import re
 
 import numpy as np
 import pytest
+from clock import takes_less_than
 from measurement.rod_example import rod_columns, rows
 
 from teleopdesign.errors import ExperimentError
@@ -170,7 +171,6 @@ def test_a_dataset_in_a_group_is_named_by_its_path(rod, edit):
 
 @pytest.mark.slow
 def test_an_hour_at_1_khz_is_read_in_well_under_a_minute(rod):
-    import time
 
     block = [
         f"%s,{u:.5f},{x:.7f},{f:.4f}" for u, x, f in np.random.default_rng(1).normal(size=(1000, 3))
@@ -180,7 +180,6 @@ def test_an_hour_at_1_khz_is_read_in_well_under_a_minute(rod):
         for second in range(3600):
             for i, line in enumerate(block):
                 file.write(line % f"{second + i / 1000:.3f}" + "\n")
-    begin = time.perf_counter()
-    record = load_experiment(rod).records[0]
+    with takes_less_than(30):  # s; 3 on a quiet machine
+        record = load_experiment(rod).records[0]
     assert len(record.time) == 3_600_000
-    assert time.perf_counter() - begin < 30  # s; 3 s on two cores of a quiet machine

@@ -58,7 +58,10 @@ def with_stamps(folder, stamps, digits=9):
     start=st.floats(-100.0, 1e6),
     seed=st.integers(0, 2**32 - 1),
 )
-@settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=30,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
 def test_jitter_below_a_tenth_of_a_sample_does_not_change_the_rate(rod, rate, start, seed):
     count = 300 if rate < 200 else 2500
     jitter = np.random.default_rng(seed).uniform(-0.09, 0.09, count)  # two make one step's error

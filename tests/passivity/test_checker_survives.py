@@ -8,10 +8,10 @@ import re
 import resource
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
+from clock import takes_less_than
 from passivity.certificate_attack import falsified
 from passivity.small_certificates import impedance, paths_of, sealed, storage
 
@@ -162,12 +162,11 @@ def test_nothing_takes_ten_seconds_or_a_gigabyte(which):
     # the most memory that this process ever had: tests before this one may have taken more
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     for content in fields(SLOW[which]):
-        start = time.process_time()
-        try:
-            check(content)
-        except Refused as problem:
-            assert "\n" not in str(problem)
-        assert time.process_time() - start < 10
+        with takes_less_than(10):
+            try:
+                check(content)
+            except Refused as problem:
+                assert "\n" not in str(problem)
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss < before + 1e6  # kB
 
 
@@ -243,7 +242,7 @@ def test_a_file_of_any_content_is_one_line_and_status_1(text, said, tmp_path):
     source = Path(sys.modules[check.__module__].__file__).parent
     (tmp_path / "c.json").write_bytes(text.encode("utf-8", "surrogateescape"))
     command = [sys.executable, "-I", str(source), str(tmp_path / "c.json")]
-    run = subprocess.run(command, capture_output=True, text=True, timeout=20)
+    run = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert run.returncode == 1 and not run.stderr
     assert len(run.stdout.splitlines()) == 1 and said in run.stdout
 
@@ -275,9 +274,12 @@ def test_a_record_of_a_motion_cannot_run_code(text, tmp_path, monkeypatch):
 def test_what_is_too_long_to_compute_at_the_example_is_refused_at_once():
     many = "9" * 4000
     for e in ("1/k**4000", "b/k**3999 + k**3999", "k**4000"):
-        start = time.process_time()
-        try:
-            check(storage(nonnegative={"b": "b", "e": e}, example={"k": many, "b": many, "v": "1"}))
-        except Refused:
-            pass
-        assert time.process_time() - start < 2
+        with takes_less_than(2):
+            try:
+                check(
+                    storage(
+                        nonnegative={"b": "b", "e": e}, example={"k": many, "b": many, "v": "1"}
+                    )
+                )
+            except Refused:
+                pass

@@ -1,27 +1,6 @@
 """A diagram's file of which any name may be another, and what a test of it asks of an answer."""
 
-import signal
-from contextlib import contextmanager
-
 from security.hostile import quoted
-
-SECONDS = 10  # s: none of these reads anything large
-
-
-@contextmanager
-def in_time(seconds=SECONDS):
-    """Fails what hangs."""
-
-    def late(*_):
-        raise AssertionError(f"took more than {seconds} s")
-
-    before = signal.signal(signal.SIGALRM, late)
-    signal.alarm(seconds)
-    try:
-        yield
-    finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
 
 
 def one_line(error):

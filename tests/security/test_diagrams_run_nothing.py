@@ -4,7 +4,8 @@ import json
 
 import pytest
 import sympy as sp
-from security.diagram_file import NAMES, diagram_file, in_time, one_line
+from clock import in_time
+from security.diagram_file import NAMES, diagram_file, one_line
 from security.hostile import CODE, quoted
 
 from teleopdesign.cli import main

@@ -1,6 +1,5 @@
 """Where and how often a study is stopped, killed or spread changes its time, never its numbers."""
 
-import os
 import random
 import signal
 import subprocess
@@ -183,21 +182,21 @@ def test_a_broken_end_of_the_kept_points_is_cut_off_and_computed_again(tmp_path,
 def test_points_of_another_study_are_not_taken_up(tmp_path):
     out = tmp_path / "s.nc"
     out.with_name("s.nc.part").write_text("")
-    with in_a_process(study_code(out), stderr=subprocess.DEVNULL) as process:
+    with in_a_process(study_code(out, points=100_000), stderr=subprocess.DEVNULL) as process:
         wait_for_points(out, 5)
         process.kill()
     with pytest.raises(ExperimentError, match="holds points of another study"):
         td.study(models.product, AXES, measures=models.value, out=out)
 
 
-def wait_for_points(out, count, limit=60.0):
+def wait_for_points(out, count, limit=300.0):
     """Wait until that many points are kept."""
     part, end = out.with_name(f"{out.name}.part"), time.monotonic() + limit
     while time.monotonic() < end:
         if out.exists() or (part.exists() and part.read_bytes().count(b'"point":') >= count):
             return
         time.sleep(0.01)
-    raise AssertionError("no point within a minute")
+    raise AssertionError(f"no point within {limit:.0f} s")
 
 
 def test_two_processes_do_not_write_into_one_file(tmp_path):
@@ -215,14 +214,17 @@ def test_two_processes_do_not_write_into_one_file(tmp_path):
 def test_a_full_disk_ends_in_one_line_and_keeps_every_finished_point(tmp_path):
     """The system refuses files over 4 kB, as a full disk refuses more: in the middle of a line."""
     out = tmp_path / "s.nc"
-    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))"
+    limit = (
+        "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n"
+        "sys.dont_write_bytecode = True"  # Python 3.11 would leave it half, for all who follow
+    )
     code = (
         "from teleopdesign.errors import TeleopDesignError\n"
         "try:\n    " + "\n    ".join(study_code(out, "product", 500).splitlines()) + "\n"
         "except TeleopDesignError as error:\n    print(error)\n"
     )
     with in_a_process(code, limit=limit, stdout=subprocess.PIPE, text=True) as process:
-        said, _ = process.communicate(timeout=60)
+        said, _ = process.communicate(timeout=300)
     assert "cannot be written" in said and said.count("\n") == 1
     kept = int(said.split(" of 500 points are kept")[0].split()[-1])
     assert kept > 10
@@ -306,27 +308,11 @@ def test_a_cluster_gives_the_data_set_of_one_process(cluster):
 
 
 @pytest.mark.slow
-def test_a_worker_of_a_cluster_that_is_killed_costs_no_point(cluster):
-    from distributed import Client
-
-    with Client(cluster.scheduler_address, set_as_default=False) as client:
-        (first, *_) = client.run(os.getpid).values()
-    killed = []
-
-    def kill(progress):
-        if not killed and progress.done > 100:
-            os.kill(first, signal.SIGKILL)
-            killed.append(progress.done)
-
-    axes = {"x": np.arange(1500.0), "y": 0.5}
-    found = td.study(
-        models.slow_product,
-        axes,
-        measures=models.value,
-        scheduler=cluster.scheduler_address,
-        progress=kill,
-    )
-    assert killed and killed[0] < 1500
+def test_a_worker_of_a_cluster_that_is_killed_costs_no_point(cluster, tmp_path):
+    axes = {"x": np.arange(500.0), "y": 0.5, "folder": str(tmp_path)}
+    given = {"measures": models.value, "scheduler": cluster.scheduler_address}
+    found = td.study(models.deadly_product, axes, **given)
+    assert (tmp_path / "killed").exists()
     np.testing.assert_array_equal(
         found["value"].values, [models.product(x, 0.5) for x in axes["x"]]
     )

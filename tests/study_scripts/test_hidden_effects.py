@@ -310,7 +310,7 @@ def test_a_delay_and_a_lag_are_told_by_their_second_coefficient():
 def test_the_study_runs_quickly_and_writes_tables_rows_and_figures(tmp_path):
     command = [sys.executable, str(STUDIES / "hidden_effects.py"), "--quick", "--baselines"]
     done = subprocess.run(
-        [*command, "--output", str(tmp_path)], capture_output=True, text=True, timeout=300
+        [*command, "--output", str(tmp_path)], capture_output=True, text=True, timeout=1800
     )
     assert done.returncode == 0, done.stderr
     assert "one clear effect" in done.stdout

@@ -72,7 +72,7 @@ def python(code, **options):
         [sys.executable, "-c", code],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
         env=env,
         **options,
     )
@@ -85,7 +85,7 @@ def command(*arguments, **options):
         stderr=subprocess.PIPE,
         text=True,
         errors="surrogateescape",
-        timeout=120,
+        timeout=600,
         env=env,
         **options,
     )
@@ -114,7 +114,7 @@ def run_kernel(tmp_path_factory):
 
         yield run
         process.stdin.close()
-        assert process.wait(20) == 0
+        assert process.wait(300) == 0
 
 
 UNWRITABLE = {
@@ -209,7 +209,7 @@ def test_processes_share_a_cold_cache(tmp_path):
         for _ in range(3)
     ]
     for process in started:
-        out, said = process.communicate(timeout=120)
+        out, said = process.communicate(timeout=600)
         assert (out.split()[:2], said) == (["42", "1.0"], "")
     folder = tmp_path / "teleopdesign" / "machine_code"
     assert [p.suffix for p in folder.iterdir() if p.is_file()] == [".py"]

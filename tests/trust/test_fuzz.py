@@ -4,11 +4,10 @@ FUZZ=5000 draws that many for each reader. What fails is kept: copy it to corpus
 """
 
 import os
-import signal
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from clock import in_time
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from trust.fuzzing import CORPUS, READERS, read_spoilt, spoilt
@@ -18,20 +17,6 @@ SECONDS = 10  # of the processor: none of these files is large
 KEPT = Path(os.environ.get("FUZZ_KEPT", "build/fuzz"))
 
 pytestmark = pytest.mark.filterwarnings("ignore")  # a user's terminal shows them; they end nothing
-
-
-@contextmanager
-def in_time():
-    def late(*_):
-        raise AssertionError(f"took more than {SECONDS} s")
-
-    before = signal.signal(signal.SIGPROF, late)
-    signal.setitimer(signal.ITIMER_PROF, SECONDS)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0)
-        signal.signal(signal.SIGPROF, before)
 
 
 @pytest.mark.parametrize("reader", READERS)
@@ -52,7 +37,7 @@ def test_a_spoilt_file_is_read_or_refused_in_one_line(reader):
     def spoil(data):
         content = data.draw(spoilt(READERS[reader][0]))
         try:
-            with in_time():
+            with in_time(SECONDS):
                 read_spoilt(reader, content)
         except BaseException:
             KEPT.mkdir(parents=True, exist_ok=True)
@@ -68,5 +53,5 @@ def test_a_spoilt_file_is_read_or_refused_in_one_line(reader):
 
 @pytest.mark.parametrize("file", [p.relative_to(CORPUS) for p in CORPUS.glob("*/*")], ids=str)
 def test_what_once_ended_in_a_traceback_is_refused_in_one_line(file):
-    with in_time():
+    with in_time(SECONDS):
         read_spoilt(file.parent.name, (CORPUS / file).read_bytes())

@@ -208,7 +208,10 @@ def test_a_mistake_of_the_package_is_one_line_with_status_70(capsys, monkeypatch
     monkeypatch.setattr(effects, "run", broken)
     monkeypatch.delenv(TRACEBACK, raising=False)
     line = one_line(capsys, ["effects"], status=70)
-    assert line.startswith("teleopdesign: internal error in cli.py:") and "RuntimeError" in line
+    assert (
+        line.startswith("teleopdesign: internal error in commands/_command_line.py:")
+        and "RuntimeError" in line
+    )
 
 
 @pytest.mark.parametrize("by", ["option", "environment"])

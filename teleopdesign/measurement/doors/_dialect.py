@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import gzip
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,13 +11,12 @@ from typing import IO, cast
 
 from ...errors import ExperimentError, quoted
 from ...quantity import is_unit
-from ._stamps import seconds_of
+from ._cells import is_number, seconds_of
 
 COMMENTS = ("#", "%", "//")
 SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
 #: bytes from which the dialect is read
 LOOKED_AT = 65_536
-NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?$|[-+]?(nan|inf|infinity)$", re.I)
 
 
 @dataclass(frozen=True)
@@ -126,11 +124,6 @@ def cells_of(line: str, separator: str) -> list[str]:
         ]
     cells = [c.strip() for c in line.split(separator)]
     return cells
-
-
-def is_number(cell: str, comma: bool) -> bool:
-    """Whether the cell is a number;  comma: the decimal sign is one."""
-    return bool(NUMBER.match(cell.replace(",", ".") if comma else cell))
 
 
 def _is_value(cell: str, comma: bool) -> bool:

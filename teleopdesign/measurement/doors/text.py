@@ -8,24 +8,26 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
 from ...errors import ExperimentError, quoted
+from ._cells import CellColumns
 from ._dialect import (
     COMMENTS,
     LOOKED_AT,
-    NUMBER,
     SEPARATORS,
     Dialect,
     cells_of,
     dialect_of,
-    is_number,
     open_bytes,
 )
 from ._log import MOST_BYTES, Array, Log, refuse_size
-from ._stamps import stamps_of
+
+#: rows that are read at once: 20 MB of text
+_ROWS = 200_000
 
 
 def open_text(path: Path, file: str) -> Log:
@@ -66,21 +68,32 @@ def _read(path: Path, file: str, dialect: Dialect, wanted: Mapping[str, str]) ->
     places = [_place(dialect.header, name, file) for name in wanted]
     try:
         with open_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
-            table = np.loadtxt(
-                _lines(stream, dialect, file),
-                delimiter=None if dialect.separator == " " else dialect.separator,
-                comments=None,
-                quotechar='"',
-                usecols=places,
-                ndmin=2,
-            )
-        return {n: np.ascontiguousarray(table[:, k]) for k, n in enumerate(wanted)}
+            parts = [*_parts(_lines(stream, dialect, file), dialect.separator, places)]
+        columns: dict[str, Array] = {}
+        for name in wanted:  # a column at a time: its parts go when it is whole
+            columns[name] = np.concatenate([part.pop(0) for part in parts])
+        return columns
     except UnicodeDecodeError as problem:
         raise ExperimentError(
             f"{file}: not {dialect.encoding.upper()} text (byte {problem.start})"
         ) from None
     except ValueError:
         return _read_cell_by_cell(path, file, dialect, wanted, places)
+
+
+def _parts(lines: Iterator[str], separator: str, places: Sequence[int]) -> Iterator[list[Array]]:
+    """Columns of some rows at a time: a whole table beside its columns takes twice the memory."""
+    yield [np.empty(0) for _ in places]  # of a header without rows
+    while rows := list(islice(lines, _ROWS)):
+        table = np.loadtxt(
+            rows,
+            delimiter=None if separator == " " else separator,
+            comments=None,
+            quotechar='"',
+            usecols=places,
+            ndmin=2,
+        )
+        yield [np.ascontiguousarray(table[:, k]) for k in range(len(places))]
 
 
 def _place(header: Sequence[str], name: str, file: str) -> int:
@@ -138,31 +151,13 @@ def _read_cell_by_cell(
     path: Path, file: str, dialect: Dialect, wanted: Mapping[str, str], places: Sequence[int]
 ) -> dict[str, Array]:
     """The slow way: empty cells are NaN, dates become seconds, other texts are named."""
-    cells: list[list[str]] = [[] for _ in wanted]
+    where = [
+        f"{file}: {channel + ': ' if channel else ''}column {quoted(name)}"
+        for name, channel in wanted.items()
+    ]
+    columns = CellColumns(where)
     with open_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
-        for line in _lines(stream, dialect, file):
-            row = cells_of(line, dialect.separator)
-            for into, place in zip(cells, places, strict=True):
-                into.append(row[place] if place < len(row) else "")
-    return {
-        name: _numbers(column, f"{file}: {channel + ': ' if channel else ''}column {quoted(name)}")
-        for (name, channel), column in zip(wanted.items(), cells, strict=True)
-    }
-
-
-def _numbers(cells: Sequence[str], where: str) -> Array:
-    filled = next((c for c in cells if c), "")
-    if filled and not is_number(filled, comma=False):
-        stamps = stamps_of(cells)
-        if stamps is not None:
-            return stamps
-    out = np.full(len(cells), np.nan)
-    for k, cell in enumerate(cells):
-        if not cell:
-            continue
-        if not NUMBER.match(cell):
-            raise ExperimentError(f"{where}, row {k + 1}: found {quoted(cell)}, expected a number")
-        out[k] = float(
-            cell.replace("d", "e").replace("D", "e") if "n" not in cell.lower() else cell
-        )
-    return out
+        lines = _lines(stream, dialect, file)
+        while rows := [cells_of(line, dialect.separator) for line in islice(lines, _ROWS)]:
+            columns.add([[r[k] if k < len(r) else "" for r in rows] for k in places])
+    return dict(zip(wanted, columns.values(), strict=True))

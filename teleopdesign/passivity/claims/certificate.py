@@ -17,6 +17,7 @@ import sympy as sp
 
 from ...arguments import checked
 from ...errors import ModelError
+from ...plain_data import write_text
 from ..checker import Refused, check, load
 
 #: weight * product of factor^power * square^2
@@ -52,7 +53,7 @@ class Certificate:
     def write(self, path: str | Path) -> None:
         """Write the JSON file that `python -m teleopdesign.passivity.checker PATH` verifies."""
         text = json.dumps(self.content, indent=1, sort_keys=True)
-        Path(path).write_text(text + "\n", encoding="utf-8")
+        write_text(path, text + "\n")
 
 
 def read_certificate(path: str | Path) -> Certificate:

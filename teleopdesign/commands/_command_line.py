@@ -1,0 +1,99 @@
+"""Arguments of `teleopdesign`, and how a command ends: its status and at most one line."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import pkgutil
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from importlib import import_module
+
+from .. import __version__, commands
+from ._failures import TRACEBACK, failure
+from ._paths import check_paths
+from ._terminal import printable_streams
+
+
+def run(arguments: Sequence[str] | None, is_stopped: Callable[[], bool] = lambda: False) -> int:
+    """Run the command; returns the exit status, but of what is stopped.
+
+    is_stopped: whether Ctrl-C was heard: what is raised after it is no error of its own
+    raises KeyboardInterrupt: the command is stopped
+    """
+    with printable_streams():
+        try:
+            return _run(arguments, is_stopped)
+        except BrokenPipeError:
+            close_output()  # who reads has enough, as `head` does
+            return 0
+
+
+def _run(arguments: Sequence[str] | None, is_stopped: Callable[[], bool]) -> int:
+    options = None
+    try:
+        try:
+            options = parser().parse_args(arguments)
+        finally:  # also where help was shown, or a wrong argument refused
+            _flush()
+        check_paths(options)
+        status: int = options.run(options)
+        _flush()
+        return status
+    except (BrokenPipeError, KeyboardInterrupt):
+        raise
+    except BaseException as error:  # a user's file may raise anything, SystemExit included
+        if is_stopped():
+            raise KeyboardInterrupt from error
+        if options is None and isinstance(error, SystemExit):
+            raise
+        if getattr(options, "traceback", False) or os.environ.get(TRACEBACK):
+            traceback.print_exc()
+        line, status = failure(error, options)
+        with suppress(OSError):
+            print(f"teleopdesign: {line}", file=sys.stderr)
+        try:
+            _flush()
+        except OSError:
+            close_output()
+        return status
+
+
+def _flush() -> None:
+    if sys.stdout is not None:  # None: it was closed before Python began
+        sys.stdout.flush()
+
+
+def close_output() -> None:
+    """What is left to write goes nowhere: Python would try it once more, and fail, at its end."""
+    with suppress(OSError, ValueError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def parser() -> argparse.ArgumentParser:
+    """The arguments of all commands."""
+    parser = argparse.ArgumentParser(
+        prog="teleopdesign",
+        description="Friction in haptic interfaces and teleoperators: find what a model lacks.",
+    )
+    parser.add_argument("--version", action="version", version=f"teleopdesign {__version__}")
+    parser.add_argument(
+        "--traceback",
+        action="store_true",
+        help=f"print Python's traceback of an error too (as the environment's {TRACEBACK}=1 does)",
+    )
+    subparsers = parser.add_subparsers(required=True, metavar="COMMAND")
+    for module in pkgutil.iter_modules(commands.__path__):
+        if module.name.startswith("_"):
+            continue
+        command = import_module(f"{commands.__name__}.{module.name}")
+        subparser = subparsers.add_parser(module.name.replace("_", "-"), help=command.__doc__)
+        command.add(subparser)
+        if examples := getattr(command, "EXAMPLES", ""):
+            subparser.epilog = f"examples:\n{examples.rstrip().lstrip(chr(10))}"
+            subparser.formatter_class = argparse.RawDescriptionHelpFormatter
+        subparser.description = command.__doc__
+        subparser.set_defaults(run=command.run, parser=parser)
+    return parser

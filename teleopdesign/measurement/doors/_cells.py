@@ -1,0 +1,112 @@
+"""Cells of a table as numbers: plain ones, dates and times of day."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...errors import ExperimentError, quoted
+from ._log import Array
+
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?$|[-+]?(nan|inf|infinity)$", re.I)
+_DAY = re.compile(r"(\d{1,2})\.(\d{1,2})\.(\d{4})[ T](.*)$")
+_ZONE = re.compile(r"(Z|[-+]\d{2}:?\d{2})$")
+_TIME_OF_DAY = re.compile(r"(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)$")
+
+_NO_ROWS = np.empty(0)
+
+
+def is_number(cell: str, comma: bool) -> bool:
+    return bool(_NUMBER.match(cell.replace(",", ".") if comma else cell))
+
+
+def seconds_of(cell: str) -> float | None:
+    """A date or a time of day as seconds; None: it is neither."""
+    if ":" not in cell and "T" not in cell and cell.count("-") < 2:
+        return None
+    stamp = stamps_of([cell])
+    return None if stamp is None else float(stamp[0])
+
+
+def stamps_of(cells: Sequence[str]) -> Array | None:
+    """Dates or times of day as seconds, from midnight or the first day; None: some are neither."""
+    day = _TIME_OF_DAY.match(cells[0])
+    try:
+        if day is not None:
+            parts = [c.replace(",", ".").split(":") for c in cells]
+            return np.array([3600.0 * int(h) + 60.0 * int(m) + float(s) for h, m, s in parts])
+        written = [_ZONE.sub("", _turned(c)).replace(",", ".") for c in cells]
+        with warnings.catch_warnings(action="ignore", category=UserWarning):  # of a time zone
+            stamps = np.array(written, dtype="datetime64[ns]")
+    except (ValueError, IndexError):
+        return None
+    if np.isnat(stamps).any():
+        return None
+    seconds: Array = (stamps - stamps[0].astype("datetime64[D]")).astype(np.int64) * 1e-9
+    return seconds
+
+
+def _turned(cell: str) -> str:
+    """A date that begins with the day, as one that begins with the year."""
+    match = _DAY.match(cell)
+    if match is None:
+        return cell.replace(" ", "T", 1)
+    day, month, year, rest = match.groups()
+    return f"{year}-{int(month):02d}-{int(day):02d}T{rest}"
+
+
+class CellColumns:
+    """Columns of texts that become numbers some rows at a time: texts take ten times the memory.
+
+    A column that begins with another text is kept until it is whole: dates count from its first.
+    """
+
+    def __init__(self, where: Sequence[str]) -> None:
+        """where: of each column, what errors call it."""
+        self._where = where
+        self._numbers: list[list[Array]] = [[] for _ in where]
+        self._texts: list[list[str]] = [[] for _ in where]
+        self._rows = 0
+
+    def add(self, columns: Sequence[list[str]]) -> None:
+        """The cells of the next rows; raises ExperimentError: one that is no number."""
+        for k, cells in enumerate(columns):
+            if self._texts[k] or (self._rows == 0 and _begins_with_text(cells)):
+                self._texts[k] += cells
+            else:
+                self._numbers[k].append(_numbers(cells, self._where[k], self._rows))
+        self._rows += len(columns[0])
+
+    def values(self) -> list[Array]:
+        """Each column; raises ExperimentError: neither numbers nor dates."""
+        return [
+            _seconds_or_numbers(texts, where) if texts else np.concatenate([_NO_ROWS, *numbers])
+            for texts, numbers, where in zip(self._texts, self._numbers, self._where, strict=True)
+        ]
+
+
+def _begins_with_text(cells: Sequence[str]) -> bool:
+    filled = next((c for c in cells if c), "")
+    return bool(filled) and not is_number(filled, comma=False)
+
+
+def _seconds_or_numbers(cells: Sequence[str], where: str) -> Array:
+    stamps = stamps_of(cells)
+    return _numbers(cells, where) if stamps is None else stamps
+
+
+def _numbers(cells: Sequence[str], where: str, before: int = 0) -> Array:
+    """Numbers, NaN for an empty cell; before: rows before the first."""
+    out = np.full(len(cells), np.nan)
+    for k, cell in enumerate(cells, start=before + 1):
+        if not cell:
+            continue
+        if not _NUMBER.match(cell):
+            raise ExperimentError(f"{where}, row {k}: found {quoted(cell)}, expected a number")
+        out[k - before - 1] = float(
+            cell.replace("d", "e").replace("D", "e") if "n" not in cell.lower() else cell
+        )
+    return out

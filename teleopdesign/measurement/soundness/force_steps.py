@@ -1,0 +1,42 @@
+"""Force steps: a command or a force that is logged in coarse steps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...finding import Finding
+from .encoder_steps import ON_GRID, gridded
+from .signal import Signal
+
+#: 1: rounding error over the signal's standard deviation from which a step is told; a hundredth of
+#: the largest value leaves 0.007 and changed no diagnosis, a tenth leaves 0.07 and six noise floors
+COARSE = 0.03
+#: levels that a rounded signal takes at least; a relay takes two or three, and means them
+LEVELS = 5
+#: part of all changes that go to the next level: what is rounded passes through every level
+TO_THE_NEXT = 0.9
+
+
+def check_force_steps(signal: Signal) -> list[Finding]:
+    """Whether a force moves in steps so coarse that rounding hides what it did between them."""
+    if signal.channel.quantity not in ("actuator_force", "interaction_force") or not signal.step:
+        return []
+    step, spread = signal.step, float(np.std(signal.values))
+    error = step / np.sqrt(12.0)  # of a value anywhere within its step
+    if error < COARSE * spread or gridded(signal.values, step) < ON_GRID:
+        return []
+    levels = np.round((signal.values - signal.values[0]) / step)
+    changes = np.abs(np.diff(levels))
+    changes = changes[changes > 0]
+    if len(np.unique(levels)) < LEVELS or np.mean(changes == 1) < TO_THE_NEXT:
+        return []
+    return [
+        Finding(
+            "force steps",
+            "warning",
+            f"{signal.name} moves in steps of {step:.4g} {signal.unit}: if the log alone is "
+            f"rounded, {100 * error / spread:.1f} % of what it does is lost; log finer steps.",
+            {"step": step, "error": float(error)},
+            signal.record.file,
+        )
+    ]

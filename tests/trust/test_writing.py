@@ -1,0 +1,32 @@
+"""Every file of the package is written beside its target and takes its name when it is whole."""
+
+import ast
+from pathlib import Path
+
+import teleopdesign
+
+#: what writes a file at once -> where its path stands: before the dot, or the last argument
+AT_ONCE = {"write_text": "object", "write_bytes": "object"} | dict.fromkeys(
+    ("to_netcdf", "savefig", "copyfile"), "argument"
+)
+
+#: a study writes itself so; a recording's folder is written under another name
+ELSEWHERE = {
+    "studies/run.py: result.to_netcdf",
+    "measurement/recordings/__init__.py: (unfinished / 'experiment.toml').write_text",
+}
+
+
+def test_every_file_is_written_beside_its_target():
+    """In the package, files are written to the path that `replacing` gives, named `part`."""
+    folder, wrong = Path(teleopdesign.__file__).parent, []
+    for path in folder.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
+                continue
+            if (where := AT_ONCE.get(node.func.attr)) is None:
+                continue
+            target = node.func.value if where == "object" else node.args[-1]
+            if not (isinstance(target, ast.Name) and target.id in ("part", "out")):
+                wrong.append(f"{path.relative_to(folder)}: {ast.unparse(node.func)}")
+    assert [w for w in wrong if w not in ELSEWHERE] == []
