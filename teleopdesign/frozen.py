@@ -82,9 +82,10 @@ class UnknownName(ModelError, KeyError):
 
 
 class Catalogue(Frozen[str, Content]):
-    """Things by name; one that is not there is refused with the nearest name.
+    """A read-only mapping from names to things of one kind, such as effects.
 
-    kind: what a thing is called in messages ("effect");  see: the end of a message
+    A name that the catalogue lacks raises ModelError with the nearest name.
+    kind: word for one thing in messages ("effect");  see: last words of a message, where to look
     """
 
     __slots__ = ("kind", "see")

@@ -209,6 +209,22 @@ class Model:
                 }
         return self.with_values(values)
 
+    def in_order(self) -> Model:
+        """The same model with parts of effects that may change places in order (`Effect.order`)."""
+        values: dict[str, float] = {}
+        for place, body in self.bodies.items():
+            numbers = {n: v.value for n, v in body.parameters.items()}
+            for effect in body.effects:
+                if effect.order is None or effect.is_absent(body.numbers()):
+                    continue
+                ours = {p: numbers[f"{effect.name}.{p}"] for p in effect.parameters}
+                values |= {
+                    f"{place}.{effect.name}.{p}": v
+                    for p, v in effect.order(ours, numbers).items()
+                    if v != ours[p]
+                }
+        return self.with_values(values) if values else self
+
     @property
     def absent(self) -> tuple[tuple[str, str], ...]:
         """(effect, place) of the effects whose values say that they are not there."""

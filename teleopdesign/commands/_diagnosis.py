@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from ..errors import ExperimentError, ModelError, did_you_mean
+from ._arms import arm_diagnosis_of, inertia_line, joint_of, posed
 from ._options import add_effect_files, add_folder
 from ._progress import Reporter
 from ._terminal import print_styled
@@ -149,7 +150,13 @@ def stated_model(experiment: Experiment, options: argparse.Namespace) -> Model:
 
 
 def diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
-    """The diagnosis of an experiment: as the answer tells, or made now, with progress said."""
+    """The diagnosis of an experiment: as the answer tells, or made now, with progress said.
+
+    Of an arm, that of the joint that the options say.
+    """
+    if experiment.arm is not None:
+        joint = joint_of(experiment, options)
+        return arm_diagnosis_of(experiment, options).joints[joint]
     if options.answer is not None:
         from ..diagnose.answers import load_answer, restored
 
@@ -203,7 +210,7 @@ def print_diagnosis(diagnosis: Diagnosis | ArmDiagnosis) -> None:
 
 
 def model_of_source(options: argparse.Namespace) -> tuple[Model, Path]:
-    """The diagnosed model, and the answer or folder that it comes from.
+    """The diagnosed model, and the answer or folder that it comes from; of an arm, of one joint.
 
     Of an answer alone (.json) it needs no records; of a folder without one it is diagnosed now.
     """
@@ -211,11 +218,39 @@ def model_of_source(options: argparse.Namespace) -> tuple[Model, Path]:
 
     alone = _answer_in(options.folder)
     if alone is not None and options.answer is None:
-        return load_answer(alone).model(known_of(options)), alone
+        model = _model_of_answer(alone, options)
+        return (model if options.body is None else _only(model, options.body, alone)), alone
     experiment = experiment_and_answer(options)
     if options.answer is not None:
-        return load_answer(options.answer).model(known_of(options), experiment), options.answer
-    return diagnosed(experiment, options).model, options.folder
+        model = load_answer(options.answer).model(known_of(options), experiment)
+    else:
+        model = diagnosis_of(experiment, options).model
+    source = options.folder if options.answer is None else options.answer
+    if experiment.arm is not None:
+        return posed(model, experiment, joint_of(experiment, options), options), source
+    return (model if options.body is None else _only(model, options.body, source)), source
+
+
+def _model_of_answer(file: Path, options: argparse.Namespace) -> Model:
+    """The model of an answer alone; of an arm, that of the joint that the options say."""
+    from ..diagnose.answers import load_answer
+
+    saved = load_answer(file)
+    model = saved.model(known_of(options))
+    if "joints" not in saved.content:
+        return model
+    joint = _place(model, file, options.body)
+    if not options.pose:
+        return _only(model, joint, file)
+    return posed(model, experiment_of(saved.folder), joint, options)
+
+
+def _only(model: Model, body: str, source: Path) -> Model:
+    """The model of one body of several."""
+    from ..model import Model
+
+    place = _place(model, source, body)
+    return Model({place: model.bodies[place]}, model.known)
 
 
 def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Reach | None]:
@@ -225,22 +260,29 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
     returns: the body, and what its records reached; None where there are no records
     """
     from ..design.reach import reach_of
-    from ..diagnose.answers import load_answer
 
     if source.suffix == ".json" and not source.is_dir():
         if options.answer is not None:
             raise ExperimentError(f"--answer: found beside {source}, which is an answer itself")
-        model = load_answer(source).model(known_of(options))
+        model = _model_of_answer(source, options)
         return model.bodies[_place(model, source, options.body)], None
     experiment = experiment_of(source)
     place = _place(stated_model(experiment, options), source, options.body)
     if options.answer is not None:
+        from ..diagnose.answers import load_answer
+
         model = load_answer(options.answer).model(known_of(options), experiment)
     else:
         diagnosis = diagnosis_of(experiment, options)
         print_diagnosis(diagnosis)
         print()
         model = diagnosis.model
+    if experiment.arm is not None:
+        from ..diagnose.arms.prepared import alone
+
+        model = posed(model, experiment, place, options)
+        print(inertia_line(model, place, options))
+        experiment = alone(experiment, place)
     return model.bodies[place], reach_of(experiment, place)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ._options import say
 
 if TYPE_CHECKING:
-    from ..diagnose import Diagnosis
+    from ..diagnose import ArmDiagnosis, Diagnosis
 
 
 def write_page(diagnosis: Diagnosis, path: Path) -> None:
@@ -26,3 +26,19 @@ def write_page(diagnosis: Diagnosis, path: Path) -> None:
     steps = propose(diagnosis, progress=say).findings() if open_questions else ()
     say("")
     write_report(diagnosis, path, soundness=soundness, unexplained=left, next_steps=steps)
+
+
+def write_arm_page(diagnosis: ArmDiagnosis, path: Path) -> None:
+    """The page of an arm, with what was found about the recording and what each joint leaves."""
+    from ..check import check_experiment
+    from ..report import write_arm_report
+    from ..unexplained import where_it_fails
+
+    say("checking the recording")
+    soundness = check_experiment(diagnosis.experiment)
+    left = {}
+    for joint, one in diagnosis.joints.items():
+        say(f"describing what is left at {joint}")
+        left[joint] = where_it_fails(one.after, one.prepared, one.floor)
+    say("")
+    write_arm_report(diagnosis, path, soundness=soundness, unexplained=left)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import ModelError
 from ..plain_data import replacing, write_json
+from ._arms import add_body
 from ._diagnosis import add_experiment, diagnosis_of, experiment_and_answer, stated_model
 from ._options import check_output
 
@@ -28,6 +29,7 @@ EXAMPLES = """
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser)
+    add_body(parser)
     parser.add_argument(
         "--as-is",
         action="store_true",
@@ -78,7 +80,7 @@ def _fit_model(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor |
     from ..diagnose.search import estimate_from_starts
 
     experiment = experiment_and_answer(options)
-    if options.as_is and options.answer is None:
+    if options.as_is and options.answer is None and experiment.arm is None:
         model = stated_model(experiment, options)
         prepared = prepare(experiment)
         return estimate_from_starts(model, prepared), prepared, None, "Your model, re-estimated:"

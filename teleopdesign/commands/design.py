@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError, did_you_mean
 from ..plain_data import write_json, write_text
+from ._arms import add_body, inertia_line, joint_of, posed
 from ._diagnosis import (
     add_experiment,
     diagnosis_of,
@@ -46,7 +47,7 @@ EXAMPLES = """
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser)
-    parser.add_argument("--body", metavar="NAME", help="one body of a teleoperator (all of them)")
+    add_body(parser, pose=True)
     parser.add_argument("--json", type=Path, metavar="F", help="write the designs there")
     parser.add_argument(
         "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
@@ -92,6 +93,8 @@ def _assumptions(options: argparse.Namespace) -> Assumptions:
 
 
 def _places(options: argparse.Namespace, experiment: Experiment) -> list[str]:
+    if experiment.arm is not None:
+        return [joint_of(experiment, options)]
     bodies = list(experiment.bodies)
     if options.body is None:
         places = bodies
@@ -110,12 +113,19 @@ def _places(options: argparse.Namespace, experiment: Experiment) -> list[str]:
 def _read_or_diagnose(experiment: Experiment, options: argparse.Namespace) -> DiagnosedModel:
     from ..design import diagnosed_model, read_answer
 
+    joint = None if experiment.arm is None else joint_of(experiment, options)
     if options.answer is not None:
-        return read_answer(options.answer, experiment, known_of(options))
-    diagnosis = diagnosis_of(experiment, options)
-    print_diagnosis(diagnosis)
-    print()
-    return diagnosed_model(diagnosis)
+        identified = read_answer(options.answer, experiment, known_of(options), joint=joint)
+    else:
+        diagnosis = diagnosis_of(experiment, options)
+        print_diagnosis(diagnosis)
+        print()
+        identified = diagnosed_model(diagnosis)
+    if joint is None:
+        return identified
+    model = posed(identified.model, experiment, joint, options)
+    print(f"{inertia_line(model, joint, options)}\n")
+    return replace(identified, model=model)
 
 
 def _design(diagnosis: DiagnosedModel, place: str, assumptions: Assumptions) -> Design:

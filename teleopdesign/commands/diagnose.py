@@ -17,7 +17,7 @@ from ._diagnosis import (
 )
 from ._folders import diagnose_all
 from ._options import add_effect_files, check_output, count_argument, say
-from ._report import write_page
+from ._report import write_arm_page, write_page
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis, SimulationComparison
@@ -125,14 +125,13 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
-    """The same for an arm: no figure, no page and no simulation yet."""
+    """The same for an arm: no figure and no simulation yet."""
     for value, option in (
         (options.figure, "--figure"),
-        (options.report, "--report"),
         (options.simulate, "--simulate"),
     ):
         if value:
-            raise ExperimentError(f"{option}: not there for an arm: use --json or --predictions")
+            raise ExperimentError(f"{option}: not there for an arm: use --report or --predictions")
     from ..diagnose.arms import find_missing_in_arm
     from ..diagnose.arms.answer import write_arm_answer, write_arm_predictions
 
@@ -142,6 +141,11 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
         write_arm_answer(diagnosis, options.json)
     if options.predictions is not None:
         write_arm_predictions(diagnosis, options.predictions)
+    if options.report is not None:
+        write_arm_page(diagnosis, options.report)
+    for joint, one in diagnosis.joints.items():
+        if one.verdict != "model_adequate" and one.more_is_missing:
+            print(f"\nwhere it fails: teleopdesign describe {options.folder[0]} --body {joint}")
     return 0
 
 

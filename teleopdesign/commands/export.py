@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 
 from ..plain_data import write_text
+from ._arms import add_body
 from ._diagnosis import add_experiment, model_of_source
 from ._options import check_output
 
@@ -18,6 +19,7 @@ EXAMPLES = """
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser)
+    add_body(parser, pose=True)
     parser.add_argument("--to", required=True, choices=("mjcf", "urdf"), help="the format")
     parser.add_argument(
         "--output", type=Path, metavar="F", help="the file (default: beside the answer)"

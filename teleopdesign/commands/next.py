@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import ExperimentError, did_you_mean
 from ..plain_data import replacing, write_json
+from ._arms import add_body
 from ._diagnosis import add_experiment, diagnosis_of, experiment_and_answer, print_diagnosis
 from ._options import check_output, say
 
@@ -41,6 +42,7 @@ EXAMPLES = """
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser)
+    add_body(parser)
     parser.add_argument(
         "--output", type=Path, metavar="F", help="write the position reference (.csv)"
     )

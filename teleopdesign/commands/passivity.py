@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError
 from ..plain_data import write_json
+from ._arms import add_body
 from ._claims import WIDTH, claim_lines, plain
 from ._diagnosis import add_answer, body_of_source
 from ._diagram_passivity import BESIDE_A_DIAGRAM, is_diagram, settle_diagram
@@ -41,7 +42,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "diagram: a file NAME.toml or a shipped one",
     )
     add_answer(parser)
-    parser.add_argument("--body", help="which body of the answer: device, master or slave")
+    add_body(parser, pose=True)
     law = parser.add_mutually_exclusive_group()
     law.add_argument(
         "--dahl",

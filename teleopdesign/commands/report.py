@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from ._arms import arm_diagnosis_of
 from ._diagnosis import add_experiment, add_search, diagnosis_of, experiment_and_answer
 from ._options import check_output
-from ._report import write_page
+from ._report import write_arm_page, write_page
 
 EXAMPLES = """
   teleopdesign report answer.json
@@ -39,12 +40,16 @@ def run(options: argparse.Namespace) -> int:
     else:
         path = Path("report.html") if answer is None else answer.with_suffix(".html")
         check_output(path, (".html",))
-    diagnosis = diagnosis_of(experiment, options)
+    whole = None if experiment.arm is None else arm_diagnosis_of(experiment, options)
+    diagnosis = diagnosis_of(experiment, options) if whole is None else None
     if answer is not None:
         print(
             f"{answer}: its models are computed along the records of {experiment.folder.name}; "
             "nothing is searched or estimated anew"
         )
-    write_page(diagnosis, path)
+    if whole is not None:
+        write_arm_page(whole, path)
+    elif diagnosis is not None:
+        write_page(diagnosis, path)
     print(f"written: {path}")
     return 0

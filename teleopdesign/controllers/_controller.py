@@ -1,181 +1,35 @@
-"""What a control law is: one law, written once with sympy, in a file of its own.
-
-A law sees `now.input` (the signal wired to the block), the motion that it acts along (`velocity`,
-`speed` = abs(velocity), `travel_rate`), its hidden states and `now.period`, the duration of a
-sample, 0 in continuous time. `speed` is apart from `velocity` so that the linear form can freeze
-it; `travel_rate` is the travel of the last sample over its duration, velocity itself in continuous
-time. Every form of the law (transfer function, python-control system, sampled step of the kernel)
-is derived from it.
-"""
+"""A controller: control laws in series, composed into one equation, and its linear form."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
-from typing import Any, Literal, get_args
 
 import sympy as sp
 
 from ..arguments import checked
-from ..effects import Parameter
 from ..errors import ModelError, did_you_mean
 from ..frozen import Frozen
 from ..notebook import html_table
-from ..recipes import recipe
 from ._by_numbers import by_numbers, has_numbers, is_by_numbers
+from ._law import SIGNALS, Ability, ControlLaw, ControllerState, Stage, only_sampled
+
+#: what the file of a law may need: those of `_law` as well
+__all__ = [
+    "SIGNALS",
+    "Ability",
+    "ControlLaw",
+    "Controller",
+    "ControllerEquation",
+    "ControllerState",
+    "Stage",
+    "only_sampled",
+    "parameter_symbol",
+    "state_symbol",
+]
 
 _MOST_SHOWN = 8  # parameters of a law that one line shows
-
-#: what a law may declare that it can do, by a field of `ControlLaw`
-Ability = Literal["bound", "bristle_stiffness", "smoothing", "filter_bandwidth", "dead_time"]
-
-SIGNALS = {
-    name: sp.Symbol(name, real=True)
-    for name in ("input", "velocity", "speed", "travel_rate", "period")
-}
-
-
-def only_sampled(now: Any, p: Any) -> sp.Expr:
-    """Stands for the rate of a state that exists in a computer only."""
-    return sp.nan
-
-
-@checked
-@dataclass(frozen=True)
-class ControllerState:
-    """A hidden state of a control law, whose `now` also carries the states of the law.
-
-    rate(now, p): rate of change, or `only_sampled`
-    step(now, p): value at the next sample, `now.period` later;  None: the step that is exact for
-    the rate, which is affine in the state, with all else held
-    """
-
-    quantity: str
-    rate: Callable[[Any, Any], sp.Expr]
-    step: Callable[[Any, Any], sp.Expr] | None = None
-
-
-@checked
-@dataclass(frozen=True, repr=False)
-class ControlLaw:
-    """A control law: law(now, p) is its output; see the package's folder for examples.
-
-    linear: declares that, at frozen `speed`, the law is linear in its input and in velocity;
-    False: the LTI form leaves the block out, and says so.
-    States whose rate or step uses `travel_rate` are brought up to a sample before its output is
-    taken, all others are carried from it to the next with their inputs held.
-    takes: "force" where the input must not be the motion itself; "": anything
-    transfer(values, s): transfer function from the input, where not to be found from the states
-    shift(values, z): transfer function in z of a law that exists in a computer only, stepped each
-        `period` (a parameter of it, s); its output is held in between
-    sampled(values, period): the stage that takes the place of this one in a computer of that
-    period (s); None: this one, its states stepped as they say
-    system: a python-control system that the law calls: known as code only, it has no equation
-    response: a sympy function of s in place of a law, known on the axis at measured frequencies
-
-    What the law can do, each by the name of the parameter that says how much; "": it cannot.
-    bound: its force is never more than that, whatever the motion
-    bristle_stiffness: its force is that of a Dahl bristle of that stiffness, level `bound`
-    smoothing: its force is bound v/(a + abs(v)) with that a
-    filter_bandwidth: its output follows its input through a low-pass of first order
-    dead_time: its output is its input, late by that
-    """
-
-    law: Callable[[Any, Any], sp.Expr]
-    parameters: Mapping[str, Parameter]
-    states: Mapping[str, ControllerState] = field(default_factory=dict)
-    linear: bool = False
-    takes: Literal["", "force"] = ""
-    transfer: Callable[[Mapping[str, float], sp.Symbol], sp.Expr] | None = None
-    shift: Callable[[Mapping[str, float], sp.Symbol], sp.Expr] | None = None
-    sampled: Callable[[Mapping[str, float], float], Stage] | None = None
-    system: Any = None
-    response: Any = None
-    bound: str = ""
-    bristle_stiffness: str = ""
-    smoothing: str = ""
-    filter_bandwidth: str = ""
-    dead_time: str = ""
-    source: str = ""
-    name: str = ""
-    text: str = ""
-
-    def __post_init__(self) -> None:
-        for ability in get_args(Ability):
-            parameter = getattr(self, ability)
-            if parameter and parameter not in self.parameters:
-                raise ModelError(
-                    f'{self.name or "control law"}: {ability}: no parameter "{parameter}", has '
-                    f"{', '.join(self.parameters)}{did_you_mean(parameter, self.parameters)}"
-                )
-
-    def __hash__(self) -> int:
-        return hash((self.name, self.law))  # what is equal has these in common
-
-    def __copy__(self) -> ControlLaw:
-        return self  # frozen: a copy could never differ
-
-    def __deepcopy__(self, memo: object) -> ControlLaw:
-        return self
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        if self.response is not None:
-            raise ModelError(
-                f"{self.name}: a measured frequency response has no form in a file and is not "
-                "sent to another process"
-            )
-        if self.system is not None:
-            raise ModelError(
-                f"{self.name}: a nonlinear system of python-control is code, which cannot be "
-                "written to a file or sent to another process"
-            )
-        return recipe(self)
-
-    def __repr__(self) -> str:
-        return f"ControlLaw {self.name or '(no name)'}: {', '.join(self.parameters)}"
-
-    def named(self, name: str, text: str) -> ControlLaw:
-        """The law under the name of its file, with the file's docstring as its text."""
-        return replace(self, name=name, text=text)
-
-
-@checked
-@dataclass(frozen=True)
-class Stage:
-    """A control law with a value (SI) for every parameter.
-
-    name: in the names of its parameters; that of its law, numbered where a controller has it twice
-    """
-
-    law: ControlLaw
-    values: Mapping[str, float]
-    name: str = ""
-
-    def __post_init__(self) -> None:
-        if not self.name:
-            object.__setattr__(self, "name", self.law.name)
-        law, declared = self.law, self.law.parameters
-        for name in self.values:
-            if name not in declared:
-                raise ModelError(
-                    f'{law.name}: no parameter "{name}", has {", ".join(declared)}'
-                    f"{did_you_mean(name, declared)}"
-                )
-        for name, parameter in declared.items():
-            if name not in self.values:
-                raise ModelError(f'{law.name}: parameter "{name}" has no value')
-            if not parameter.lower <= self.values[name] <= parameter.upper:
-                raise ModelError(
-                    f"{law.name}: {name} = {self.values[name]:g} is outside "
-                    f"{parameter.lower:g} .. {parameter.upper:g}"
-                )
-        object.__setattr__(self, "values", Frozen(self.values))
-
-    def value_of(self, ability: Ability) -> float | None:
-        """Value (SI) of the parameter that the law declares for this ability; None without one."""
-        parameter = getattr(self.law, ability)
-        return float(self.values[parameter]) if parameter else None
 
 
 @dataclass(frozen=True)

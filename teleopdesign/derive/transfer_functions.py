@@ -58,9 +58,11 @@ _LATEX = {
 
 
 def transfer_functions(diagram: Diagram) -> TransferFunctions:
-    """T_o, T_MBC, T_FF, T_H (R_D to R_M at R_V = 0) and Zhat_M = (R_D - R_M)/L; L with a loop K.
+    """Transfer functions of a haptic interface that have names: T_o, T_MBC, T_FF, T_H, Zhat_M, L.
 
-    Those for which the diagram has the blocks; each is derived from the diagram without the others.
+    T_o, T_MBC, T_FF and T_H: from R_D to R_M at R_V = 0, uncompensated, with C, with H, with both;
+    Zhat_M = (R_D - R_M)/L, and L where there is a position loop K. Of these, the ones for which the
+    diagram has the blocks; blocks that one does not name are left out of the diagram for it.
     Bernstein, Lawrence, Pao, World Haptics 2005, eqs (2) to (5) and (7), figure 4.
     """
     cases = named_cases(diagram)

@@ -9,6 +9,7 @@ from pathlib import Path
 from ..by_value import ByValue
 from ..diagnose import Diagnosis
 from ..diagnose.answers import load_answer
+from ..diagnose.arms.prepared import alone
 from ..effects import EFFECTS, Effect
 from ..measurement.experiment import Experiment
 from ..model import Model
@@ -30,12 +31,22 @@ def diagnosed_model(diagnosis: Diagnosis) -> DiagnosedModel:
 
 
 def read_answer(
-    path: str | Path, experiment: Experiment, known: Mapping[str, Effect] = EFFECTS
+    path: str | Path,
+    experiment: Experiment,
+    known: Mapping[str, Effect] = EFFECTS,
+    *,
+    joint: str | None = None,
 ) -> DiagnosedModel:
     """The model of an answer that `teleopdesign diagnose --json` wrote for that experiment.
+
+    joint: of an arm, which is taken out of it: its own verdict, with the arm's last model
 
     raises ExperimentError: no such file, no such answer, one of another experiment, or an effect
         that is not known
     """
     saved = load_answer(path)
-    return DiagnosedModel(experiment, saved.model(known, experiment), saved.verdict, saved.left)
+    model = saved.model(known, experiment)
+    if joint is None:
+        return DiagnosedModel(experiment, model, saved.verdict, saved.left)
+    mine = saved.of_joint(joint)
+    return DiagnosedModel(alone(experiment, joint), model, mine.verdict, mine.left)

@@ -37,8 +37,8 @@ class Design(ByValue):
     """A compensation for the body at `place` of an experiment.
 
     body: as the diagnosis identified it;  friction: range of its level, None: no friction level
-    cancellation: C, None where none is sure to be passive;  other: the law that was second,
-        leaving the hybrid a force error of other_left
+    cancellation: C; None where no cancellation is sure to be passive
+    other: the second-best law for C;  other_left: force error of the hybrid with that law
     force_feedback: H, with its loop at rest;  prediction: force errors of the four cases
     impedance: Zhat_M that a hand feels, simulated and by describing functions
     residual: friction left in slow steady motion, at the middle of the travel

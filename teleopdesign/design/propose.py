@@ -65,7 +65,7 @@ def design(
     place: str | None = None,
     assumptions: Assumptions | None = None,
 ) -> Design:
-    """Propose C and H for a body that a diagnosis identified, and predict what they do.
+    """Propose cancellation C and force feedback H for an identified body; predict their effect.
 
     diagnosis: a diagnosis, or what one ended with, as `read_answer` gives it
     place: which body; may be left out where there is one

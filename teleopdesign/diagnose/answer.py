@@ -13,6 +13,7 @@ from typing import Any, TextIO
 
 import numpy as np
 
+from ..measurement.experiment import Experiment
 from ..measurement.reading import reading_data
 from ..model import Model
 from ..plain_data import harmless_cell, plain, replacing, write_json
@@ -55,15 +56,10 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "noise_floor_source": diagnosis.floor.source,
         "check": "records" if checked else "blocks of fit",
         "bandwidth": {"value": diagnosis.prepared.bandwidth, "unit": "Hz"},
-        "candidates": candidate_rows(diagnosis) if recorded is None else recorded["candidates"],
+        "candidates": candidate_rows(diagnosis),
         "indistinguishable": [[place_data(c.key) for c in g] for g in diagnosis.groups],
-        "cannot_tell": [
-            place_data(one.candidate.key) | {"sentence": one.sentence} for one in diagnosis.untold
-        ],
-        "set_aside": [
-            place_data(one.candidate.key) | {"check_error": one.check_error, "reason": one.reason}
-            for one in diagnosis.set_aside
-        ],
+        "cannot_tell": untold_rows(diagnosis),
+        "set_aside": set_aside_rows(diagnosis),
         "own": offset_rows(diagnosis),
         "record_shift": shift_data(diagnosis.model, diagnosis.prepared.stretches),
         "model_parameters": parameter_rows(diagnosis.after, _added(diagnosis)),
@@ -149,8 +145,23 @@ def parameter_rows(fit: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
     }
 
 
+def untold_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """What the records cannot tell of accepted effects, in a sentence each."""
+    return [place_data(one.candidate.key) | {"sentence": one.sentence} for one in diagnosis.untold]
+
+
+def set_aside_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """Effects that were accepted and are not there, and why."""
+    return [
+        place_data(one.candidate.key) | {"check_error": one.check_error, "reason": one.reason}
+        for one in diagnosis.set_aside
+    ]
+
+
 def candidate_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """Every candidate, most probable first: at the step that accepted it, or at its best step."""
+    if diagnosis.recorded is not None:
+        return list(diagnosis.recorded["candidates"])
     best: dict[tuple[str, str], CandidateEvidence] = {}
     for one in evidence_of(diagnosis):
         before = best.setdefault(one.ranked.candidate.key, one)
@@ -200,13 +211,22 @@ def write_answer(
 
     simulation: a comparison by simulation, where one was made
     """
-    content, folder = answer(diagnosis), diagnosis.experiment.folder
-    if folder.is_dir():  # an experiment of arrays has none
-        place = os.path.relpath(folder.resolve(), Path(path).resolve().parent)
-        content["experiment"] = content["experiment"] | {"folder": Path(place).as_posix()}
+    content = with_folder(answer(diagnosis), diagnosis.experiment, path)
     if simulation is not None:
         content["simulation"] = simulation_data(simulation)
     write_json(path, content)
+
+
+def with_folder(
+    content: dict[str, Any], experiment: Experiment, path: str | Path
+) -> dict[str, Any]:
+    """An answer with where its experiment is, as seen from the answer's path."""
+    folder = experiment.folder
+    if not folder.is_dir():  # an experiment of arrays has none
+        return content
+    place = os.path.relpath(folder.resolve(), Path(path).resolve().parent)
+    described = content["experiment"] | {"folder": Path(place).as_posix()}
+    return content | {"experiment": described}
 
 
 def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:

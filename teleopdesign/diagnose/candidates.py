@@ -60,6 +60,8 @@ def candidates(
 ) -> tuple[Candidate, ...]:
     """Effects that the model lacks and could take, at each of its places.
 
+    One that would stand for others as well while they are missing waits for them (`Effect.after`).
+
     motions: all that the records hold; where a body never comes to a place at another time, no
         effect of the place can be told from a drift: it is no candidate there; nor is one whose law
         uses a channel that they have not. What repeats along the way comes back to the same place
@@ -80,7 +82,9 @@ def candidates(
                 continue
             if body.has(effect.name) or effect.role in roles or body.axis in effect.elsewhere:
                 continue
-            if body.lacks(effect):
+            if body.lacks(effect) or any(
+                n in model.known and not body.has(n) for n in effect.after
+            ):
                 continue
             if any(not effect.channels() <= set(m.further) for m in motions_here):
                 continue

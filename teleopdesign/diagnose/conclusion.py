@@ -28,11 +28,16 @@ from .untold import untold
 
 
 def conclude(
-    search: LadderSearch, state: LadderState, rungs: tuple[Rung, ...] | None = None
+    search: LadderSearch,
+    state: LadderState,
+    rungs: tuple[Rung, ...] | None = None,
+    *,
+    learn: bool = True,
 ) -> Diagnosis:
     """The diagnosis that a ladder ends with.
 
     rungs: those of the state with the reading error removed from the last fit; default: removed now
+    learn: whether trees say what could be learned of what is left
     """
     prepared, floor, criteria = search.prepared, state.floor, search.criteria
     estimated = state.fit
@@ -43,8 +48,11 @@ def conclude(
         rungs = tuple(replace(r, fit=_on_all(r.fit, search.whole)) for r in rungs)
         if len(steady := without_rise(rungs)) < len(rungs):
             rungs, estimated = steady, steady[-1].fit
-    search.progress("what could be learned")
     model = rungs[-1].fit.model
+    trees = None
+    if learn:
+        search.progress("what could be learned")
+        trees = learnable(model, search.whole, seed=search.seed)
     diagnosis = Diagnosis(
         experiment=search.experiment,
         prepared=search.whole,
@@ -54,7 +62,7 @@ def conclude(
         estimated=estimated,
         floor=floor,
         moment=moment,
-        learnable=learnable(model, search.whole, seed=search.seed),
+        learnable=trees,
         near_reversals=error_near_reversals(model, search.whole),
         left_out=search.plan.omissions(),
         untold=untold(rungs, search.whole),

@@ -182,7 +182,7 @@ def objection(
     """
     if ranked.refused or ranked.implausible:
         return REFUSALS.get(ranked.refused, ranked.implausible)
-    if gone := displaced(base, ranked.fit):
+    if gone := displaced(base, ranked.fit, least=criteria.close):
         return f"drives {', '.join(gone)} to a bound, which the model needs without it"
     driven = sorted(set(ranked.fit.at_bound) - set(base.at_bound))
     added = [n for n in driven if n not in base.model.parameters]
@@ -206,13 +206,17 @@ def helps_but_is_barred(
     return objection(base, ranked, floor, criteria=criteria)
 
 
-def displaced(base: Fit, fit: Fit) -> list[str]:
-    """Parameters driven to a bound whose effect the records tell from its absence in the base."""
+def displaced(base: Fit, fit: Fit, *, least: float = 1.0) -> list[str]:
+    """Parameters driven to a bound whose effect the records tell from its absence in the base.
+
+    least: standard errors from absence. Of one that hardly differs from it nothing is known that a
+    candidate could contradict: it bars none
+    """
     driven = set(fit.at_bound) - set(base.at_bound)
-    return sorted(n for n in driven if n in base.model.parameters and _is_there(base, n))
+    return sorted(n for n in driven if n in base.model.parameters and _is_there(base, n, least))
 
 
-def _is_there(base: Fit, name: str) -> bool:
+def _is_there(base: Fit, name: str, least: float) -> bool:
     """Whether the records show that the effect of a parameter is present.
 
     By all that it cannot be without; what is optional may be open.
@@ -223,7 +227,9 @@ def _is_there(base: Fit, name: str) -> bool:
         for n, v in base.model.parameters.items()
         if n.rpartition(".")[0] == effect and (n == name or not base.model.declared(n).optional)
     }
-    return all(v.fixed or not v.stderr >= base.model.from_absence(n) for n, v in values.items())
+    return all(
+        v.fixed or not least * v.stderr >= base.model.from_absence(n) for n, v in values.items()
+    )
 
 
 def superfluous_beside(
@@ -231,30 +237,32 @@ def superfluous_beside(
 ) -> Candidate | None:
     """The one effect of the base that a candidate at its place makes superfluous; None or several.
 
-    It was told from its absence, and beside the candidate its strength ends where it is absent, or
-    it was surely there and is no longer told from its absence.
+    It was told from its absence, and beside the candidate its strength ends where it is absent; or,
+    where no effect does so, it was surely there and is no longer told from its absence.
     """
-    gone, given_up = set(displaced(base, fit)), []
+    gone, ended, open_now = set(displaced(base, fit)), [], []
     for effect in base.model.body(candidate.at).effects:
         strengths = [f"{candidate.at}.{effect.name}.{n}" for n in effect.absent]
         values = [base.model.parameters.get(n) for n in strengths]
         if not values or any(v is None or v.fixed for v in values):
             continue
-        at_absence = all(
+        if all(
             n in gone and _near_absence(fit, n, effect.absent[n.rpartition(".")[2]])
             for n in strengths
-        )
-        surely = all(
+        ):
+            ended.append(effect)
+        elif all(
             criteria.surely * base.model.parameters[n].stderr < base.model.from_absence(n)
             and fit.model.parameters[n].stderr >= fit.model.from_absence(n)
             for n in strengths
-        )
-        if at_absence or surely:
-            given_up.append(effect)
+        ):
+            open_now.append(effect)
+    given_up = ended or open_now
     if len(given_up) != 1:
         return None
     start = f"{candidate.at}.{given_up[0].name}."
-    left = [n for n in gone if not n.startswith(start)]
+    sure = displaced(base, fit, least=criteria.close)
+    left = [n for n in sure if not n.startswith(start)]
     return None if left else Candidate(given_up[0], candidate.at)
 
 

@@ -66,17 +66,21 @@ class Diagnosis(ByValue):
     verdict: "effects_missing", "model_adequate" or "undecided"
     rungs: the user's model re-estimated, then one rung an effect
     last: ranking after the last rung, none of which was accepted
-    estimated: the last rung's fit before what its readings do was taken off: to be held against
-        other fits
-    moment: the one moment that holds all that is left above noise; None where there is none
-    open: what the records leave open, of a diagnosis that was read back: it has no rankings
-    named: accepted effects that are probable enough to be said missing
-    learnable: what a black box learns of what is left; None without the extra `learn`
-    near_reversals: the check error near reversals; None where there are none
-    left_out: what was not searched though it usually is, in words
+    estimated: the last rung's fit, parameters not yet corrected for errors of the readings; use it
+        where fits are compared with each other
+    floor: the noise floor: the error that the sensors alone would leave
+    moment: the single time span that holds all of the residual above noise; None: there is no such
+        span
+    open: questions that the records leave open; given for a diagnosis that was read from a file,
+        which has no rankings
+    named: accepted effects that are probable enough to be called missing
+    learnable: how much of the residual a black box can learn; None without the extra `learn`
+    near_reversals: the check error near reversals of the motion; None where there are none
+    left_out: what a full search includes and this one did not, in words
     untold: what the records cannot tell of the accepted effects
-    set_aside: effects that were accepted, and are not there by the errors that the answer states
-    recorded: the answer that a diagnosis was read back from, which has its candidates; else None
+    set_aside: effects that were accepted first and removed again: with the errors that the answer
+        states, they are not there
+    recorded: the answer file that the diagnosis was read from, with its candidates; else None
     """
 
     experiment: Experiment

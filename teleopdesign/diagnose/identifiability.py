@@ -7,20 +7,23 @@ import numpy as np
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .fit import Fit
+from .products import product_of
 
 
 def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bool:
     """Whether the new parameters are determined and the base's parameters cannot imitate them.
 
     Each must be further from absence than its standard error (an angle within half a turn) unless
-    the effect is there without it, what is essential to it surely so, and some must change the
-    residual in a way of its own.
+    the effect is there without it or a product of its parameters is known, what is essential to it
+    surely so, and some must change the residual in a way of its own.
     """
     new = [i for i, n in enumerate(fit.free) if n not in base.free]
+    effects = {fit.free[i].rpartition(".")[0] for i in new}
+    together = {n for one in effects for n in known_in_a_product(fit, one, criteria=criteria)}
     for i in new:
         name = fit.free[i]
         value, declared = fit.model.parameters[name], fit.model.declared(name)
-        if declared.optional:
+        if declared.optional or (name in together and not declared.search.essential):
             continue
         away = np.pi if declared.quantity == "angle" else fit.model.from_absence(name)
         if not value.stderr * (criteria.surely if declared.search.essential else 1.0) < away:
@@ -40,17 +43,31 @@ def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bo
     return False
 
 
+def known_in_a_product(fit: Fit, effect: str, *, criteria: Criteria = CRITERIA) -> frozenset[str]:
+    """Parameters of an effect that differ surely from zero at given others of a product.
+
+    The effect is there, though along such a valley the records leave open by which of them.
+    effect: with its place, "device.stribeck"
+    """
+    product = product_of(fit, effect)
+    if product is None:
+        return frozenset()
+    powers = zip(product.names, product.powers, strict=True)
+    return frozenset(n for n, p in powers if criteria.close * product.known < abs(p))
+
+
 def doubt(fit: Fit, candidate: Candidate) -> str:
     """Which parameter an accepted effect stands on and the stated errors do not tell from absence.
 
     By the errors at the end of a ladder, which hold what the readings themselves bring in. Others
-    of its parameters may be open. "": none
+    of its parameters may be open, and so may those of which a product is known. "": none
     """
+    together = known_in_a_product(fit, f"{candidate.at}.{candidate.effect.name}")
     for name, declared in candidate.effect.parameters.items():
         full = f"{candidate.at}.{candidate.effect.name}.{name}"
         absent = candidate.effect.absent.get(name)
         strength = absent is not None and np.isfinite(absent)
-        if full not in fit.free or declared.optional:
+        if full not in fit.free or declared.optional or full in together:
             continue
         if not (strength or declared.search.essential):
             continue

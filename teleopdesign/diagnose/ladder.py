@@ -14,6 +14,7 @@ from .exchange import exchange
 from .ladder_state import LadderSearch, LadderState, begin, look, search_for, trying
 from .moves import add, remove
 from .pairs import add_pair, replace_by_pair
+from .rung import Rung
 from .search_plan import PLAN, SearchPlan
 
 
@@ -40,23 +41,35 @@ def find_missing(
     if among is not None:
         model = trying(among, model or Model.from_experiment(experiment))
     search = search_for(experiment, model, progress=progress, seed=seed, plan=plan)
-    state = begin(search)
-    while True:
-        while (
-            len(state.set_aside) <= plan.searched_on
-            and (moved := next_move(search, state)) is not None
-        ):
-            state = look(search, moved.rungs, moved)
-        rungs = with_last_corrected(search, state)
-        less = without_doubtful(search, state, rungs)
-        if less is None:
-            break
-        state = look(search, less.rungs, less)
+    state, rungs = climb(search, begin(search), with_last_corrected)
     diagnosis = conclude(search, state, rungs)
     if among is None:
         return diagnosis
     words = f"only these effects were tried: {', '.join(sorted(among))}"
     return replace(diagnosis, left_out=(*diagnosis.left_out, words))
+
+
+def climb(
+    search: LadderSearch,
+    state: LadderState,
+    ended: Callable[[LadderSearch, LadderState], tuple[Rung, ...]],
+) -> tuple[LadderState, tuple[Rung, ...]]:
+    """The state where the ladder ends, and its rungs as the answer states them.
+
+    ended: the rungs of a state that no move leads on from, with the errors that the answer would
+        state; by these an effect is set aside, and the ladder goes on without it
+    """
+    while True:
+        while (
+            len(state.set_aside) <= search.plan.searched_on
+            and (moved := next_move(search, state)) is not None
+        ):
+            state = look(search, moved.rungs, moved)
+        rungs = ended(search, state)
+        less = without_doubtful(search, state, rungs)
+        if less is None:
+            return state, rungs
+        state = look(search, less.rungs, less)
 
 
 def next_move(search: LadderSearch, state: LadderState) -> LadderState | None:

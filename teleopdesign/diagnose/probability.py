@@ -156,8 +156,8 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
     for r in ranking.ranked:
         driven = set(r.fit.at_bound) - bound
         # what was accepted may have a parameter of its own at a bound: it was supported so
-        beside = not displaced(ranking.base, r.fit) if accepted else not driven
-        serious = r.counts and r.candidate.key in alike and beside
+        gone = displaced(ranking.base, r.fit, least=CRITERIA.close) if accepted else driven
+        serious = r.counts and r.candidate.key in alike and not gone
         weights[r.candidate.key] = (
             math.exp(-0.5 * max(r.behind - first, 0.0) ** 2) if serious else 0.0
         )

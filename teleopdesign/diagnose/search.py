@@ -105,6 +105,7 @@ def estimate_from_starts(
     best = min((_followed(m, coarse, EFFORTS.rough) for m in models), key=_squares)
     if rugged and base is not None and _squares(best) < PLAN.jolted * fit_squares(base.coarse):
         best = _jolted(best, model.absent, coarse)
+    best = _in_order(best, coarse)
     if base is not None and coarse is prepared:
         return fit_of(best, prepared)
     return estimate(best.model, prepared, effort=EFFORTS.fine if base is None else EFFORTS.near)
@@ -132,6 +133,18 @@ def from_stated(fit: Fit, prepared: Prepared, stated: Model, at: str) -> Fit:
 def _followed(model: Model, prepared: Prepared, effort: Effort) -> Solution:
     """Where a start leads on these records."""
     return solve(model, free_parameters(model), prepared, prepared.of("fit"), effort)
+
+
+def _in_order(best: Solution, prepared: Prepared) -> Solution:
+    """The solution with parts of effects in their order, where no less is explained so.
+
+    By their order it is known which parts must be told, and which may be open.
+    """
+    model = best.model.in_order()
+    if model is best.model:
+        return best
+    there = _followed(model, prepared, EFFORTS.rough)
+    return there if _squares(there) <= (1.0 + PLAN.elsewhere) * _squares(best) else best
 
 
 def _squares(solution: Solution) -> float:

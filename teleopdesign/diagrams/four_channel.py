@@ -47,7 +47,7 @@ def four_channel(
     hand: Body | AnyBlock | None = None,
     environment: Body | AnyBlock | None = None,
 ) -> Diagram:
-    """Wire a teleoperator of up to four channels; a block that is not given is not there.
+    """Wire a teleoperator of up to four channels; the diagram has no block that is not given.
 
     master, slave, hand, environment: as of `teleoperator`
     master_control, slave_control: C_m and C_s, from each side's own motion, subtracted

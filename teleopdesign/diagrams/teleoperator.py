@@ -45,7 +45,7 @@ def teleoperator(
     master_cancellation: Controller | AnyBlock | None = None,
     slave_cancellation: Controller | AnyBlock | None = None,
 ) -> Diagram:
-    """Wire a teleoperator on one axis; a block that is not given is not there.
+    """Wire a teleoperator on one axis; the diagram has no block that is not given.
 
     master, slave: Z_m and Z_s, impedances relative to position;  coupling: P, from the position
     error X_m - X_s to a force, such as `controller("spring_damper", ...)`;  hand: Z_H, what the

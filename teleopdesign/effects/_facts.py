@@ -88,6 +88,11 @@ def slip_is_seen(subject: str, ways: Sequence[float], facts: RecordFacts) -> str
 
     subject: what gives by the longest of them
     """
+    if facts.stroke == float("inf"):
+        return (
+            f"{subject} gives once where the motion never turns round: no loop is seen, and it "
+            "stands for how the friction of a record begins"
+        )
     # what gives by less than half a step is never read
     if any(0.5 * facts.step < way < facts.travel for way in ways):
         return None

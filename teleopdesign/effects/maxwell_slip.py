@@ -31,6 +31,19 @@ def of_element(i, quantity, meaning, *starts):
     return Parameter(quantity, f"{meaning} of element {i}", optional=i > 2, search=search)
 
 
+def softest_first(p, body):
+    """Elements 3 and 4 are the stiff ones, which may be rigid, and 1 and 2 those that are told."""
+    level = {i: p[f"level_{i}"] for i in MORE}
+    level[1] = max(body["coulomb.level"] - sum(level.values()), 0.0)
+    by_stiffness = sorted(level, key=lambda i: (level[i] == 0.0, p[f"stiffness_{i}"]))
+    values = dict(p)
+    for i, element in enumerate(by_stiffness, 1):
+        values[f"stiffness_{i}"] = p[f"stiffness_{element}"]
+        if i in MORE:
+            values[f"level_{i}"] = level[element]
+    return values
+
+
 def plausible(p, facts):
     slips = {i: getattr(p, f"level_{i}") for i in MORE}
     slips[1] = facts.body["coulomb.level"] - sum(slips.values())
@@ -53,6 +66,7 @@ EFFECT = Effect(
         "level_4": of_element(4, "force", "W_4: slip level", 0.03),
     },
     absent={"stiffness_1": float("inf"), "stiffness_2": float("inf")},
+    order=softest_first,
     plausible=plausible,
     needs=frozenset({"coulomb"}),
     source="Al-Bender, Lampaert, Swevers, IEEE TAC 50 (2005); Iwan, J. Appl. Mech. 33 (1966)",

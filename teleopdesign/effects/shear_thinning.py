@@ -4,7 +4,9 @@
 
 Lubricated gears and pre-stressed bearings: friction of the film flattens as speed grows, as that of
 industrial robots does. From n = 1 on it is `viscous`, at n = 0 `coulomb`; a record tells it from
-the two together by speeds over more than a decade. Mistaken for `actuator_saturation`.
+the two together by speeds over more than a decade. Of seals and contacts that stick, friction of
+the film is what comes beside `coulomb`: a power alone stands for both. Mistaken for
+`actuator_saturation`.
 """
 
 from ._effect import Effect, FitSearch, Parameter
@@ -43,6 +45,7 @@ EFFECT = Effect(
     },
     absent={"drag": 0.0},
     counts_as=frozenset({"viscous"}),
+    after=frozenset({"coulomb"}),
     plausible=plausible,
     source="power law of a lubricant in gears and bearings; Waiboer, Aarts, Jonker, Multibody "
     "Dynamics (ECCOMAS, Madrid 2005)",

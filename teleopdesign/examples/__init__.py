@@ -10,7 +10,10 @@ from ..errors import ExperimentError, did_you_mean
 
 @checked
 def example(name: str = "rod") -> Path:
-    """Folder of the shipped experiment of that name; raises ExperimentError with the nearest."""
+    """The folder of an experiment that comes with the package: "rod".
+
+    raises ExperimentError: no such experiment; the message has the nearest name
+    """
     folders = {p.parent.name: p.parent for p in Path(__file__).parent.glob("*/experiment.toml")}
     if name not in folders:
         raise ExperimentError(

@@ -35,7 +35,7 @@ def measured_impedance(
     computer: Sampling | Literal["continuous"] = SAMPLED,
     give: float = GIVE,
 ) -> ImpedanceMap:
-    """Zhat_M of one diagram or several cases over frequency and amplitude.
+    """Impedance Zhat_M that a hand feels, by simulation, over frequency and amplitude.
 
     amplitude: of the drive, m or rad: each with each frequency, or a function of frequency (a
         profile, such as `falling(0.01)`);  frequency: Hz

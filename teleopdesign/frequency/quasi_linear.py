@@ -39,7 +39,7 @@ def quasi_linear_impedance(
     motion: str = "L",
     force: str = "E",
 ) -> ImpedanceMap:
-    """Zhat_M of one diagram or several cases over frequency and amplitude, without simulation.
+    """Impedance Zhat_M that a hand feels over frequency and amplitude, without simulation.
 
     Arguments as in `measured_impedance`, the motion prescribed; controllers count as continuous.
     raises ModelError: a block without laws or without describing function

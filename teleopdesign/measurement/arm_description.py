@@ -13,7 +13,7 @@ from ..arms import Chain, Link, inertia_about, read_urdf, rotation_of
 from ..arms.chain import GRAVITY, Array, tensor
 from ..by_value import ByValue
 from ..errors import ExperimentError, did_you_mean, quoted
-from .description import BodyDescription, effects_from, value_from
+from .description import BODY, BodyDescription, body_from, effects_from, value_from
 from .toml_table import Table, described
 
 #: whether inertial parameters are estimated, or taken as they are
@@ -23,7 +23,10 @@ _JOINT = ("urdf_joint", "motor_inertia", "effects")
 _LINK = ("joint", "name", "kind", "axis", "xyz", "rpy", "mass", "centre", "inertia")
 #: a joint is a body: its name stands in channels and answers
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]{0,63}")
-_TAKEN = ("arm", "device", "environment", "master", "record", "segment", "slave", "t", "time")
+_TAKEN = (
+    *("arm", "device", "environment", "links", "master", "record", "record_shift"),
+    *("segment", "slave", "t", "time"),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,11 +58,7 @@ def arm_from(model: Table, folder: Path) -> tuple[ArmDescription, dict[str, Body
         raise ExperimentError(f"{table.where('joints')}: found none, expected one table a joint")
     for name, joint in joints.items():
         joint.allow(_JOINT)
-        if not _NAME.fullmatch(name) or name in _TAKEN:
-            raise ExperimentError(
-                f"{table.where('joints')}: found {quoted(name)}, expected a name of letters and "
-                f"digits, none of {', '.join(_TAKEN)}"
-            )
+        _require_name(name, table.where("joints"))
     arm = _kinematics(table, folder, joints).with_gravity(_gravity(table))
     estimate = table.text("estimate", ESTIMATES[0])
     if estimate not in ESTIMATES:
@@ -72,6 +71,25 @@ def arm_from(model: Table, folder: Path) -> tuple[ArmDescription, dict[str, Body
         for (name, joint), link in zip(joints.items(), arm.links, strict=True)
     }
     return ArmDescription(arm, estimate), bodies
+
+
+def _require_name(name: str, where: str) -> None:
+    if not _NAME.fullmatch(name) or name in _TAKEN:
+        raise ExperimentError(
+            f"{where}: found {quoted(name)}, expected a name of letters and digits, none of "
+            f"{', '.join(_TAKEN)}"
+        )
+
+
+def joints_from(model: Table) -> dict[str, BodyDescription]:
+    """The joints of an identified arm, each a body as an answer writes it."""
+    joints = {}
+    for name in model.content:
+        _require_name(name, model.where())
+        table = model.table(name)
+        table.allow(BODY)
+        joints[name] = body_from(name, table)
+    return joints
 
 
 def _joint(name: str, table: Table, link: Link) -> BodyDescription:

@@ -31,7 +31,8 @@ class LinkForces(ByValue):
     """Force that the links of an arm need at one joint, along a motion of n samples, SI.
 
     constant: (n,) by what is known;  columns: (b, n) per unit of each base parameter of the arm
-    smooth: the same columns through the comparison's low-pass
+    smooth: the same columns through the comparison's low-pass, less what friction at rest takes up
+        by the model at hand, if there is one
     inertia: part of them that the body itself has, and that is not carried
     drawn: the same forces with the positions of all joints read anew, for the noise floor
     """

@@ -24,7 +24,7 @@ OWN = ("position_zero", "bias", "friction_level")
 @final
 @dataclass(frozen=True, eq=False)
 class Record(ByValue):
-    """n samples; "fit": parameters are estimated on them, "check": never fitted.
+    """One recording of n samples, for estimation (use "fit") or for errors alone (use "check").
 
     offset_names: of "position_zero", "bias" and "friction_level", those in which this record may
         differ from the others

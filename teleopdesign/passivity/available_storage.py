@@ -23,11 +23,13 @@ from numpy.typing import NDArray
 from ..by_value import ByValue
 from ..errors import ModelError
 from .claims.claim import Evidence
-from .rate_independent import Coulomb, Dahl, Element
+from .rate_independent import Coulomb, Dahl, Element, compliance
 
 Array = NDArray[np.float64]
 #: gain, as a share of the compensator's level, below which the storage counts as settled
 _BLUR = 1e-3
+#: moves, and nodes times moves, at 50 us a move and 50 ns a node: some 20 s
+_MOST_MOVES, _MOST_WORK = 400_000, 500_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,14 +73,21 @@ def available_storage(
     points: of each force;  moves: default: six strokes of what gives furthest, both ways
     load_coefficient: the first element of friction grows by this much of
         the size of the last one's force (capstan: a contact pressed by the cable's tension)
+    raises ModelError: more than three forces with a state, lengths too far apart for one grid
     """
     stateful: list[Element] = [compensator, *(e for e in friction if not isinstance(e, Coulomb))]
+    if points < 3 or (moves is not None and moves < 1) or load_coefficient < 0:
+        raise ModelError(
+            f"available_storage: expected 3 points, 1 move and a load of 0 at least, found "
+            f"{points}, {moves} and {load_coefficient:g}"
+        )
     if len(stateful) > 3:
         raise ModelError(f"available_storage: at most 3 forces with a state, found {len(stateful)}")
     lengths = [_length(e) for e in stateful]
     # two cells of the stiffest force's grid: shorter moves would only be blurred by interpolation
     travel = 4 * min(lengths) / (points - 1)
     moves = moves or int(24 * max(lengths) / travel) + 10 * points
+    _check_work(moves, points, len(stateful), ratio=max(lengths) / min(lengths))
     step = [
         _move(stateful, friction, s * travel, points=points, load=load_coefficient) for s in (1, -1)
     ]
@@ -93,15 +102,20 @@ def available_storage(
     return AvailableStorage(v + held, gain, travel, moves, _BLUR * compensator.level)
 
 
+def _check_work(moves: int, points: int, forces: int, *, ratio: float) -> None:
+    """ModelError for an iteration of minutes. ratio: longest over shortest length of a force."""
+    work = moves * points**forces
+    if moves > _MOST_MOVES or work > _MOST_WORK:
+        raise ModelError(
+            f"available_storage: {moves} moves on {points**forces} nodes would take minutes: the "
+            f"longest of the forces' lengths is {ratio:.3g} times the shortest; use fewer points, "
+            "or leave out what gives a thousand times less than the rest"
+        )
+
+
 def _length(element: Element) -> float:
     """Travel over which its force changes by about its level, m."""
-    return element.level * _compliance(element)
-
-
-def _compliance(element: Element) -> float:
-    """Travel per force near rest, m/N."""
-    parts = (getattr(element, n, np.inf) for n in ("stiffness", "spring"))
-    return float(sum(1 / x for x in parts))
+    return element.level * compliance(element)
 
 
 def _held(stateful: Sequence[Element], points: int) -> Array:
@@ -109,7 +123,7 @@ def _held(stateful: Sequence[Element], points: int) -> Array:
     total: Array = np.zeros((1,) * len(stateful))
     for axis, element in enumerate(stateful):
         forces = np.linspace(-element.level, element.level, points)
-        one = forces**2 * _compliance(element) / 2
+        one = forces**2 * compliance(element) / 2
         shape = [points if k == axis else 1 for k in range(len(stateful))]
         total = total + (-one if axis == 0 else one).reshape(shape)
     return total
@@ -130,7 +144,7 @@ def _move(
         forces = np.linspace(-element.level, element.level, points)
         legs = np.array([element.leg(float(f), travel) for f in forces])
         shape = [points if k == axis else 1 for k in range(len(stateful))]
-        lost = legs[:, 1] - (legs[:, 0] ** 2 - forces**2) * _compliance(element) / 2
+        lost = legs[:, 1] - (legs[:, 0] ** 2 - forces**2) * compliance(element) / 2
         gain = gain + (lost if axis == 0 else -lost).reshape(shape)
         left, right_share = _cells(forces, legs[:, 0])
         cells.append((left, right_share.reshape(shape)))

@@ -12,6 +12,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from ..arguments import checked
+from ..errors import ModelError
+
+#: share of the energy of a round below which springs that have not settled do not matter
+_FED = 1e-3
 
 
 class Element(Protocol):
@@ -27,12 +31,22 @@ class Element(Protocol):
         ...
 
 
+def _check(element: Element) -> None:
+    """ModelError for a number of an element that is no size of a force or stiffness."""
+    for name, number in vars(element).items():
+        if not 0 < number < math.inf and not (number == 0 and isinstance(element, Coulomb)):
+            raise ModelError(f"{type(element).__name__}: {name} = {number:g}, expected above 0")
+
+
 @checked
 @dataclass(frozen=True)
 class Coulomb:
     """level sgn(v)."""
 
     level: float
+
+    def __post_init__(self) -> None:
+        _check(self)
 
     def leg(self, force: float, travel: float) -> tuple[float, float]:
         """Force jumps to the level against the travel; all work is lost."""
@@ -46,6 +60,9 @@ class Dahl:
 
     level: float
     stiffness: float
+
+    def __post_init__(self) -> None:
+        _check(self)
 
     def leg(self, force: float, travel: float) -> tuple[float, float]:
         """f' = s level + (f - s level) e^(-abs(travel)/length), and its integral."""
@@ -65,6 +82,9 @@ class Spring:
 
     level: float
     stiffness: float
+
+    def __post_init__(self) -> None:
+        _check(self)
 
     def leg(self, force: float, travel: float) -> tuple[float, float]:
         """Linear up to the level, constant beyond it."""
@@ -89,6 +109,9 @@ class DahlBehindSpring:
     stiffness: float
     spring: float
 
+    def __post_init__(self) -> None:
+        _check(self)
+
     def leg(self, force: float, travel: float) -> tuple[float, float]:
         """Exact over any travel, by Wright's omega function."""
         from scipy.special import wrightomega
@@ -103,6 +126,12 @@ class DahlBehindSpring:
         slipped = x - r * (y - after)  # ln(y/y')
         lost = self.level**2 / self.stiffness * (slipped - (y - after))
         return end, (end**2 - force**2) / (2 * self.spring) + lost
+
+
+def compliance(element: Element) -> float:
+    """Travel per force near rest, m/N."""
+    parts = (getattr(element, n, math.inf) for n in ("stiffness", "spring"))
+    return float(sum(1 / x for x in parts))
 
 
 def _beyond_linear(y: float) -> float:
@@ -121,7 +150,8 @@ class Cycle:
 
     compensator: whose force helps the motion;  friction: what resists
     turning_points: positions, m, of one round, starting at the last of them; from rest and without
-    preloads, `rounds` are travelled, and the last one is counted
+    preloads, `rounds` are travelled, and the last one is counted; where that may still be fed by
+    what springs held, no more than all rounds together gave out
     """
 
     compensator: Dahl
@@ -138,6 +168,7 @@ class Cycle:
         """Energy given out in the last round, J, integrated anew."""
         elements: tuple[Element, ...] = (self.compensator, *self.friction)
         forces, here, out = [0.0] * len(elements), self.turning_points[-1], 0.0
+        before, total = list(forces), 0.0
         for _ in range(self.rounds):
             before, out = list(forces), 0.0
             for point in self.turning_points:
@@ -145,9 +176,14 @@ class Cycle:
                     forces[k], work = element.leg(forces[k], point - here)
                     out += work if k == 0 else -work
                 here = point
+            total += out
             if forces == before:
                 break
-        return out
+        fed = sum(
+            abs(f - b) * e.level * compliance(e)
+            for f, b, e in zip(forces, before, elements, strict=True)
+        )
+        return out if out <= 0 or fed <= _FED * out else min(out, total)
 
     def as_dict(self) -> dict[str, object]:
         """Plain data, to be written as JSON."""

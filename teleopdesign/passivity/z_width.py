@@ -88,7 +88,7 @@ def z_width(
         raise ModelError(f"z_width: damping and sample time must be > 0, found {b} and {late}")
     if law is None:
         law = WALL_STIFFNESS + WALL_DAMPING * (Z - 1) / (late * Z)
-    law = sp.sympify(law) * Z**-delay
+    law = sp.sympify(law, strict=True) * Z**-delay
     grid = np.linspace(0, float(b), 21) if wall_damping is None else np.asarray(wall_damping, float)
     per_stiffness, per_damping = _shares(law, late)
     largest = np.array([_largest(per_stiffness, per_damping * x, float(b)) for x in grid])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -39,9 +40,20 @@ _SYMBOLS = {
 }
 
 
+#: a letter with a short index, and how often it is differentiated: "X_m", "X_m_velocity"
+_INDEXED = re.compile(r"([A-Za-z])_([A-Za-z0-9]{1,3})(_velocity|_acceleration)?")
+_DOTS = {None: "", "_velocity": r"\dot ", "_acceleration": r"\ddot "}
+
+
 def symbol(name: str) -> str:
     """The signal's symbol in mathtext; names without one as they are."""
-    return f"${_SYMBOLS[name]}$" if name in _SYMBOLS else name.replace("_", " ")
+    if name in _SYMBOLS:
+        return f"${_SYMBOLS[name]}$"
+    if indexed := _INDEXED.fullmatch(name):
+        letter, index, rate = indexed.groups()
+        index = index if len(index) == 1 else rf"\mathrm{{{index}}}"
+        return f"${_DOTS[rate]}{letter}_{{{index}}}$"
+    return name.replace("_", " ")
 
 
 def unit_text(unit: str) -> str:

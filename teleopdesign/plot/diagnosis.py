@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..diagnose.comparison import Comparison, residual_data
+from .design import unit_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,12 +32,12 @@ def _check_rows(data: Any) -> Any:
 
 
 def _label(data: Any, name: str) -> str:
-    return f"{name} ({data[name].attrs['units'].replace('*', ' ')})"
+    return f"{name} ({unit_text(data[name].attrs['units'])})"
 
 
 def _by_direction(ax: Axes, data: Any, over: str) -> None:
     for way, color, label in (
-        (0, UNTOLD, "not told"),
+        (0, UNTOLD, "near rest"),
         (1, FORWARD, "forward"),
         (-1, BACKWARD, "backward"),
     ):
@@ -87,8 +88,21 @@ def plot_comparison(comparison: Comparison) -> Figure:
         axes[0, 1].set(xlabel=_label(data, "time"), ylabel=_label(data, "residual"))
         _by_direction(axes[1, 0], data, "velocity")
         _by_direction(axes[1, 1], data, "position")
-        axes[1, 0].legend(markerscale=6, loc="upper left")
+        _direction_legend(axes[1, 0])
     return figure
+
+
+def _direction_legend(ax: Axes) -> None:
+    """The directions above the panel, clear of its points."""
+    ax.legend(
+        markerscale=6,
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        borderaxespad=0.1,
+        ncols=3,
+        columnspacing=0.8,
+        handletextpad=0.1,
+    )
 
 
 def _force_axes(ax: Axes, data: Any) -> None:
@@ -149,15 +163,7 @@ def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None
             axes[second].set_ylabel(_label(after, "residual").replace("residual", "residual after"))
         else:
             axes[second].set_axis_off()
-    axes["v0"].legend(
-        markerscale=6,
-        loc="lower right",
-        bbox_to_anchor=(1.0, 1.0),
-        borderaxespad=0.1,
-        ncols=3,
-        columnspacing=0.8,
-        handletextpad=0.1,
-    )
+    _direction_legend(axes["v0"])
 
 
 def _ladder(ax: Axes, diagnosis: Diagnosis) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .design import ONE_COLUMN, STYLE
+from .design import ONE_COLUMN, STYLE, unit_text
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -29,8 +29,8 @@ def plot_margin_map(margins: MarginMap) -> matplotlib.figure.Figure:
         colours = axes.pcolormesh(x, y, shown, cmap="RdBu", vmin=-_LARGEST, vmax=_LARGEST)
         if shown.min() < 0 < shown.max():
             axes.contour(x, y, shown, levels=[0.0], colors="black")
-        axes.set_xlabel(f"{second} ({margin[second].units})")
-        axes.set_ylabel(f"{first} ({margin[first].units})")
+        axes.set_xlabel(f"{second} ({unit_text(margin[second].units)})")
+        axes.set_ylabel(f"{first} ({unit_text(margin[first].units)})")
         bar = figure.colorbar(colours, ax=axes)
         bar.set_label("least Llewellyn margin on the axis (1)")
     return figure

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .design import ONE_COLUMN, STYLE, unit_text
+from .study_data import words
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -27,13 +28,13 @@ def plot_pareto(front: ParetoFront) -> matplotlib.figure.Figure:
         figure, axes = plt.subplots(figsize=(ONE_COLUMN, 0.8 * ONE_COLUMN), layout="constrained")
         axes.plot(*front.evaluated.T, ".", color=GREY, markersize=2.5, label="keeps the limits")
         axes.step(*front.tried_best.T, where="post", color=BEST, label="best found")
-        axes.plot(x, y, "o", color=BEST, markersize=4, zorder=3, label="checked once more")
+        axes.plot(x, y, "o", color=BEST, markersize=4, zorder=3, label="limits checked again")
         if np.isfinite(front.before).all():
             axes.plot(*front.before, "x", color=BEFORE, zorder=4, label="before")
         axes.set_xlim(right=min(axes.get_xlim()[1], _farthest(x)))
         axes.set_ylim(top=min(axes.get_ylim()[1], _farthest(y)))
         first, second = (
-            f"{name.replace('_', ' ')} ({unit_text(unit or '1')})"
+            f"{words(name)} ({unit_text(unit or '1')})"
             for name, unit in zip(front.names, front.units, strict=True)
         )
         axes.set_xlabel(first)

@@ -59,7 +59,7 @@ class StudyPlots:
         if len(each) > 1:
             raise ModelError(f"study: curves: give values of all but two of {listed(dims)}: at=...")
         with plt.style.context(STYLE):
-            figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.5))
+            figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.5 + 0.5 * bool(each)))
             lines = self.data[each[0]].values if each else [None]
             shown = spread(len(lines), _MOST_LINES)
             colours = plt.get_cmap("viridis")(np.linspace(0, 0.85, len(shown)))
@@ -70,7 +70,8 @@ class StudyPlots:
             self._study.label_axis(axis, "x", across)
             axis.set_ylabel(label(values))
             if each:
-                axis.legend(title=label(self.data[each[0]]))
+                title = label(self.data[each[0]])
+                figure.legend(title=title, loc="outside lower center", ncols=4)
         return figure
 
     def map(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import ModelError, did_you_mean
-from .design import unit_text
+from .design import symbol, unit_text
 
 if TYPE_CHECKING:
     import xarray
@@ -104,8 +104,21 @@ def label(array: xarray.DataArray) -> str:
 
 
 def words(name: str) -> str:
-    """The name with spaces; what has a dot is a path of the model and stays."""
-    return name.replace("_", " ") if "." not in name else name
+    """The name with spaces, a signal at its end as a symbol: "rms_R_FF" is rms and R_FF.
+
+    What has a dot is a path of the model and stays; so does what stands between dollar signs.
+    """
+    if "$" in name or "." in name:
+        return "$".join(
+            part if k % 2 or "." in part else part.replace("_", " ")
+            for k, part in enumerate(name.split("$"))
+        )
+    parts = name.split("_")
+    for k in range(len(parts) - 1):  # a letter without an index may be anybody's name
+        signal = symbol("_".join(parts[k:]))
+        if signal.startswith("$"):
+            return " ".join([*parts[:k], signal])
+    return " ".join(parts)
 
 
 def listed(names: Sequence[str]) -> str:
@@ -114,8 +127,8 @@ def listed(names: Sequence[str]) -> str:
 
 
 def number(value: Any) -> str:
-    """Four digits; a word stays."""
-    return value if isinstance(value, str) else f"{float(value):.4g}"
+    """Three digits; a word stays."""
+    return value if isinstance(value, str) else f"{float(value):.3g}"
 
 
 def spread(count: int, most: int) -> list[int]:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 #: panels side by side; height of a row of them (in)
 COLUMNS, HEIGHT = 3, 1.75
+#: letters on a line above the panels: what 7.16 in hold at 7 points
+LETTERS = 150
 #: colour of each named series
 COLOURS = {
     "forward": FORWARD,
@@ -38,7 +40,7 @@ def plot_unexplained(failure: ResidualDescription) -> Figure:
     lines = [
         line
         for finding in failure.findings
-        for line in textwrap.wrap(_plain(_said(finding.where, finding.sentence)), 125)
+        for line in textwrap.wrap(_plain(_said(finding.where, finding.sentence)), LETTERS)
     ]
     rows = math.ceil(len(panels) / COLUMNS)
     title = 0.14 * (len(lines) + 1)
@@ -52,16 +54,27 @@ def plot_unexplained(failure: ResidualDescription) -> Figure:
         for ax in axes.flat[len(panels) :]:
             ax.set_axis_off()
         for ax, (_, graph) in zip(axes.flat, panels, strict=False):
-            if graph.x_label.startswith("time (") or not any(
-                s.kind == "rest" for s in graph.series
-            ):
-                ax.legend(markerscale=3, fontsize=6, loc="best")
+            if not any(s.kind == "rest" for s in graph.series):
+                ax.legend(markerscale=2, fontsize=6, loc="best")
+            elif graph.x_label.startswith("time ("):  # points are everywhere: beside the title
+                place = {"loc": "lower right", "bbox_to_anchor": (1.02, 0.98)}
+                points = zip(*ax.get_legend_handles_labels(), strict=True)
+                named = [(h, n) for h, n in points if n in ("forward", "backward")]
+                ax.legend(
+                    *zip(*named, strict=True),
+                    markerscale=6,
+                    fontsize=6,
+                    ncols=2,
+                    handletextpad=0.0,
+                    columnspacing=0.6,
+                    **place,
+                )
         figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=7, parse_math=False)
     return figure
 
 
 def _said(where: str, sentence: str) -> str:
-    return f"{where}: {sentence}" if where else sentence
+    return f"{where}: {sentence}" if where else sentence[:1].upper() + sentence[1:]
 
 
 def _plain(text: str) -> str:

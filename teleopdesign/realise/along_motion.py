@@ -21,11 +21,12 @@ import numpy as np
 from ..blocks import Body
 from ..effects import SIGNALS, UNEXPLAINED, Effect, rubbing, touching
 from ..errors import ModelError
+from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from .friction_along import balance_friction, bound_friction, friction_of_acting_force, level_along
 from .ode_scan import ode_scan
 from .stages_along import COMMAND_LATE, RECORD_SHIFT, acting_along
-from .traced import Along, Probe, Traced, through
+from .traced import Along, LinkParameter, Probe, Traced, through
 
 #: signals of a law -> what a motion calls them, where they are known from the records alone
 _MEASURED = {
@@ -54,10 +55,13 @@ class Residual:
     moving: Traced
 
 
-def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) -> Residual:
+def residual_along(
+    body: Body, motion: Motion, wrt: Sequence[str | Probe | LinkParameter] = ()
+) -> Residual:
     """Residual force of the body's model along the motion.
 
-    wrt: parameters ("coulomb.level"), `RECORD_SHIFT` or probes whose tangents are carried along
+    wrt: parameters ("coulomb.level"), `RECORD_SHIFT`, probes or base parameters of an arm, whose
+        tangents are carried along
     returns: n samples smoothed as the motion is, not yet through the comparison's low-pass
     """
     along = measured_along(body, motion, wrt)
@@ -67,7 +71,7 @@ def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
     inertia = along.evaluate(body.symbols()["inertia"] * SIGNALS["acceleration"])
     needed = acting + interaction - inertia
     if motion.carried is not None:
-        needed = needed - along.constant(motion.carried)
+        needed = needed - _carried(motion, motion.carried, along)
     for effect in along.present(body.effects, "force"):
         needed = needed - _force(effect, along)
     contact = body.contact()
@@ -90,13 +94,26 @@ def residual_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) 
     return Residual(motion, residual, friction, acting, moving)
 
 
-def measured_along(body: Body, motion: Motion, wrt: Sequence[str | Probe] = ()) -> Along:
+def _carried(motion: Motion, force: Array, along: Along) -> Traced:
+    """The force (n,) that the links of an arm need, with its tangents by their base parameters."""
+    places = [(j, c.index) for j, c in enumerate(along.columns) if isinstance(c, LinkParameter)]
+    if not places or motion.links is None:
+        return along.constant(force)
+    tangent = np.zeros((len(along.columns), len(force)))
+    for j, index in places:
+        tangent[j] = motion.links.columns[index]
+    return Traced(force, tangent)
+
+
+def measured_along(
+    body: Body, motion: Motion, wrt: Sequence[str | Probe | LinkParameter] = ()
+) -> Along:
     """What is known along a motion from its records alone, with the body's parameters.
 
     wrt: as in `residual_along`
     """
     symbols = {**body.symbols(), RECORD_SHIFT: COMMAND_LATE}
-    columns = tuple(name if isinstance(name, Probe) else symbols[name] for name in wrt)
+    columns = tuple(symbols[name] if isinstance(name, str) else name for name in wrt)
     along = Along({}, body.numbers(), columns, motion.sample_time)
     readings = {
         SIGNALS[n]: np.asarray(getattr(motion, column), float) for n, column in _MEASURED.items()

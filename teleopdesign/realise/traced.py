@@ -77,6 +77,14 @@ class Probe:
 
 
 @dataclass(frozen=True)
+class LinkParameter:
+    """A base parameter of the arm that a body is a joint of; at: the body;  index: its number."""
+
+    at: str
+    index: int
+
+
+@dataclass(frozen=True)
 class Along:
     """Signals and values for laws along one motion of n samples.
 
@@ -86,7 +94,7 @@ class Along:
 
     signals: Mapping[sp.Symbol, Traced]
     values: Mapping[sp.Symbol, float]
-    columns: tuple[sp.Symbol | Probe, ...]
+    columns: tuple[sp.Symbol | Probe | LinkParameter, ...]
     step: float
 
     def with_signals(self, signals: Mapping[sp.Symbol, Traced]) -> Along:

@@ -1,9 +1,10 @@
 """The report of a diagnosis: one HTML page that needs nothing else; computes no physics."""
 
 from ..arguments import check_arguments
+from .arm import ArmPage, arm_page_of, write_arm_report
 from .page import Page, page_of
 from .write import write_report
 
-__all__ = ["Page", "page_of", "write_report"]
+__all__ = ["ArmPage", "Page", "arm_page_of", "page_of", "write_arm_report", "write_report"]
 
 check_arguments(globals(), __all__)

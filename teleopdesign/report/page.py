@@ -86,7 +86,7 @@ def page_of(
         title=experiment.title,
         folder=experiment.folder.name,
         verdict=verdict(diagnosis),
-        judged_on=judged_on(diagnosis),
+        judged_on=judged_on(experiment),
         shown="check records" if experiment.check_records else "fit records",
         before=diagnosis.before.check_error,
         after=diagnosis.after.check_error,
@@ -102,19 +102,19 @@ def page_of(
         candidate_steps=candidate_steps(diagnosis),
         candidates=candidate_rows(diagnosis),
         cannot_tell=cannot_tell(diagnosis),
-        soundness=_bounded(soundness),
-        unexplained=_bounded(unexplained),
-        next_steps=_bounded(next_steps),
+        soundness=bounded(soundness),
+        unexplained=bounded(unexplained),
+        next_steps=bounded(next_steps),
         records=record_rows(experiment),
         reading=experiment.reading,
         channels=channel_rows(experiment),
         bandwidth=diagnosis.prepared.bandwidth,
         bandwidth_stated=experiment.bandwidth is not None,
-        version=_version(),
+        version=version(),
     )
 
 
-def _version() -> str:
+def version() -> str:
     """Version of the package as installed."""
     try:
         return metadata.version("teleopdesign")
@@ -122,7 +122,7 @@ def _version() -> str:
         return "(not installed)"
 
 
-def _bounded(findings: Sequence[Finding]) -> tuple[Finding, ...]:
+def bounded(findings: Sequence[Finding]) -> tuple[Finding, ...]:
     """The findings with graphs of so few points that the page stays small."""
     return tuple(
         f if f.graph is None else dataclasses.replace(f, graph=_thinned(f.graph)) for f in findings

@@ -6,6 +6,7 @@ import math
 
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.rung import Rung
+from ..measurement.experiment import Experiment
 
 _SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 MINUS = "\u2212"
@@ -79,9 +80,9 @@ def step_name(rung: Rung) -> str:
     return " or ".join((rung.said, *map(str, rung.alternatives)))
 
 
-def judged_on(diagnosis: Diagnosis) -> str:
+def judged_on(experiment: Experiment) -> str:
     """What the errors are reported on."""
-    if diagnosis.experiment.check_records:
+    if experiment.check_records:
         return "records that were not fitted"
     return "blocks of the records that were held out of the fit"
 
@@ -90,7 +91,7 @@ def verdict(diagnosis: Diagnosis) -> str:
     """The verdict in a sentence or two."""
     before, after = diagnosis.before.check_error, diagnosis.after.check_error
     floor, left = percent(diagnosis.floor.value), number(diagnosis.left, 2)
-    fell = f"the force error on {judged_on(diagnosis)} falls from {percent(before)}"
+    fell = f"the force error on {judged_on(diagnosis.experiment)} falls from {percent(before)}"
     fell += f" to {percent(after)}"
     added = [step_name(r) for r in diagnosis.rungs if r.added is not None]
     more = diagnosis.more_is_missing

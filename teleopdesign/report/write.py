@@ -58,7 +58,12 @@ def write_report(
 
 def render(page: Page, figures: Figures, data: dict[str, Any]) -> str:
     """The page as HTML; every text of it is escaped."""
-    template = _environment().get_template("report.html.jinja")
+    return rendered("report.html.jinja", page, figures, data)
+
+
+def rendered(name: str, page: object, figures: object, data: dict[str, Any]) -> str:
+    """A page by the template of that name, with what is embedded in it; its texts are escaped."""
+    template = _environment().get_template(name)
     script = figure_script()
     text = template.render(
         page=page,

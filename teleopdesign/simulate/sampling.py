@@ -12,7 +12,7 @@ from ..errors import ModelError, did_you_mean
 @checked
 @dataclass(frozen=True)
 class Sampling:
-    """How the computer sees and acts.
+    """How a computer samples positions and when its commands act.
 
     period: s;  delay: from a sample to the change of the command, s
     encoder_step: m or rad, 0: none

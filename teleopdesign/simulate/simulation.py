@@ -105,7 +105,7 @@ def simulate(
     estimate_error: bool = False,
     jit: bool = True,
 ) -> Simulation:
-    """Simulate from t = 0.
+    """Simulate a diagram from t = 0: all its signals over time.
 
     inputs: signals from outside (SI): a number, a function of time, or samples (those that the
         computer reads: one a sample; others: one each half step); 0 where not given

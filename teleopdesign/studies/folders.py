@@ -27,7 +27,7 @@ from .side_by_side import Unit
 from .versions import versions
 
 if TYPE_CHECKING:
-    from ..diagnose import Diagnosis
+    from ..diagnose import ArmDiagnosis, Diagnosis
 
 #: file of finished folders within the output folder
 JOURNAL = "journal.part"
@@ -143,9 +143,11 @@ def answer_files(folders: Sequence[Path], output: Path) -> dict[Path, Path]:
     return names
 
 
-def _answered(experiment: str, files: Mapping[str, Path], search: FolderSearch) -> Diagnosis:
+def _answered(
+    experiment: str, files: Mapping[str, Path], search: FolderSearch
+) -> Diagnosis | ArmDiagnosis:
     """The diagnosis of a folder, whose answer is written."""
-    from ..diagnose import find_missing
+    from ..diagnose import find_missing, find_missing_in_arm
     from ..diagnose.answer import write_answer
     from ..diagnose.search_plan import PLAN, QUICK
     from ..measurement import load_experiment
@@ -154,6 +156,12 @@ def _answered(experiment: str, files: Mapping[str, Path], search: FolderSearch) 
     recorded = load_experiment(experiment)
     model = Model.from_experiment(recorded, search.known)
     plan = QUICK if search.quick else PLAN
+    if recorded.arm is not None:
+        from ..diagnose.arms.answer import write_arm_answer
+
+        of_arm = find_missing_in_arm(recorded, model, plan=plan, among=search.among)
+        write_arm_answer(of_arm, files[experiment])
+        return of_arm
     diagnosis = find_missing(recorded, model, plan=plan, among=search.among)
     write_answer(diagnosis, files[experiment])
     return diagnosis

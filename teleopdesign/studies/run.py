@@ -62,7 +62,7 @@ def study(
     workers: processes of this machine; None: as many as it has cores, none where that is as fast
     scheduler: address of a Dask cluster, "tcp://..."; the points are computed there
     out: netCDF file; finished points are kept beside it, and the same study goes on from there
-    progress: is told now and then, such as `print`
+    progress: called with a line of text now and then, such as `print`
     raises ModelError: an unknown parameter or measure, a model that cannot be sent
     raises ExperimentError: a file that cannot be written or is of another study, a cluster that
         cannot be reached

@@ -46,7 +46,7 @@ class Samples(ByValue):
 
 
 def latin_hypercube(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
-    """Points of which each parameter's range, cut into `samples` slices, has one in each slice.
+    """Points that fill ranges evenly: one in each of `samples` equal slices of every range.
 
     ranges: parameter -> (low, high), (low, high, step) or a distribution of `scipy.stats`
     raises ModelError: no range, a range without width, no whole number of points above 0
@@ -68,14 +68,14 @@ def sobol(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
 
 
 def random_samples(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
-    """Points drawn independently; see `latin_hypercube`."""
+    """Points at random, each independent of the others; arguments as of `latin_hypercube`."""
     _check_count("random_samples", samples)
     unit = np.random.default_rng(seed).random((samples, len(_of(ranges))))
     return _placed(ranges, unit, "random", seed)
 
 
 def sensitivity_samples(ranges: Mapping[str, Any], base: int, *, seed: int = 0) -> Samples:
-    """base (k + 2) points in k parameters, from which Sobol indices are estimated.
+    """Points for estimates of Sobol indices: base (k + 2) points in k parameters.
 
     Each of `base` pairs of points of a Sobol sequence of 2 k dimensions gives its two points and k
     between them, in each of which one parameter is the second point's. Saltelli et al., Computer

@@ -22,7 +22,7 @@ VIEWS = {
     "acceleration": ("acceleration", "acceleration", "acceleration"),
     "force": ("actuator_force", "force", "actuator force"),
     "direction": ("direction", "", "direction"),
-    "time since reversal": ("since_reversal", "time", "time since it set off"),
+    "time since reversal": ("since_reversal", "time", "time since reversal"),
 }
 #: most points of a cloud
 CLOUD = 3000
@@ -32,8 +32,8 @@ WORDS = {
     "actuator_force": "actuator force",
     "load": "size of the actuator force",
     "interaction_force": "interaction force",
-    "since_reversal": "time since it set off",
-    "travel": "travel since it set off",
+    "since_reversal": "time since reversal",
+    "travel": "travel since reversal",
 }
 LACKS = {
     "force": "missing force",
@@ -50,7 +50,8 @@ def label(words: str, quantity: str, axis: str, largest: float = np.inf) -> tupl
     if not quantity:
         return 1.0, words
     if quantity == "acceleration" or not np.isfinite(largest):
-        return 1.0, f"{words} ({unit_of(quantity, axis).replace('*', ' ')})"
+        unit = unit_of(quantity, axis).replace("*", " ").replace("^2", "²")
+        return 1.0, f"{words} ({unit})"
     factor, unit = unit_for(quantity, axis, largest)
     return factor, f"{words} ({unit})"
 

@@ -5,6 +5,7 @@ import re
 import signal
 import subprocess
 import sys
+from functools import partial
 
 import pytest
 
@@ -27,6 +28,8 @@ def served(tmp_path, request):
         stderr=subprocess.STDOUT,
         text=True,
         env={k: v for k, v in os.environ.items() if k != FOLDER} | {"PYTHONUNBUFFERED": "1"},
+        # tests that run in the background of a shell are deaf to Ctrl-C: the page is not
+        preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
     )
     try:
         assert process.stdout is not None
@@ -36,5 +39,9 @@ def served(tmp_path, request):
         yield address.group(), tmp_path
     finally:
         process.send_signal(signal.SIGINT)
-        process.wait(30)
-        process.stdout.close()
+        try:
+            process.wait(30)
+        finally:
+            process.kill()  # no server stays behind
+            process.wait()
+            process.stdout.close()

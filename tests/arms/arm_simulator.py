@@ -8,6 +8,7 @@ follow from them: friction and hidden effects are added at the motors.
 from __future__ import annotations
 
 import gzip
+import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -135,6 +136,22 @@ def path(generator, k, time, *, harmonics=5, base=0.1):
 # ---- hidden effects: force that the motor gives beside what links, Coulomb and viscous need
 
 
+#: effects that an arm may hide at one joint
+HIDDEN = (
+    "stribeck",
+    "shear_thinning",
+    "quadratic_drag",
+    "load_dependent_friction",
+    "coulomb_asymmetry",
+    "viscous_asymmetry",
+    "position_dependent_friction",
+    "cogging",
+    "spring",
+    "bias",
+    "presliding",
+)
+
+
 def hidden_force(name, strength, x, v, load, friction, step):
     """Force of a hidden effect (n,) at a joint; friction: its Coulomb level; load: of its links.
 
@@ -156,12 +173,16 @@ def hidden_force(name, strength, x, v, load, friction, step):
         return acting - load - level
     if name == "coulomb_asymmetry":
         return strength * 0.5 * friction * (v > 0)
+    if name == "viscous_asymmetry":
+        return strength * 1.0 * friction * v * (v > 0)
+    if name == "bias":
+        return np.full_like(v, strength * 0.4 * friction)
     if name == "position_dependent_friction":
         return strength * 0.5 * friction * np.sin(2 * np.pi * x / 0.5) * sign
     if name == "cogging":
         return strength * 0.5 * friction * np.sin(2 * np.pi * x / 0.15 + 0.4)
     if name == "spring":
-        return strength * 3.0 * friction * (x - 0.1)
+        return strength * 3.0 * friction * x
     if name == "presliding":
         z, out = float(sign[0]), np.empty_like(v)
         for i, move in enumerate(v * step):  # Dahl: exact over a step of constant velocity
@@ -176,9 +197,10 @@ def write_experiment(folder: Path, arm, generator, hidden=None, *, seconds=30.0,
     """A folder with URDF, experiment.toml and two records; hidden: (name, joint number, strength).
 
     The user's model has the true kinematics, zero inertial values, Coulomb and viscous friction.
+    truth.json says what is hidden, and rms of its force over that of its joint on the last record.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    k = arm.count
+    k, size = arm.count, 0.0
     for use in ("fit", "check"):
         n = int(seconds * rate)
         fine = (np.arange(n * PARTS) + 0.5) / (rate * PARTS)
@@ -188,7 +210,7 @@ def write_experiment(folder: Path, arm, generator, hidden=None, *, seconds=30.0,
         motor = load + arm.coulomb[:, None] * np.sign(v) + arm.viscous[:, None] * v
         if hidden is not None:
             name, j, strength = hidden
-            motor[j] += hidden_force(
+            force = hidden_force(
                 name,
                 strength,
                 q_fine[j],
@@ -197,6 +219,8 @@ def write_experiment(folder: Path, arm, generator, hidden=None, *, seconds=30.0,
                 arm.coulomb[j],
                 1 / (rate * PARTS),
             )
+            motor[j] += force
+            size = float(np.sqrt(np.mean(force**2) / np.mean(motor[j] ** 2)))
         command = motor.reshape(k, n, PARTS).mean(axis=2)
         noise = 0.01 * np.std(command, axis=1)
         command += noise[:, None] * generator.normal(size=(k, n))
@@ -210,6 +234,7 @@ def write_experiment(folder: Path, arm, generator, hidden=None, *, seconds=30.0,
         (folder / f"{use}.csv.gz").write_bytes(gzip.compress((text + "\n").encode(), 4, mtime=0))
     (folder / "arm.urdf").write_text(urdf(arm))
     (folder / "experiment.toml").write_text(_toml(noise))
+    (folder / "truth.json").write_text(json.dumps({"hidden": hidden, "size": size}))
     return folder
 
 

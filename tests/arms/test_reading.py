@@ -158,11 +158,16 @@ def test_an_experiment_on_an_arm_pickles_and_says_itself(folder):
     assert pickle.loads(pickle.dumps(model)).parameters == model.parameters
 
 
-@pytest.mark.parametrize("command", ["describe", "next"])
-def test_a_command_that_knows_no_arms_says_so_in_one_line(folder, capsys, command):
-    assert main([command, str(folder)]) == 2
+@pytest.mark.parametrize("command", ["describe", "next", "design", "passivity", "export --to mjcf"])
+def test_a_command_on_one_joint_asks_for_it_in_one_line(folder, capsys, command):
+    assert main([*command.split(), str(folder)]) == 2
     said = capsys.readouterr().err.strip().splitlines()
-    assert "found an arm" in said[-1]
+    assert "joint1, joint2: choose one with --body" in said[-1]
+
+
+def test_a_joint_that_is_not_there_is_told_the_nearest(folder, capsys):
+    assert main(["design", str(folder), "--body", "joint3"]) == 2
+    assert 'no joint "joint3"' in capsys.readouterr().err
 
 
 def test_the_signals_of_an_arm_are_checked_and_what_is_not_asked_is_said(folder, capsys):

@@ -9,6 +9,7 @@ from diagnose.own_cases import FEW
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.candidates import candidates, measured_at, started
+from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.fit import estimate, free_parameters
 from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.prepare import prepare
@@ -85,6 +86,34 @@ def test_a_channel_says_that_its_force_was_measured(experiment, tmp_path):
     path.write_text(path.read_text().replace("measured = true", 'measured = "yes"'))
     with pytest.raises(ExperimentError, match="measured.*expected true or false"):
         load_experiment(path.parent)
+
+
+def test_a_power_of_the_speed_waits_for_dry_friction(model):
+    """A power that is steep near rest stands for both, and dry friction would have no name."""
+    whole = replace(model, known=EFFECTS)
+    bare = whole.without_effect("coulomb")
+    assert "shear_thinning" in names(whole)
+    assert "shear_thinning" not in names(bare) and "coulomb" in names(bare)
+    alone = replace(bare, known={"shear_thinning": EFFECTS["shear_thinning"]})
+    assert "shear_thinning" in names(alone), "nothing that it waits for is sought"
+
+
+def test_elements_that_may_change_places_go_softest_first(model, prepared):
+    """The same hysteresis; those that may be rigid come last, and those that are told first."""
+    level = model.parameters["device.coulomb.level"].value
+    stiff, soft = 1e7, 1e3
+    values = {"stiffness_1": stiff, "stiffness_2": soft, "level_2": 0.5 * level}
+    values |= {"stiffness_3": 3 * soft, "level_3": 0.2 * level, "stiffness_4": 1.0, "level_4": 0.0}
+    mixed = replace(model, known=EFFECTS).with_effect("maxwell_slip", values=values)
+    ordered = mixed.in_order()
+    there = {n.rpartition(".")[2]: v.value for n, v in ordered.parameters.items() if "slip" in n}
+    assert [there[f"stiffness_{i}"] for i in (1, 2, 3)] == [soft, 3 * soft, stiff]
+    assert there["level_2"] == pytest.approx(0.2 * level)
+    assert there["level_3"] == pytest.approx(0.3 * level), "what the others left of the level"
+    assert ordered.in_order() is ordered
+    errors = [force_error(one, prepared.of("fit")) for one in (mixed, ordered)]
+    # the same law: only the order of its sum differs
+    assert errors[0] == pytest.approx(errors[1], rel=1e-9)
 
 
 def test_a_second_shape_of_friction_is_no_candidate(model):

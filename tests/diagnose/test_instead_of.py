@@ -5,6 +5,7 @@ bristle turns each loop with a force that leads the position, as a damper's does
 """
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from diagnose.made_records import dahl, write_made
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.answer import answer, write_answer
 from teleopdesign.diagnose.answers import load_answer, restored
+from teleopdesign.diagnose.decision import objection, superfluous_beside
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.search import at_stated
@@ -138,3 +140,39 @@ def test_a_search_that_follows_starts_from_the_users_values_of_what_is_still_the
         again.parameters["device.presliding.stiffness"]
         == (diagnosis.model.parameters["device.presliding.stiffness"])
     )
+
+
+def driven_to_its_bound(found, relative):
+    """The model's damping at its bound beside a candidate; before, with such a relative error."""
+    fit, name = found[1].before, "device.viscous.damping"
+    value = fit.model.parameters[name]
+    sure = replace(value, stderr=relative * abs(value.value))
+    model = replace(fit.model, bodies=fit.model.bodies).with_values({name: sure})
+    candidate = next(r for r in found[1].last.ranked if r.counts)
+    there = replace(candidate.fit, at_bound=(name,))
+    return replace(fit, model=model, at_bound=()), replace(candidate, fit=there)
+
+
+def test_a_parameter_that_hardly_differs_from_absence_bars_no_candidate(found):
+    base, candidate = driven_to_its_bound(found, 0.1)
+    assert "viscous.damping to a bound" in objection(base, candidate, found[1].floor)
+    base, candidate = driven_to_its_bound(found, 0.7)
+    assert "viscous.damping to a bound" not in objection(base, candidate, found[1].floor)
+
+
+def test_what_ends_at_its_absence_gives_way_before_what_is_only_open(found):
+    """Two are no longer told beside a candidate; one of them is gone."""
+    names = ("device.coulomb.level", "device.viscous.damping")
+    fit, candidate = found[1].before, found[1].rungs[1].added
+    sure, unsure = (
+        fit.model.with_values(
+            {n: replace(fit.model.parameters[n], value=1.0, stderr=e) for n in names}
+        )
+        for e in (0.01, 2.0)
+    )
+    base = replace(fit, model=sure, at_bound=())
+    open_now = replace(fit, model=unsure, at_bound=())
+    assert superfluous_beside(base, open_now, candidate) is None, "either may be the one"
+    gone = unsure.with_values({names[1]: replace(unsure.parameters[names[1]], value=0.0)})
+    ended = replace(fit, model=gone, at_bound=(names[1],))
+    assert superfluous_beside(base, ended, candidate).effect.name == "viscous"

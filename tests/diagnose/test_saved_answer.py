@@ -206,6 +206,16 @@ def test_any_body_comes_back_even_where_its_effects_are_absent(name):
     assert_same(model_from(data, EFFECTS, file="a.json", key="models"), model)
 
 
+@pytest.mark.parametrize(("key", "wrong"), [("value", "1"), ("fixed", None), ("stderr", "small")])
+def test_a_wrong_entry_of_a_records_shift_is_one_line_with_its_place(key, wrong):
+    model = Model({"device": Body("prismatic", {"inertia": Value(0.2)})}, EFFECTS)
+    data = model_data(model.with_record_shift({"device": Value(1e-3)}))
+    data["record_shift"]["device"][key] = wrong
+    place = rf"^a\.json: models\.record_shift\.device\.{key}: found"
+    with pytest.raises(ExperimentError, match=place):
+        model_from(data, EFFECTS, file="a.json", key="models")
+
+
 MISTAKES = {
     "no JSON": ("not json", "line 1: no JSON"),
     "no text": (b"\xff\xfe\x00", "not UTF-8 text"),

@@ -13,10 +13,11 @@ from teleopdesign.diagnose.answers.saved import load_answer
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.conclusion import doubtful
 from teleopdesign.diagnose.diagnosis import SetAside, Untold
-from teleopdesign.diagnose.identifiability import doubt
+from teleopdesign.diagnose.identifiability import doubt, is_identifiable
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.plausibility import implausible_effects
-from teleopdesign.diagnose.untold import best_product, known_together
+from teleopdesign.diagnose.products import best_product
+from teleopdesign.diagnose.untold import known_together
 from teleopdesign.effects import EFFECTS
 
 
@@ -60,6 +61,32 @@ def test_an_effect_whose_strength_no_error_tells_from_absence_is_doubtful(diagno
     unsure = (*rungs[:-1], replace(rungs[-1], fit=with_errors(fit, 1.5)))
     rung, why = doubtful(unsure, prepared_case)
     assert rung.added == added and "not told from absence" in why
+
+
+def in_a_valley(fit, little):
+    """The fit with both parameters of `stribeck` alike in the residual, up to a little."""
+    level, speed = (fit.free.index(f"device.stribeck.{n}") for n in PAIR)
+    values = [fit.model.parameters[fit.free[i]].value for i in (level, speed)]
+    noise = np.random.default_rng(3).standard_normal(len(fit.jacobian))
+    column = fit.jacobian[:, level] * values[0] / fit.scale[level]
+    other = 0.5 * column + little * np.linalg.norm(column) / np.linalg.norm(noise) * noise
+    jacobian = fit.jacobian.copy()
+    jacobian[:, speed] = other * fit.scale[speed] / values[1]
+    return replace(fit, jacobian=jacobian)
+
+
+PAIR = ("extra_static_level", "stribeck_velocity")
+
+
+def test_an_effect_whose_product_is_sure_is_there_though_each_parameter_is_open(diagnosis):
+    added, base = stribeck_of(diagnosis), diagnosis.before
+    fit = in_a_valley(with_errors(diagnosis.after, 1.2), 0.01)
+    assert doubt(fit, added) == ""
+    assert is_identifiable(fit, base)
+    assert "extra_static_level" in known_together(fit, added)
+    wide = in_a_valley(with_errors(diagnosis.after, 1.2), 0.5)
+    assert "extra_static_level" in doubt(wide, added), "no product is sure there"
+    assert not is_identifiable(wide, base)
 
 
 def test_what_was_set_aside_or_is_untold_stands_in_text_and_answer(diagnosis, experiment, tmp_path):

@@ -70,3 +70,36 @@ def test_a_rigid_contact_behind_a_spring_is_the_spring_that_slides():
     points = (3e-4, -1e-4, 2e-4, -3e-4)
     soft, hard = (Cycle(Dahl(1.0, 1e4), (e,), points, rounds=20).energy for e in (rigid, plain))
     assert soft == pytest.approx(hard, rel=1e-4)  # the contact gives by f/sigma = 0.2 nm
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: Dahl(1.0, -1e3), "Dahl: stiffness = -1000, expected above 0"),
+        (lambda: Dahl(0.0, 1e3), "Dahl: level = 0, expected above 0"),
+        (lambda: Spring(1.0, np.inf), "Spring: stiffness = inf"),
+        (lambda: Coulomb(-0.5), "Coulomb: level = -0.5"),
+        (lambda: available_storage(Dahl(1.0, 1e3), CABLE, points=1), "expected 3 points"),
+        (lambda: available_storage(Dahl(1.0, 1e9), [Spring(1.0, 1e-3)]), "would take minutes"),
+    ],
+)
+def test_what_is_no_friction_or_takes_for_ever_is_said_in_one_line(make, words):
+    with pytest.raises(ModelError) as caught:
+        make()
+    assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_round_that_springs_still_feed_counts_for_no_more_than_all_rounds():
+    """Ten times too short a stroke for a bristle to forget its start within three rounds."""
+    rng = np.random.default_rng(1)
+    for _ in range(200):
+        friction = (Spring(rng.uniform(0.5, 2.0), 10 ** rng.uniform(2, 4)),)
+        points = tuple(float(x) for x in 1e-4 * rng.standard_normal(4))
+        cycle = Cycle(Dahl(1.0, 1e3), friction, points, rounds=3)
+        forces, here, total = [0.0, 0.0], points[-1], 0.0
+        for point in points * 3:
+            for k, (element, sign) in enumerate(((cycle.compensator, 1), (friction[0], -1))):
+                forces[k], work = element.leg(forces[k], point - here)
+                total += sign * work
+            here = point
+        assert cycle.energy <= max(total, 0.0) + 1e-15

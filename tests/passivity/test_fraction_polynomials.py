@@ -24,6 +24,7 @@ from teleopdesign.passivity.checker.polynomials import (
     square_free,
     value,
 )
+from teleopdesign.passivity.checker.positive_roots import are_surely_coprime, has_positive_root
 from teleopdesign.passivity.linear import polynomials as by_sympy
 from teleopdesign.passivity.linear.impedance import impedance
 from teleopdesign.passivity.linear.positive_real import (
@@ -144,3 +145,23 @@ def test_a_square_free_polynomial_has_each_root_once(given_roots):
     plain = square_free(of_roots(given_roots))
     assert len(plain) - 1 == len({r for r, _ in given_roots})
     assert greatest_common_divisor(plain, derivative(plain)) == [1]
+
+
+@settings(max_examples=200)
+@given(pairs, st.sampled_from([1, 3, 10**6, 10**-6]))
+def test_a_positive_root_is_one_by_construction(given_pairs, scale):
+    """Of simple roots over twelve decades: Descartes' rule with halved intervals."""
+    unlike = {(a, b): (a * Fraction(scale), b * Fraction(scale)) for a, b in given_pairs if a or b}
+    p = of_pairs(unlike.values())
+    assert has_positive_root(p) == any(a > 0 and not b for a, b in unlike) if len(p) > 1 else True
+
+
+@given(rows.filter(lambda p: len(p) > 1), rows.filter(bool), rows.filter(bool))
+def test_what_is_surely_coprime_shares_no_factor(common, p, q):
+    assert not are_surely_coprime(multiply(common, p), multiply(common, q))
+    if are_surely_coprime(p, q):
+        assert sp.gcd(*(by_sympy_polynomial(x) for x in (p, q))).degree() == 0
+
+
+def by_sympy_polynomial(p):
+    return sp.Poly([sp.Rational(c) for c in reversed(p)], by_sympy.X, domain="QQ")

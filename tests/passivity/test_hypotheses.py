@@ -19,6 +19,7 @@ from teleopdesign.passivity import Search, diagram_claims
 from teleopdesign.passivity.identified import identified
 from teleopdesign.passivity.theorems import THEOREMS, Question, Wall, settle
 from teleopdesign.passivity.theorems._hypotheses import POSITIVE, hypotheses_of, under
+from teleopdesign.passivity.theorems.compliant_transmission import free_motion
 from teleopdesign.passivity.theorems.velocity_compensation import velocity_compensation
 from teleopdesign.simulate import Sampling
 
@@ -85,6 +86,28 @@ def test_outside_of_its_hypotheses_a_theorem_proves_nothing(theorem, function):
             assert "\n" not in str(caught.value)
             tried += 1
     assert tried >= 3 * sum(bool(h.outside) for h in hypotheses_of(function).values())
+
+
+@pytest.mark.parametrize(("theorem", "function"), FUNCTIONS, ids=NAMES)
+def test_a_theorem_answers_or_refuses_numbers_of_any_size(theorem, function):
+    """Over sixty decades, each its own, and beyond: no traceback, no warning, no file refused."""
+    rng = random.Random(11)
+    for k in range(4 if function is free_motion else 12):
+        spread = (29, 12, 6, 320)[k % 4]
+        numbers = {
+            name: 10.0 ** rng.uniform(-spread, min(spread, 300))
+            if name not in GIVEN
+            else GIVEN[name]
+            for name in hypotheses_of(function)
+        }
+        for name in {"late", "paths"} & {*numbers}:
+            numbers[name] = rng.choice([0, 1, 9])
+        try:
+            claim = function(**numbers)
+        except ModelError as problem:
+            assert "\n" not in str(problem)
+            continue
+        assert all(c.check() for c in getattr(claim.verdict, "certificates", ()))
 
 
 def test_a_function_without_a_hypothesis_for_an_argument_is_refused_where_it_is_defined():

@@ -18,6 +18,7 @@ from teleopdesign.passivity import (
     mobility_excess,
     positive_real,
     read_record,
+    two_port,
     write_record,
 )
 from teleopdesign.realise.lti import S
@@ -205,19 +206,42 @@ def test_state_space_and_transfer_function_agree(entries):
 @pytest.mark.parametrize(
     ("system", "message"),
     [
-        ("s + b", "values are needed for b"),
+        (S + sp.Symbol("b"), "values are needed for b"),
         (sp.exp(-S), "not a rational function of s"),
         (sp.sqrt(S), "not a rational function of s"),
         (float("nan"), "not finite|finite real number"),
         (control.tf([1], [1, 0.5], 0.001), "discrete"),
         (control.ss([[-1.0]], [[1.0, 0.0]], [[1.0]], [[0.0, 0.0]]), "found 2 and 1"),
         (sp.Matrix([1]), "expected an expression in s"),
-        ("s +", "expected an expression in s"),
+        ("s + 1", "expected an expression in s"),
+        ((S + 1) ** 100000, "of degree 100000 in s, expected at most"),
+        (sp.prod([S + k for k in range(41)]), "of degree 41 in s, expected at most"),
     ],
 )
 def test_what_is_no_impedance_is_one_clear_line(system, message):
     with pytest.raises(ModelError, match=message):
         positive_real(system)
+
+
+READERS = (positive_real, impedance, lambda x: two_port([[x, 0], [0, 1]]))
+
+
+@pytest.mark.parametrize("accept", READERS, ids=["claim", "impedance", "two-port"])
+def test_a_text_is_refused_and_not_run(accept, capfd):
+    with pytest.raises(ModelError, match="expected an expression in s"):
+        accept('__import__("os").system("echo run")')
+    assert not capfd.readouterr().out
+
+
+def test_numbers_of_sixteen_digits_are_settled_in_seconds_and_what_is_proved_is_accepted():
+    """Twenty-six lags in series with nothing to cancel: remainders would have 10 000 digits."""
+    rng = np.random.default_rng(1)
+    for number, status in ((18, "proved"), (26, "evidence")):
+        lags = [1 / (float(a) * S + float(b)) for a, b in rng.uniform(0.1, 1, (number, 2))]
+        claim = positive_real(sum(lags))
+        assert claim.status == status and claim.holds
+        assert all(c.check() for c in getattr(claim.verdict, "certificates", ()))
+        assert positive_real(sum(lags) - 1).status == "refuted"
 
 
 def test_a_wave_is_the_response_of_a_stable_system_from_rest():

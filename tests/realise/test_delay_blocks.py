@@ -89,14 +89,16 @@ def test_a_jump_passes_an_analog_delay_as_a_jump():
 @given(samples=st.integers(1, 40))
 @settings(max_examples=8, deadline=None)
 def test_whole_samples_are_exact_in_a_computer(samples):
-    found = simulate(held(samples * 1e-3, analog=False), duration=0.08, inputs={"f": 1.0})
+    diagram = held(samples * 1e-3, analog=False)
+    found = simulate(diagram, duration=0.08, inputs={"f": 1.0}, jit=False)
     x, x_late = found["x"].values, found["x_late"].values
     assert not x_late[:samples].any()
     np.testing.assert_array_equal(x_late[samples:], x[: len(x) - samples])
 
 
 def test_between_samples_a_computers_delay_lies_on_the_line_that_joins_them():
-    found = simulate(held(5.25e-3, analog=False), duration=0.05, inputs={"f": 1.0})
+    diagram = held(5.25e-3, analog=False)
+    found = simulate(diagram, duration=0.05, inputs={"f": 1.0}, jit=False)
     x = found["x"].values
     between = 0.75 * x[1:-5] + 0.25 * x[:-6]
     np.testing.assert_allclose(found["x_late"].values[6:], between, rtol=1e-14)
@@ -186,6 +188,7 @@ def test_python_control_has_a_pade_approximation_where_its_order_is_asked_for():
         duration=0.5,
         inputs={"f": lambda t: 1 - np.cos(20 * t)},
         computer="continuous",
+        jit=False,
     )
     response = control.input_output_response(
         system, t, force, solve_ivp_kwargs={"rtol": 1e-10, "atol": 1e-12}

@@ -32,7 +32,8 @@ def test_a_run_does_not_depend_on_those_before_it():
 def test_other_wiring_or_names_of_the_same_laws_are_another_structure():
     one = diagram()
     turned = haptic_interface(one.block("Z_M").body)
-    assert not np.array_equal(simulate(one, **RUN)["L"], simulate(turned, **RUN)["L"])
+    bare = simulate(turned, **RUN, jit=False)
+    assert not np.array_equal(simulate(one, **RUN)["L"], bare["L"])
     assert "R_A" in simulate(one, **RUN).data
 
 

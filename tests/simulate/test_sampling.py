@@ -46,6 +46,7 @@ def test_a_command_is_held_for_a_period():
         motion={"L": motion},
         computer=Sampling(period=PERIOD),
         every_step=True,
+        jit=False,
     )
     time = simulation["time"].values
     middles = (time / PERIOD) % 1.0

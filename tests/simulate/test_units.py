@@ -31,7 +31,8 @@ def test_signals_have_the_units_of_their_axis(axis, force, position):
 
 def test_a_simulation_writes_these_units_beside_its_signals():
     diagram = on("prismatic")
-    simulation = simulate(diagram, duration=0.01, motion={"L": sine(amplitude=1e-3, frequency=5.0)})
+    motion = {"L": sine(amplitude=1e-3, frequency=5.0)}
+    simulation = simulate(diagram, duration=0.01, motion=motion, jit=False)
     unit = signal_units(diagram)
     assert len(simulation.data) > 5
     for name, signal in simulation.data.items():

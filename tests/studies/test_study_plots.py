@@ -3,9 +3,11 @@
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 import teleopdesign as td
 from teleopdesign.errors import ModelError
+from teleopdesign.plot.study_data import words
 
 COLUMNS = {"x": (-np.pi, np.pi), "y": (-np.pi, np.pi), "z": (-np.pi, np.pi)}
 
@@ -140,3 +142,26 @@ def test_points_drawn_together_are_shown_over_each_parameter():
 def test_figures_that_the_axes_do_not_allow_are_refused(gridded, call, text):
     with pytest.raises(ModelError, match=text):
         call(gridded.plot)
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("tracking_error", "tracking error"),
+        ("rms_R_FF", r"rms $R_{\mathrm{FF}}$"),
+        ("growth_X_s", "growth $X_{s}$"),
+        ("peak_X_m_velocity", r"peak $\dot X_{m}$"),
+        ("E", "E"),
+        ("cancelled friction $f_D$", "cancelled friction $f_D$"),
+        ("C_s.dahl.level", "C_s.dahl.level"),
+    ],
+)
+def test_a_label_shows_signals_as_symbols_and_leaves_formulas_and_paths(name, shown):
+    assert words(name) == shown
+
+
+def test_a_figure_has_the_house_font_also_where_matplotlib_writes_it(gridded):
+    """A generic family would be looked up when the figure is written, by whatever style is then."""
+    figure = gridded.plot.curves(over="x", at={"z": 1.0})
+    texts = [t for t in figure.findobj(Text) if t.get_text()]
+    assert {t.get_fontfamily()[0] for t in texts} == {"STIXGeneral"}

@@ -10,20 +10,26 @@ from ...blocks import Body, Value, with_block_effects
 from ...blocks.described import body_of
 from ...effects import Effect
 from ...errors import ExperimentError, did_you_mean, quoted
-from ...measurement.description import bodies_from
+from ...measurement.arm_description import joints_from
+from ...measurement.description import ONE_BODY, TWO_BODIES, bodies_from
 from ...measurement.toml_table import Table
 from ...model import Model
 from ...realise.stages_along import RECORD_SHIFT
 
+#: key of an arm's base parameters beside its bodies
+LINKS = "links"
+
 
 def model_data(model: Model) -> dict[str, Any]:
-    """The bodies by their places, and the shifts of their records; SI, with units."""
+    """The bodies by their places, the shifts of their records, an arm's base parameters; SI."""
     data: dict[str, Any] = {place: body_data(body) for place, body in model.bodies.items()}
     if model.record_shift:
         data[RECORD_SHIFT] = {
             place: {"value": late.value, "unit": "s", "fixed": late.fixed} | _error(late)
             for place, late in model.record_shift.items()
         }
+    if model.links:
+        data[LINKS] = list(model.links)
     return data
 
 
@@ -67,12 +73,25 @@ def model_from(
     bodies = {}
     effects = with_block_effects(known)
     shifts = Table(content, file, key).table(RECORD_SHIFT) if RECORD_SHIFT in content else None
-    content = {place: body for place, body in content.items() if place != RECORD_SHIFT}
-    for place, described in bodies_from(Table(content, file, key)).items():
+    links = _links_from(content.get(LINKS, []), f"{file}: {key}.{LINKS}")
+    content = {n: body for n, body in content.items() if n not in (RECORD_SHIFT, LINKS)}
+    of_arm = bool(content) and not content.keys() & {*ONE_BODY, *TWO_BODIES}
+    read = joints_from if of_arm else bodies_from
+    for place, described in read(Table(content, file, key)).items():
         for name in described.effects:
             known_effect(name, effects, where=f"{described.where}.effects")
         bodies[place] = body_of(described, effects)
-    return Model(bodies, known, _shifts_from(shifts) if shifts is not None else {})
+    model = Model(bodies, known, _shifts_from(shifts) if shifts is not None else {})
+    return model.with_links(links)
+
+
+def _links_from(entry: object, where: str) -> tuple[float, ...]:
+    """The base parameters of an arm, in SI."""
+    if isinstance(entry, list) and all(
+        isinstance(x, int | float) and not isinstance(x, bool) and math.isfinite(x) for x in entry
+    ):
+        return tuple(map(float, entry))
+    raise ExperimentError(f"{where}: expected a list of finite numbers")
 
 
 def _shifts_from(shifts: Table) -> dict[str, Value]:
@@ -81,8 +100,8 @@ def _shifts_from(shifts: Table) -> dict[str, Value]:
     return {
         place: Value(
             table.number("value"),
-            table.content.get("fixed", False),
-            table.content.get("stderr", math.nan),
+            table.flag("fixed", False),
+            math.nan if (error := table.number_or_none("stderr")) is None else error,
         )
         for place, table in tables.items()
     }

@@ -48,11 +48,16 @@ class _Steps:
 
 
 def restored(
-    saved: SavedAnswer, experiment: Experiment, known: Mapping[str, Effect] = EFFECTS
+    saved: SavedAnswer,
+    experiment: Experiment,
+    known: Mapping[str, Effect] = EFFECTS,
+    *,
+    records: Prepared | None = None,
 ) -> Diagnosis:
     """The diagnosis in an answer, with its figures; residuals are computed, nothing is estimated.
 
     known: effects by name, the user's own among them
+    records: made ready for comparison, as those of an arm's joint; default: made ready now
     It has no rankings: what was tried is in the answer, what is left open in `Diagnosis.open`.
     raises ExperimentError: the answer to another experiment, one of an earlier version, an effect
         that is not known
@@ -61,14 +66,10 @@ def restored(
     steps, content = steps_of(saved, known), saved.content
     for model in (*steps.models, steps.estimated, *(m for _, o in steps.open for _, m in o)):
         saved.require_bodies(model, experiment)
-    whole = prepare(experiment, bandwidth=float(content["bandwidth"]["value"]))
-    prepared = on_windows(whole)
+    whole = records or prepare(experiment, bandwidth=float(content["bandwidth"]["value"]))
+    prepared = on_windows(whole) if records is None else whole
     fits = [
-        replace(
-            evaluated(model, prepared),
-            fit_error=_error(row["fit_error"]),
-            check_error=_error(row["check_error"]),
-        )
+        with_errors_of(row, evaluated(model, prepared))
         for model, row in zip(steps.models, content["ladder"], strict=True)
     ]
     fits[-1] = replace(fits[-1], at_bound=tuple(content.get("at_bound", ())))
@@ -99,13 +100,25 @@ def restored(
             Untold(_known(saved, row, known, "cannot_tell"), row["sentence"])
             for row in content.get("cannot_tell", ())
         ),
-        set_aside=tuple(
-            SetAside(
-                _known(saved, row, known, "set_aside"), _error(row["check_error"]), row["reason"]
-            )
-            for row in content.get("set_aside", ())
-        ),
+        set_aside=_set_aside(saved, known),
         recorded=content,
+    )
+
+
+def _set_aside(saved: SavedAnswer, known: Mapping[str, Effect]) -> tuple[SetAside, ...]:
+    """Effects that were accepted and are not there, with the reason."""
+    return tuple(
+        SetAside(
+            _known(saved, row, known, "set_aside"), error_from(row["check_error"]), row["reason"]
+        )
+        for row in saved.content.get("set_aside", ())
+    )
+
+
+def with_errors_of(row: Mapping[str, Any], fit: Fit) -> Fit:
+    """A fit with the errors that a row of an answer states; NaN where it has no such record."""
+    return replace(
+        fit, fit_error=error_from(row["fit_error"]), check_error=error_from(row["check_error"])
     )
 
 
@@ -216,7 +229,7 @@ def _named(content: Mapping[str, Any]) -> set[tuple[str, str]]:
     return {(place["effect"], place["at"]) for place in content["missing"]}
 
 
-def _error(number: float | None) -> float:
+def error_from(number: float | None) -> float:
     return float("nan") if number is None else float(number)
 
 

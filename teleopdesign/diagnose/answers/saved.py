@@ -9,7 +9,7 @@ from typing import Any
 
 from ...blocks import CONTACT
 from ...effects import EFFECTS, Effect
-from ...errors import ExperimentError, quoted
+from ...errors import ExperimentError, did_you_mean, quoted
 from ...measurement.experiment import Experiment
 from ...model import Model
 from ...quantity import AXES, unit_of
@@ -83,6 +83,23 @@ class SavedAnswer:
         bodies = _older_bodies(self, experiment, known)
         model = model_from(bodies, known, file=self.file, key="model_parameters")
         return model if experiment is None else _as_stated(model, experiment, known)
+
+    def of_joint(self, joint: str) -> SavedAnswer:
+        """The answer on one joint of an arm.
+
+        raises ExperimentError: no such joint, or one of an earlier version, which has no models
+        """
+        joints = self.content.get("joints", {})
+        if joint not in joints:
+            raise ExperimentError(
+                f"{self.file}: joints: no joint {quoted(joint)}, has {', '.join(joints) or 'none'}"
+                f"{did_you_mean(joint, joints)}"
+            )
+        if "models" not in joints[joint]:
+            raise ExperimentError(
+                f"{self.file}: joints.{joint}: the answer of an earlier version: diagnose anew"
+            )
+        return SavedAnswer(self.file, joints[joint])
 
     def require(self, experiment: Experiment) -> None:
         """Refuse the answer to another experiment; an older answer is compared as far as it goes.

@@ -56,6 +56,12 @@ def check_answer(content: object) -> None:
     for key, check in (_REQUIRED | _LATER).items():
         if key in content:
             check(content[key], key)
+    for joint, one in content.get("joints", {}).items():
+        if "models" in one:  # an older answer says less of a joint
+            try:
+                check_answer({n: entry for n, entry in one.items() if n != "joints"})
+            except ExperimentError as error:
+                raise ExperimentError(f"joints.{joint}: {error}") from None
 
 
 def _constant(name: str) -> NoReturn:
@@ -160,8 +166,14 @@ _ERROR = _number(low=0.0, null=True)
 _PARAMETER = _table(
     {"value": _number(null=True), "stderr": _number(low=0.0, null=True), "unit": _text}
 )
-#: what a model's bodies hold in detail is for the reader of bodies to say
-_BODIES = _table_of(_table({}))
+
+
+def _bodies(value: object, where: str) -> None:
+    """Bodies of a model, and base parameters of an arm; details are for their reader to say."""
+    _table({}, {"links": _list_of(_number())})(value, where)
+    assert isinstance(value, dict)
+    _table_of(_table({}))({n: body for n, body in value.items() if n != "links"}, where)
+
 
 _REQUIRED: dict[str, Check] = {
     "verdict": _one_of(*VERDICTS),
@@ -218,7 +230,8 @@ _LATER: dict[str, Check] = {
         },
         {"folder": _text},
     ),
-    "models": _table({"ladder": _list_of(_BODIES, least=1), "estimated": _BODIES}),
+    "models": _table({"ladder": _list_of(_bodies, least=1), "estimated": _bodies}),
+    "joints": _table_of(_table({"verdict": _one_of(*VERDICTS)})),
     "left_out": _list_of(_text),
     "cannot_tell": _list_of(_table({"effect": _text, "at": _text, "sentence": _text})),
     "set_aside": _list_of(
@@ -229,7 +242,7 @@ _LATER: dict[str, Check] = {
         _table(
             {
                 "added": _or_null(_PLACE),
-                "others": _list_of(_table({"effect": _text, "at": _text, "model": _BODIES})),
+                "others": _list_of(_table({"effect": _text, "at": _text, "model": _bodies})),
             }
         )
     ),

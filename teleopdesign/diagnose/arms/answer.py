@@ -13,9 +13,18 @@ from ...measurement.filtering import Array
 from ...measurement.reading import reading_data
 from ...plain_data import harmless_cell, plain, replacing, write_json
 from ...realise.along_motion import residual_along
-from ..answer import candidate_rows, opened, parameter_rows, place_data
+from ..answer import (
+    answer,
+    candidate_rows,
+    opened,
+    parameter_rows,
+    place_data,
+    set_aside_rows,
+    untold_rows,
+    with_folder,
+)
+from ..answers.bodies import model_data
 from ..answers.fingerprint import experiment_data
-from ..diagnosis import Diagnosis
 from ..record_offsets import along_with_offsets
 from ..record_shift import shift_data
 from .diagnosis import ArmDiagnosis, ArmRung
@@ -37,7 +46,7 @@ def arm_answer(diagnosis: ArmDiagnosis) -> dict[str, Any]:
         "noise_floor_source": next(iter(joints)).floor.source,
         "check": "records" if diagnosis.experiment.check_records else "blocks of fit",
         "bandwidth": {"value": diagnosis.prepared.bandwidth, "unit": "Hz"},
-        "joints": {j: _joint(d) for j, d in diagnosis.joints.items()},
+        "joints": {j: answer(d) for j, d in diagnosis.joints.items()},
         "candidates": sorted(candidates, key=lambda c: -c["probability"]),
         "indistinguishable": [
             [place_data(c.key) for c in group]
@@ -45,10 +54,17 @@ def arm_answer(diagnosis: ArmDiagnosis) -> dict[str, Any]:
             for group in d.groups
             if group[0].key in added
         ],
+        "cannot_tell": [row for d in joints for row in untold_rows(d)],
+        "set_aside": [row for d in joints for row in set_aside_rows(d)],
         "record_shift": shifts,
         "model_parameters": _parameters(diagnosis),
         "learnable": None,  # trees learn no coupled joints
+        "left_over_noise_floors": plain(diagnosis.left),
         "at_bound": [n for d in joints for n in d.after.at_bound],
+        "models": {
+            "ladder": [model_data(r.fit.model) for r in diagnosis.rungs],
+            "estimated": model_data(diagnosis.after.model),
+        },
         "experiment": experiment_data(diagnosis.experiment),
         "reading": reading_data(diagnosis.experiment.reading),
     }
@@ -75,14 +91,6 @@ def _rung(rung: ArmRung) -> dict[str, Any]:
     }
 
 
-def _joint(diagnosis: Diagnosis) -> dict[str, Any]:
-    return {
-        "verdict": diagnosis.verdict,
-        "noise_floor": diagnosis.floor.value,
-        "left_over_noise_floors": plain(diagnosis.left),
-    }
-
-
 def _parameters(diagnosis: ArmDiagnosis) -> dict[str, Any]:
     """Parameters of the user's model, and the base parameters of the links."""
     rows: dict[str, Any] = {}
@@ -101,8 +109,8 @@ def _parameters(diagnosis: ArmDiagnosis) -> dict[str, Any]:
 
 
 def write_arm_answer(diagnosis: ArmDiagnosis, path: str | Path) -> None:
-    """Write the answer as JSON."""
-    write_json(path, arm_answer(diagnosis))
+    """Write the answer as JSON, with where its experiment is, as seen from the answer."""
+    write_json(path, with_folder(arm_answer(diagnosis), diagnosis.experiment, path))
 
 
 def write_arm_predictions(diagnosis: ArmDiagnosis, path: str | Path) -> None:

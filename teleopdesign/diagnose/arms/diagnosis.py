@@ -71,6 +71,11 @@ class ArmDiagnosis(ByValue):
         return mean_error({j: d.floor.value for j, d in self.joints.items()})
 
     @property
+    def left(self) -> float:
+        """Final error in noise floors, that of the joint with most."""
+        return max(d.left for d in self.joints.values())
+
+    @property
     def base_parameters(self) -> dict[str, tuple[float, float, str]]:
         """Base parameter -> (value, standard error, unit), SI; empty where none are estimated."""
         base = self.prepared.base

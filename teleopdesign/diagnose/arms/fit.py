@@ -15,10 +15,22 @@ import numpy as np
 from ...by_value import ByValue
 from ...measurement.filtering import Array
 from ...model import Model
+from ...realise.along_motion import residual_along
+from ...realise.traced import LinkParameter
 from ..effort import EFFORTS, Effort
 from ..error import force_error
-from ..fit import BLOCK, Fit, block_numbers, estimate, free_parameters, standard_errors
+from ..fit import (
+    BLOCK,
+    Fit,
+    block_numbers,
+    command_error_of,
+    estimate,
+    free_parameters,
+    solve,
+    standard_errors,
+)
 from ..prepare import Prepared, Stretch
+from ..record_offsets import along_with_offsets
 from ..record_shift import record_shifts
 from ..residual import relative_residuals
 from ..search import estimate_from_starts
@@ -46,6 +58,14 @@ class ArmFit(ByValue):
     links: tuple[float, ...]
     fit_errors: Mapping[str, float]
     check_errors: Mapping[str, float]
+
+    @property
+    def model(self) -> Model:
+        """The model of all joints, with the base parameters that they agree on."""
+        models = [fit.model for fit in self.fits.values()]
+        bodies = {j: body for m in models for j, body in m.bodies.items()}
+        shifts = {j: late for m in models for j, late in m.record_shift.items()}
+        return Model(bodies, models[0].known, shifts).with_links(self.links)
 
     @property
     def fit_error(self) -> float:
@@ -77,11 +97,13 @@ def estimate_arm(
     models, fits, records = dict(models), {}, dict(prepared.joints)
     for k in range(rounds):
         if prepared.base is not None:
+            if not any(m.absent for m in models.values()):
+                models = _at_common_links(models, prepared)
             sizes = misfits(models, prepared)
             known = {j: knowledge(models[j], p.of("fit"), sizes[j]) for j, p in records.items()}
             common = _together(known)
             models = {j: m.with_links(common) for j, m in models.items()}
-            records = {j: with_others(p, known, sizes[j], j) for j, p in records.items()}
+            records = {j: with_others(p, known, sizes[j], models[j]) for j, p in records.items()}
         for j, model in models.items():
             start = bool(model.absent) and k == 0
             fits[j] = (
@@ -93,6 +115,23 @@ def estimate_arm(
     return with_common_links(fits, records, prepared)
 
 
+def _at_common_links(models: Mapping[str, Model], prepared: PreparedArm) -> dict[str, Model]:
+    """Models of all joints estimated at base parameters that these agree on, by what they leave.
+
+    A model that was led astray, or has just got an effect, leaves far more than it will, and by
+    that its joint would say next to nothing of the links.
+    """
+    sizes = misfits(models, prepared)
+    known = {j: knowledge(models[j], p.of("fit"), sizes[j]) for j, p in prepared.joints.items()}
+    common = _together(known)
+    there = {}
+    for j, records in prepared.joints.items():
+        plain = replace(records, stretches=bare(records.of("fit")))
+        model, free = models[j].with_links(common), free_parameters(models[j])
+        there[j] = solve(model, free, plain, plain.stretches, EFFORTS.rough).model
+    return there
+
+
 def with_common_links(
     fits: Mapping[str, Fit], records: Mapping[str, Prepared], prepared: PreparedArm
 ) -> ArmFit:
@@ -102,18 +141,27 @@ def with_common_links(
         sizes = misfits({j: f.model for j, f in fits.items()}, prepared)
         known = {j: knowledge(f.model, records[j].of("fit"), sizes[j]) for j, f in fits.items()}
         links = _together(known)
-    fits = {j: replace(f, model=f.model.with_links(links)) for j, f in fits.items()}
-    checked = bool(prepared.experiment.check_records)
+    fits = {j: _held_against(f, f.model.with_links(links), records[j]) for j, f in fits.items()}
     return ArmFit(
         fits=fits,
         prepared=dict(records),
         links=links,
-        fit_errors={j: force_error(f.model, bare(records[j].of("fit"))) for j, f in fits.items()},
-        check_errors={
-            j: force_error(f.model, records[j].of("check")) if checked else f.check_error
-            for j, f in fits.items()
-        },
+        fit_errors={j: f.fit_error for j, f in fits.items()},
+        check_errors={j: f.check_error for j, f in fits.items()},
     )
+
+
+def _held_against(fit: Fit, model: Model, records: Prepared) -> Fit:
+    """A fit with the errors of its model at other base parameters.
+
+    Without check records the blocks that were held out keep the links of their own fits.
+    """
+    fit = replace(fit, model=model, fit_error=force_error(model, bare(records.of("fit"))))
+    check = records.of("check")
+    if not check:
+        return fit
+    at_command = command_error_of(model, check)
+    return replace(fit, check_error=force_error(model, check), at_command=at_command)
 
 
 def misfits(models: Mapping[str, Model], prepared: PreparedArm) -> dict[str, float]:
@@ -126,6 +174,21 @@ def misfits(models: Mapping[str, Model], prepared: PreparedArm) -> dict[str, flo
         return dict(prepared.size)
     left = {j: force_error(m, bare(prepared.joints[j].of("fit"))) for j, m in models.items()}
     return {j: max(left[j], LEAST) * size for j, size in prepared.size.items()}
+
+
+def felt(model: Model, stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
+    """Stretches with what a joint feels of the links: where it is at rest, friction takes that up.
+
+    Else a row at rest would say that the links are what the model has already.
+    """
+    made = []
+    for s, (body, motion) in zip(stretches, along_with_offsets(model, stretches), strict=True):
+        assert s.motion.links is not None
+        wrt = [LinkParameter(motion.body, k) for k in range(len(model.links))]
+        slopes = residual_along(body, motion, wrt).residual.tangent
+        links = replace(s.motion.links, smooth=-s.motion.lowpassed(slopes))
+        made.append(replace(s, motion=replace(s.motion, links=links)))
+    return tuple(made)
 
 
 def bare(stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
@@ -150,7 +213,7 @@ def _linear(
     model: Model, stretches: tuple[Stretch, ...]
 ) -> tuple[Array, Array, Array, tuple[Stretch, ...]]:
     """Columns of the links, residual, and columns of the joint's own parameters, with priors."""
-    plain, free = bare(stretches), _inside(model)
+    plain, free = bare(felt(model, stretches)), _inside(model)
     lasts = sum(s.weight * len(s.keep) * s.motion.sample_time for s in plain)
     shifts = record_shifts(plain, round(lasts / BLOCK))
     parts = relative_residuals(model, plain, (*free, *shifts.names))
@@ -199,13 +262,14 @@ def _sum(known: list[Knowledge]) -> Knowledge:
 
 
 def with_others(
-    prepared: Prepared, known: Mapping[str, Knowledge], size: float, joint: str
+    prepared: Prepared, known: Mapping[str, Knowledge], size: float, model: Model
 ) -> Prepared:
-    """A joint's records with what the other joints know of the links."""
+    """A joint's records with what the other joints know of the links; model: of that joint."""
+    (joint,) = model.bodies
     mine = known[joint]
     nothing = Knowledge(np.zeros_like(mine.matrix), np.zeros_like(mine.vector))
     others = _sum([nothing, *(k for j, k in known.items() if j != joint)])
-    fit = iter(share(prepared.of("fit"), others, size))
+    fit = iter(share(felt(model, prepared.of("fit")), others, size))
     stretches = tuple(next(fit) if s.use == "fit" else s for s in prepared.stretches)
     return replace(prepared, stretches=stretches)
 

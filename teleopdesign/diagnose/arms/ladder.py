@@ -7,29 +7,33 @@ are looked at again with what it then says of the links.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 
 from ...measurement.experiment import Experiment
 from ...model import Model
-from ..decision import is_better, moment_above_noise, verdict
-from ..diagnosis import Diagnosis
+from ..conclusion import conclude
+from ..decision import is_better
+from ..diagnosis import Diagnosis, SetAside
 from ..fit import Fit, estimate, fit_squares
+from ..ladder import climb
 from ..ladder_state import LadderSearch, LadderState, look, trying
-from ..moves import add, remove
 from ..prepare import Prepared
-from ..probability import probable
 from ..rung import Rung
 from ..search_plan import PLAN, SearchPlan
 from .diagnosis import ArmDiagnosis, ArmRung
 from .fit import ArmFit, estimate_arm, knowledge, link_errors, misfits, with_others
 from .prepared import PreparedArm, alone, mean_inertias, prepare_arm, with_inertias
 
+#: why an effect that one joint's records supported is not there
+NO_HELP = "it helps no more with all joints estimated together"
+
 
 @dataclass(frozen=True)
 class _Joint:
     """Where the ladder of one joint stands; is_stale: others have changed what the links are."""
 
+    name: str
     search: LadderSearch
     state: LadderState
     is_stale: bool = False
@@ -84,7 +88,7 @@ def find_missing_in_arm(
             plan=plan,
             progress=lambda text, j=j: said(f"{j}: {text}"),  # type: ignore[misc]
         )
-        joints[j] = _begun(search, first.prepared[j], first.fits[j].model)
+        joints[j] = _begun(j, search, first.prepared[j], first.fits[j].model)
     order = _climb(joints, prepared)
     said("all joints together")
     rungs = _rungs(joints, order, first, prepared)
@@ -108,45 +112,41 @@ def _as_bodies(prepared: PreparedArm, first: ArmFit) -> tuple[PreparedArm, dict[
     return with_inertias(prepared, extra), models
 
 
-def _begun(search: LadderSearch, prepared: Prepared, model: Model) -> _Joint:
+def _begun(name: str, search: LadderSearch, prepared: Prepared, model: Model) -> _Joint:
     """A joint whose ladder begins, with what the others say of the links now."""
     search = replace(search, whole=prepared, prepared=prepared)
     fit = estimate(model, prepared)
-    return _Joint(search, look(search, (Rung(None, fit),)))
+    return _Joint(name, search, look(search, (Rung(None, fit),)))
 
 
-def _climb(joints: dict[str, _Joint], prepared: PreparedArm) -> list[tuple[str, int]]:
+def _climb(joints: dict[str, _Joint], prepared: PreparedArm) -> list[str]:
     """Climb the ladder of each joint once; joints: replaced by where they end.
 
-    returns: (joint, number of its rung) in the order in which they were added
+    returns: the joints at which effects were added, in the order of their climbs
     """
-    waiting, order = list(joints), []
+    waiting: list[str] = list(joints)
+    order: list[str] = []
     while waiting:
         j = max(waiting, key=lambda name: joints[name].gain)
         here = joints[j]
         if here.is_stale:
             records = {n: x.search.prepared for n, x in joints.items()}
             fresh = with_known(records, {n: x.state.fit for n, x in joints.items()}, prepared, j)
-            joints[j] = _begun(here.search, fresh, here.state.fit.model)
+            joints[j] = _begun(j, here.search, fresh, here.state.fit.model)
             continue
-        state = here.state
-        while (moved := _next(here.search, state)) is not None:
-            state = look(here.search, moved.rungs, moved)
+        state, _ = climb(here.search, here.state, _as_they_are)
         joints[j] = replace(here, state=state)
         waiting.remove(j)
         if len(state.rungs) > 1:
-            order += [(j, i) for i in range(1, len(state.rungs))]
+            order.append(j)
             for other in waiting:
                 joints[other] = replace(joints[other], is_stale=True)
     return order
 
 
-def _next(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """The state after one effect more, and without one that it makes superfluous."""
-    if state.step > search.plan.most_effects:
-        return None
-    added = add(search, state)
-    return None if added is None else remove(search, added) or added
+def _as_they_are(_: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
+    """The rungs of a joint's ladder: what reading does to estimates is not simulated for an arm."""
+    return state.rungs
 
 
 def with_known(
@@ -157,38 +157,53 @@ def with_known(
         return records[joint]
     sizes = misfits({j: f.model for j, f in fits.items()}, prepared)
     known = {j: knowledge(f.model, records[j].of("fit"), sizes[j]) for j, f in fits.items()}
-    return with_others(records[joint], known, sizes[joint], joint)
+    return with_others(records[joint], known, sizes[joint], fits[joint].model)
 
 
 def _rungs(
-    joints: dict[str, _Joint],
-    order: list[tuple[str, int]],
-    first: ArmFit,
-    prepared: PreparedArm,
+    joints: dict[str, _Joint], order: list[str], first: ArmFit, prepared: PreparedArm
 ) -> tuple[ArmRung, ...]:
     """The ladder of the arm: each effect with all joints estimated again; none raises the error.
 
     joints: an effect that no longer helps beside what was found at other joints, or that raises the
-        error of the whole arm, is taken from its ladder
+        error of the whole arm, is set aside, with what was added after it;  order: of their climbs
     """
     rungs = [ArmRung(None, first)]
-    stopped: set[str] = set()
-    for j, i in order:
-        rung = joints[j].state.rungs[i]
-        if j in stopped:
-            continue
-        models = {n: f.model for n, f in rungs[-1].fit.fits.items()}
-        models[j] = rung.fit.model
-        fit = estimate_arm(models, prepared, rounds=1)
-        before, after, state = rungs[-1].fit.fits[j], fit.fits[j], joints[j].state
-        helps = is_better(before, after, state.floor, criteria=joints[j].search.criteria)
-        if fit.check_error > rungs[-1].fit.check_error or not helps:
-            stopped.add(j)
-            kept = joints[j].state.rungs[:i]
-            joints[j] = replace(joints[j], state=joints[j].state.with_rungs(kept))
-            continue
-        rungs.append(ArmRung(rung.added, fit, rung.instead_of))
+    for j in order:
+        joint = joints[j]
+        waiting: list[ArmRung] = []
+        kept = 1
+        for i, rung in enumerate(joint.state.rungs[1:], 1):
+            last = waiting[-1] if waiting else rungs[-1]
+            models = {n: f.model for n, f in last.fit.fits.items()} | {j: rung.fit.model}
+            fit = estimate_arm(models, prepared)
+            waiting.append(ArmRung(rung.added, fit, rung.instead_of))
+            if fit.check_error > last.fit.check_error:
+                break
+            # of two that mask each other only the second helps: both are there then
+            before, after = rungs[-1].fit.fits[j], fit.fits[j]
+            if is_better(before, after, joint.state.floor, criteria=joint.search.criteria):
+                rungs, waiting, kept = [*rungs, *waiting], [], i + 1
+        joints[j] = _without(joint, kept, waiting)
     return tuple(rungs)
+
+
+def _without(joint: _Joint, kept: int, refused: Sequence[ArmRung]) -> _Joint:
+    """The joint with the first rungs of its ladder; the others are set aside.
+
+    refused: what was tried of the others with all joints estimated again
+    """
+    state = joint.state
+    if kept == len(state.rungs):
+        return joint
+    errors = {r.added: r.fit.check_errors[joint.name] for r in refused}
+    aside = [
+        SetAside(r.added, errors.get(r.added, r.fit.check_error), NO_HELP)
+        for r in state.rungs[kept:]
+        if r.added is not None
+    ]
+    fewer = replace(state.with_rungs(state.rungs[:kept]), set_aside=(*state.set_aside, *aside))
+    return replace(joint, state=look(joint.search, fewer.rungs, fewer))
 
 
 def _conclude(
@@ -212,20 +227,5 @@ def _conclude(
 
 def _concluded(joint: _Joint, fit: Fit) -> Diagnosis:
     """The diagnosis of one joint, its last rung with the final links."""
-    search, state = joint.search, joint.state
-    rungs = (*state.rungs[:-1], replace(state.rungs[-1], fit=fit))
-    moment = moment_above_noise(fit, search.prepared, state.floor, criteria=search.criteria)
-    diagnosis = Diagnosis(
-        experiment=search.experiment,
-        prepared=search.prepared,
-        verdict=verdict(rungs, state.floor, moment, criteria=search.criteria),
-        rungs=rungs,
-        last=state.ranking,
-        estimated=fit,
-        floor=state.floor,
-        moment=moment,
-    )
-    named = probable(diagnosis, criteria=search.criteria)
-    if diagnosis.verdict == "effects_missing" and not named:
-        return replace(diagnosis, verdict="undecided")
-    return replace(diagnosis, named=named)
+    rungs = (*joint.state.rungs[:-1], replace(joint.state.rungs[-1], fit=fit))
+    return conclude(joint.search, joint.state, rungs, learn=False)

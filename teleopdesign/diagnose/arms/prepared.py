@@ -45,7 +45,9 @@ class PreparedArm(ByValue):
 
 def alone(experiment: Experiment, joint: str) -> Experiment:
     """The experiment as one on this joint by itself."""
-    return replace(experiment, bodies={joint: experiment.bodies[joint]}, arm=None)
+    channels = {n: c for n, c in experiment.channels.items() if c.body in (joint, None)}
+    bodies = {joint: experiment.bodies[joint]}
+    return replace(experiment, bodies=bodies, channels=channels, arm=None)
 
 
 def prepare_arm(experiment: Experiment, *, seed: int = 0) -> PreparedArm:
@@ -130,20 +132,35 @@ def mean_inertias(prepared: PreparedArm, links: tuple[float, ...]) -> dict[str, 
 
     links: base parameters;  at least a thousandth of the largest, so that each is a body
     """
-    assert prepared.experiment.arm is not None
-    arm = prepared.experiment.arm.arm.with_gravity((0.0, 0.0, 0.0))
     motions = [p.stretches[0].motion for p in prepared.joints.values()]
     places = np.linspace(0, len(motions[0].time) - 1, POSES).astype(int)
     position = np.array([m.position[places] for m in motions])
-    inertias = {}
-    for k, j in enumerate(prepared.joints):
-        push = np.zeros_like(position)
-        push[k] = 1.0
-        columns = columns_with_motors(arm, position, np.zeros_like(position), push)[k]
-        if prepared.base is None:
-            force = arm.inertial @ columns[: len(arm.inertial)]
-        else:
-            force = np.asarray(links) @ columns[prepared.base.chosen]
-        inertias[j] = float(np.mean(force))
+    inertias = dict(
+        zip(
+            prepared.joints,
+            np.mean(inertias_at(prepared.experiment, links, position), axis=1).tolist(),
+            strict=True,
+        )
+    )
     least = 1e-3 * max(*inertias.values(), 1e-9)
     return {j: max(x, least) for j, x in inertias.items()}
+
+
+def inertias_at(experiment: Experiment, links: tuple[float, ...], position: Array) -> Array:
+    """Inertia (k, n) that the links have about each joint, the others at rest (kg m^2, or kg).
+
+    links: base parameters, () where the links are taken as they are given;  position: (k, n)
+    Base parameters of least squares may give what no links have, less than nothing too.
+    """
+    assert experiment.arm is not None
+    arm = experiment.arm.arm.with_gravity((0.0, 0.0, 0.0))
+    values, chosen = arm.inertial, np.arange(len(arm.inertial))
+    if links:
+        values, chosen = np.asarray(links), base_parameters(experiment.arm.arm).chosen
+    rest = np.zeros_like(position)
+    inertias = np.empty_like(position)
+    for k in range(len(position)):
+        push = rest.copy()
+        push[k] = 1.0
+        inertias[k] = values @ columns_with_motors(arm, position, rest, push)[k, chosen]
+    return inertias

@@ -14,7 +14,7 @@ from fractions import Fraction
 #: bounds of what is read (bytes, digits, names, signs, brackets) and computed (degree, bits, and
 #: products of terms, some microseconds each): above all the package writes, a few seconds at most
 FILE, DIGITS, NAMES, SIGNS, NESTING = 2_000_000, 4000, 60, 4, 40
-DEGREE, BITS, EFFORT = 4000, 100_000, 500_000
+DEGREE, BITS, EFFORT = 4000, 100_000, 1_500_000
 
 #: effort that is left, in a list of one; None: not bounded
 _LEFT: ContextVar[list[int] | None] = ContextVar("_LEFT", default=None)

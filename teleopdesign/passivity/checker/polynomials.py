@@ -6,11 +6,12 @@ is spent on products counts where `effort.bounded` says so.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from math import gcd, lcm
 
 from .effort import spend
+from .positive_roots import are_surely_coprime, has_positive_root, variations
 
 Polynomial = list[Fraction]
 #: relative error of a root that is written down for people; no decision rests on it
@@ -70,12 +71,14 @@ def small(p: Polynomial) -> Polynomial:
     spend(len(p), p, p)
     below = lcm(*(c.denominator for c in p))
     whole = [(c * below).numerator for c in p]
-    common = gcd(*whole)
+    common = gcd(*whole) or 1
     return [Fraction(c // common) for c in whole]
 
 
 def greatest_common_divisor(p: Polynomial, q: Polynomial) -> Polynomial:
     """Monic, by Euclid's scheme; [] where both are zero."""
+    if p and q and are_surely_coprime(p, q):
+        return [Fraction(1)]
     while q:
         p, q = q, small(divide(p, q)[1])
     return [c / p[-1] for c in p]
@@ -112,14 +115,15 @@ def is_hurwitz(p: Polynomial) -> bool:
     if not p:
         return False
     falling = [c / p[-1] for c in reversed(p)]
-    upper, lower = falling[::2], falling[1::2]
+    upper, lower = small(falling[::2]), small(falling[1::2])
     for _ in falling[1:]:
         if not lower or lower[0] <= 0:
             return False
-        ratio = upper[0] / lower[0]
-        spend(len(lower), [ratio], lower)
+        spend(2 * len(upper), upper, lower)
         below = lower + [Fraction(0)] * (len(upper) - len(lower))
-        upper, lower = lower, [u - ratio * v for u, v in zip(upper[1:], below[1:], strict=True)]
+        first, next_first = upper[0], lower[0]  # each row times a number > 0: the same signs
+        rest = [next_first * u - first * v for u, v in zip(upper[1:], below[1:], strict=True)]
+        upper, lower = lower, small(rest)
     return True
 
 
@@ -167,7 +171,7 @@ def is_non_negative(p: Polynomial) -> bool:
     if not p:
         return True
     g = without_zero(odd_part(p))
-    return p[-1] > 0 and (len(g) < 2 or _surplus(_chain([Fraction(1)], g), None) == 0)
+    return p[-1] > 0 and (len(g) < 2 or not has_positive_root(g))
 
 
 def without_zero(p: Polynomial) -> Polynomial:
@@ -206,12 +210,7 @@ def _chain(f: Polynomial, g: Polynomial) -> list[Polynomial]:
 def _surplus(chain: list[Polynomial], below: Fraction | None) -> int:
     """Sum of the signs of f at the roots 0 < x < below of g, or x > 0 where `below` is None."""
     at_end = [p[-1] if below is None else value(p, below) for p in chain]
-    return _variations([p[0] for p in chain]) - _variations(at_end)
-
-
-def _variations(values: Sequence[Fraction]) -> int:
-    signs = [v > 0 for v in values if v]
-    return sum(a != b for a, b in zip(signs, signs[1:], strict=False))
+    return variations([p[0] for p in chain]) - variations(at_end)
 
 
 def first_root(f: Polynomial, g: Polynomial) -> float:

@@ -47,7 +47,7 @@ class Certificate:
             raise ModelError(f"certificate: {problem}") from None
 
     def __repr__(self) -> str:
-        return f"Certificate ({self.kind}): {self.content.get('claim', '')}"
+        return f"Certificate ({self.kind}): {self.content.get('title', '')}"
 
     def write(self, path: str | Path) -> None:
         """Write the JSON file that `python -m teleopdesign.passivity.checker PATH` verifies."""

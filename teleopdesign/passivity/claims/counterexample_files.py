@@ -23,7 +23,8 @@ from ..theorems.quantised_spring import Flip
 from ..theorems.sampled_compensation import Trembling
 from ..theorems.sampled_data import Z, sampled_wave
 from ..theorems.velocity_compensation import SteadyStrokes
-from ..two_port.growing_mode import CLAMPED, GrowingMode, Termination
+from ..two_port.growing_mode import GrowingMode
+from ..two_port.termination import CLAMPED, Termination
 from .claim import Counterexample
 
 _ELEMENTS = {"coulomb": Coulomb, "dahl": Dahl, "spring": Spring}

@@ -23,6 +23,8 @@ from .polynomials import fraction
 
 Motion = Literal["velocity", "position"]
 _LONGEST = 9  # characters of a fraction that is printed as such
+#: in s; there exact tests of numbers of 16 digits take some 10 s, and grow with its fourth power
+_HIGHEST = 40
 
 
 @dataclass(frozen=True)
@@ -117,7 +119,7 @@ def exact(number: Any) -> sp.Rational:
 
 def _from_sympy(system: Any) -> Impedance:
     try:
-        e = sp.sympify(system)
+        e = sp.sympify(system, strict=True)  # a text would be run
     except (sp.SympifyError, TypeError, AttributeError):
         raise ModelError(
             f"impedance: expected an expression in s, found {described(system)}"
@@ -130,16 +132,49 @@ def _from_sympy(system: Any) -> Impedance:
     if e.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
         raise ModelError(f"impedance: not finite: {e}")
     e = e.xreplace({x: exact(x) for x in e.atoms(sp.Float, sp.NumberSymbol)})
-    above, below = sp.fraction(sp.together(e))
-    try:
-        p, q = (sp.Poly(part, S, domain="QQ") for part in (above, below))
-    except sp.PolynomialError:
-        p = q = None
-    except sp.CoercionFailed:
-        raise ModelError(f"impedance: coefficients are not rational numbers: {e}") from None
-    if p is None:
+    return _coprime(*_ratio(e))
+
+
+def _ratio(e: sp.Expr) -> tuple[sp.Poly, sp.Poly]:
+    """Numerator and denominator of an expression in S, not yet coprime."""
+    if e.is_Rational or e == S:
+        return sp.Poly(e, S, domain="QQ"), sp.Poly(1, S, domain="QQ")
+    if e.is_number:
+        raise ModelError(f"impedance: coefficients are not rational numbers: {e}")
+    if e.is_Pow and e.exp.is_Integer:
+        p, q = _ratio(e.base)
+        _check_degree(max(p.degree(), q.degree()) * abs(int(e.exp)))
+        return _powers(p, q, int(e.exp))
+    if not (e.is_Add or e.is_Mul):
         raise ModelError(f"impedance: not a rational function of s: {e}")
-    return _coprime(p, q)
+    p, q = _ratio(e.args[0])
+    for part in e.args[1:]:
+        above, below = _ratio(part)
+        if e.is_Mul:
+            p, q = p * above, q * below
+        elif q == below:
+            p = p + above
+        else:
+            p, q = p * below + above * q, q * below
+        if max(p.degree(), q.degree()) > _HIGHEST:
+            common = sp.gcd(p, q)
+            p, q = p.quo(common), q.quo(common)
+        _check_degree(max(p.degree(), q.degree()))
+    return p, q
+
+
+def _powers(p: sp.Poly, q: sp.Poly, power: int) -> tuple[sp.Poly, sp.Poly]:
+    if power < 0 and p.is_zero:
+        raise ModelError("impedance: division by zero")
+    return (p**power, q**power) if power >= 0 else (q**-power, p**-power)
+
+
+def _check_degree(degree: float) -> None:
+    if degree > _HIGHEST:
+        raise ModelError(
+            f"impedance: of degree {degree} in s, expected at most {_HIGHEST}: exact tests of more "
+            "would take minutes"
+        )
 
 
 def _coprime(p: sp.Poly, q: sp.Poly) -> Impedance:
@@ -161,9 +196,11 @@ def _from_control(system: Any) -> Impedance:
         )
     if hasattr(system, "num"):
         p, q = ([exact(c) for c in row[0][0]] for row in (system.num, system.den))
+        _check_degree(max(len(p), len(q)) - 1)
         return _coprime(sp.Poly(p, S, domain="QQ"), sp.Poly(q, S, domain="QQ"))
     if not hasattr(system, "A"):
         raise ModelError(f"impedance: no linear system: {type(system).__name__}")
+    _check_degree(len(system.A))
     return from_state_space(system.A, system.B, system.C, system.D)
 
 

@@ -44,22 +44,39 @@ class Hypothesis:
 
 def _is_whole(value: Any) -> bool:
     number = exact(value)
-    return bool(number >= 0 and number == sp.floor(number))
+    return bool(0 <= number <= _MOST and number == sp.floor(number))
 
 
-def _is_finite(value: Any) -> bool:
-    return exact(value) is not None  # it raises where there is no such number
+#: samples or paths: a thousand late samples are a second already, and each costs time
+_MOST = 10_000
+#: SI, sizes of what is not 0: no machine is near the ends, and products of five such numbers and
+#: their squares are still numbers of double precision, in which motions are sought and replayed
+_SMALLEST, _LARGEST = Fraction(1, 10**30), Fraction(10**30)
+_SIZES = "of a size from 1e-30 to 1e30"
+_NO_NUMBER = (float("nan"), float("inf"), True, 1e-300, 1e300)
 
 
-_NO_NUMBER = (float("nan"), float("inf"), True)
-POSITIVE = Hypothesis(
-    "a number > 0", lambda x: bool(exact(x) > 0), (0, -1, Fraction(-1, 10**9), *_NO_NUMBER)
+def _is_of_size(number: sp.Rational) -> bool:
+    return bool(number == 0 or _SMALLEST <= abs(number) <= _LARGEST)
+
+
+def _real(text: str, holds: Callable[[sp.Rational], bool], *outside: Any) -> Hypothesis:
+    """A number of a size that is computed with, and more."""
+    return Hypothesis(
+        text,
+        lambda x: _is_of_size(exact(x)) and holds(exact(x)),
+        (*outside, *_NO_NUMBER),
+    )
+
+
+POSITIVE = _real("a number > 0", lambda x: bool(x > 0), 0, -1, Fraction(-1, 10**9))
+NOT_NEGATIVE = _real("a number >= 0", lambda x: bool(x >= 0), -1, Fraction(-1, 10**9))
+REAL = _real("a finite number", lambda x: True)
+WHOLE = Hypothesis(
+    f"a whole number >= 0, at most {_MOST}",
+    _is_whole,
+    (-1, 0.5, Fraction(3, 2), _MOST + 1, *_NO_NUMBER),
 )
-NOT_NEGATIVE = Hypothesis(
-    "a number >= 0", lambda x: bool(exact(x) >= 0), (-1, Fraction(-1, 10**9), *_NO_NUMBER)
-)
-REAL = Hypothesis("a finite number", _is_finite, _NO_NUMBER)
-WHOLE = Hypothesis("a whole number >= 0", _is_whole, (-1, 0.5, Fraction(3, 2), *_NO_NUMBER))
 #: nothing that a number could violate: the function says what it needs
 FREE = Hypothesis("anything", lambda x: True, ())
 
@@ -90,8 +107,10 @@ def under(**hypotheses: Hypothesis) -> Callable[[Function], Function]:
             for name, value in bound.arguments.items():
                 needs = hypotheses[name]
                 if not needs.holds(value):
+                    off = isinstance(value, int | float) and not _is_of_size(exact(value))
+                    sizes = f" {_SIZES}" if off else ""
                     raise ModelError(
-                        f"{function.__name__}: {name}: expected {needs.text}, found {value}"
+                        f"{function.__name__}: {name}: expected {needs.text}{sizes}, found {value}"
                     )
             return function(*arguments, **named)
 

@@ -151,10 +151,10 @@ def _worst_cycle(helps: Dahl, against: Sequence[Element]) -> Cycle | None:
     """The symmetric cycle that gives out most per travel; sliding cycles get long strokes."""
     stuck = against[1]
     elastic = stuck.level / stuck.stiffness if isinstance(stuck, Spring) else 1.0
-    amplitudes = [
-        elastic,
-        *np.geomspace(1e-2 * elastic, 1e6 * max(elastic, helps.level / helps.stiffness), 200),
-    ]
+    bristle = helps.level / helps.stiffness
+    # well within a soft bristle nothing is given out, and thousands of rounds would be travelled
+    shortest = max(1e-2 * elastic, 1e-3 * bristle)
+    amplitudes = [elastic, *np.geomspace(shortest, 1e6 * max(elastic, bristle), 200)]
     cycles = [symmetric_cycle(helps, against, float(a)) for a in amplitudes]
     return max(cycles, key=lambda c: c.energy / c.turning_points[0])
 

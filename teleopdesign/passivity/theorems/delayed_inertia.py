@@ -31,6 +31,8 @@ from ._hypotheses import NOT_NEGATIVE, one_of, under
 from ._theorem import Theorem
 
 Order = Literal[1, 2]
+#: time constants that a delay may have where a maximum is searched: 2.5 million samples of g
+_LATEST = 10_000
 _PER_TURN = 200  # samples of g per turn of its phase: its maxima within 1e-4, then refined
 
 
@@ -104,6 +106,11 @@ def cancelled_inertia(
         return Claim(statement, positive_real(z).verdict)
     if not c:
         return Claim(statement, positive_real(m * S + b).verdict)
+    if t and order == 2 and tau > _LATEST * t:
+        why = (
+            f"a delay of more than {_LATEST} time constants: its turns are too many to be searched"
+        )
+        return Claim(statement, Unknown(why))
     if t and order == 2:
         w, most = _maximum(float(tau), float(t))
         margin = float(b) - float(c) * most

@@ -28,9 +28,9 @@ from ...by_value import ByValue
 from ...errors import ModelError
 from ...realise.lti import S
 from ..claims.certificate import positive_real_certificate
-from ..claims.claim import Claim, Proof, Refutation
+from ..claims.claim import Claim, Refutation, Unknown, accepted
 from ..linear.impedance import Impedance, decimal, exact, impedance, readable
-from ..linear.positive_real import damping_excess, is_positive_real
+from ..linear.positive_real import NO_WAVE, damping_excess, is_positive_real
 from ..search.growing_wave import growing_wave
 from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, REAL, under
 from ._theorem import Question, Theorem, TopicClaim
@@ -66,14 +66,18 @@ def sampled_passivity(
     )
     if is_positive_real(operator):
         text = f"{statement}: G((1 + s)/(1 - s)) is positive real"
-        certificate = positive_real_certificate(text, [[operator.expression]])
         margin = float(late) * float(damping_excess(operator))
-        method = "the discrete positive-real test, by bilinear transformation"
-        equality = "" if margin > 0 else "in the damping"
-        return Claim(statement, Proof(method, (certificate,), margin, "N s/m", equality))
+        verdict = accepted(
+            "the discrete positive-real test, by bilinear transformation",
+            lambda: positive_real_certificate(text, [[operator.expression]]),
+            margin,
+            "N s/m",
+            "" if margin > 0 else "in the damping",
+        )
+        return Claim(statement, verdict)
     wave = growing_wave(operator)
     if wave is None:
-        raise AssertionError(f"not positive real, but no wave found: {operator}")
+        return Claim(statement, Unknown(NO_WAVE))
     motion = sampled_wave(law, b, late, k, wave.rate, wave.frequency)
     z = motion.factor
     method = f"travel that grows by {abs(z):.6g} a sample and turns by {np.angle(z):.6g} rad"
@@ -117,10 +121,13 @@ def _positive(sample_time: Any) -> sp.Expr:
 
 
 def _law(controller: Any) -> sp.Expr:
-    if isinstance(controller, bool | str) or controller is None:
+    try:
+        e = sp.sympify(controller, strict=True)  # a text would be run
+    except sp.SympifyError:
+        e = None
+    if not isinstance(e, sp.Expr):
         wrong = described(controller)
         raise ModelError(f"controller: found {wrong}, expected an expression of z, or a number")
-    e = sp.sympify(controller)
     e = e.xreplace({x: Z for x in e.free_symbols if x.name == "z"})
     if e.free_symbols - {Z}:
         names = ", ".join(sorted(x.name for x in e.free_symbols - {Z}))
@@ -197,7 +204,8 @@ def sampled_wave(
     """
     system = law, damping, sample_time, stiffness
     z = _factor(rate, frequency)
-    number = int(min(np.ceil(16 / np.log(abs(z))), _SAMPLES))
+    growth = np.log(abs(z))
+    number = int(min(np.ceil(16 / growth), _SAMPLES)) if growth > 0 else _SAMPLES
     wave = z ** np.arange(-number, 1)
     out, best = _largest(wave.real, wave.imag, system)
     waited = 1

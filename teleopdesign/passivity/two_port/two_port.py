@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from ...arguments import described
 from ...by_value import ByValue
 from ...errors import ModelError
 from ...finding import Graph, Series
@@ -69,7 +70,12 @@ def two_port(entries: Sequence[Sequence[Any]]) -> TwoPort:
 
 
 def _entry(entry: Any) -> sp.Expr:
-    e = sp.sympify(entry.expression if isinstance(entry, Impedance) else entry)
+    try:
+        e = sp.sympify(entry.expression if isinstance(entry, Impedance) else entry, strict=True)
+    except sp.SympifyError:  # a text among them, which would be run
+        e = None
+    if not isinstance(e, sp.Expr) or e.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
+        raise ModelError(f"two_port: expected an expression in s, found {described(entry)}")
     e = e.xreplace({x: S for x in e.free_symbols if x.name == "s"})
     if e.free_symbols - {S}:
         names = ", ".join(sorted(x.name for x in e.free_symbols - {S}))

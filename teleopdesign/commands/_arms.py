@@ -1,0 +1,121 @@
+"""One joint of an arm for commands that work on one body: which joint, its records, its inertia."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from typing import TYPE_CHECKING
+
+from ..errors import ExperimentError, did_you_mean, quoted
+
+if TYPE_CHECKING:
+    from ..diagnose import ArmDiagnosis
+    from ..measurement import Experiment
+    from ..model import Model
+
+
+def add_body(parser: argparse.ArgumentParser, *, pose: bool = False) -> None:
+    """Which body, and for commands that need an inertia, the pose at which a joint has it."""
+    parser.add_argument(
+        "--body",
+        metavar="NAME",
+        help="one body of a teleoperator, or the joint of an arm, which must be said",
+    )
+    if pose:
+        parser.add_argument(
+            "--pose",
+            action="append",
+            default=[],
+            metavar="JOINT=VALUE[UNIT]",
+            help="of an arm: position of a joint at which the chosen one has its inertia; those "
+            "not said are at 0 (without --pose: the mean over the recorded poses; may be repeated)",
+        )
+
+
+def joint_of(experiment: Experiment, options: argparse.Namespace) -> str:
+    """The joint of an arm that the options say; ExperimentError with all of them if none is."""
+    joints, chosen = list(experiment.bodies), options.body
+    if chosen is None:
+        raise ExperimentError(
+            f"{experiment.folder.name}: an arm with joints {', '.join(joints)}: choose one with "
+            "--body"
+        )
+    if chosen not in joints:
+        raise ExperimentError(
+            f"--body: no joint {quoted(chosen)}, has {', '.join(joints)}"
+            f"{did_you_mean(chosen, joints)}"
+        )
+    return str(chosen)
+
+
+def arm_diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> ArmDiagnosis:
+    """The diagnosis of an arm: as the answer tells, or made now, with progress said."""
+    from ..diagnose.answers import load_answer
+    from ..diagnose.arms import find_missing_in_arm
+    from ..diagnose.arms.restored import restored_arm
+    from ._diagnosis import known_of, searched
+
+    if options.answer is not None:
+        return restored_arm(load_answer(options.answer), experiment, known_of(options))
+    return searched(find_missing_in_arm, experiment, options)
+
+
+def posed(model: Model, experiment: Experiment, joint: str, options: argparse.Namespace) -> Model:
+    """The model of one joint with the inertia that the links have about it at the stated pose.
+
+    experiment: that of the whole arm;  raises ExperimentError: no such joint or unit, or links that
+        have no inertia there
+    """
+    import numpy as np
+
+    from ..diagnose.arms.prepared import inertias_at
+    from ..model import Model
+
+    name = f"{joint}.inertia"
+    alone = Model({joint: model.bodies[joint]}, model.known, model.record_shift)
+    if not options.pose:
+        return alone
+    pose = _read_pose(options.pose, experiment)
+    position = np.array([[pose.get(j, 0.0)] for j in experiment.bodies])
+    motor = Model.from_experiment(experiment, model.known).parameters[name]
+    inertias = inertias_at(experiment, model.links, position)
+    size = float(inertias[list(experiment.bodies).index(joint), 0]) + motor.value
+    if not size > 0:
+        raise ExperimentError(
+            f"--pose: {joint} would have an inertia of {size:.3g}: base parameters describe "
+            "motions like those recorded, and this pose is far from them"
+        )
+    return alone.with_values({name: size})
+
+
+def _read_pose(texts: list[str], experiment: Experiment) -> dict[str, float]:
+    """Joint -> position in SI."""
+    from ..quantity import to_si
+
+    pose, joints = {}, list(experiment.bodies)
+    for text in texts:
+        joint, _, value = text.partition("=")
+        if joint not in joints:
+            raise ExperimentError(
+                f"--pose {text}: no joint {quoted(joint)}, has {', '.join(joints)}"
+                f"{did_you_mean(joint, joints)}"
+            )
+        number = re.fullmatch(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)", value)
+        if number is None:
+            raise ExperimentError(f"--pose {text}: expected a number and a unit")
+        size, where = float(number[1]), f"--pose {text}"
+        if number[2]:
+            axis = experiment.axis(joint)
+            size = to_si(size, number[2], quantity="position", axis=axis, where=where)
+        pose[joint] = size
+    return pose
+
+
+def inertia_line(model: Model, joint: str, options: argparse.Namespace) -> str:
+    """What a joint's body is when it is taken out of its arm, in a sentence."""
+    value, unit = model.parameters[f"{joint}.inertia"].value, model.unit(f"{joint}.inertia")
+    where = "at the stated pose" if options.pose else "the mean over the recorded poses"
+    return (
+        f"{joint} of an arm, the other joints at rest: inertia {value:.4g} {unit}, {where}; "
+        "gravity and the motion of the others are for the arm's own controller"
+    )

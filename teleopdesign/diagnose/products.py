@@ -1,0 +1,99 @@
+"""Products of an effect's parameters that records tell, though they tell none of them alone.
+
+A level and the speed below which it acts, a spring and what hangs on it: along a valley of nearly
+equal squares each parameter runs far, and a product of their powers hardly changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..measurement.filtering import Array
+from .fit import Fit
+
+#: powers of a product below which a parameter hardly counts in it
+POWER = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Product:
+    """The product of powers of an effect's open parameters that is known best.
+
+    names: in full, of those that count;  powers: the largest is 1
+    errors: relative standard errors of each alone;  known: that of the product
+    """
+
+    names: tuple[str, ...]
+    powers: tuple[float, ...]
+    errors: tuple[float, ...]
+    known: float
+
+    def __str__(self) -> str:
+        short = (n.rpartition(".")[2] for n in self.names)
+        parts = (_power(n, p) for n, p in zip(short, self.powers, strict=True))
+        return " * ".join(parts)
+
+
+def product_of(fit: Fit, effect: str) -> Product | None:
+    """The product of an effect's parameters that a fit tells best; None: fewer than two count.
+
+    Parameters that are zero, angles and those at a bound have no part in a product.
+    effect: with its place, "device.stribeck"
+    """
+    start, model = f"{effect}.", fit.model
+    names = [
+        n
+        for n in fit.free
+        if n.startswith(start)
+        and n not in fit.at_bound
+        and model.declared(n).quantity != "angle"
+        and model.parameters[n].value != 0.0
+        and np.isfinite(model.parameters[n].stderr)
+    ]
+    if len(names) < 2:
+        return None
+    values = np.array([abs(model.parameters[n].value) for n in names])
+    errors = np.array([model.parameters[n].stderr for n in names]) / values
+    powers, known = best_product(_by_relative_change(fit, names, values), errors)
+    counting = [i for i, p in enumerate(powers) if abs(p) >= POWER]
+    if len(counting) < 2:
+        return None
+    return Product(
+        tuple(names[i] for i in counting),
+        tuple(float(powers[i]) for i in counting),
+        tuple(float(errors[i]) for i in counting),
+        known,
+    )
+
+
+def best_product(columns: Array, errors: Array) -> tuple[Array, float]:
+    """Powers (k,), the largest 1, of the product that is known best, and its relative error.
+
+    columns: (rows, k) of the residual by relative changes, what others can make up for taken out
+    errors: (k,) relative standard errors of each alone
+    """
+    shares = np.linalg.pinv(columns.T @ columns, rcond=1e-12, hermitian=True)
+    spread = np.sqrt(np.maximum(np.diag(shares), 1e-300))
+    covariance = shares / np.outer(spread, spread) * np.outer(errors, errors)
+    _, vectors = np.linalg.eigh(covariance)
+    powers = vectors[:, 0]
+    powers = powers / powers[np.argmax(np.abs(powers))]
+    return powers, float(np.sqrt(max(powers @ covariance @ powers, 0.0)))
+
+
+def _by_relative_change(fit: Fit, names: Sequence[str], values: Array) -> Array:
+    """Residual by relative changes of parameters (rows, k), without what the others make up for."""
+    ours = [fit.free.index(n) for n in names]
+    rest = [i for i in range(len(fit.free)) if i not in ours]
+    columns = fit.jacobian[:, ours] / fit.scale[ours] * values
+    others = fit.jacobian[:, rest]
+    if not rest:
+        return columns
+    return columns - others @ np.linalg.lstsq(others, columns, rcond=1e-10)[0]
+
+
+def _power(name: str, power: float) -> str:
+    return name if abs(power - 1.0) < 0.05 else f"{name}^{power:.1f}"

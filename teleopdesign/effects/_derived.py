@@ -1,0 +1,88 @@
+"""What follows from the laws of an effect, computed once for each effect."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import lru_cache
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+
+from ..recipes import remember
+from ._signals import FURTHER, SIGNALS, delayed
+
+if TYPE_CHECKING:
+    from ._effect import Effect
+
+
+@lru_cache(maxsize=256)
+def channels(effect: Effect) -> frozenset[str]:
+    """Further channels of a record that the laws need."""
+    laws = (effect.expression(), *effect.rates().values())
+    used = {n for n in FURTHER if any(law.has(SIGNALS[n]) for law in laws)}
+    return frozenset(FURTHER[n] for n in used)
+
+
+@lru_cache(maxsize=256)
+def strength(effect: Effect) -> str | None:
+    """Parameter in which the law is linear and that is zero where the effect is absent; or None."""
+    if len(effect.absent) != 1 or effect.states:
+        return None
+    ((name, value),) = effect.absent.items()
+    linear = sp.diff(effect.expression(), effect.symbols()[name], 2) == 0
+    return name if value == 0.0 and linear else None
+
+
+@lru_cache(maxsize=256)
+def phase(effect: Effect) -> str | None:
+    """Name of the angle phi in a law strength * sin(... + phi); None for other laws."""
+    angles = [n for n, p in effect.parameters.items() if p.quantity == "angle"]
+    if effect.strength is None or len(angles) != 1:
+        return None
+    wave = sp.diff(effect.expression(), effect.symbols()[effect.strength])
+    turned = sp.diff(wave, effect.symbols()[angles[0]], 2)
+    return angles[0] if sp.simplify(wave + turned) == 0 else None
+
+
+@lru_cache(maxsize=64)
+def without(effect: Effect, parameter: str) -> Effect:
+    """The effect with an optional parameter zero everywhere in its laws."""
+
+    def at_zero(law: Callable[[Any, Any], sp.Expr]) -> Callable[[Any, Any], sp.Expr]:
+        return lambda now, p: law(now, SimpleNamespace(**{**vars(p), parameter: sp.S(0)}))
+
+    def if_any(law: Callable[[Any, Any], sp.Expr] | None) -> Callable[[Any, Any], sp.Expr] | None:
+        return None if law is None else at_zero(law)
+
+    less = replace(
+        effect,
+        law=at_zero(effect.law),
+        coupling=if_any(effect.coupling),
+        states={
+            n: replace(
+                s,
+                rate=at_zero(s.rate),
+                correction=if_any(s.correction),
+                dry=if_any(s.dry),
+                stop=if_any(s.stop),
+            )
+            for n, s in effect.states.items()
+        },
+        parameters={n: p for n, p in effect.parameters.items() if n != parameter},
+    )
+    return remember(less, without, effect, parameter)
+
+
+def linear_form(effect: Effect, s: sp.Symbol, values: Mapping[str, Any] | None) -> sp.Expr:
+    """The laws at the Laplace variable s, per position or per command, states eliminated."""
+    drive = sp.Symbol("drive")
+    signals = dict(position=drive, velocity=s * drive, acceleration=s**2 * drive, command=drive)
+    signals |= dict(interaction_force=sp.S(0))
+    states = effect.state_symbols()
+    law, rates = effect.expression(signals, values), effect.rates(signals, values)
+    states_in_s = sp.solve([s * states[n] - rate for n, rate in rates.items()], *states.values())
+    law = law.subs(states_in_s) if rates else law
+    law = law.replace(delayed, lambda signal, delay: signal * sp.exp(-s * delay))
+    return sp.simplify(law / drive)

@@ -1,0 +1,83 @@
+"""A parameter of an effect: quantity, meaning, bounds, and how a fit searches it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ..arguments import checked
+from ..errors import ModelError, did_you_mean
+from ..quantity import QUANTITIES
+
+
+def positive_amplitude(values: Mapping[str, float]) -> dict[str, float]:
+    """The same sinusoid with an amplitude >= 0 and a phase in [0, 2 pi)."""
+    turned = values["phase"] + (math.pi if values["amplitude"] < 0 else 0.0)
+    return {
+        **values,
+        "amplitude": abs(values["amplitude"]),
+        "phase": turned % (2 * math.pi),
+    }
+
+
+@checked
+@dataclass(frozen=True)
+class FitSearch:
+    """How a fit searches a parameter whose value nobody gives.
+
+    starts: where the search begins, as multiples of the record's own scale
+    scale: "": the scale of the parameter's quantity; "duration": of the record; "travel": the whole
+        travel; "resonance_stiffness" and the like: of a resonance within the bandwidth
+    within: upper bound in that scale, where a larger value would mean something else
+    chosen: set at the first start and not estimated: other parameters are relative to this one
+    essential: must be surely more than zero, for at zero the effect would be another one
+    """
+
+    starts: tuple[float, ...] = (0.01, 0.1)
+    scale: str = ""
+    within: float = float("inf")
+    chosen: bool = False
+    essential: bool = False
+
+
+@checked
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of an effect: its quantity (a key of `quantity`), meaning and bounds (SI).
+
+    optional: may be zero, and is by default
+    search: how a fit searches it
+    """
+
+    quantity: str
+    meaning: str
+    lower: float = 0.0
+    upper: float = float("inf")
+    optional: bool = False
+    search: FitSearch = FitSearch()
+
+    def __post_init__(self) -> None:
+        if self.quantity not in QUANTITIES:
+            raise ModelError(
+                f'Parameter: no quantity "{self.quantity}", has {", ".join(QUANTITIES)}'
+                f"{did_you_mean(self.quantity, QUANTITIES)}"
+            )
+
+    @property
+    def scale(self) -> str:
+        """Unit of the search: a scale of the record, by default the scale of the quantity."""
+        return self.search.scale or self.quantity
+
+
+#: period of something that repeats along the travel. Searches start evenly in 1/period, three
+#: quarters of a cycle over the whole travel from one to the next: where two are a cycle apart, what
+#: lies between them is orthogonal to both for a motion that stays at its ends. From two travels on
+#: it is no longer seen to repeat: a bias, or a spring
+PERIOD = Parameter(
+    "position",
+    "p: travel of one period",
+    search=FitSearch(
+        starts=tuple(4.0 / 3.0 / k for k in range(1, 151)), scale="travel", within=2.0
+    ),
+)

@@ -1,0 +1,32 @@
+"""Roles of effects in the equation of a body, and what effects do with energy."""
+
+from __future__ import annotations
+
+from typing import Literal, get_args
+
+Role = Literal[
+    "actuation",
+    "structure",
+    "force",
+    "friction_level",
+    "friction_factor",
+    "friction_speed",
+    "friction_shape",
+    "tip_level",
+    "contact",
+    "contact_shape",
+]
+ROLES: tuple[Role, ...] = get_args(Role)
+Energy = Literal["stores", "dissipates", "supplies"]
+ENERGIES: tuple[Energy, ...] = get_args(Energy)
+#: the order in which actuation stages act, where an effect of that name is there; others come last
+ACTUATION_ORDER = (
+    "actuator_gain",
+    "torque_ripple",
+    "actuator_lag",
+    "actuation_delay",
+    "actuator_saturation",
+)
+
+#: roles of what belongs to a modelled environment, not to the body that touches it
+CONTACT_ROLES = frozenset({"contact", "contact_shape"})

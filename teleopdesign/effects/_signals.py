@@ -1,0 +1,34 @@
+"""Symbols that laws are written with: signals of a body, parameters of an effect."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+
+def parameter_symbol(effect: str, parameter: str) -> sp.Symbol:
+    """Symbol of a parameter of an effect, by the names of both: for laws that need another one."""
+    return sp.Symbol(f"{effect}_{parameter}", real=True)
+
+
+#: symbols that a law may use; `direction` is sgn(velocity), `command` the input of an actuation
+#: stage, `acting_force` the output of the last, `level` the friction level, `interaction_force`
+#: the force of hand or environment on the body, `penetration` the depth in a modelled environment
+SIGNALS = {
+    name: sp.Symbol(name, real=True)
+    for name in (
+        "time position velocity acceleration direction command acting_force interaction_force "
+        "level penetration temperature other_position other_velocity other_acceleration".split()
+    )
+}
+#: signal -> the further channel of a record that it is made from; without the channel it is unknown
+FURTHER = {
+    "temperature": "temperature",
+    "other_position": "other_position",
+    "other_velocity": "other_position",
+    "other_acceleration": "other_position",
+}
+#: what corrections may use besides: the inertia of the effect's body, and the force that is left
+#: unexplained along a measured motion
+INERTIA, UNEXPLAINED = sp.symbols("inertia unexplained", real=True)
+#: delayed(signal, delay): the signal a fixed time earlier
+delayed = sp.Function("delayed", real=True)

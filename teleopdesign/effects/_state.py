@@ -1,0 +1,46 @@
+"""A hidden state of an effect: its rate, its start, and what leads or stops it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from ..arguments import checked
+
+#: of a stop: a state that it holds rests up to here, or it would chatter between two rates
+HELD = 1.001
+
+
+@checked
+@dataclass(frozen=True)
+class State:
+    """A hidden state: its quantity and rate law(now, p), where `now` also carries the states.
+
+    start: the signal that it equals when a record starts; "": it starts settled, or at rest
+    correction: correction(now, p), the rate by which the force that is left unexplained, also in
+        `now`, leads the state back along a measured motion; None: it runs free
+    dry: dry(now, p), the largest rate by which dry friction slows the state down; at zero it holds
+        it where no more is needed. None: no such friction
+    stop: stop(now, p), the size that the state is held at, as by a spring that slips
+    """
+
+    quantity: str
+    rate: Callable[[Any, Any], sp.Expr]
+    start: str = ""
+    correction: Callable[[Any, Any], sp.Expr] | None = None
+    dry: Callable[[Any, Any], sp.Expr] | None = None
+    stop: Callable[[Any, Any], sp.Expr] | None = None
+
+    def rate_with_stop(self, now: Any, p: Any, name: str) -> sp.Expr:
+        """The rate, none at the stop; where the stop itself has moved in, back to it."""
+        rate = sp.sympify(self.rate(now, p), strict=True)
+        if self.stop is None or rate == 0:
+            return rate
+        z, stop = sp.Abs(getattr(now, name)), self.stop(now, p)
+        at_stop = sp.And(z >= stop, getattr(now, name) * rate > 0)
+        return sp.Piecewise(
+            (rate * sp.Min((HELD * stop - z) / (stop + z), 0), at_stop), (rate, True)
+        )

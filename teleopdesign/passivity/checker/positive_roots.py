@@ -1,0 +1,98 @@
+"""Whether a polynomial has a positive root, and whether two share one: exact and cheap.
+
+Descartes: a polynomial has as many positive roots as its coefficients change sign, or fewer by an
+even number. In an interval that is 0 < x < 1 the same holds of (1 + x)^n p(1/(1 + x)). Intervals
+are halved until there is no change, or an odd number of them, which has a root. For roots that are
+simple that ends (Vincent; Collins, Akritas, SYMSAC 1976). Remainders, as in Sturm's chains, would
+have numbers whose length grows with the square of the degree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import lcm
+
+from .effort import spend
+
+#: 2^61 - 1, a prime: what is coprime modulo it is coprime
+_PRIME = 2**61 - 1
+_ONE = (Fraction(1),)
+
+
+def has_positive_root(p: Sequence[Fraction]) -> bool:
+    """Whether p (lowest power first) has a root x > 0; p not constant, of simple roots, p(0) != 0.
+
+    All roots lie below 2^k times a unit, k from Cauchy's bound: that unit is made 1.
+    """
+    changes = variations(p)
+    if changes % 2 or not changes:
+        return bool(changes)
+    below = lcm(*(c.denominator for c in p))
+    whole = [(c * below).numerator for c in p]
+    lead = abs(whole[-1])
+    reach = max(1 + max(abs(c) for c in whole) // lead, 1).bit_length()
+    return _in_unit([c << (reach * k) for k, c in enumerate(whole)])
+
+
+def _in_unit(first: list[int]) -> bool:
+    """Whether there is a root with 0 < x < 1."""
+    waiting = [first]
+    while waiting:
+        p = waiting.pop()
+        changes = variations(_shifted(p[::-1]))
+        if changes % 2:
+            return True
+        if not changes:
+            continue
+        n = len(p) - 1
+        left = [c << (n - k) for k, c in enumerate(p)]
+        right = _shifted(left)
+        if right[0] == 0:  # the middle itself
+            return True
+        waiting += [right, left]
+    return False
+
+
+def _shifted(p: Sequence[int]) -> list[int]:
+    """p(x + 1), by sums alone."""
+    spend(len(p) * len(p) // 2, (Fraction(max(map(abs, p))),), _ONE)
+    p = list(p)
+    for start in range(len(p) - 1):
+        for k in range(len(p) - 2, start - 1, -1):
+            p[k] += p[k + 1]
+    return p
+
+
+def variations(values: Sequence[Fraction] | Sequence[int]) -> int:
+    """How often the sign changes along them; zeros do not count."""
+    signs = [v > 0 for v in values if v]
+    return sum(a != b for a, b in zip(signs, signs[1:], strict=False))
+
+
+def are_surely_coprime(p: Sequence[Fraction], q: Sequence[Fraction]) -> bool:
+    """Whether p and q have no common factor modulo a prime, and so none at all.
+
+    A common factor of polynomials with whole coefficients keeps its degree modulo a prime that does
+    not divide their leading ones. False says nothing.
+    """
+    spend(len(p) * len(q), _ONE, _ONE)
+    a, b = _modulo_prime(p), _modulo_prime(q)
+    if not (a and b and a[-1] and b[-1]):
+        return False
+    while b:
+        inverse = pow(b[-1], -1, _PRIME)
+        while len(a) >= len(b):
+            ratio, start = a[-1] * inverse % _PRIME, len(a) - len(b)
+            for k, c in enumerate(b):
+                a[start + k] = (a[start + k] - ratio * c) % _PRIME
+            while a and not a[-1]:
+                a.pop()
+        a, b = b, a
+    return len(a) == 1
+
+
+def _modulo_prime(p: Sequence[Fraction]) -> list[int]:
+    """A multiple of p with whole coefficients, modulo the prime."""
+    below = lcm(*(c.denominator for c in p))
+    return [(c.numerator * (below // c.denominator)) % _PRIME for c in p]

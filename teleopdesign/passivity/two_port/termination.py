@@ -1,0 +1,132 @@
+"""What a port ends in: a damper with a mass and a spring, or a clamp.
+
+R + m s + k/s with R, m, k >= 0. At one s of the open right half plane, such a termination takes
+every value with abs(arg) <= arg s, and a positive-real function takes no other.
+"""
+
+from __future__ import annotations
+
+import cmath
+from dataclasses import dataclass
+from fractions import Fraction
+
+import sympy as sp
+
+from ...realise.lti import S
+from ..checker.absolute_stability import Ratio, coprime
+from ..checker.polynomials import polynomial
+from .exact_complex import Gaussian, rounded, short
+
+
+@dataclass(frozen=True)
+class Termination:
+    """Damper (N s/m), mass (kg) and spring (N/m) at a port, each >= 0; or a clamp: no motion."""
+
+    damping: Fraction = Fraction(0)
+    inertia: Fraction = Fraction(0)
+    stiffness: Fraction = Fraction(0)
+    clamped: bool = False
+
+    def __post_init__(self) -> None:
+        if min(self.damping, self.inertia, self.stiffness) < 0:
+            raise ValueError(f"termination: a negative part is not passive: {self}")
+
+    @property
+    def ratio(self) -> Ratio:
+        """R + m s + k/s, coprime."""
+        p = polynomial([self.stiffness, self.damping, self.inertia])
+        return coprime(p, polynomial([0, 1]))
+
+    @property
+    def expression(self) -> sp.Expr:
+        """R + m s + k/s in `realise.lti.S`."""
+        r, m, k = (
+            sp.Rational(x.numerator, x.denominator)
+            for x in (self.damping, self.inertia, self.stiffness)
+        )
+        return r + m * S + k / S
+
+    def at(self, s: complex) -> complex:
+        """Its impedance at s, N s/m."""
+        return float(self.damping) + float(self.inertia) * s + float(self.stiffness) / s
+
+    def __str__(self) -> str:
+        if self.clamped:
+            return "clamped"
+        parts = (
+            (self.damping, "a damper of {:.6g} N s/m"),
+            (self.inertia, "a mass of {:.6g} kg"),
+            (self.stiffness, "a spring of {:.6g} N/m"),
+        )
+        shown = [text.format(float(size)) for size, text in parts if size]
+        return "held by " + " and ".join(shown) if shown else "free"
+
+
+CLAMPED = Termination(clamped=True)
+
+
+def far_termination(s: complex, value: complex) -> Termination:
+    """The passive termination that has about that value at s; a clamp where it is infinite."""
+    if cmath.isinf(value):
+        return CLAMPED
+    return termination_near((Fraction(value.real), Fraction(value.imag)), rounded(s), 7)
+
+
+def with_resonance(held: Termination, at: Gaussian) -> Termination:
+    """The same impedance at s, half of its damper replaced by a mass and a spring that resonate.
+
+    For a two-port of dampers alone: with a damper equal and opposite no motion is determined.
+    """
+    rate, size = at[0], at[0] ** 2 + at[1] ** 2
+    mass = held.damping / (4 * rate)
+    return Termination(
+        held.damping / 2, held.inertia + mass, held.stiffness + mass * size, held.clamped
+    )
+
+
+def velocities_in_phase(
+    near: Termination, far: Termination, ratio: complex, s: complex
+) -> tuple[complex, complex]:
+    """Velocities, the larger one 1 m/s, in the phase that gives the terminations most."""
+    size = max(1.0, abs(ratio))
+    v = [1 / size, ratio / size]
+    if s.imag == 0:
+        return complex(v[0]), complex(v[1].real)
+    total = near.at(s) * v[0] ** 2 + (0 if far.clamped else far.at(s) * v[1] ** 2)
+    turn = cmath.exp(-0.5j * cmath.phase(total / s)) if total else 1
+    return v[0] * turn, v[1] * turn
+
+
+def termination_of(wanted: Gaussian, at: Gaussian) -> Termination | None:
+    """The damper with a mass or a spring whose impedance at s is `wanted`; None: not passive."""
+    real, inertia, stiffness = _parts(wanted, at)
+    if real < 0 or (wanted[1] != 0 and at[1] == 0):
+        return None
+    return Termination(real, inertia, stiffness)
+
+
+def termination_near(wanted: Gaussian, at: Gaussian, digits: int) -> Termination:
+    """About the same, its parts to so many digits, a damper below 0 left off."""
+    real, *rest = _parts(wanted, at)
+    real, inertia, stiffness = (short(x, digits) for x in (max(real, Fraction(0)), *rest))
+    return Termination(real, inertia, stiffness)
+
+
+def _parts(wanted: Gaussian, at: Gaussian) -> tuple[Fraction, Fraction, Fraction]:
+    """Damper, which may be negative, mass and spring."""
+    (real, imaginary), (rate, frequency) = wanted, at
+    none = Fraction(0)
+    if imaginary == 0 or frequency == 0:
+        return real, none, none
+    if imaginary > 0:
+        inertia = imaginary / frequency
+        return real - inertia * rate, inertia, none
+    stiffness = -imaginary * (rate**2 + frequency**2) / frequency
+    return real + imaginary * rate / frequency, none, stiffness
+
+
+def exact_value(held: Termination, at: Gaussian) -> Gaussian:
+    """R + m s + k/s at s, exactly."""
+    size = at[0] ** 2 + at[1] ** 2
+    m, k = held.inertia, held.stiffness
+    return held.damping + m * at[0] + k * at[0] / size, m * at[1] - k * at[1] / size

@@ -1,0 +1,195 @@
+"""The report of an arm: one HTML page with the whole arm, and a part for each joint as bodies have.
+
+Each joint's diagnosis is one of a body, so its part is that body's page; here stands what they
+share: the ladder of the arm, the joints in a table, the links, the recording.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..diagnose import ArmDiagnosis
+from ..diagnose.arms.answer import arm_answer
+from ..diagnose.diagnosis import Diagnosis
+from ..diagnose.ladder_text import sentence
+from ..finding import Finding
+from ..measurement.reading import ReadingStep
+from ..plain_data import plain, write_text
+from .candidate_table import LadderRow
+from .figures import ladder_figure
+from .page import DIGITS, Page, bounded, page_of, version
+from .parameter_table import AddedEffect
+from .provenance import ChannelRow, RecordRow, channel_rows, record_rows
+from .words import judged_on, listed, percent
+from .write import Figures, figures_of, rendered
+
+
+@dataclass(frozen=True)
+class JointPart:
+    """A joint: its errors with all joints estimated together, and its own page.
+
+    left: in noise floors of the joint;  said: the verdict on it in words
+    """
+
+    name: str
+    before: float
+    after: float
+    floor: float
+    left: float
+    said: str
+    page: Page
+
+
+@dataclass(frozen=True)
+class LinkRow:
+    """A base parameter of the links, SI; stderr: None where it is not told."""
+
+    name: str
+    unit: str
+    value: float
+    stderr: float | None
+
+
+@dataclass(frozen=True)
+class ArmPage:
+    """What the report of an arm shows, top to bottom. Errors are relative, the rest is SI."""
+
+    title: str
+    folder: str
+    verdict: str
+    named: tuple[str, ...]
+    judged_on: str
+    before: float
+    after: float
+    floor: float
+    left: float
+    ladder: tuple[LadderRow, ...]
+    added: tuple[AddedEffect, ...]
+    joints: tuple[JointPart, ...]
+    links: tuple[LinkRow, ...]
+    soundness: tuple[Finding, ...]
+    records: tuple[RecordRow, ...]
+    reading: tuple[ReadingStep, ...]
+    channels: tuple[ChannelRow, ...]
+    bandwidth: float
+    bandwidth_stated: bool
+    version: str
+
+
+@dataclass(frozen=True)
+class ArmFigures:
+    """Pictures of the whole arm, and those of each joint's part."""
+
+    whole: Figures
+    joints: tuple[Figures, ...]
+
+
+def arm_page_of(
+    diagnosis: ArmDiagnosis,
+    *,
+    soundness: Sequence[Finding] = (),
+    unexplained: Mapping[str, Sequence[Finding]] | None = None,
+) -> ArmPage:
+    """The page of an arm.
+
+    soundness: about the recording;  unexplained: joint -> about what its last model leaves
+    """
+    experiment, left = diagnosis.experiment, unexplained or {}
+    return ArmPage(
+        title=experiment.title,
+        folder=experiment.folder.name,
+        verdict=_verdict(diagnosis),
+        named=tuple(sorted({c.effect.name for c in diagnosis.missing})),
+        judged_on=judged_on(experiment),
+        before=diagnosis.before.check_error,
+        after=diagnosis.after.check_error,
+        floor=diagnosis.floor,
+        left=diagnosis.left,
+        ladder=_ladder(diagnosis),
+        added=(),  # each has its card in the part of its joint
+        joints=tuple(
+            _joint(diagnosis, j, one, left.get(j, ())) for j, one in diagnosis.joints.items()
+        ),
+        links=tuple(
+            LinkRow(name, unit, value, plain(error))
+            for name, (value, error, unit) in diagnosis.base_parameters.items()
+        ),
+        soundness=bounded(soundness),
+        records=record_rows(experiment),
+        reading=experiment.reading,
+        channels=channel_rows(experiment),
+        bandwidth=diagnosis.prepared.bandwidth,
+        bandwidth_stated=experiment.bandwidth is not None,
+        version=version(),
+    )
+
+
+def _joint(
+    diagnosis: ArmDiagnosis, joint: str, one: Diagnosis, left: Sequence[Finding]
+) -> JointPart:
+    return JointPart(
+        name=joint,
+        before=diagnosis.before.check_errors[joint],
+        after=diagnosis.after.check_errors[joint],
+        floor=one.floor.value,
+        left=one.left,
+        said=sentence(one).removeprefix("verdict: "),
+        page=page_of(one, unexplained=left),
+    )
+
+
+def _ladder(diagnosis: ArmDiagnosis) -> tuple[LadderRow, ...]:
+    floor = diagnosis.floor
+    return tuple(
+        LadderRow(
+            name=r.said or "your model, re-estimated",
+            brief="your model" if r.added is None else r.added.effect.name,
+            fit_error=r.fit.fit_error,
+            check_error=r.fit.check_error,
+            floors=r.fit.check_error / floor if floor else float("inf"),
+        )
+        for r in diagnosis.rungs
+    )
+
+
+def _verdict(diagnosis: ArmDiagnosis) -> str:
+    """The verdict on the arm in a sentence or two."""
+    before, after = percent(diagnosis.before.check_error), percent(diagnosis.after.check_error)
+    where = judged_on(diagnosis.experiment)
+    if diagnosis.verdict == "model_adequate":
+        return (
+            f"Your model of the arm is adequate: it leaves {after} of the forces unexplained on "
+            f"{where}."
+        )
+    names = listed([str(c) for c in diagnosis.missing])
+    fell = f"the force error on {where} falls from {before} to {after}"
+    if diagnosis.verdict == "effects_missing":
+        return f"Your model of the arm lacks {names}. With all that was added {fell}."
+    if len(diagnosis.rungs) > 1:
+        added = listed([r.said for r in diagnosis.rungs[1:]])
+        return f"Undecided: with {added} {fell}, but these records do not tell what is missing."
+    return f"Undecided: something is missing, but no effect that was tried explains the {after}."
+
+
+def write_arm_report(
+    diagnosis: ArmDiagnosis,
+    path: str | Path,
+    *,
+    soundness: Sequence[Finding] = (),
+    unexplained: Mapping[str, Sequence[Finding]] | None = None,
+) -> None:
+    """Write the page of an arm; the same diagnosis gives the same bytes.
+
+    soundness, unexplained: as `arm_page_of` takes them
+    """
+    page = arm_page_of(diagnosis, soundness=soundness, unexplained=unexplained)
+    data: dict[str, Any] = {
+        "answer": plain(arm_answer(diagnosis)),
+        "report": plain(page, digits=DIGITS),
+    }
+    whole = Figures(ladder_figure(page.ladder, page.floor), (), (), (), (), {})
+    figures = ArmFigures(whole, tuple(figures_of(joint.page) for joint in page.joints))
+    write_text(Path(path), rendered("arm.html.jinja", page, figures, data))

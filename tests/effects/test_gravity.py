@@ -1,0 +1,46 @@
+"""Gravity's own file says where a spring and a constant force would do as well."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from teleopdesign.effects import EFFECTS, RecordFacts
+
+
+def facts(low, high):
+    return RecordFacts(
+        axis="revolute",
+        travel=high - low,
+        step=1e-5,
+        stroke=1.0,
+        force=5.0,
+        speed=1.0,
+        film=1.0,
+        body={},
+        places=np.linspace(low, high, 400),
+        speeds=np.ones(400),
+    )
+
+
+def untold(phase, low, high):
+    p = SimpleNamespace(amplitude=2.0, phase=phase)
+    return EFFECTS["gravity"].untold(p, facts(low, high))
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.3, np.pi])
+def test_near_the_hanging_place_a_spring_and_a_constant_force_would_do_as_well(phase):
+    said = untold(phase, -0.5 - phase, 0.5 - phase)
+    # sin x less its best line over half a radian either way: x^3 / 6 leaves 0.0032 (rms) of 0.28
+    assert "spring and a constant force" in said and "within 1.1 %" in said and "1 rad" in said
+
+
+@pytest.mark.parametrize(("phase", "low", "high"), [(0.0, -2.0, 2.0), (0.0, 1.0, 2.2)])
+def test_over_a_wide_travel_or_near_the_level_gravity_is_told_by_its_curvature(phase, low, high):
+    assert untold(phase, low, high) is None
+
+
+def test_without_samples_or_travel_nothing_is_said():
+    p = SimpleNamespace(amplitude=2.0, phase=0.0)
+    still = facts(0.3, 0.3)
+    assert EFFECTS["gravity"].untold(p, still) is None
