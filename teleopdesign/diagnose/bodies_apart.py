@@ -16,13 +16,9 @@ from numpy.typing import NDArray
 from ..measurement.filtering import Array
 from ..model import Model
 from ..realise.traced import Probe
+from .effort import EFFORTS
 from .prepare import Stretch
 from .residual import relative_residuals
-
-#: squares of what a body's residual changes by, over those of the residual and over the tolerance
-#: of a fit, up to which the residual follows its tangents: what they miss is of higher order, and
-#: so below what the fit resolves. More: faster, and fits end where the tangents lead
-FOLLOWED = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +70,11 @@ class _Memory:
     jacobian: Array
 
 
+def _is_near(x: Array, other: Array) -> bool:
+    """Whether no coordinate differs by more than a thousandth of itself, or of its scale."""
+    return bool(np.all(np.abs(x - other) <= 1e-3 * np.maximum(np.abs(other), 1.0)))
+
+
 def body_by_body(
     model: Model, names: Sequence[str], stretches: Sequence[Stretch], *, tolerance: float
 ) -> Callable[[Model, Array, Array], tuple[Array, Array]]:
@@ -90,9 +91,10 @@ def body_by_body(
 
     def here(i: int, there: Model, x: Array, units: Array) -> tuple[Array, Array]:
         known = memory.get(i)
-        if known is not None:
+        # one body is what the fit is about; a far way along which little changes bends
+        if known is not None and len(parts) > 1 and _is_near(x, known.x):
             change = known.jacobian @ (x - known.x)
-            largest = FOLLOWED * tolerance * float(known.residual @ known.residual)
+            largest = EFFORTS.followed * tolerance * float(known.residual @ known.residual)
             if float(change @ change) <= largest:
                 return known.residual + change, known.jacobian
         residual, slopes = parts[i].relative(there, [names[int(k)] for k in columns[i]])

@@ -1,5 +1,7 @@
 """What a body leaves unexplained is its own: one that stands still is not computed anew."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from cases import make_case, write_case
@@ -58,7 +60,7 @@ def test_a_fit_that_follows_tangents_ends_where_one_that_computes_all_again_does
         followed = estimate(moved, prepared, effort=effort)
         assert computed.count("master") < computed.count("slave")
         with monkeypatch.context() as patch:
-            patch.setattr(bodies_apart, "FOLLOWED", 0.0)
+            patch.setattr(bodies_apart, "EFFORTS", replace(EFFORTS, followed=0.0))
             again = estimate(moved, prepared, effort=effort)
         for name in followed.free:
             one, other = (f.model.parameters[name] for f in (followed, again))
