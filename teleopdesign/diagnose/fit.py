@@ -12,6 +12,7 @@ from ..blocks import Value
 from ..by_value import ByValue
 from ..measurement.filtering import Array
 from ..model import Model
+from .bodies_apart import body_by_body
 from .effort import EFFORTS, Effort
 from .error import error_of, force_error
 from .error_at_command import AtCommand, at_command
@@ -287,17 +288,15 @@ def solve(
     lower = np.append(space.lower, np.full(len(shifts.bodies), -LARGEST))
     upper = np.append(space.upper, np.full(len(shifts.bodies), LARGEST))
     start = np.append(space.start, shifts.start(model))
-    roots = [np.sqrt(s.weight) for s in stretches]
+    names = (*free, *shifts.names)
+    evaluated = body_by_body(model, names, stretches, tolerance=effort.tolerance)
 
     def there(x: Array) -> Model:
         moved = model.with_values(dict(zip(free, space.values(x[:p]).tolist(), strict=True)))
         return shifts.beside(moved, x[p:])
 
     def both(x: Array) -> tuple[Array, Array]:
-        parts = relative_residuals(there(x), stretches, (*free, *shifts.names))
-        r = np.concatenate([w * v for w, (v, _) in zip(roots, parts, strict=True)])
-        j = np.concatenate([w * t.T for w, (_, t) in zip(roots, parts, strict=True)])
-        return r, j * np.append(space.units(x[:p]), shifts.row)
+        return evaluated(there(x), x, np.append(space.units(x[:p]), shifts.row))
 
     def with_prior(x: Array) -> tuple[Array, Array]:
         r, j = both(x)

@@ -19,9 +19,9 @@ from ..effects import Effect
 from ..measurement.filtering import Array
 from ..model import Model
 from ..realise.traced import Probe
+from .bodies_apart import of_bodies
 from .fit import Fit
 from .prepare import Prepared
-from .residual import relative_residuals
 
 #: columns that are carried through the friction balance at once: bounds the memory
 AT_ONCE = 48
@@ -98,10 +98,11 @@ def _size(columns: Array) -> Array:
 
 def _columns(model: Model, probes: list[Probe], prepared: Prepared) -> Array:
     stretches = prepared.of("fit")
-    parts = relative_residuals(model, stretches, probes)
-    return np.concatenate(
-        [np.sqrt(s.weight) * d.T for s, (_, d) in zip(stretches, parts, strict=True)]
-    )
+    moved = of_bodies(stretches, {model.holder(probe.at) for probe in probes})
+    _, slopes = moved.relative(model, probes)
+    columns = np.zeros((sum(len(s.keep) for s in stretches), len(probes)))
+    columns[moved.rows] = slopes
+    return columns
 
 
 def _start(model: Model, effect: Effect, at: str, left: Array, columns: Array) -> LinearStart:

@@ -64,7 +64,7 @@ def _refined(
     if not present or fit_squares(rough) > leading:
         return attempt
     if stated is not None:
-        rough = from_stated(rough, prepared, stated)
+        rough = from_stated(rough, prepared, stated, candidate.at)
     if fit_squares(rough) > worthless:
         return candidate, rough
     return candidate, estimate(rough.model, prepared)

@@ -17,13 +17,13 @@ import numpy as np
 from ..effects import Effect
 from ..measurement.filtering import Array
 from ..model import Model
+from .bodies_apart import of_bodies
 from .candidates import started
 from .criteria import CRITERIA
 from .effort import EFFORTS, Effort
 from .fit import Fit, Solution, estimate, fit_of, fit_squares, free_parameters, solve
 from .linear_start import linear_starts
 from .prepare import Prepared
-from .residual import relative_residuals
 from .search_plan import PLAN
 
 
@@ -111,14 +111,16 @@ def estimate_from_starts(
     return estimate(best.model, prepared, effort=EFFORTS.fine if base is None else EFFORTS.near)
 
 
-def from_stated(fit: Fit, prepared: Prepared, stated: Model) -> Fit:
+def from_stated(fit: Fit, prepared: Prepared, stated: Model, at: str) -> Fit:
     """The fit, or the one that its user's values lead to where that leaves less.
 
     An effect stated without values was led astray by what is missing: it starts anew as well. Both
     are followed on few samples; only what leaves less there is estimated on all of them.
+    at: place of a new effect: other bodies stay, for what their user's values lead to beside it is
+        what they led to without it
     """
     coarse = prepared.coarse
-    models = started(at_stated(fit.model, stated), prepared.scales)
+    models = started(at_stated(fit.model, stated, at), prepared.scales)
     if len(models) > PLAN.curved_stepped + 1:
         models = _best_stepped(models, coarse, PLAN.curved_stepped, promised=False)
     other = min((_followed(m, coarse, EFFORTS.rough) for m in models), key=_squares)
@@ -154,12 +156,17 @@ def with_parameters_of(model: Model, other: Model) -> Model:
     return model.with_values(dict(other.parameters)).with_record_shift(other.record_shift)
 
 
-def at_stated(model: Model, stated: Model) -> Model:
+def at_stated(model: Model, stated: Model, at: str | None = None) -> Model:
     """The model with its user's values: without an effect that is missing, others may have gone
     where no step leads back from.
+
+    at: place whose body gets them; None: all bodies
     """
     there = model.parameters  # an effect of the user's may have given way to another
-    return model.with_values({n: v.value for n, v in stated.parameters.items() if n in there})
+    values = {n: v.value for n, v in stated.parameters.items() if n in there}
+    if at is not None:
+        values = {n: v for n, v in values.items() if model.locate(n)[0] == model.holder(at)}
+    return model.with_values(values)
 
 
 def unchanged(model: Model, base: Fit) -> Fit:
@@ -247,11 +254,10 @@ def _promise(model: Model, prepared: Prepared, base: Fit) -> float:
     values, before = model.parameters, base.model.parameters
     same = all(values[n].value == before[n].value for n in base.free)
     wanted = [n for n in free_parameters(model) if not (same and n in base.free)]
-    parts = relative_residuals(model, stretches, wanted)
-    roots = [np.sqrt(s.weight) for s in stretches]
-    residual = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
-    columns = np.concatenate([w * d.T for w, (_, d) in zip(roots, parts, strict=True)])
-    columns = columns * np.array([unit[model.declared(n).quantity] for n in wanted])
+    moved = of_bodies(stretches, {model.locate(n)[0] for n in wanted} or set(model.bodies))
+    residual, columns = base.fit_residual.copy(), np.zeros((len(base.fit_residual), len(wanted)))
+    residual[moved.rows], slopes = moved.relative(model, wanted)
+    columns[moved.rows] = slopes * np.array([unit[model.declared(n).quantity] for n in wanted])
     whole = np.hstack([base.jacobian, base.by_shift, columns]) if same else columns
     return _left(whole, residual) if np.isfinite(whole).all() else math.inf
 

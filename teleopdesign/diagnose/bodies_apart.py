@@ -1,0 +1,112 @@
+"""Residuals of several bodies, each by itself: a body that hardly moved is not computed again.
+
+Along measured motions the bodies of a model have nothing in common: what one leaves unexplained
+depends on its own parameters alone. A search at one body needs no tangents of the other, and in a
+fit the other soon stands still.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..measurement.filtering import Array
+from ..model import Model
+from ..realise.traced import Probe
+from .effort import EFFORTS
+from .prepare import Stretch
+from .residual import relative_residuals
+
+
+@dataclass(frozen=True, eq=False)
+class Apart:
+    """Stretches that share parameters, those of one body.
+
+    rows: theirs among the rows of all stretches;  bodies: that they belong to
+    """
+
+    stretches: tuple[Stretch, ...]
+    rows: NDArray[np.intp]
+    bodies: frozenset[str]
+
+    def relative(self, model: Model, names: Sequence[str | Probe]) -> tuple[Array, Array]:
+        """Weighted `relative_residuals` (rows,) and their derivatives (rows, p)."""
+        parts = relative_residuals(model, self.stretches, names)
+        roots = [np.sqrt(s.weight) for s in self.stretches]
+        residual = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
+        slopes = np.concatenate([w * d.T for w, (_, d) in zip(roots, parts, strict=True)])
+        return residual, slopes
+
+
+def apart(stretches: Sequence[Stretch]) -> tuple[Apart, ...]:
+    """The stretches of each body; all in one where what the links of an arm can do joins them."""
+    names = list(dict.fromkeys(s.motion.body for s in stretches))
+    if any(s.shared is not None for s in stretches):
+        return (_of(stretches, names),)
+    return tuple(_of(stretches, [name]) for name in names)
+
+
+def of_bodies(stretches: Sequence[Stretch], bodies: Collection[str]) -> Apart:
+    """The stretches of these bodies, with those that they are joined to."""
+    joined = (part.bodies for part in apart(stretches) if part.bodies & set(bodies))
+    return _of(stretches, frozenset().union(*joined))
+
+
+def _of(stretches: Sequence[Stretch], bodies: Collection[str]) -> Apart:
+    mine = np.concatenate([np.full(len(s.keep), s.motion.body in bodies) for s in stretches])
+    here = tuple(s for s in stretches if s.motion.body in bodies)
+    return Apart(here, np.flatnonzero(mine), frozenset(bodies))
+
+
+@dataclass(frozen=True, eq=False)
+class _Memory:
+    """Where a body was computed last, in search coordinates, with its residual and jacobian."""
+
+    x: Array
+    residual: Array
+    jacobian: Array
+
+
+def _is_near(x: Array, other: Array) -> bool:
+    """Whether no coordinate differs by more than a thousandth of itself, or of its scale."""
+    return bool(np.all(np.abs(x - other) <= 1e-3 * np.maximum(np.abs(other), 1.0)))
+
+
+def body_by_body(
+    model: Model, names: Sequence[str], stretches: Sequence[Stretch], *, tolerance: float
+) -> Callable[[Model, Array, Array], tuple[Array, Array]]:
+    """A function that gives residual (rows,) and jacobian (rows, p) of all stretches.
+
+    names: the p parameters and shifts;  tolerance: relative change of squares that a fit resolves
+    The function takes the model, its parameters as they are searched, and their units there.
+    """
+    parts = apart(stretches)
+    places = [model.locate(name)[0] for name in names]
+    columns = [np.flatnonzero([p in part.bodies for p in places]) for part in parts]
+    count = sum(len(part.rows) for part in parts)
+    memory: dict[int, _Memory] = {}
+
+    def here(i: int, there: Model, x: Array, units: Array) -> tuple[Array, Array]:
+        known = memory.get(i)
+        # one body is what the fit is about; a far way along which little changes bends
+        if known is not None and len(parts) > 1 and _is_near(x, known.x):
+            change = known.jacobian @ (x - known.x)
+            largest = EFFORTS.followed * tolerance * float(known.residual @ known.residual)
+            if float(change @ change) <= largest:
+                return known.residual + change, known.jacobian
+        residual, slopes = parts[i].relative(there, [names[int(k)] for k in columns[i]])
+        memory[i] = _Memory(x, residual, slopes * units)
+        return memory[i].residual, memory[i].jacobian
+
+    def all_bodies(there: Model, x: Array, units: Array) -> tuple[Array, Array]:
+        residual, jacobian = np.empty(count), np.zeros((count, len(names)))
+        for i, part in enumerate(parts):
+            mine = columns[i]
+            residual[part.rows], slopes = here(i, there, x[mine], units[mine])
+            jacobian[np.ix_(part.rows, mine)] = slopes
+        return residual, jacobian
+
+    return all_bodies

@@ -1,0 +1,79 @@
+"""What a body leaves unexplained is its own: one that stands still is not computed anew."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from cases import make_case, write_case
+
+from teleopdesign import Model, load_experiment
+from teleopdesign.diagnose import bodies_apart
+from teleopdesign.diagnose.bodies_apart import apart, of_bodies
+from teleopdesign.diagnose.effort import EFFORTS
+from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.search import at_stated
+
+
+@pytest.fixture(scope="module")
+def two_bodies(tmp_path_factory):
+    """Prepared records of a teleoperator from which nothing is missing, and the user's model."""
+    folder = tmp_path_factory.mktemp("apart") / "case"
+    write_case(make_case(np.random.default_rng(3), "null", kind="teleoperator"), folder)
+    experiment = load_experiment(folder)
+    return prepare(experiment), Model.from_experiment(experiment)
+
+
+def test_what_one_body_leaves_does_not_depend_on_the_parameters_of_another(two_bodies):
+    prepared, model = two_bodies
+    stretches = prepared.of("fit")
+    names = tuple(n for n, v in model.parameters.items() if not v.fixed)
+    whole = of_bodies(stretches, ("master", "slave")).relative(model, names)
+    assert sorted(r for part in apart(stretches) for r in part.rows) == list(range(len(whole[0])))
+    for part in apart(stretches):
+        (body,) = part.bodies
+        mine = [i for i, n in enumerate(names) if model.locate(n)[0] == body]
+        left, slopes = part.relative(model, [names[i] for i in mine])
+        assert left == pytest.approx(whole[0][part.rows], rel=1e-12)
+        assert slopes == pytest.approx(whole[1][np.ix_(part.rows, mine)], rel=1e-9, abs=1e-12)
+        others = np.delete(whole[1][part.rows], mine, axis=1)
+        assert others.size and not others.any()
+
+
+def test_a_fit_that_follows_tangents_ends_where_one_that_computes_all_again_does(
+    two_bodies, monkeypatch
+):
+    prepared, stated = two_bodies
+    there = estimate(stated, prepared).model
+    values = {n: 1.2 * v.value for n, v in there.parameters.items() if not v.fixed}
+    moved = there.with_values({n: v for n, v in values.items() if n.startswith("slave.")})
+    computed = []
+    relative = bodies_apart.Apart.relative
+
+    def counted(part, *arguments):
+        computed.extend(part.bodies)
+        return relative(part, *arguments)
+
+    monkeypatch.setattr(bodies_apart.Apart, "relative", counted)
+    for effort in (EFFORTS.rough, EFFORTS.fine):
+        computed.clear()
+        followed = estimate(moved, prepared, effort=effort)
+        assert computed.count("master") < computed.count("slave")
+        with monkeypatch.context() as patch:
+            patch.setattr(bodies_apart, "EFFORTS", replace(EFFORTS, followed=0.0))
+            again = estimate(moved, prepared, effort=effort)
+        for name in followed.free:
+            one, other = (f.model.parameters[name] for f in (followed, again))
+            # far below what is said of the estimate; a rough fit ends anywhere within its tolerance
+            assert abs(one.value - other.value) < 0.05 * other.stderr, name
+
+
+def test_the_values_of_a_user_come_back_at_one_body_alone(two_bodies):
+    _, stated = two_bodies
+    moved = stated.with_values(
+        {n: 1.5 * v.value for n, v in stated.parameters.items() if not v.fixed}
+    )
+    back = at_stated(moved, stated, "slave").parameters
+    for name, value in back.items():
+        here = stated if stated.locate(name)[0] == "slave" else moved
+        assert value.value == here.parameters[name].value
