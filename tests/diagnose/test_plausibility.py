@@ -105,6 +105,11 @@ UNTOLD = {
         {"fraction": 0.9, "time_constant": 200.0},
         "the rate d / tau = 0.0045 1/s",
     ),
+    "gravity": (
+        {"amplitude": 2.0, "phase": np.pi / 2},
+        {"amplitude": 2.0, "phase": 0.1},
+        "a spring and a constant force give this torque within",
+    ),
 }
 
 
