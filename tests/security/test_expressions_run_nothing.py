@@ -2,7 +2,8 @@
 
 import pytest
 import sympy as sp
-from security.diagram_file import in_time, one_line
+from clock import in_time
+from security.diagram_file import one_line
 from security.hostile import CODE, MARK
 
 from teleopdesign.diagrams.expressions import read_expression

@@ -9,8 +9,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from clock import in_time
 from measurement.rod_example import ROD, rod_columns, rows, write_rod
-from security.diagram_file import in_time, one_line
+from security.diagram_file import one_line
 from security.hostile import CODE, MARK, quoted
 
 from teleopdesign.cli import main
