@@ -11,6 +11,7 @@ import pytest
 from passivity.attacks.budget import attacked, climbed, near
 from passivity.attacks.friction import bristle
 
+from teleopdesign.errors import ModelError
 from teleopdesign.passivity import (
     Coulomb,
     Dahl,
@@ -127,7 +128,12 @@ def test_no_motion_takes_out_more_than_the_storage_that_settled(seed, number):
     for k in range(number):
         compensator, friction = random_friction(rng)
         load = 0.3 * rng.random() if k % 5 == 0 else 0.0
-        found = available_storage(compensator, friction, points=POINTS, load_coefficient=load)
+        try:
+            found = available_storage(compensator, friction, points=POINTS, load_coefficient=load)
+        except ModelError as error:  # two springs of lengths far apart: a refusal claims nothing
+            assert "would take minutes" in str(error)
+            counts["refused"] += 1
+            continue
         elements = [compensator, *friction]
         above, forever = attack(rng, elements, found.storage, load=load)
         case = elements, load, found.gain, above, forever
@@ -142,6 +148,7 @@ def test_no_motion_takes_out_more_than_the_storage_that_settled(seed, number):
     print(dict(counts), np.round(np.quantile(nearest, [0, 0.1, 0.5, 0.9, 1]), 4))
     # some that do not settle are beaten, and storages that settle are reached: it is not blind
     assert counts[True, False] and counts[False, True] and max(nearest) > -0.1
+    assert counts["refused"] < 0.1 * number
 
 
 def test_the_attack_beats_a_storage_of_other_friction():
