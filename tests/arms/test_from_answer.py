@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import csv
 import gzip
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -158,6 +160,21 @@ def test_an_answer_that_was_changed_is_refused_in_one_line(
     with pytest.raises(ExperimentError, match=message) as caught:
         restored_arm(load_answer(path), td.load_experiment(folder))
     assert "\n" not in str(caught.value)
+
+
+def test_folders_of_arms_are_diagnosed_into_one_table(folder, tmp_path, capsys):
+    second = shutil.copytree(folder, tmp_path / "second")
+    out = tmp_path / "out"
+    given = ["--quick", "--only", "spring", "quadratic_drag", "--output", str(out)]
+    assert main(["diagnose", str(folder), str(second), *given]) == 0
+    first, other = csv.DictReader((out / "table.csv").read_text().splitlines())
+    assert first["missing"] == "spring at joint2" and not first["failure"]
+    # the same records: the same answer
+    assert {k for k in first if first[k] != other[k]} == {"folder", "answer"}
+    for name in (folder.name, "second"):
+        there = load_answer(out / f"{name}.json")
+        assert restored_arm(there, td.load_experiment(folder)).verdict == first["verdict"]
+    assert "2 of 2 folders diagnosed" in capsys.readouterr().out
 
 
 @pytest.mark.slow
