@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import re
 from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError, did_you_mean, quoted
+from ._values import value_from
 
 if TYPE_CHECKING:
     from ..measurement import Experiment
@@ -77,8 +77,6 @@ def posed(model: Model, experiment: Experiment, joint: str, options: argparse.Na
 
 def _read_pose(texts: list[str], experiment: Experiment) -> dict[str, float]:
     """Joint -> position in SI."""
-    from ..quantity import to_si
-
     pose, joints = {}, list(experiment.bodies)
     for text in texts:
         joint, _, value = text.partition("=")
@@ -87,14 +85,9 @@ def _read_pose(texts: list[str], experiment: Experiment) -> dict[str, float]:
                 f"--pose {text}: no joint {quoted(joint)}, has {', '.join(joints)}"
                 f"{did_you_mean(joint, joints)}"
             )
-        number = re.fullmatch(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)", value)
-        if number is None:
-            raise ExperimentError(f"--pose {text}: expected a number and a unit")
-        size, where = float(number[1]), f"--pose {text}"
-        if number[2]:
-            axis = experiment.axis(joint)
-            size = to_si(size, number[2], quantity="position", axis=axis, where=where)
-        pose[joint] = size
+        pose[joint] = value_from(
+            value, quantity="position", axis=experiment.axis(joint), where=f"--pose {text}"
+        )
     return pose
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import re
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
@@ -21,6 +20,7 @@ from ._diagnosis import (
     print_diagnosis,
 )
 from ._options import check_output, say
+from ._values import value_from
 
 if TYPE_CHECKING:
     from ..diagnose import ArmDiagnosis
@@ -178,8 +178,6 @@ def _content(proposal: Any, shown: Sequence[SimulatedDiagnosis]) -> dict[str, An
 
 def _read_limits(texts: Sequence[str], experiment: Experiment) -> dict[str, dict[str, float]]:
     """Body -> limit -> value (SI), from the command line; ExperimentError says what is wrong."""
-    from ..quantity import to_si
-
     bodies = tuple(experiment.bodies)
     limits: dict[str, dict[str, float]] = {}
     for text in texts:
@@ -196,23 +194,12 @@ def _read_limits(texts: Sequence[str], experiment: Experiment) -> dict[str, dict
                 f'--limit {text}: no limit "{name_of_limit}", has {", ".join(QUANTITY)}'
                 f"{did_you_mean(name_of_limit, QUANTITY)}"
             )
-        number = re.match(r"\s*([-+]?[0-9.]+(?:[eE][-+]?\d+)?)\s*(.*)$", value)
-        if number is None:
-            raise ExperimentError(f"--limit {text}: found {value!r}, expected a number and a unit")
-        try:
-            size = float(number[1])
-        except ValueError:
-            raise ExperimentError(
-                f"--limit {text}: found {number[1]!r}, expected a number"
-            ) from None
-        if number[2]:
-            size = to_si(
-                size,
-                number[2],
-                quantity=QUANTITY[name_of_limit],
-                axis=experiment.axis(body),
-                where=f"--limit {text}",
-            )
+        size = value_from(
+            value,
+            quantity=QUANTITY[name_of_limit],
+            axis=experiment.axis(body),
+            where=f"--limit {text}",
+        )
         limits.setdefault(body, {})[name_of_limit] = size
     return limits
 
