@@ -71,8 +71,9 @@ class _Memory:
 
 
 def _is_near(x: Array, other: Array) -> bool:
-    """Whether no coordinate differs by more than a thousandth of itself, or of its scale."""
-    return bool(np.all(np.abs(x - other) <= 1e-3 * np.maximum(np.abs(other), 1.0)))
+    """Whether tangents may be followed from one place to the other."""
+    sizes = np.maximum(np.abs(other), 1.0)
+    return bool(np.all(np.abs(x - other) <= EFFORTS.followed_within * sizes))
 
 
 def body_by_body(
