@@ -25,7 +25,7 @@ from ...errors import ModelError
 from ...realise.lti import S, linear_blocks
 from ..claims.certificate import Certificate, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
-from ..linear.hidden_modes import hides_growth
+from ..linear.hidden_modes import body_hides_growth, hides_growth
 from ..linear.impedance import decimal, exact
 from ..linear.positive_real import positive_real
 from ..ports import judged, without_holding
@@ -128,6 +128,11 @@ def wave_claim(diagram: Diagram) -> Claim:
         f"a growing mode within {part.name} that a zero cancels"
         for part in alone.controls
         if part.dead_time is None and hides_growth(part, linear)
+    ]
+    bent += [
+        f"a mode of {part.name} that its effects cancel"
+        for part in alone.blocks
+        if isinstance(part, Moving) and body_hides_growth(part, linear)
     ]
     # the channel acts on one side of a compliance, the hand on the other: two ports, not one
     bent += [

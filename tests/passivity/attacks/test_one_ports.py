@@ -116,6 +116,8 @@ def test_no_growing_wave_gives_out_energy_where_a_port_is_proved_passive(seed, n
     assert counts["proved", False] > number / 5
     # the attacker sees what there is to see, or its silence would say nothing
     assert counts["refuted", True] > 20 * counts["refuted", False]
+    unknown = sum(n for (status, _), n in counts.items() if status == "unknown")
+    assert unknown <= number / 100
 
 
 @attacked(3, 40)
