@@ -56,13 +56,13 @@ def _check_names(diagram: Diagram) -> None:
     """Two things under one symbol would be one in every transfer function."""
     for part in diagram.blocks:
         if isinstance(part, Moving) and has_actuation(part):
-            taken = {f"A_{part.name}": f"the actuator of {part.name}"}
+            meanings = {f"A_{part.name}": f"the actuator of {part.name}"}
         elif isinstance(part, Linked):
             entries = (part.entry_name(i, j) for i, j in part.entries)
-            taken = dict.fromkeys(entries, f"an entry of {part.name}")
+            meanings = dict.fromkeys(entries, f"an entry of {part.name}")
         else:
             continue
-        for name, what in taken.items():
+        for name, what in meanings.items():
             if diagram.has(name):
                 raise ModelError(
                     f"{diagram.name}: {name} is {what}, and the name of a block: call the block "

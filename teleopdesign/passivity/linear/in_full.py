@@ -155,11 +155,11 @@ def equations_in_full(diagram: Diagram) -> list[Equation]:
                     signal = name
                 signal, factor = writer.through(form, signal)
             loads = [(s, -polynomial_in_s(sp.sympify(w))) for s, w in part.loads.items()]
-            own = _impedance(writer, part, forces)
-            writer.add(*own, (signal, -factor), *loads)
+            resistance = _impedance(writer, part, forces)
+            writer.add(*resistance, (signal, -factor), *loads)
         elif isinstance(part, Attached):
-            own = _impedance(writer, part, effect_forms(part)[0])
-            writer.add((part.force, _ONE), *((n, -part.sign * p) for n, p in own))
+            resistance = _impedance(writer, part, effect_forms(part)[0])
+            writer.add((part.force, _ONE), *((n, -part.sign * p) for n, p in resistance))
         elif isinstance(part, Linked):
             for i, force in enumerate(part.forces):
                 terms = [
