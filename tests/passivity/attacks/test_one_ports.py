@@ -81,6 +81,9 @@ def judged(rng, kind):
             lower = damping_excess(expression(*ratio)).lower
             less = plus(ratio[0], [lower * c for c in ratio[1]], -1), ratio[1]
             assert active_point(rng, less) is None, (kind, ratio, margin)
+    elif claim.status == "unknown":
+        # the wave gives out so little that double precision does not show it: nothing is claimed
+        assert "it shows nothing" in str(claim.verdict), (kind, ratio, claim)
     else:
         assert claim.status == "refuted", (kind, ratio, claim)
         wave = claim.record
