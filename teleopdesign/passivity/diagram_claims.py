@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import sympy as sp
 
 from ..arguments import checked
 from ..diagrams import Diagram
@@ -21,7 +22,7 @@ from .claims.axis_units import in_units_of
 from .claims.claim import Claim, Proof, Refutation, Unknown
 from .device_claims import device_claims
 from .friction_pairs import FrictionPair, friction_pairs, pair_claims
-from .linear.hidden_modes import growth_within
+from .linear.hidden_modes import controllers_grow, growth_within
 from .linear.positive_real import NEARBY, positive_real
 from .ports import (
     Port,
@@ -37,6 +38,7 @@ from .search.by_simulation import Computer, SimulatedMotion, search_counterexamp
 from .theorems import TopicClaim
 from .theorems.wave_channel import wave_claim
 from .two_port.claims import absolutely_stable, passive
+from .two_port.late_one_port import late_one_port
 from .two_port.two_port import two_port
 
 #: topics that settle all ports at once
@@ -133,6 +135,8 @@ def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClai
     claims = _linear_claims(diagram, all_ports)
     if any(one.claim.status == "proved" for one in claims):
         claims = _beside_what_grows(claims, growth_within(diagram))
+    if any(one.claim.status == "evidence" for one in claims) and controllers_grow(diagram):
+        claims = [_open_inside(one) for one in claims]
     if not any(one.claim.status == "refuted" for one in claims):
         return claims
     nearby = [_linear_claims(other, all_ports) for other in _nearby(diagram)]
@@ -156,6 +160,13 @@ def _beside_what_grows(claims: list[TopicClaim], rate: float | None) -> list[Top
         else one
         for one in claims
     ]
+
+
+def _open_inside(one: TopicClaim) -> TopicClaim:
+    if one.claim.status != "evidence" or not one.claim.holds:
+        return one
+    why = "beside its dead times a law has a mode that grows by itself, which no port shows"
+    return replace(one, claim=Claim(one.claim.statement, Unknown(why)))
 
 
 def _nearby(diagram: Diagram) -> list[Diagram]:
@@ -188,7 +199,8 @@ def _linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicCla
     try:
         z = impedance_matrix(diagram, all_ports)
         if len(all_ports) == 1:
-            claim = in_units_of(_axis(diagram, all_ports), positive_real(z[0, 0]))
+            judge = late_one_port if z.has(sp.exp) else positive_real
+            claim = in_units_of(_axis(diagram, all_ports), judge(z[0, 0]))
             return [TopicClaim(WHOLE[1], claim)]
     except ModelError as problem:
         claim = Claim(f"{diagram.name}: its ports are passive", Unknown(str(problem)))
