@@ -10,8 +10,8 @@ from devices import body
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
 from teleopdesign.passivity import ports
-from teleopdesign.passivity.diagram_claims import linear_claims
 from teleopdesign.passivity.linear.hidden_modes import controllers_grow
+from teleopdesign.passivity.linear_diagrams import linear_claims
 from teleopdesign.passivity.two_port.late_one_port import late_one_port
 from teleopdesign.passivity.two_port.two_port import passive_margin
 

@@ -24,7 +24,7 @@ from teleopdesign.diagrams import (
 from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode
 from teleopdesign.passivity import ports
-from teleopdesign.passivity.diagram_claims import linear_claims
+from teleopdesign.passivity.linear_diagrams import linear_claims
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.simulate import Sampling, Trajectory, simulate
 

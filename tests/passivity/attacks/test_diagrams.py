@@ -19,7 +19,7 @@ from teleopdesign import EFFECTS, Body, Value
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving, haptic_interface
 from teleopdesign.passivity import Search, diagram_claims, ports
-from teleopdesign.passivity.diagram_claims import linear_claims
+from teleopdesign.passivity.linear_diagrams import linear_claims
 
 KINDS = ("springs and dampers", "filters", "a pole that grows", "a pole that grows, cancelled",
          "unequal gains", "springs and dampers, in series", "negative spring",
