@@ -35,7 +35,7 @@ def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClai
     is proved has no mode inside that grows by itself, though no port shows it from rest.
     """
     claims = _linear_claims(diagram, all_ports)
-    if any(one.claim.status == "proved" for one in claims):
+    if any(one.claim.holds for one in claims):
         claims = _beside_what_grows(claims, growth_within(diagram))
     if any(one.claim.status == "evidence" for one in claims) and controllers_grow(diagram):
         claims = [_open_inside(one) for one in claims]
@@ -84,15 +84,13 @@ def _beside_what_grows(claims: list[TopicClaim], rate: float | None) -> list[Top
         f"grows by itself {how}"
     )
     return [
-        replace(one, claim=Claim(one.claim.statement, Unknown(why)))
-        if one.claim.status == "proved"
-        else one
+        replace(one, claim=Claim(one.claim.statement, Unknown(why))) if one.claim.holds else one
         for one in claims
     ]
 
 
 def _open_inside(one: TopicClaim) -> TopicClaim:
-    if one.claim.status != "evidence" or not one.claim.holds:
+    if not one.claim.holds:
         return one
     why = "beside its dead times a law has a mode that grows by itself, which no port shows"
     return replace(one, claim=Claim(one.claim.statement, Unknown(why)))

@@ -11,7 +11,7 @@ from teleopdesign.controllers import ControlLaw, Controller, ControllerState, St
 from teleopdesign.derive import transfer
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
 from teleopdesign.errors import ModelError
-from teleopdesign.passivity import positive_real
+from teleopdesign.passivity import Claim, Evidence, linear_diagrams, ports, positive_real
 from teleopdesign.passivity.intervals.box import ValueBox
 from teleopdesign.passivity.intervals.linear import judge_linear
 from teleopdesign.passivity.linear.hidden_modes import growth_within
@@ -164,3 +164,13 @@ def test_a_block_of_the_name_of_an_actuator_is_refused():
     doubled = Diagram("named", blocks, diagram.junctions, {"f": "force"}, ())
     with pytest.raises(ModelError, match="A_M is the actuator of M, and the name of a block"):
         transfer(doubled, "x")
+
+
+def test_evidence_beside_a_hidden_mode_that_grows_is_none(monkeypatch):
+    """Where a certificate would ask for too much work, the exact answer is evidence: it counts."""
+    exact = Evidence(True, "decided in exact arithmetic", 1.0)
+    monkeypatch.setattr(linear_diagrams, "positive_real", lambda z: Claim("Z is passive", exact))
+    for laws, holds in ((GROWING["in one ratio"], None), (STAYING["one pole at 0"], True)):
+        diagram = held(*laws)
+        (one,) = linear_diagrams.linear_claims(diagram, ports(diagram))
+        assert one.claim.holds is holds
