@@ -28,6 +28,7 @@ from .delayed_two_port import late_terms, obstacles
 from .exact_complex import Gaussian, rounded, value_at
 from .growing_mode import entries_of, growing_mode
 from .growth_points import candidates, points_near_poles, points_of_growth
+from .resonances import resonances
 from .termination import far_termination
 from .two_port import TwoPort, passive_margin, stable_margin
 
@@ -138,8 +139,8 @@ def _text(system: TwoPort) -> str:
 
 def _swept() -> str:
     return (
-        "margin over 4001 frequencies from 1e-4 to 1e4 Hz, refined at the lowest; poles, residues "
-        "and the ends of the axis"
+        "margin over 4001 frequencies from 1e-4 to 1e4 Hz and across resonances, refined at the "
+        "lowest; poles, residues and the ends of the axis"
     )
 
 
@@ -149,7 +150,7 @@ def _lowest(system: TwoPort, margin: Any) -> tuple[list[float], float]:
     The lowest one, and some of those with a negative margin: where energy comes out at a rate worth
     the name need not be where the margin is smallest.
     """
-    f = np.geomspace(1e-4, 1e4, 4001)
+    f = np.unique(np.concatenate([np.geomspace(1e-4, 1e4, 4001), resonances(system)]))
     values = margin(system.over(f))
     negative = f[np.flatnonzero(values < 0)]
     chosen = [float(x) for x in negative[:: max(1, len(negative) // 12)]]

@@ -27,7 +27,7 @@ def points_of_growth(z: Entries) -> np.ndarray:
 
 def _near_the_axis(z: Entries) -> Iterator[complex]:
     """Beside some of the frequencies at which a sweep finds Llewellyn's margin negative."""
-    sizes = np.abs([r for p, q in z for r in (*_roots(p), *_roots(q)) if r != 0] or [1.0])
+    sizes = np.abs([r for p, q in z for r in (*roots_of(p), *roots_of(q)) if r != 0] or [1.0])
     w = np.unique(np.r_[np.geomspace(sizes.min() / 1e3, sizes.max() * 1e3, 400), sizes])
     value = np.stack([over(one, 1j * w) for one in z], axis=1).reshape(-1, 2, 2)
     with np.errstate(all="ignore"):
@@ -40,14 +40,14 @@ def _near_the_axis(z: Entries) -> Iterator[complex]:
         yield from (complex(w[k] * 2.0**-n, w[k]) for n in (*_CLOSER, *range(35, 68, 4)))
 
 
-def _roots(p: Polynomial) -> np.ndarray:
+def roots_of(p: Polynomial) -> np.ndarray:
     return np.roots([float(c / p[-1]) for c in reversed(p)]) if len(p) > 1 else np.array([])
 
 
 def points_near_poles(z: Sequence[Ratio]) -> Iterator[complex]:
     """Beside poles, and everywhere on a grid from the slowest root to the fastest and beyond."""
-    poles = [r for _, q in z for r in _roots(q)]
-    roots = [*poles, *(r for p, _ in z for r in _roots(p))]
+    poles = [r for _, q in z for r in roots_of(q)]
+    roots = [*poles, *(r for p, _ in z for r in roots_of(p))]
     sizes = [abs(r) for r in roots if r != 0] or [1.0]
     low, high = min(sizes), max(sizes)
     turns = np.exp(1j * np.pi / 4 * np.arange(8))

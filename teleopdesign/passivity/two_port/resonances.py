@@ -1,0 +1,24 @@
+"""Where a sweep over frequency has to look though its steps are wider: across resonances."""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from .delayed_two_port import late_terms
+from .growth_points import roots_of
+from .two_port import TwoPort
+
+#: half widths of a resonance beside its frequency: its real part turns its sign within the first
+_ACROSS = (-30.0, -10.0, -3.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 3.0, 10.0, 30.0)
+
+
+def resonances(system: TwoPort) -> np.ndarray:
+    """Frequencies (Hz) across the width of each resonance, which a grid may step over, (n,)."""
+    terms = [late_terms(e) if e.has(sp.exp) else () for e in system.z]
+    ratios = [t.ratio for entry in terms for t in entry or ()]
+    poles = np.array([p for _, q in ratios for p in roots_of(q)], dtype=complex)
+    poles = poles[poles.real < -1e-12 * np.abs(poles)]  # those on the axis have no width
+    across = poles.imag[:, None] + poles.real[:, None] * np.array(_ACROSS)
+    f = across.ravel() / (2 * np.pi)
+    return np.asarray(f[(f > 0) & np.isfinite(f)])
