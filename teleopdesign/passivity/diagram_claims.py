@@ -145,9 +145,10 @@ def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClai
 def _beside_what_grows(claims: list[TopicClaim], rate: float | None) -> list[TopicClaim]:
     if rate is None:
         return claims
+    how = f"at {rate:.4g} 1/s" if rate else "as a power of time, a multiple pole on the axis"
     why = (
         f"from rest its impedance is that of a passive one, but a mode inside that no port shows "
-        f"grows by itself at {rate:.4g} 1/s"
+        f"grows by itself {how}"
     )
     return [
         replace(one, claim=Claim(one.claim.statement, Unknown(why)))
