@@ -18,10 +18,10 @@ from .case import SimulatedCase
 from .chosen_measures import Measure, measure
 from .diagnosed import diagnosed
 from .from_toml import read_study_file
-from .journal import PointOutcome
 from .limits import TuningLimit, limit
 from .measures import MEASURES
 from .onset import growth, least_that_grows
+from .outcomes import PointOutcome
 from .point import Amount, Point
 from .progress import Progress
 from .recheck import CheckedLimit

@@ -13,8 +13,8 @@ from ..passivity.intervals.box import ValueBox
 from .case import SimulatedCase
 from .chosen_measures import Measure
 from .evaluate import StudyTask
-from .journal import PointOutcome
 from .limits import TuningLimit, margin_function
+from .outcomes import PointOutcome
 from .points import points_of
 from .processes import run_on_this_machine
 from .samples import Samples

@@ -16,14 +16,14 @@ from ..errors import GrowsWithoutBound, ModelError, TeleopDesignError
 from ..simulate import Simulation, simulate_many
 from .case import SimulatedCase
 from .evaluate import StudyTask, evaluate, outcome_of
-from .journal import PointOutcome
+from .outcomes import PointOutcome
 from .point import Point
 
 if TYPE_CHECKING:
     import xarray
 
 #: points that are computed, and kept, together
-Unit = tuple[int, ...]
+Unit = tuple[int, ...] | range
 
 #: steps of all simulations of a block: about half a second, which is what a kill can cost
 _STEPS_OF_BLOCK = 8e6
@@ -41,7 +41,7 @@ def units_of(task: StudyTask, todo: Iterable[int]) -> list[Unit]:
     if size == 1:
         return [(i,) for i in todo]
     firsts = sorted({i - i % size for i in todo})
-    return [tuple(range(first, min(first + size, len(task.points)))) for first in firsts]
+    return [range(first, min(first + size, len(task.points))) for first in firsts]
 
 
 def block_size(task: StudyTask) -> int:
