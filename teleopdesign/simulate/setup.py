@@ -132,6 +132,16 @@ class Setup:
         late = (d.free_symbols for _, d in e.late.values())
         return [any(e.parameters[x].partition(".")[0] in names for x in d) for d in late]
 
+    @property
+    def whole_step_delays(self) -> frozenset[str]:
+        """Parameters of delays that are whole steps, which move simulated signals by jumps."""
+        e, smooth = self.program.equations, self.program.functions["SMOOTH"]
+        flags = zip(self._of_blocks, smooth, strict=False)
+        whole = [not (of_block and is_smooth) for of_block, is_smooth in flags]
+        late = [delay for _, delay in e.late.values()]
+        jumping = [d for d, is_whole in zip(late, whole, strict=True) if is_whole]
+        return frozenset(e.parameters[x] for d in jumping for x in d.free_symbols)
+
     def inner(self, delays: Sequence[float] | None = None) -> int:
         """Steps a sample: as asked for, or the next number at which delay blocks are whole steps.
 
