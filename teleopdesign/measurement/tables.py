@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ExperimentError, did_you_mean, quoted
-from .doors._log import Log, listed
+from .doors._cells import number_of
+from .doors._log import Log, bare_column, listed
 from .doors.arrays import open_arrays
 from .doors.bag import is_bag, open_bag
 from .doors.hdf5 import open_hdf5
@@ -63,7 +64,7 @@ class LogColumns:
 
     def steps(self, file: str) -> tuple[ReadingStep, ...]:
         """What was found about the file, as steps of reading it."""
-        return tuple(ReadingStep(file, note, "read so", "none") for note in self.notes)
+        return tuple(ReadingStep(file, note, "read accordingly", "none") for note in self.notes)
 
 
 def open_log(path: Path, file: str) -> Log:
@@ -126,6 +127,12 @@ def require_columns(columns: Iterable[str], file: str, wanted: Wanted) -> None:
     """Raise an ExperimentError for the first wanted column that is not among those found."""
     columns = list(columns)
     for column, channel in wanted.items():
+        same = [name for name in columns if bare_column(name) == column]
+        if column not in columns and same:
+            raise ExperimentError(
+                f"{file}: {channel}: found {len(same)} columns {quoted(column)}, "
+                f"expected one of {', '.join(map(quoted, same))}"
+            )
         if column not in columns:
             raise ExperimentError(
                 f"{file}: {channel}: no column {quoted(column)}, "
@@ -174,7 +181,9 @@ def _seconds(values: NDArray[Any]) -> Array:
 
 
 def _plain_objects(values: NDArray[Any]) -> NDArray[Any]:
-    """Objects as numbers where all are: None is an empty cell."""
+    """Objects as numbers where all are, written as text or not: None is an empty cell."""
+    if any(isinstance(v, str) for v in values):
+        values = np.array([number_of(v) if isinstance(v, str) else v for v in values], dtype=object)
     if all(v is None or isinstance(v, int | float | np.number) for v in values):
         return np.array([np.nan if v is None else v for v in values], dtype=np.float64)
     if len(values) and hasattr(values[0], "isoformat"):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ...errors import ExperimentError
+from ...errors import ExperimentError, did_you_mean
 from ..doors._log import Log, listed
 from .clock import numeric_columns, on_one_grid, time_column
 from .content import NONE, Choices, Survey, SurveyedColumn
@@ -36,15 +36,18 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
 
     raises ExperimentError: no position, no force among the columns, or a column that is not there
     """
-    raw = numeric_columns(log, file)
+    raw, unread = numeric_columns(log, file)
     for key in ("time", "position", "actuator_force", "interaction_force"):
         name = getattr(choices, key)
         if name is not None and name != NONE and name not in raw:
-            raise ExperimentError(f"{file}: {key}: no column {name!r}, found {listed(raw)}")
+            why = f"column {name!r}: {unread[name]}" if name in unread else f"no column {name!r}"
+            raise ExperimentError(
+                f"{file}: {key}: {why}, found {listed(raw)}{did_you_mean(name, raw)}"
+            )
     guesses: dict[str, str] = {}
     time_name, unit = time_column(raw, log, choices, guesses, file)
     time, columns = on_one_grid(raw, log, time_name, unit, choices, file)
-    survey = Survey("", {}, float(time[-1] - time[0]), guesses, time, columns)
+    survey = Survey("", {}, float(time[-1] - time[0]), guesses, time, columns, unread=unread)
     if time_name is not None:
         survey.channels["time"] = {"column": time_name, "unit": unit}
     else:

@@ -7,33 +7,50 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...errors import ExperimentError
+from ...errors import ExperimentError, quoted
 from ...quantity import measures, si_factor
 from ..column_names import is_wanted, likeness, unit_in_name
 from ..doors._log import Log, listed
 from ..tables import numbers_of
 from ..time_grid import clock_of
-from .content import Array, Choices, SurveyedColumn, rises
+from .content import Array, Choices, SurveyedColumn, reasons, rises
 
 #: rows that are looked at
 MOST = 60_000
 
 
-def numeric_columns(log: Log, file: str) -> dict[str, Array]:
-    """Columns that hold numbers or dates, by name."""
+def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, str]]:
+    """Columns that hold numbers or dates, by name; and of the others, why they hold none."""
     raw: dict[str, Array] = {}
-    for name in log.names:
-        if log.names.count(name) > 1:
-            continue
+    unread: dict[str, str] = {}
+    single = [name for name in log.names if log.names.count(name) == 1]
+    try:
+        together = log.read(dict.fromkeys(single, ""))  # a file of text is read once, not once each
+    except ExperimentError:
+        together = {}
+    for name in single:
         try:
-            values = numbers_of(log.read({name: ""})[name], name, file)
-        except ExperimentError:
+            values = together[name] if name in together else log.read({name: ""})[name]
+            values = numbers_of(values, name, file)
+        except ExperimentError as problem:
+            unread[name] = _without_name(str(problem), name, file)
             continue
-        if len(values) > 1 and np.isfinite(values).mean() > 0.5:
+        finite = float(np.isfinite(values).mean()) if len(values) > 1 else 0.0
+        if finite > 0.5:
             raw[name] = values
+        else:
+            unread[name] = f"numbers in {finite:.0%} of its rows"
     if not raw:
-        raise ExperimentError(f"{file}: found no column of numbers among {listed(log.names)}")
-    return raw
+        raise ExperimentError(
+            f"{file}: found no column of numbers among {listed(log.names)}{reasons(unread)}"
+        )
+    return raw, unread
+
+
+def _without_name(message: str, column: str, file: str) -> str:
+    """What a message says of a column, without the names of the file and of the column."""
+    short = message.removeprefix(f"{file}: ").removeprefix("column ").removeprefix(quoted(column))
+    return short.lstrip(":, ")
 
 
 def time_column(
