@@ -141,7 +141,7 @@ def _led(effect: Effect, motion: Motion, along: Along, unexplained: Traced) -> T
     """Force that it takes to lead a hidden body as its position is corrected."""
     momentum = effect.led_momentum()
     if momentum == 0:
-        return Traced(np.zeros_like(unexplained.value), np.zeros_like(unexplained.tangent))
+        return along.constant(np.zeros_like(unexplained.value))
     slope = motion.spectrum.derivative(1) * motion.smoothing
     led = along.with_signals({UNEXPLAINED: unexplained}).evaluate(momentum)
     return through(lambda y: motion.spectrum.multiply(y, slope), led)

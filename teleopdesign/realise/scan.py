@@ -313,7 +313,7 @@ def shape_bounds(
     scan = compiled(source, "shape")
     used = _used_by_shape(effect)
     low, high = np.empty_like(forward.value), np.empty_like(forward.value)
-    dlow, dhigh = np.empty_like(forward.tangent), np.empty_like(forward.tangent)
+    dlow, dhigh = np.empty(forward.tangent.shape), np.empty(forward.tangent.shape)
     scan(
         along.step,
         0.5 * motion.step,
@@ -324,9 +324,9 @@ def shape_bounds(
         *[along.values[s] for s in effect.symbols().values()],
         *[along.signals[SIGNALS[n]].value for n in used],
         forward.value,
-        forward.tangent,
+        np.ascontiguousarray(forward.tangent),
         backward.value,
-        backward.tangent,
+        np.ascontiguousarray(backward.tangent),
         low,
         dlow,
         high,

@@ -65,6 +65,8 @@ def stages_along(body: Body, motion: Motion, along: Along) -> list[ActuationStag
     along: at the rows, the command among its signals
     """
     effects = along.present(body.effects, "actuation")
+    if not effects:
+        return []
     late = any(e.states or e.expression().has(delayed) for e in effects)
     parts = min(PARTS * motion.merged, MOST_PARTS) if late else 1
     signal = through(lambda y: np.repeat(y, parts, axis=-1), along.signals[_COMMAND])

@@ -42,6 +42,11 @@ class Traced:
         tangent = self.tangent if other.is_constant else self.tangent - other.tangent
         return Traced(self.value - other.value, tangent)
 
+    def times(self, factor: Array) -> Traced:
+        """The signal times a factor at each sample (n,)."""
+        tangent = self.tangent if self.is_constant else self.tangent * factor
+        return Traced(self.value * factor, tangent)
+
 
 def constant(value: Array, parameters: int) -> Traced:
     """A signal (n,) that none of so many parameters changes: its tangents take no memory."""
@@ -58,6 +63,9 @@ def through(filtered: Callable[[Array], Array], signal: Traced) -> Traced:
     if signal.is_constant:
         return constant(filtered(signal.value), len(signal.tangent))
     moving = signal.tangent.any(axis=1)
+    if moving.all():
+        both = filtered(signal.rows())
+        return Traced(both[0], both[1:])
     both = filtered(np.vstack([signal.value[None], signal.tangent[moving]]))
     tangent = np.zeros((len(signal.tangent), both.shape[-1]))
     tangent[moving] = both[1:]
@@ -121,6 +129,7 @@ class Along:
 class NumericLaw:
     """A sympy expression as a numpy function of signals and parameters, with its derivatives."""
 
+    expression: sp.Expr
     signals: tuple[sp.Symbol, ...]
     parameters: tuple[sp.Symbol, ...]
     call: Callable[..., Any]
@@ -131,9 +140,13 @@ class NumericLaw:
         n = len(next(iter(signals.values())).value)
         with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
             out = self.call(*arrays, *[np.float64(values[p]) for p in self.parameters])
-        value = np.broadcast_to(np.asarray(out[0], dtype=float), (n,))
-        tangent = np.zeros((len(columns), n))
+        value = np.broadcast_to(np.asarray(out[0], dtype=float), (n,)).copy()
         places = {column: j for j, column in enumerate(columns)}
+        own = {s.symbol if isinstance(s, Probe) else s for s in columns}
+        moved = [s for s in self.signals if not signals[s].is_constant]
+        if not moved and own.isdisjoint(self.parameters):
+            return constant(value, len(columns))
+        tangent = np.zeros((len(columns), n))
         for p, d in zip(self.parameters, out[1 + len(arrays) :], strict=True):
             if p in places:
                 tangent[places[p]] += d
@@ -141,18 +154,18 @@ class NumericLaw:
             if isinstance(column, Probe) and column.symbol in self.parameters:
                 tangent[j] += self._slope(column, arrays, values)
         for s, d in zip(self.signals, out[1 : 1 + len(arrays)], strict=True):
-            if not signals[s].is_constant:
+            if s in moved:
                 tangent += d * signals[s].tangent
-        return Traced(value.copy(), tangent)
+        return Traced(value, tangent)
 
     def _slope(
         self, probe: Probe, arrays: Sequence[Array], values: Mapping[sp.Symbol, float]
     ) -> Any:
         """Derivative by the probe's strength, at the probe's values of the other parameters."""
         numbers = [np.float64(probe.values.get(p, values[p])) for p in self.parameters]
+        call = _slope_call(self.expression, self.signals, self.parameters, probe.symbol)
         with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
-            out = self.call(*arrays, *numbers)
-        return out[1 + len(arrays) + self.parameters.index(probe.symbol)]
+            return call(*arrays, *numbers)
 
 
 _SIGNALS = tuple(SIGNALS.values())
@@ -180,4 +193,17 @@ def law_of(
     gradients = [slope(expression, s) if s in traced else sp.S(0) for s in used]
     gradients += [slope(expression, p) for p in parameters]
     call = sp.lambdify([*used, *parameters], [expression, *gradients], "numpy", cse=True)
-    return NumericLaw(used, parameters, call)
+    return NumericLaw(expression, used, parameters, call)
+
+
+@lru_cache(maxsize=512)
+def _slope_call(
+    expression: sp.Expr,
+    signals: tuple[sp.Symbol, ...],
+    parameters: tuple[sp.Symbol, ...],
+    symbol: sp.Symbol,
+) -> Callable[..., Any]:
+    """One derivative of a law as a numpy function of its signals and parameters."""
+    arguments = [*signals, *parameters]
+    call: Callable[..., Any] = sp.lambdify(arguments, slope(expression, symbol), "numpy", cse=True)
+    return call
