@@ -14,8 +14,8 @@ from ...diagrams import Diagram
 from ...errors import ModelError
 from ...realise.lti import S
 from ..claims.claim import Claim, Unknown
-from ..diagram_claims import linear_claims
 from ..linear.polynomials import is_hurwitz
+from ..linear_diagrams import linear_claims
 from ..ports import judged, nonlinear_parts, ports
 from .at_points import judge_at_points
 from .box import ValueBox

@@ -16,6 +16,7 @@ power of time. What the ports show, a free mass among it, is judged by the imped
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import reduce
 from itertools import combinations
 from typing import Any
@@ -24,10 +25,10 @@ import numpy as np
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from ...controllers import in_exact_numbers
+from ...controllers import Controller, controller, in_exact_numbers
 from ...derive import symbol_values
 from ...derive.elimination import rows
-from ...diagrams import Control, Diagram, Moving
+from ...diagrams import Block, Control, Diagram, Moving
 from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.tips import with_tips
 from ..checker.polynomials import is_free_of_growth, polynomial
@@ -209,3 +210,52 @@ def _nullity(equations: list[Equation], factor: sp.Poly) -> int:
                     row[n] = changed
         left = [row for row in left if row is not pivot]
     return len(names) - rank
+
+
+def controllers_grow(diagram: Diagram) -> bool:
+    """Whether laws beside dead times have a mode that grows while all bodies stand still.
+
+    Such a mode is a pole of the impedance in the right half plane, or no port shows it. False too
+    where a dead time lies within a loop of laws: nothing is known here of those
+    """
+    diagram = with_tips(diagram)
+    made = [_standing_still(diagram, factor) for factor in (1.0, 2.0, 0.0)]
+    wholes = [whole for whole, _ in made]
+    if any(whole.is_zero or whole != wholes[0] for whole in wholes):
+        return False
+    return any(
+        not _is_free_of_growth(whole) or _drives_itself(whole, sp.zeros(0), equations)
+        for whole, equations in made
+    )
+
+
+def _standing_still(diagram: Diagram, factor: float) -> tuple[sp.Poly, list[Equation]]:
+    """det of all equations but those of bodies, which do not move, and the equations.
+
+    factor: what a dead time does in them
+    """
+    law = controller("gain", {"gain": factor}).stages[0]
+
+    def without_delay(part: Block) -> Block:
+        if not isinstance(part, Control):
+            return part
+        stages = (law if g.law.dead_time else g for g in stages_of(part))
+        return replace(part, controller=Controller(tuple(stages)))
+
+    blocks = tuple(without_delay(part) for part in diagram.blocks)
+    still = {b.motion for b in diagram.blocks if isinstance(b, Moving)}
+    equations = equations_in_full(replace(diagram, blocks=blocks), standing=True)
+    equations = [{n: p for n, p in row.items() if n not in still} for row in equations]
+    names = list(dict.fromkeys(n for row in equations for n in row))
+    if len(names) != len(equations):
+        return _ONE * 0, equations
+    ring = sp.QQ[S]
+    entries = [
+        [ring.from_sympy(row[n].as_expr()) if n in row else ring.zero for n in names]
+        for row in equations
+    ]
+    shape = (len(names), len(names))
+    matrix = DomainMatrix(entries, shape, ring).to_field()
+    above, below = ratio(matrix.domain.to_sympy(matrix.det()))
+    assert below.degree() <= 0
+    return above.monic() if not above.is_zero else above, equations

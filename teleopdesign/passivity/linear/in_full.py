@@ -137,14 +137,17 @@ class _Writer:
         return inside, above
 
 
-def equations_in_full(diagram: Diagram) -> list[Equation]:
+def equations_in_full(diagram: Diagram, *, standing: bool = False) -> list[Equation]:
     """Equations of all signals and states with nothing from outside.
 
+    standing: without those of bodies that forces move
     diagram: with values, linear, bodies with a structure apart, without dead times
     raises PolynomialError: a form that is no ratio of polynomials
     """
     writer = _Writer()
     for part in diagram.parts:
+        if isinstance(part, Moving) and standing:
+            continue
         if isinstance(part, Moving):
             forces, acting = effect_forms(part)
             signal, factor = part.command, _ONE
