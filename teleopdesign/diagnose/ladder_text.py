@@ -18,11 +18,6 @@ if TYPE_CHECKING:
     from .rung import Rung
 
 
-#: check error over fit error from which the text says that the records differ: 0.7 to 1.6 on nine
-#: recordings of real machines. Lower: it is said of chance; higher: of other days only
-RECORDS_DIFFER = 3.0
-
-
 def offset_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """Offsets of single records by the final model of the diagnosis."""
     stretches, rows = diagnosis.prepared.stretches, []
@@ -151,7 +146,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     lines += [f"set aside: {one}" for one in diagnosis.set_aside]
     lines += [f"left out: {words}" for words in diagnosis.left_out]
     after = diagnosis.after
-    if after.check_error >= RECORDS_DIFFER * after.fit_error > 0.0:
+    if after.check_error >= CRITERIA.differ * after.fit_error > 0.0:
         lines.append(
             f"records: the check records leave {after.check_error / after.fit_error:.2g} times "
             "what the fit records do: the machine was not the same in both (friction, temperature, "

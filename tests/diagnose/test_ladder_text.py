@@ -6,7 +6,7 @@ import pytest
 
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.diagnosis import OpenQuestion
-from teleopdesign.diagnose.ladder_text import RECORDS_DIFFER, ladder_text, sentence
+from teleopdesign.diagnose.ladder_text import ladder_text, sentence
 
 
 @pytest.fixture
@@ -44,7 +44,7 @@ def test_check_records_that_leave_far_more_than_fit_records_are_said_to_differ(
     diagnosis, times, is_said
 ):
     last = diagnosis.rungs[-1]
-    error = times * RECORDS_DIFFER * last.fit.fit_error
+    error = times * CRITERIA.differ * last.fit.fit_error
     rungs = (*diagnosis.rungs[:-1], replace(last, fit=replace(last.fit, check_error=error)))
     text = ladder_text(replace(diagnosis, rungs=rungs))
     assert ("records: the check records leave" in text) is is_said
