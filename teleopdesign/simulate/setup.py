@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -118,14 +118,14 @@ class Setup:
     motion: Mapping[str, Trajectory]
     initial: Mapping[str, float]
 
-    @property
+    @cached_property
     def delays(self) -> list[float]:
         """Delay of each late signal, s: of the analog ones, then of the computer's."""
         values, parameters = self.diagram.values, self.program.equations.parameters
         at = {x: values[n] for x, n in parameters.items()}
         return [float(d.subs(at)) for d in self.program.equations.delays]
 
-    @property
+    @cached_property
     def _of_blocks(self) -> list[bool]:
         """Whether each analog late signal is that of a delay block, in place of an actuator."""
         e, names = self.program.equations, {c.name for c in self.diagram.controls}
