@@ -8,6 +8,7 @@ the same ones are side by side wherever and whenever they are computed.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from ..simulate import Simulation, simulate_many
 from .case import SimulatedCase
 from .evaluate import StudyTask, evaluate, outcome_of
 from .outcomes import PointOutcome
-from .point import Point
+from .point import Point, SignalRows
 
 if TYPE_CHECKING:
     import xarray
@@ -76,13 +77,13 @@ def evaluate_unit(task: StudyTask, unit: Unit) -> list[PointOutcome]:
     for rows, columns, others in alike(task.model, table):
         try:
             case = task.model.with_values({**task.points.fixed, **others})
-            signals = simulate_rows(case, columns, signals_of(task))
+            block = _block(simulate_rows(case, columns, signals_of(task)))
         except TeleopDesignError:
             # what is wrong with all of them: each says its own reason
             outcomes |= {unit[row]: evaluate(task, unit[row]) for row in rows}
             continue
         for k, row in enumerate(rows):
-            point = _point(task, unit[row], k, signals)
+            point = _point(task, unit[row], k, block)
             outcomes[unit[row]] = outcome_of(task, unit[row], point)
     return [outcomes[index] for index in unit]
 
@@ -123,21 +124,53 @@ def simulate_rows(
     )
 
 
-def _point(task: StudyTask, index: int, row: int, signals: xarray.Dataset) -> Callable[[], Point]:
+@dataclass(frozen=True, eq=False)
+class _Block:
+    """Signals of points that were simulated side by side, as arrays.
+
+    rows: signal -> (points, rows);  reasons: why a point has none, "" where it has
+    """
+
+    time: np.ndarray
+    rows: Mapping[str, np.ndarray]
+    attributes: Mapping[str, Mapping[str, Any]]
+    reasons: tuple[str, ...]
+
+    def check(self, row: int) -> None:
+        """Raise what the simulation of that point ended with."""
+        if reason := self.reasons[row]:
+            words = GrowsWithoutBound.words
+            raise GrowsWithoutBound(reason) if words in reason else ModelError(reason)
+
+
+def _block(signals: xarray.Dataset) -> _Block:
+    names = [str(name) for name in signals.data_vars]
+    return _Block(
+        signals["time"].values,
+        {name: signals[name].values for name in names},
+        {name: signals[name].attrs for name in names},
+        tuple(map(str, signals["reason"].values)),
+    )
+
+
+def _point(task: StudyTask, index: int, row: int, block: _Block) -> Callable[[], Point]:
     """What makes the point, whose simulation is a row of the block."""
+
+    def rows(name: str) -> SignalRows:
+        block.check(row)
+        return SignalRows(block.time, block.rows[name][row], str(block.attributes[name]["units"]))
 
     def simulated() -> Simulation:
         import xarray
 
         assert isinstance(task.model, SimulatedCase)
-        if reason := str(signals["reason"].values[row]):
-            words = GrowsWithoutBound.words
-            raise GrowsWithoutBound(reason) if words in reason else ModelError(reason)
-        time = signals["time"].variable
+        block.check(row)
         data: dict[str, Any] = {
-            str(name): xarray.Variable("time", rows.values[row], rows.attrs)
-            for name, rows in signals.data_vars.items()
+            name: ("time", values[row], block.attributes[name])
+            for name, values in block.rows.items()
         }
+        time = ("time", block.time, {"units": "s"})
         return Simulation(task.model.diagram, xarray.Dataset(data, {"time": time}))
 
-    return lambda: Point(task.model, task.points.at(index), (task.seed, index), simulated)
+    seed = (task.seed, index)
+    return lambda: Point(task.model, task.points.at(index), seed, simulated, rows)

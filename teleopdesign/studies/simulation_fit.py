@@ -148,7 +148,8 @@ def fit_simulation(
         "initial.L" and the like are parameters too
     signals: simulated signal -> its name in the data; default: all that have a simulated namesake
     noise: signal -> standard deviation (SI) by which it is weighed; default: what the fit leaves
-    inputs, motion: as in `simulate`, or the name of a column of the data that is taken for it
+    inputs, motion: as in `simulate`, or the name of a column of the data that is taken for it. A
+        motion is differentiated twice without a low-pass: an encoder's steps make `td.fit` better
     initial, computer, step: as in `simulate`; of a `SimulatedCase` all is as it has it but the
         duration: up to the last whole sample of the computer within the data
     starts: points that are simulated to begin from, beside the diagram's own values

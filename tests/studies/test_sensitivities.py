@@ -119,3 +119,10 @@ def test_what_has_no_slope_is_refused_in_one_line(parameters, signals, more, wor
     with pytest.raises(ModelError, match=words) as error:
         td.sensitivities(models.interface(), parameters, signals, **{**models.SIMULATED, **more})
     assert "\n" not in str(error.value)
+
+
+def test_a_dead_time_in_whole_steps_has_no_slope():
+    """Its difference would be 0 or a jump, whatever its size; nothing is simulated to find out."""
+    late = td.haptic_interface(body(0.15, viscous__damping=2.0, actuation_delay__delay=1e-3))
+    with pytest.raises(ModelError, match="by jumps"):
+        td.sensitivities(late, ["Z_M.actuation_delay.delay"], ["L"], duration=0.1)
