@@ -4,6 +4,7 @@ here.
 
 from __future__ import annotations
 
+import shlex
 import zlib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -18,6 +19,7 @@ from .doors._cells import number_of
 from .doors._log import Log, bare_column, listed
 from .doors.arrays import open_arrays
 from .doors.bag import is_bag, open_bag
+from .doors.folder import open_folder
 from .doors.hdf5 import open_hdf5
 from .doors.matlab import open_matlab
 from .doors.parquet import open_parquet
@@ -46,6 +48,8 @@ DOORS: Mapping[str, Callable[[Path, str], Log]] = {
     ".mcap": open_bag,
     ".db3": open_bag,
 }
+#: what makes a folder an experiment
+EXPERIMENT = "experiment.toml"
 #: whole numbers above are stamps in nanoseconds: 2^53, beyond which float64 skips some
 _LONG = 2**53
 
@@ -74,15 +78,36 @@ def open_log(path: Path, file: str) -> Log:
     raises ExperimentError: unknown kind of file, or one that cannot be read
     """
     opened: Callable[[Path, str], Log] | None = open_bag if is_bag(path) else None
+    if opened is None and path.is_dir() and (parts := tables_in(path)):
+        return _reading(lambda: open_folder(path, file, parts, open_log), file)
     if opened is None:
         name = path.name.lower()
         opened = next((door for ending, door in DOORS.items() if name.endswith(ending)), None)
-    if opened is None:
+    if opened is None and (path / EXPERIMENT).exists():
+        word = shlex.quote(str(path))
         raise ExperimentError(
-            f"{file}: found a file of kind {quoted(path.suffix)}, expected {', '.join(DOORS)}"
+            f"{file}: is an experiment already; next: teleopdesign diagnose {word}"
         )
+    if opened is None:
+        kind = "a folder" if path.is_dir() else f"a file of kind {quoted(path.suffix)}"
+        more = ", or a folder of tables" if path.is_dir() else ""
+        raise ExperimentError(f"{file}: found {kind}, expected {', '.join(DOORS)}{more}")
     door = opened
     return _reading(lambda: door(path, file), file)
+
+
+def tables_in(folder: Path) -> list[Path]:
+    """The files of a folder that are tables, in the order of their names; none of an experiment."""
+    if (folder / EXPERIMENT).exists():
+        return []
+    inside = folder.resolve()  # no link leads out of it
+    files = [p for p in folder.iterdir() if p.is_file() and p.resolve().parent == inside]
+    return sorted(p for p in files if is_log(p) and not is_bag(p))
+
+
+def is_log(path: Path) -> bool:
+    """Whether a file's name ends as that of a log that can be read."""
+    return path.name.lower().endswith(tuple(DOORS))
 
 
 def _reading(read: Callable[[], Result], file: str) -> Result:

@@ -88,7 +88,7 @@ def find_position(
         score += 0.5 * ("position" in kinds) - 0.8 * bool(kinds and "position" not in kinds)
         score -= 0.4 * max(likeness(name, "velocity"), likeness(name, "actuator_force"))
         for other, column_2 in moving.items():
-            if other == name or (is_unit_of(column_2.unit, "force") and column_2.unit):
+            if other == name or _is_force(column_2):  # friction alone is much like a velocity
                 continue
             _, agree = derivative_factor(flat[name], column_2.values, h)
             if agree > max(DERIVATIVE, derivative.get(name, ("", 0.0))[1]):
@@ -116,6 +116,13 @@ def find_position(
     if velocity is not None:
         survey.notes.append(f"{velocity!r} is the derivative of {best!r}")
     return best, velocity
+
+
+def _is_force(column: SurveyedColumn) -> bool:
+    """Whether unit or name say that a column is a force."""
+    if column.unit is not None:
+        return is_unit_of(column.unit, "force")
+    return likeness(column.name, "actuator_force") >= SURE_NAME > likeness(column.name, "velocity")
 
 
 def axis_of(survey: Survey, position: str, choices: Choices) -> str:
