@@ -146,16 +146,17 @@ class NumericLaw:
         moved = [s for s in self.signals if not signals[s].is_constant]
         if not moved and own.isdisjoint(self.parameters):
             return constant(value, len(columns))
-        tangent = np.zeros((len(columns), n))
+        by_signal = dict(zip(self.signals, out[1 : 1 + len(arrays)], strict=True))
+        parts = (by_signal[s] * signals[s].tangent for s in moved)
+        tangent = next(parts) if moved else np.zeros((len(columns), n))
+        for part in parts:
+            tangent += part
         for p, d in zip(self.parameters, out[1 + len(arrays) :], strict=True):
             if p in places:
                 tangent[places[p]] += d
         for j, column in enumerate(columns):
             if isinstance(column, Probe) and column.symbol in self.parameters:
                 tangent[j] += self._slope(column, arrays, values)
-        for s, d in zip(self.signals, out[1 : 1 + len(arrays)], strict=True):
-            if s in moved:
-                tangent += d * signals[s].tangent
         return Traced(value, tangent)
 
     def _slope(
