@@ -306,6 +306,13 @@ def _stopped_source(effect: Effect) -> str:
     )
 
 
+@lru_cache(maxsize=64)
+def _shape_of(effect: Effect) -> tuple[str, tuple[str, ...]]:
+    """Source of a shape's bounds, and the signals besides that it is called with."""
+    source = _stopped_source(effect) if effect.stops() else _shape_source(effect)
+    return source, tuple(_used_by_shape(effect))
+
+
 def shape_bounds(
     effect: Effect, motion: Motion, along: Along, *, forward: Traced, backward: Traced
 ) -> tuple[Traced, Traced]:
@@ -317,9 +324,8 @@ def shape_bounds(
     They coincide where the motion is told; where it is not, they lie apart by what half a step of
     the position means to the bristle, and no further than the level.
     """
-    source = _stopped_source(effect) if effect.stops() else _shape_source(effect)
+    source, used = _shape_of(effect)
     scan = compiled(source, "shape")
-    used = _used_by_shape(effect)
     low, high = np.empty_like(forward.value), np.empty_like(forward.value)
     dlow, dhigh = np.empty(forward.tangent.shape), np.empty(forward.tangent.shape)
     scan(

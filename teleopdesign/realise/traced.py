@@ -20,32 +20,63 @@ from ..measurement.filtering import Array
 
 @dataclass(frozen=True)
 class Traced:
-    """A signal of n samples and its tangents (p, n) by the p parameters asked for."""
+    """A signal of n samples and its tangents (p, n) by the p parameters asked for.
+
+    moving: rows of the tangents that may differ from zero; None: any of them
+    """
 
     value: Array
     tangent: Array
+    moving: tuple[int, ...] | None = None
 
     def rows(self, at: slice | NDArray[np.intp] = slice(None)) -> Array:
         """Value and tangents as rows of one array (1 + p, n);  at: of some samples only."""
         return np.vstack([self.value[at][None], self.tangent[:, at]])
 
+    def between(self, at: slice) -> Traced:
+        """The signal from one sample to another."""
+        return Traced(self.value[at], self.tangent[:, at], self.moving)
+
     @property
     def is_constant(self) -> bool:
         """Whether no parameter changes the signal."""
-        return self.tangent.strides == (0, 0) or not self.tangent.any()
+        if self.tangent.strides == (0, 0):
+            return True
+        return self.moving == () or (self.moving is None and not self.tangent.any())
 
     def __add__(self, other: Traced) -> Traced:
         tangent = self.tangent if other.is_constant else self.tangent + other.tangent
         return Traced(self.value + other.value, tangent)
 
     def __sub__(self, other: Traced) -> Traced:
-        tangent = self.tangent if other.is_constant else self.tangent - other.tangent
-        return Traced(self.value - other.value, tangent)
+        return self.less([other])
+
+    def less(self, others: Sequence[Traced]) -> Traced:
+        """The signal without others; of their tangents only rows that may not be zero are read."""
+        value = self.value
+        for other in others:
+            value = value - other.value
+        changing = [other for other in others if not other.is_constant]
+        if not changing:
+            return Traced(value, self.tangent, self.moving)
+        tangent = np.array(self.tangent)
+        for other in changing:
+            if other.moving is None:
+                tangent -= other.tangent
+            else:
+                for j in other.moving:
+                    tangent[j] -= other.tangent[j]
+        return Traced(value, tangent)
 
     def times(self, factor: Array) -> Traced:
         """The signal times a factor at each sample (n,)."""
-        tangent = self.tangent if self.is_constant else self.tangent * factor
-        return Traced(self.value * factor, tangent)
+        if self.is_constant or self.moving is None:
+            tangent = self.tangent if self.is_constant else self.tangent * factor
+            return Traced(self.value * factor, tangent, self.moving)
+        tangent = np.zeros(self.tangent.shape)
+        for j in self.moving:
+            tangent[j] = self.tangent[j] * factor
+        return Traced(self.value * factor, tangent, self.moving)
 
 
 def constant(value: Array, parameters: int) -> Traced:
@@ -157,7 +188,8 @@ class NumericLaw:
         for j, column in enumerate(columns):
             if isinstance(column, Probe) and column.symbol in self.parameters:
                 tangent[j] += self._slope(column, arrays, values)
-        return Traced(value, tangent)
+        own_rows = [j for j, c in enumerate(columns) if getattr(c, "symbol", c) in self.parameters]
+        return Traced(value, tangent, None if moved else tuple(own_rows))
 
     def _slope(
         self, probe: Probe, arrays: Sequence[Array], values: Mapping[sp.Symbol, float]

@@ -49,12 +49,28 @@ def bounded(seed, open_share, tangents=3, n=2_400):
     return needed, low, high
 
 
-@pytest.mark.parametrize("open_share", [0.02, 0.3, 1.5])
+@pytest.mark.parametrize("open_share, n", [(0.02, 2_400), (0.3, 2_400), (1.5, 2_400)])
 @pytest.mark.parametrize("seed", [1, 2])
-def test_only_what_changes_is_filtered_and_nothing_else_comes_out(seed, open_share):
-    signals = bounded(seed, open_share)
+def test_only_what_changes_is_filtered_and_nothing_else_comes_out(seed, open_share, n):
+    signals = bounded(seed, open_share, n=n)
     friction = balanced(*signals, bandwidth=BANDWIDTH, sample_time=SAMPLE_TIME)
     # rounding, through eight turns of a filter that amplifies nothing
+    assert friction.rows() == pytest.approx(step_by_step(*signals), abs=1e-10)
+
+
+@pytest.mark.parametrize(
+    "places",
+    [(0, 9_000), (150, 19_850), (5_000, 5_200, 12_000), (0, 200, 19_700, 19_999), (301, 19_698)],
+)
+def test_windows_about_few_open_rows_give_what_the_whole_record_does(places):
+    needed, low, high = bounded(5, 0.0, n=20_000)
+    is_open = np.zeros(20_000, dtype=bool)
+    for place in places:
+        is_open[place : place + 7] = True
+    up = np.where(is_open & (high.value < 0.0), -1.0, 1.0)
+    down = np.where(is_open & (low.value > 0.0), -1.0, 1.0)
+    signals = (needed, low.times(down), high.times(up))
+    friction = balanced(*signals, bandwidth=BANDWIDTH, sample_time=SAMPLE_TIME)
     assert friction.rows() == pytest.approx(step_by_step(*signals), abs=1e-10)
 
 
