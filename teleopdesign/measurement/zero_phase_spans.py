@@ -24,17 +24,23 @@ NEAR = 16
 NOTHING = 1e-18
 #: share of a record in windows above which it is taken as a whole: each window costs a call
 MOST_SHARE = 0.7
+#: cutoff over the sample rate from which the filter's states are carried between spans: 1e-9 of
+#: them is lost to rounding at half of it, and the more the lower it is. Below, one span holds all
+LEAST_CUTOFF = 1e-3
 #: powers of two that the rows between two spans are made of: more than any record has
 DOUBLINGS = 40
 #: elements of such a power that count as nothing: their squares would leave the range of numbers
 TINY = 1e-100
 
 
-def spans_of(rows: NDArray[np.intp], n: int, m: int) -> NDArray[np.intp]:
+def spans_of(rows: NDArray[np.intp], n: int, m: int, cutoff: float) -> NDArray[np.intp]:
     """Spans (k, 2), from and to, of the continued record that hold all that these rows change.
 
     rows: of the record of n samples, in order; the record is continued by m samples at each end
+    cutoff: of the filter, over the sample rate
     """
+    if cutoff < LEAST_CUTOFF:
+        return np.array([[0, n + 2 * m]])
     changed = np.zeros(n + 2 * m, dtype=bool)
     changed[m + rows] = True
     # the continuation is mirrored at the outermost rows, and goes with them
@@ -142,18 +148,16 @@ def filter_spans(
     y: Array,
     extended: Array,
     spans: NDArray[np.intp],
-    sos: Array,
-    steady_state: Array,
-    steps: Array,
-    swings: Array,
+    filters: tuple[Array, Array, Array, Array],
 ) -> None:
     """Filter the columns of y (n, signals) forward and backward; zero outside the spans' rows.
 
     extended: (m + n + m, signals); afterwards its rows m + k hold row k of the filtered signals
         where it is in a span, anything elsewhere
-    steps, swings: as `between` gives them
+    filters: what `sections` gives, and then `between`
     """
     n, r = y.shape
+    sos, steady_state, steps, swings = filters
     m = (extended.shape[0] - n) // 2
     count = len(spans)
     states = np.zeros((2 * count, 4, r))  # after each span, there and back

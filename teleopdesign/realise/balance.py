@@ -37,19 +37,17 @@ def _balance(
     there: Array,
     spans: NDArray[np.intp],
     m: int,
-    sos: Array,
-    steady: Array,
-    steps: Array,
-    swings: Array,
+    filters: tuple[Array, Array, Array, Array],
 ) -> Array:
     """Friction at the rows where its bounds leave it open; columns: the value, then its tangents.
 
     left: needed less friction at all samples, changed in place
     there: (3, rows, columns), what is needed at these rows, least and largest friction
     spans: of `spans_of` these rows;  m: samples by which records are continued
-    steps, swings: as `between` gives them
+    filters: as `filter_spans` takes them
     """
     n, r = left.shape
+    sos, steady, _, _ = filters
     needed, low, high = there[0], there[1], there[2]
     extended = np.zeros((n + 2 * m, r))
     friction: Array = np.zeros_like(needed)
@@ -62,7 +60,7 @@ def _balance(
                 for j in range(r):
                     left[k, j] = 0.0
         elif turn > 1:
-            filter_spans(left, extended, spans, sos, steady, steps, swings)
+            filter_spans(left, extended, spans, filters)
         if turn > 0:
             later = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * momentum**2))
             carried = (momentum - 1.0) / later
@@ -143,6 +141,7 @@ def _at_open_rows(
     left = side_by_side(needed - low)
     there = np.stack([side_by_side(a, rows) for a in (needed, low, high)])
     m = min(m, len(left) - 1)
-    spans = spans_of(rows, len(left), m)
+    bandwidth, sample_time = of_filter
+    spans = spans_of(rows, len(left), m, bandwidth * sample_time)
     filters = (*sections(*of_filter), *between(spans, *crossings(*of_filter)))
-    return _balance(left, rows, there, spans, m, *filters)[:, : 1 + len(needed.tangent)].T
+    return _balance(left, rows, there, spans, m, filters)[:, : 1 + len(needed.tangent)].T

@@ -93,14 +93,16 @@ def through(filtered: Callable[[Array], Array], signal: Traced) -> Traced:
     """A signal and its tangents through a linear filter; tangents that are zero stay so."""
     if signal.is_constant:
         return constant(filtered(signal.value), len(signal.tangent))
-    moving = signal.tangent.any(axis=1)
-    if moving.all():
+    rows = signal.moving
+    if rows is None:
+        rows = tuple(np.flatnonzero(signal.tangent.any(axis=1)).tolist())
+    if len(rows) == len(signal.tangent):
         both = filtered(signal.rows())
         return Traced(both[0], both[1:])
-    both = filtered(np.vstack([signal.value[None], signal.tangent[moving]]))
+    both = filtered(np.vstack([signal.value[None], signal.tangent[list(rows)]]))
     tangent = np.zeros((len(signal.tangent), both.shape[-1]))
-    tangent[moving] = both[1:]
-    return Traced(both[0], tangent)
+    tangent[list(rows)] = both[1:]
+    return Traced(both[0], tangent, rows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,9 +175,9 @@ class NumericLaw:
             out = self.call(*arrays, *[np.float64(values[p]) for p in self.parameters])
         value = np.broadcast_to(np.asarray(out[0], dtype=float), (n,)).copy()
         places = {column: j for j, column in enumerate(columns)}
-        own = {s.symbol if isinstance(s, Probe) else s for s in columns}
+        symbols = [getattr(column, "symbol", column) for column in columns]  # a probe: its strength
         moved = [s for s in self.signals if not signals[s].is_constant]
-        if not moved and own.isdisjoint(self.parameters):
+        if not moved and not any(s in self.parameters for s in symbols):
             return constant(value, len(columns))
         by_signal = dict(zip(self.signals, out[1 : 1 + len(arrays)], strict=True))
         parts = (by_signal[s] * signals[s].tangent for s in moved)
@@ -188,8 +190,8 @@ class NumericLaw:
         for j, column in enumerate(columns):
             if isinstance(column, Probe) and column.symbol in self.parameters:
                 tangent[j] += self._slope(column, arrays, values)
-        own_rows = [j for j, c in enumerate(columns) if getattr(c, "symbol", c) in self.parameters]
-        return Traced(value, tangent, None if moved else tuple(own_rows))
+        rows = tuple(j for j, s in enumerate(symbols) if s in self.parameters)
+        return Traced(value, tangent, None if moved else rows)
 
     def _slope(
         self, probe: Probe, arrays: Sequence[Array], values: Mapping[sp.Symbol, float]
