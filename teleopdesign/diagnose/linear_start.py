@@ -26,9 +26,6 @@ from .prepare import Prepared
 #: columns that are carried through the friction balance at once: as many as a processor's second
 #: cache holds of a record. With twice as many a search by periods takes a tenth longer
 AT_ONCE = 24
-#: sine of the angle between two columns below which they are resolved by singular values: one step
-#: of orthogonalisation would leave errors above 1e-10 of them
-ALONG = 1e-5
 
 
 @dataclass(frozen=True)
@@ -118,7 +115,7 @@ def _best_multiples(rows: Array, target: Array) -> Array:
     along = rows[0] @ rows[1]
     across = rows[1] - along * rows[0]
     size = np.linalg.norm(across)
-    if size < ALONG:
+    if size < 1e-5:  # nearly along each other: one orthogonalisation would leave errors over 1e-10
         return np.asarray(np.linalg.lstsq(rows.T, target, rcond=1e-10)[0])
     second = across @ target / size**2
     return np.array([first - along * second, second])

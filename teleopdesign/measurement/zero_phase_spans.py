@@ -19,17 +19,28 @@ from .zero_phase import copied, go_on, sections, settle
 
 #: rows between two spans up to which they are one: to cross costs as much as to filter so many
 NEAR = 16
+#: what is left of a row's part in the filter's output, over that part, that counts as nothing:
+#: below rounding
+NOTHING = 1e-18
+#: share of a record in windows above which it is taken as a whole: each window costs a call
+MOST_SHARE = 0.7
+#: cutoff over the sample rate from which the filter's states are carried between spans: 1e-9 of
+#: them is lost to rounding at half of it, and the more the lower it is. Below, one span holds all
+LEAST_CUTOFF = 1e-3
 #: powers of two that the rows between two spans are made of: more than any record has
 DOUBLINGS = 40
 #: elements of such a power that count as nothing: their squares would leave the range of numbers
 TINY = 1e-100
 
 
-def spans_of(rows: NDArray[np.intp], n: int, m: int) -> NDArray[np.intp]:
+def spans_of(rows: NDArray[np.intp], n: int, m: int, cutoff: float) -> NDArray[np.intp]:
     """Spans (k, 2), from and to, of the continued record that hold all that these rows change.
 
     rows: of the record of n samples, in order; the record is continued by m samples at each end
+    cutoff: of the filter, over the sample rate
     """
+    if cutoff < LEAST_CUTOFF:
+        return np.array([[0, n + 2 * m]])
     changed = np.zeros(n + 2 * m, dtype=bool)
     changed[m + rows] = True
     # the continuation is mirrored at the outermost rows, and goes with them
@@ -41,6 +52,32 @@ def spans_of(rows: NDArray[np.intp], n: int, m: int) -> NDArray[np.intp]:
     places = np.flatnonzero(changed)
     ends = np.flatnonzero(np.diff(places) > NEAR + 1)
     return np.column_stack([places[np.append(0, ends + 1)], places[np.append(ends, -1)] + 1])
+
+
+@lru_cache(maxsize=16)
+def reach(cutoff: float, sample_time: float) -> int:
+    """Rows after which nothing is left of what a row does to the filter's output."""
+    sos, _ = sections(cutoff, sample_time)
+    slowest = max(float(np.abs(np.roots(section[3:])).max()) for section in sos)
+    return int(np.ceil(np.log(NOTHING) / np.log(slowest)))
+
+
+def windows(rows: NDArray[np.intp], n: int, m: int, reach: int) -> list[tuple[int, int]]:
+    """Windows (from, to) of n samples that hold all that these rows feel of each other.
+
+    rows: in order;  m: samples by which the record is continued at each end;  reach: as above
+    What lies between windows is felt at no row; one window holds all where little lies there.
+    """
+    apart = np.flatnonzero(np.diff(rows) > 2 * reach)
+    begins = np.maximum(rows[np.append(0, apart + 1)] - reach, 0)
+    ends = np.minimum(rows[np.append(apart, -1)] + reach + 1, n)
+    if begins[0] == 0:  # the continuation there is made of the first m rows
+        ends[0] = max(ends[0], min(m + 1, n))
+    if ends[-1] == n:  # and there of the last
+        begins[-1] = min(begins[-1], max(n - 1 - m, 0))
+    if np.any(begins[1:] < ends[:-1]) or (ends - begins).sum() > MOST_SHARE * n:
+        return [(0, n)]
+    return list(zip(begins.tolist(), ends.tolist(), strict=True))
 
 
 @lru_cache(maxsize=16)
@@ -111,18 +148,16 @@ def filter_spans(
     y: Array,
     extended: Array,
     spans: NDArray[np.intp],
-    sos: Array,
-    steady_state: Array,
-    steps: Array,
-    swings: Array,
+    filters: tuple[Array, Array, Array, Array],
 ) -> None:
     """Filter the columns of y (n, signals) forward and backward; zero outside the spans' rows.
 
     extended: (m + n + m, signals); afterwards its rows m + k hold row k of the filtered signals
         where it is in a span, anything elsewhere
-    steps, swings: as `between` gives them
+    filters: what `sections` gives, and then `between`
     """
     n, r = y.shape
+    sos, steady_state, steps, swings = filters
     m = (extended.shape[0] - n) // 2
     count = len(spans)
     states = np.zeros((2 * count, 4, r))  # after each span, there and back

@@ -69,11 +69,10 @@ def residual_along(
     acting = acting_along(body, motion, along)
     along = along.with_signals({SIGNALS["acting_force"]: acting})
     inertia = along.evaluate(body.symbols()["inertia"] * SIGNALS["acceleration"])
-    needed = acting + interaction - inertia
+    forces = [_force(effect, along) for effect in along.present(body.effects, "force")]
     if motion.carried is not None:
-        needed = needed - _carried(motion, motion.carried, along)
-    for effect in along.present(body.effects, "force"):
-        needed = needed - _force(effect, along)
+        forces = [_carried(motion, motion.carried, along), *forces]
+    needed = (acting + interaction).less([inertia, *forces])
     contact = body.contact()
     structures = along.present(body.effects, "structure")
     if contact != 0 and structures:

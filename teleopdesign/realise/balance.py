@@ -15,7 +15,14 @@ from numpy.typing import NDArray
 from ..machine_code import kept
 from ..measurement.filtering import Array
 from ..measurement.zero_phase import both_ways, lanes, margin, sections
-from ..measurement.zero_phase_spans import between, crossings, filter_spans, spans_of
+from ..measurement.zero_phase_spans import (
+    between,
+    crossings,
+    filter_spans,
+    reach,
+    spans_of,
+    windows,
+)
 from .traced import Traced
 
 #: projected steps: on 109 simulated records of right models the 95th percentile of what they leave,
@@ -30,19 +37,17 @@ def _balance(
     there: Array,
     spans: NDArray[np.intp],
     m: int,
-    sos: Array,
-    steady: Array,
-    steps: Array,
-    swings: Array,
+    filters: tuple[Array, Array, Array, Array],
 ) -> Array:
     """Friction at the rows where its bounds leave it open; columns: the value, then its tangents.
 
     left: needed less friction at all samples, changed in place
     there: (3, rows, columns), what is needed at these rows, least and largest friction
     spans: of `spans_of` these rows;  m: samples by which records are continued
-    steps, swings: as `between` gives them
+    filters: as `filter_spans` takes them
     """
     n, r = left.shape
+    sos, steady, _, _ = filters
     needed, low, high = there[0], there[1], there[2]
     extended = np.zeros((n + 2 * m, r))
     friction: Array = np.zeros_like(needed)
@@ -55,7 +60,7 @@ def _balance(
                 for j in range(r):
                     left[k, j] = 0.0
         elif turn > 1:
-            filter_spans(left, extended, spans, sos, steady, steps, swings)
+            filter_spans(left, extended, spans, filters)
         if turn > 0:
             later = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * momentum**2))
             carried = (momentum - 1.0) / later
@@ -99,17 +104,44 @@ def balanced(
 ) -> Traced:
     """Friction between its bounds, with its tangents; bandwidth: Hz;  sample_time: s."""
     is_open = low.value != high.value
-    if low.tangent is not high.tangent:
-        is_open |= (low.tangent != high.tangent).any(axis=0)
-    rows = np.flatnonzero(is_open)
+    both = None if low.moving is None or high.moving is None else {*low.moving, *high.moving}
+    for j in range(len(low.tangent)) if both is None else both:
+        is_open |= low.tangent[j] != high.tangent[j]
+    rows, n = np.flatnonzero(is_open), len(is_open)
     if not len(rows):
         return low
+    m = margin(n, sample_time)
+    friction = low.rows()
+    for first, last in windows(rows, n, m, reach(bandwidth, sample_time)):
+        here, mine = slice(first, last), rows[(rows >= first) & (rows < last)] - first
+        friction[:, first + mine] = _at_open_rows(
+            needed.between(here),
+            low.between(here),
+            high.between(here),
+            mine,
+            # between others a window's ends are felt at no open row
+            m if first == 0 or last == n else 1,
+            (bandwidth, sample_time),
+        )
+    return Traced(friction[0], friction[1:])
+
+
+def _at_open_rows(
+    needed: Traced,
+    low: Traced,
+    high: Traced,
+    rows: NDArray[np.intp],
+    m: int,
+    of_filter: tuple[float, float],
+) -> Array:
+    """Friction and its tangents (1 + p, rows) where its bounds leave it open.
+
+    m: samples by which the signals are continued;  of_filter: its bandwidth (Hz) and sample time
+    """
     left = side_by_side(needed - low)
     there = np.stack([side_by_side(a, rows) for a in (needed, low, high)])
-    m = margin(len(left), sample_time)
-    spans = spans_of(rows, len(left), m)
-    crossed = between(spans, *crossings(bandwidth, sample_time))
-    filters = (*sections(bandwidth, sample_time), *crossed)
-    friction = low.rows()
-    friction[:, rows] = _balance(left, rows, there, spans, m, *filters)[:, : len(friction)].T
-    return Traced(friction[0], friction[1:])
+    m = min(m, len(left) - 1)
+    bandwidth, sample_time = of_filter
+    spans = spans_of(rows, len(left), m, bandwidth * sample_time)
+    filters = (*sections(*of_filter), *between(spans, *crossings(*of_filter)))
+    return _balance(left, rows, there, spans, m, filters)[:, : 1 + len(needed.tangent)].T

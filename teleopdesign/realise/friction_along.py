@@ -43,7 +43,7 @@ def bound_friction(
         size = this_way.evaluate(level)
         if not size.is_constant:
             size.tangent[:, size.value < 0] = 0.0
-        return Traced(np.maximum(size.value, 0.0), size.tangent)
+        return Traced(np.maximum(size.value, 0.0), size.tangent, size.moving)
 
     forward = towards(1.0)
     backward = towards(-1.0) if level.has(_DIRECTION) else forward
