@@ -140,6 +140,7 @@ def test_an_effect_of_the_users_model_left_to_defaults_is_found_its_values(exper
     assert found.check_error < 1.1 * diagnosis.rungs[1].fit.check_error
 
 
+@pytest.mark.slow
 def test_a_fit_alone_gives_what_a_diagnosis_that_adds_nothing_gives(experiment):
     from teleopdesign import fit
 
