@@ -22,7 +22,7 @@ from teleopdesign.diagnose.decision import objection, superfluous_beside
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.rung import Rung, replaced_from
-from teleopdesign.diagnose.search import at_stated
+from teleopdesign.diagnose.stated import at_stated
 from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ModelError
 from teleopdesign.next_experiment.rivals import rival_instead
