@@ -11,17 +11,20 @@ import numpy as np
 import pytest
 from diagnose.contract import violations
 from diagnose.made_records import dahl, write_made
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from teleopdesign import Body, Model, find_missing, load_experiment
 from teleopdesign.diagnose.answer import answer, write_answer
 from teleopdesign.diagnose.answers import load_answer, restored
-from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.candidates import Candidate, candidates
 from teleopdesign.diagnose.decision import objection, superfluous_beside
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.rung import Rung, replaced_from
 from teleopdesign.diagnose.stated import at_stated
 from teleopdesign.effects import EFFECTS
+from teleopdesign.errors import ModelError
 from teleopdesign.next_experiment.rivals import rival_instead
 from teleopdesign.report.parameter_table import parameter_rows
 
@@ -218,3 +221,23 @@ def test_a_shape_of_friction_that_comes_back_takes_the_place_of_the_other():
     gave_way = replaced_from(Candidate(EFFECTS["presliding"], "device"), before)
     rung = Rung(Candidate(EFFECTS["maxwell_slip"], "device"), None, replaced=gave_way)
     assert {n for n, _ in rung.taken_from(after).effects} == {"coulomb", "presliding"}
+
+
+@settings(max_examples=15, deadline=None)
+@given(axis=st.sampled_from(["prismatic", "revolute"]), data=st.data())
+def test_whatever_gave_way_to_whatever_comes_back(axis, data):
+    """Over models of any effects: a candidate in the place of one that the others can spare."""
+    model = Model({"device": Body(axis, {"inertia": 1.0}, ())})
+    for _ in range(data.draw(st.integers(1, 7))):
+        new = data.draw(st.sampled_from(candidates(model)))
+        model = model.with_effect(new.effect, at=new.at)
+    for new in candidates(model):
+        beside = model.with_effect(new.effect, at=new.at)
+        for old in model.body("device").effects:
+            try:
+                instead = beside.without_effect(old.name, at="device")
+            except ModelError:
+                continue  # another effect needs it
+            gave_way = replaced_from(Candidate(old, "device"), model)
+            back = Rung(new, None, replaced=gave_way).taken_from(instead)
+            assert set(back.effects) == set(model.effects)
