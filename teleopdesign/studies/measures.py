@@ -155,7 +155,8 @@ def _passivity(point: Point, *, stroke: float, speed: float, tries: int) -> Any:
 
     "refuted" if any claim on a port is; else the weakest of the claims that settle it
     """
-    from ..passivity.diagram_claims import WHOLE, Search, diagram_claims
+    from ..passivity.diagram_claims import Search, diagram_claims
+    from ..passivity.linear_diagrams import WHOLE
 
     case = point.case
     search = Search(stroke, speed, tries, case.computer)
