@@ -26,7 +26,7 @@ def rod(tmp_path):
 def run(*arguments):
     """The command in a process of its own."""
     return subprocess.run(
-        [sys.executable, "-m", "teleopdesign.cli", *map(str, arguments)],
+        [sys.executable, "-m", "teleopdesign", *map(str, arguments)],
         capture_output=True,
         text=True,
         timeout=300,

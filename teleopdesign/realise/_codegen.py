@@ -12,10 +12,11 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from ..controllers import calls_in
-from .equations import (
+from .equations import Equations
+from .laws import Names, assignments, indented
+from .signal_symbols import (
     PERIOD,
     TIME,
-    Equations,
     acceleration,
     estimate,
     measured,
@@ -23,7 +24,6 @@ from .equations import (
     travel_rate,
     velocity,
 )
-from .laws import Names, assignments, indented
 
 #: arguments of laws in continuous time: where what they take begins in the memory of the loop
 ANALOG = "time states bristles inputs column late parameters memory".split()

@@ -16,7 +16,7 @@ import sympy as sp
 from ..controllers import SIGNALS, Controller, parameter_symbol
 from ..errors import ModelError
 from .delays import late_samples
-from .equations import LateSignals, without_delays
+from .late_signals import LateSignals, without_delays
 from .simulated import without_no_delay
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")

@@ -8,47 +8,40 @@ same set of equations. All equations are linear in accelerations and forces and 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import sympy as sp
 
 from ..blocks import Body
-from ..controllers import SIGNALS as CONTROL_SIGNALS
 from ..controllers import Controller, ControllerEquation, parameter_symbol
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ..diagrams.parts import Weight
 from ..diagrams.second_input import without_motion
-from ..effects import SIGNALS, delayed
+from ..effects import SIGNALS
 from ..errors import ModelError, did_you_mean
 from ._linear import Steps, solve_linear
+from .computer import Computer, computer_signals, held_signals, sensor_signals
+from .late_signals import LateSignals, undelayed, without_delays
+from .signal_symbols import (
+    PERIOD,
+    TIME,
+    acceleration,
+    estimate,
+    measured,
+    motion_of,
+    parameter_names,
+    rate_of,
+    signal,
+    travel_rate,
+    velocity,
+)
 
 #: signal's name -> symbol that stands for it
 _Reader = Callable[[str], sp.Symbol]
 #: state -> rate, or value at the next sample
 _Changes = dict[sp.Symbol, sp.Expr]
-#: late signal -> what it was, and how much earlier
-LateSignals = dict[sp.Symbol, tuple[sp.Expr, sp.Expr]]
-TIME = sp.Symbol("time", real=True)
 _NO_COMMAND = sp.Symbol("no_command", real=True)
 _NO_VELOCITY = sp.Symbol("no_velocity", real=True)
-#: duration of a sample, in the laws of what is sampled
-PERIOD = CONTROL_SIGNALS["period"]
-
-
-@dataclass(frozen=True)
-class Computer:
-    """The sampled part: states before and after their step over one sample, and the signals.
-
-    rates: continuous rates, inputs held over a sample;  before: states stepped ahead of the output
-    steps: value at the next sample, for states that state it in place of a rate
-    late: symbol -> (expression, delay), of what it keeps for later samples
-    """
-
-    rates: Mapping[sp.Symbol, sp.Expr]
-    steps: Mapping[sp.Symbol, sp.Expr]
-    before: frozenset[sp.Symbol]
-    signals: Mapping[str, sp.Expr]
-    late: Mapping[sp.Symbol, tuple[sp.Expr, sp.Expr]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -81,47 +74,6 @@ class Equations:
         return tuple(d for _, d in (*self.late.values(), *self.computer.late.values()))
 
 
-def signal(name: str) -> sp.Symbol:
-    """Symbol of a signal; of a motion, its position."""
-    return sp.Symbol(name, real=True)
-
-
-def velocity(motion: str) -> sp.Symbol:
-    return sp.Symbol(f"{motion}_velocity", real=True)
-
-
-def acceleration(motion: str) -> sp.Symbol:
-    return sp.Symbol(f"{motion}_acceleration", real=True)
-
-
-def measured(name: str) -> sp.Symbol:
-    """What a sensor gives at a sample."""
-    return sp.Symbol(f"{name}_measured", real=True)
-
-
-def travel_rate(motion: str) -> sp.Symbol:
-    """Measured travel of the last sample over its duration."""
-    return sp.Symbol(f"{motion}_travel_rate", real=True)
-
-
-def estimate(motion: str) -> sp.Symbol:
-    """Velocity as the computer knows it: filtered travel rate."""
-    return sp.Symbol(f"{motion}_velocity_estimate", real=True)
-
-
-def rate_of(position: sp.Expr, rate: Callable[[str], sp.Expr]) -> sp.Expr:
-    """Rate of a position that bodies determine;  rate: motion -> its velocity."""
-    return sp.Add(*(sp.diff(position, x) * rate(x.name) for x in position.free_symbols))
-
-
-def motion_of(diagram: Diagram, name: str) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    """Position, velocity and acceleration of a motion on those of the moving bodies."""
-    position = diagram.position(name)
-    speed = rate_of(position, velocity)
-    bent = (sp.diff(speed, x) * velocity(x.name) for x in position.free_symbols)
-    return position, speed, sp.Add(rate_of(position, acceleration), *bent)
-
-
 def equations(
     diagram: Diagram, *, prescribed: Iterable[str] = (), sampled: bool = True
 ) -> Equations:
@@ -148,63 +100,13 @@ class _Builder:
         _check_inputs(diagram, motions)
         driven = {b.driver for b in self.moving if b.motion in prescribed}
         self.outside = [s for s in diagram.outside if s not in driven]
-        self.digital, self.sampled_inputs = self._computers_signals()
+        computed = computer_signals(diagram)
+        self.digital = computed - set(diagram.outside)
+        self.sampled_inputs = tuple(s for s in self.outside if s in computed)
         self.rates: dict[sp.Symbol, sp.Expr] = {}
         self.late: LateSignals = {}
         self.friction: dict[str, sp.Expr] = {}
         self.acting: dict[sp.Symbol, sp.Expr] = {}
-
-    def _sensors(self) -> set[str]:
-        """Signals that the computer has from a sensor; those from outside it knows anyway."""
-        return set(self.diagram.measured) - set(self.diagram.outside)
-
-    def _electronic(self) -> set[str]:
-        """Outputs of analog controllers and of the junctions before and behind them."""
-        made = {j.output: j for j in self.diagram.junctions}
-        electronic = {c.output for c in self.diagram.controls if c.analog}
-        electronic |= {c.input for c in self.diagram.controls if c.analog and c.input in made}
-        grown = True
-        while grown:
-            behind = {j.output for j in made.values() if electronic & set(j.terms)}
-            grown, electronic = not behind <= electronic, electronic | behind
-        return electronic
-
-    def _computers_signals(self) -> tuple[set[str], tuple[str, ...]]:
-        """Signals between sensors and commands, and the outside signals among them."""
-        made = {s: p for p in self.diagram.parts for s in p.outputs}
-        sensors, electronic = self._sensors(), self._electronic()
-        todo = [b.command for b in self.moving]
-        computed: set[str] = set()
-        visited: set[str] = set()
-        while todo:
-            name = todo.pop()
-            if name in visited or name in sensors:
-                continue
-            visited.add(name)
-            part = made.get(name)
-            if isinstance(part, Moving | Attached | Linked):
-                raise ModelError(
-                    f'{self.diagram.name}: the computer uses "{name}" of {part.name}, which is not '
-                    f"measured; sensors give {', '.join(sorted(sensors))}"
-                )
-            inputs = () if part is None else part.inputs
-            if name in electronic:
-                inputs = tuple(s for s in inputs if s not in self.diagram.outside)
-            else:
-                computed.add(name)
-            todo += inputs
-        inputs = tuple(s for s in self.outside if s in computed)
-        return computed - set(self.diagram.outside), inputs
-
-    def _held(self) -> list[str]:
-        """The computer's signals that something analog takes: these are held."""
-        known = self.digital | set(self.sampled_inputs)
-        takers = [b.command for b in self.moving]
-        for part in self.diagram.parts:
-            electronic = isinstance(part, Control) and part.analog
-            if electronic or (isinstance(part, Junction) and part.output not in self.digital):
-                takers += [s for s in part.inputs if s in self.digital]
-        return sorted({s for s in takers if s in known})
 
     def build(self) -> Equations:
         rows, unknown = self._analog_rows()
@@ -212,7 +114,8 @@ class _Builder:
         commands: dict[str, sp.Symbol] = {}
         inputs = [s for s in self.outside if s not in self.sampled_inputs or self._feeds_analog(s)]
         if self.sampled:
-            commands = {s: signal(s) for s in self._held()}
+            held = held_signals(self.diagram, self.digital, self.sampled_inputs)
+            commands = {s: signal(s) for s in held}
             computer = self._computer()
         else:
             more, names = self._computer_rows(signal, velocity, velocity, self.late)
@@ -239,7 +142,7 @@ class _Builder:
             sampled_inputs=self.sampled_inputs,
             motions=self.motions,
             prescribed=self.prescribed,
-            parameters=_parameter_names(self.diagram),
+            parameters=parameter_names(self.diagram),
             joined=joined,
         )
 
@@ -370,7 +273,7 @@ class _Builder:
         return (rows, rates, steps, before), names
 
     def _computer(self) -> Computer:
-        sensors = self._sensors()
+        sensors = sensor_signals(self.diagram)
 
         def of(name: str) -> sp.Symbol:
             return measured(name) if name in sensors else signal(name)
@@ -420,34 +323,6 @@ def _placed(
     return equation
 
 
-def without_delays(
-    equation: ControllerEquation, name: str, late: LateSignals
-) -> ControllerEquation:
-    """The equation with a symbol for each signal that is late, which is put into `late`."""
-
-    def replaced(changes: Mapping[sp.Symbol, sp.Expr]) -> _Changes:
-        return {x: undelayed(name, change, late) for x, change in changes.items()}
-
-    return ControllerEquation(
-        undelayed(name, equation.output, late),
-        replaced(equation.rates),
-        replaced(equation.steps),
-        equation.before,
-    )
-
-
-def undelayed(name: str, expression: sp.Expr, late: LateSignals) -> sp.Expr:
-    """delayed(x, tau) replaced by a symbol that the simulation looks up in its history."""
-    while calls := expression.atoms(delayed):
-        innermost = (c for c in calls if not any(x.has(delayed) for x in c.args))
-        for call in sorted(innermost, key=str):
-            symbol = sp.Symbol(f"{name}_late_{len(late)}", real=True)
-            symbol = {c: s for s, c in late.items()}.get(call.args, symbol)
-            late[symbol] = call.args
-            expression = expression.xreplace({call: symbol})
-    return expression
-
-
 def summed(part: Junction | Kinematics, of: _Reader) -> sp.Expr:
     """Output of a junction or kinematics;  of: signal -> symbol that stands for it."""
     if isinstance(part, Kinematics):
@@ -458,11 +333,3 @@ def summed(part: Junction | Kinematics, of: _Reader) -> sp.Expr:
 def _read(weight: Weight, of: _Reader) -> sp.Expr:
     expression = sp.sympify(weight, strict=True)
     return expression.xreplace({x: of(x.name) for x in expression.free_symbols})
-
-
-def _parameter_names(diagram: Diagram) -> dict[sp.Symbol, str]:
-    names = {}
-    for full in diagram.values:
-        block, _, local_name = full.partition(".")
-        names[parameter_symbol(block, local_name)] = full
-    return names

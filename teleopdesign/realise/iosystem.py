@@ -21,9 +21,10 @@ from ..controllers import Controller, Stage, from_control
 from ..diagrams import Control, Diagram, Junction, Kinematics
 from ..errors import ModelError
 from ._codegen import needed_steps
-from .equations import TIME, Equations, equations, motion_of, signal, summed, velocity
+from .equations import Equations, equations, summed
 from .private_names import PrivateNames, private_names
 from .sampled_iosystem import sampled_iosystem
+from .signal_symbols import TIME, motion_of, signal, velocity
 from .simulated import simulated
 
 if TYPE_CHECKING:

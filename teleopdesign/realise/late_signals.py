@@ -1,0 +1,41 @@
+"""Signals that a law delays: each becomes a symbol that the simulation looks up in its history."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import sympy as sp
+
+from ..controllers import ControllerEquation
+from ..effects import delayed
+
+#: late signal -> what it was, and how much earlier
+LateSignals = dict[sp.Symbol, tuple[sp.Expr, sp.Expr]]
+
+
+def without_delays(
+    equation: ControllerEquation, name: str, late: LateSignals
+) -> ControllerEquation:
+    """The equation with a symbol for each signal that is late, which is put into `late`."""
+
+    def replaced(changes: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
+        return {x: undelayed(name, change, late) for x, change in changes.items()}
+
+    return ControllerEquation(
+        undelayed(name, equation.output, late),
+        replaced(equation.rates),
+        replaced(equation.steps),
+        equation.before,
+    )
+
+
+def undelayed(name: str, expression: sp.Expr, late: LateSignals) -> sp.Expr:
+    """delayed(x, tau) replaced by a symbol that the simulation looks up in its history."""
+    while calls := expression.atoms(delayed):
+        innermost = (c for c in calls if not any(x.has(delayed) for x in c.args))
+        for call in sorted(innermost, key=str):
+            symbol = sp.Symbol(f"{name}_late_{len(late)}", real=True)
+            symbol = {c: s for s, c in late.items()}.get(call.args, symbol)
+            late[symbol] = call.args
+            expression = expression.xreplace({call: symbol})
+    return expression
