@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shutil
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
     from ..measurement import Experiment
     from ..model import Model
 
-#: columns of the terminal; what a line goes on with stands under its sentence
-WIDTH, INDENT = 100, 9
+#: columns of a line, at most and at least; what it goes on with stands under its sentence
+WIDTH, NARROWEST, INDENT = 100, 40, 9
 
 
 EXAMPLES = """
@@ -109,8 +110,10 @@ def _unreadable(folder: Path, problem: ExperimentError) -> tuple[Finding, ...]:
 def text_of(findings: Sequence[Finding]) -> str:
     """Warnings, then notes, then what is fine, each in the order found, and a count."""
     order = ("warning", "note", "fine")
+    terminal = shutil.get_terminal_size((WIDTH, 24)).columns  # of a pipe: WIDTH
+    width = min(WIDTH, max(NARROWEST, terminal))
     lines = [
-        textwrap.fill(str(f), WIDTH, subsequent_indent=" " * INDENT, break_on_hyphens=False)
+        textwrap.fill(str(f), width, subsequent_indent=" " * INDENT, break_on_hyphens=False)
         for f in sorted(findings, key=lambda f: order.index(f.concern))
     ]
     count = sum(f.concern == "warning" for f in findings)

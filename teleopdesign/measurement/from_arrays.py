@@ -41,8 +41,8 @@ def experiment(
     units: Mapping[str, str] | None = None,
     inertia: float | None = None,
     effects: Sequence[str] = ("coulomb", "viscous"),
-    fit: Sequence[Sequence[float]] | None = None,
-    check: Sequence[Sequence[float]] = (),
+    fit: Sequence[Sequence[float] | float] | None = None,
+    check: Sequence[Sequence[float] | float] = (),
     bandwidth: float | None = None,
     title: str = "data",
 ) -> Experiment:
@@ -55,8 +55,8 @@ def experiment(
     time: default: the column or index that sounds like it;  sample_rate: Hz, in place of a time
     units: column -> unit; default: what the column's name ends with ("Pos (deg)"), or SI
     inertia: kg or kg*m^2; default: estimated from the data, as are the friction's first values
-    effects: those of the model;  fit, check: spans (begin, end) in s from the first row; default:
-        all is fitted, and blocks of it are held out in turn
+    effects: those of the model;  fit, check: spans (begin, end) in s from the first row, or one
+        span; default: all is fitted, and blocks of it are held out in turn
     raises ExperimentError: no such column, a unit that does not fit, too little data
     """
     log = log_of(data)
@@ -82,9 +82,47 @@ def experiment(
     if inertia is not None:
         body["inertia"] = inertia
     content["model"] = {"device": body}
-    spans = [("fit", s) for s in (fit or [None] if fit is None else fit)]
-    spans += [("check", s) for s in check]
+    _refuse_unknown_units(units or {}, log)
+    spans: list[tuple[str, Sequence[float] | None]] = [("fit", None)]
+    if fit is not None:
+        spans = [("fit", span) for span in _spans(fit, "fit")]
+    spans += [("check", span) for span in _spans(check, "check")]
     return in_memory(content, log, spans, title=title, bandwidth=bandwidth)
+
+
+def _spans(spans: Sequence[Sequence[float] | float], use: str) -> list[Sequence[float]]:
+    """Spans as given; two numbers are one span."""
+    numbers = [span for span in spans if isinstance(span, int | float)]
+    pairs = [span for span in spans if not isinstance(span, int | float)]
+    if len(numbers) == 2 and not pairs:
+        return [numbers]
+    if numbers or any(len(pair) != 2 for pair in pairs):
+        raise ExperimentError(
+            f"{_WHERE}: {use}: found {spans!r}, expected (begin, end) in s, or several such as "
+            "[(0, 20), (30, 40)]"
+        )
+    return pairs
+
+
+def _refuse_overlap(spans: Sequence[tuple[str, Sequence[float] | None]]) -> None:
+    """What is fitted may not be checked."""
+    known = [(use, span) for use, span in spans if span is not None]
+    for k, (use, span) in enumerate(known):
+        for other_use, other in known[:k]:
+            if max(span[0], other[0]) < min(span[1], other[1]) and use != other_use:
+                raise ExperimentError(
+                    f"{_WHERE}: {use}: found {tuple(span)}, which overlaps {other_use} "
+                    f"{tuple(other)}, expected spans that do not"
+                )
+
+
+def _refuse_unknown_units(units: Mapping[str, str], log: Log) -> None:
+    for column in units:
+        if column not in log.names:
+            raise ExperimentError(
+                f"{_WHERE}: units: no column {quoted(column)}, found {', '.join(log.names)}"
+                f"{did_you_mean(column, log.names)}"
+            )
 
 
 def in_memory(
@@ -100,6 +138,7 @@ def in_memory(
 
     spans: (use, (begin, end) in s) of each record;  a body without inertia gets first values
     """
+    _refuse_overlap(spans)
     table = Table(content, _WHERE)
     bodies = bodies_from(table.table("model"))
     channels = channels_from(table.table("channels"), bodies)
@@ -206,9 +245,9 @@ def log_of(data: Any) -> Log:
     elif hasattr(data, "get_columns"):  # polars
         columns = {column.name: column.to_numpy() for column in data.get_columns()}
     else:
+        file = "; of a file: teleopdesign new FILE" if isinstance(data, str | Path) else ""
         raise ExperimentError(
             f"{_WHERE}: data: found {type(data).__name__}, expected a DataFrame, a Dataset of "
-            f"xarray "
-            "or a dict of arrays"
+            f"xarray or a dict of arrays{file}"
         )
     return Log(tuple(columns), lambda wanted: {n: columns[n] for n in wanted}, units)

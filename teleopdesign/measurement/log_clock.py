@@ -96,7 +96,7 @@ def _filled_rows(
             if column not in on_this_clock:
                 continue
             bad = ~np.isfinite(columns.values[column])
-            if bad.mean() > MOST_EMPTY:
+            if len(bad) and bad.mean() > MOST_EMPTY:
                 row = int(np.argmax(bad))
                 short = key.removeprefix("device.")
                 raise ExperimentError(

@@ -51,3 +51,13 @@ def test_every_command_that_is_proposed_quotes_its_paths():
         r"teleopdesign [a-z-]+ \{(?!shell_word|shlex|paths|prog)[^}]*(path|folder|file)"
     )
     assert not [f"{f.name}: {m[0]}" for f in files if (m := bare.search(f.read_text("utf-8")))]
+
+
+@pytest.mark.parametrize(("columns", "widest"), [("60", 60), ("200", 100), ("10", 40)])
+def test_findings_keep_within_the_terminal(monkeypatch, columns, widest):
+    from teleopdesign.commands.check import text_of
+    from teleopdesign.finding import Finding
+
+    monkeypatch.setenv("COLUMNS", columns)
+    lines = text_of([Finding("topic", "note", "a word and another " * 20)]).split("\n")
+    assert widest - 10 <= max(map(len, lines)) <= widest

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from teleopdesign.cli import main
 from teleopdesign.measurement.doors._log import Log
-from teleopdesign.measurement.survey import Choices, survey_log
+from teleopdesign.measurement.survey import Choices, spans_of, survey_log
 
 ROWS = 3000  # 3 s at 1 kHz
 T = np.arange(ROWS) / 1000.0
@@ -124,3 +124,17 @@ def test_columns_that_may_be_the_position_as_well_make_it_a_guess():
     two = {"t": T, "q_0": COLUMNS["x"], "q_1": np.roll(COLUMNS["x"], 400), "u": COLUMNS["u"]}
     said = look(two).guesses["channels.position.column"]
     assert "'q_0' is taken for the position" in said and "'q_1' may be it as well" in said
+
+
+def test_a_log_is_used_whole_however_much_of_it_is_looked_at():
+    """A survey looks at some 60 000 rows; spans of an experiment are those of the whole log."""
+    repeats = 25
+    whole = {name: np.tile(values, repeats) for name, values in COLUMNS.items()}
+    whole["t"] = np.arange(repeats * ROWS) / 1000.0
+    survey = look(whole)
+    assert len(survey.time) < len(whole["t"])
+    assert survey.duration == pytest.approx(repeats * ROWS / 1000.0 - 0.001)
+    (begin, cut), (after, end) = spans_of(survey.duration)
+    assert (begin, after) == (0.0, cut) and end >= survey.duration
+    del whole["t"]
+    assert look(whole, sample_rate=1000.0).duration == pytest.approx(survey.duration)

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from ...errors import ExperimentError, did_you_mean
 from ...quantity import is_unit
 from ..doors._log import Log, listed
-from .clock import numeric_columns, on_one_grid, time_column
+from .clock import duration_of, numeric_columns, on_one_grid, time_column
 from .content import NONE, Array, Choices, Survey, SurveyedColumn
 from .forces import describe_forces
 from .position import axis_of, describe_position, find_position
@@ -54,7 +54,8 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     guesses: dict[str, str] = {}
     time_name, unit = time_column(raw, log, choices, guesses, file)
     time, columns = on_one_grid(raw, log, time_name, unit, choices, file)
-    survey = Survey("", {}, float(time[-1] - time[0]), guesses, time, columns, unread=unread)
+    duration = duration_of(raw, time_name, unit, choices)
+    survey = Survey("", {}, duration, guesses, time, columns, unread=unread)
     if time_name is not None:
         survey.channels["time"] = {"column": time_name, "unit": unit}
     else:

@@ -112,6 +112,17 @@ def unit_of_steps(stamps: Array) -> tuple[str, str]:
     return unit, f"steps of {step:.4g} are those of a log only in {unit}"
 
 
+def duration_of(
+    raw: Mapping[str, Array], time_name: str | None, unit: str, choices: Choices
+) -> float:
+    """Seconds from the first to the last row of a log, of which `on_one_grid` looks at a part."""
+    if time_name is None:
+        return (max(map(len, raw.values())) - 1) / (choices.sample_rate or 1000.0)
+    return float(np.nanmax(raw[time_name]) - np.nanmin(raw[time_name])) * si_factor(
+        unit, quantity="time"
+    )
+
+
 def on_one_grid(
     raw: Mapping[str, Array],
     log: Log,

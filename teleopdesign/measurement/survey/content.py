@@ -37,6 +37,7 @@ class SurveyedColumn:
 class Survey:
     """What a log seems to hold.
 
+    duration: of the whole log, s;  time, columns: of the part that was looked at
     channels: quantity -> table as in [channels];  guesses: "channels.time.unit" -> why
     questions: what a person is asked: key -> (question, what is taken otherwise)
     time: (n,) s from the first row;  columns: by name, on it;  first: values of a first model
