@@ -19,19 +19,27 @@ from teleopdesign.diagrams import haptic_interface
 
 sys.path.insert(0, str(Path(__file__).parent / "hidden"))
 
+# objects between two looks for garbage. Python's own 700 suit a small heap: here looking took two
+# thirds of the time of parsing the package, and a tenth of symbolic work
+gc.set_threshold(50_000, 20, 20)
+
 #: both would measure the load of the machine: a time for each example, and for drawing the first
 TIMELESS = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 settings.register_profile("ci", derandomize=True, max_examples=50, **TIMELESS)
 settings.register_profile("here", max_examples=50, **TIMELESS)
 settings.load_profile("ci" if os.environ.get("CI") else "here")
 
-#: folder of tests -> what it shares with other folders and costs seconds: they stay together
+#: folder or file of tests -> what it shares with others and costs seconds: they stay together
 TOGETHER = {
     "diagnose": "a diagnosis of a simulated case",
     "next_experiment": "a diagnosis of a simulated case",
     "design": "a diagnosis of the rod",
     "report": "a diagnosis of the rod",
     "unexplained": "a fit of the rod",
+    "test_import_circles": "syntax trees",
+    "test_imports": "syntax trees",
+    "test_words_and_sizes": "syntax trees",
+    "test_writing": "syntax trees",
 }
 
 
@@ -49,15 +57,21 @@ def pytest_xdist_make_scheduler(config, log):
     class ByFile(LoadScopeScheduling):
         def _split_scope(self, nodeid):
             file = nodeid.partition("::")[0]
-            return TOGETHER.get(Path(file).parent.name, file)
+            path = Path(file)
+            return TOGETHER.get(path.parent.name) or TOGETHER.get(path.stem, file)
 
     return ByFile(config, log)
 
 
-def pytest_collection_finish(session):
-    """What was collected stays: the collector of garbage need not look at it again and again."""
-    gc.collect()
-    gc.freeze()
+@pytest.hookimpl(wrapper=True)
+def pytest_collection(session):
+    """What is collected stays: the collector of garbage need not look at it again and again."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -2,14 +2,11 @@
 
 import ast
 from graphlib import CycleError, TopologicalSorter
-from pathlib import Path
 
-import teleopdesign as td
+from syntax_trees import PACKAGE, parsed, syntax_trees
 
-ROOT = Path(td.__file__).parent
-PACKAGE = ROOT.name
 #: what every folder may ask to draw its results, from inside a method named `plot`
-PLOT = f"{PACKAGE}.plot"
+PLOT = f"{PACKAGE.name}.plot"
 
 
 def module_name(path, root):
@@ -40,12 +37,13 @@ def targets(node, module, is_package):
     return [f"{base}.{a.name}" for a in node.names]
 
 
-def imports_of(root):
+def imports_of(root, trees=None):
     """Module -> modules of the same package that it imports, at any depth of its code."""
-    paths = {module_name(p, root): p for p in root.rglob("*.py")}
+    trees = trees or parsed(root)
+    paths = {module_name(p, root): p for p in trees}
     graph = {}
     for module, path in paths.items():
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+        tree = trees[path]
         names = [
             name
             for node in runtime_nodes(tree)
@@ -78,7 +76,7 @@ def circle_in(graph):
 def test_no_module_imports_itself_by_way_of_others():
     graph = {
         module: {m for m in modules if not is_plot_method(module, m)}
-        for module, modules in imports_of(ROOT).items()
+        for module, modules in imports_of(PACKAGE, syntax_trees()).items()
     }
     assert len(graph) > 100
     assert circle_in(graph) == []

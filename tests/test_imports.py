@@ -7,12 +7,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from syntax_trees import syntax_trees
 
 import teleopdesign as td
 
 HEAVY = ("numpy", "scipy", "sympy", "numba", "control", "matplotlib", "xarray", "pooch")
 ROOT = Path(td.__file__).parent
-SOURCES = sorted(ROOT.rglob("*.py"))
 
 
 def modules_after(code):
@@ -63,13 +63,13 @@ def test_the_map_of_folders_is_that_of_the_package():
 
 
 def test_every_module_and_public_function_has_a_docstring():
-    bare = {str(source.relative_to(ROOT)): without_docstring(source) for source in SOURCES}
+    bare = {str(source.relative_to(ROOT)): without_docstring(source) for source in syntax_trees()}
     assert {source: names for source, names in bare.items() if names} == {}
 
 
 def without_docstring(source):
     """What should have a docstring and has none: names of functions, or the module's own."""
-    tree = ast.parse(source.read_text())
+    tree = syntax_trees()[source]
     if not ast.get_docstring(tree):
         return [source.name]
     if source.parent.name in ("effects", "controllers") and source.name[0] != "_":

@@ -116,7 +116,8 @@ print(*[one.topic for one in settle(Question(identified(body)), simulated=False)
 def copy(tmp_path_factory):
     """A folder that holds a copy of the package."""
     folder = tmp_path_factory.mktemp("one_file_each")
-    shutil.copytree(ROOT, folder / ROOT.name, ignore=shutil.ignore_patterns("__pycache__"))
+    # with its bytecode, which is that of files of the same time: no process compiles it again
+    shutil.copytree(ROOT, folder / ROOT.name, ignore=shutil.ignore_patterns("*.nb?"))
     return folder
 
 

@@ -6,13 +6,10 @@ import ast
 from collections import Counter, defaultdict
 from collections.abc import Iterator
 from functools import cache
-from pathlib import Path
 
 import pytest
+from syntax_trees import PACKAGE, syntax_trees
 
-import teleopdesign
-
-PACKAGE = Path(teleopdesign.__file__).parent
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 #: participles and the like: they name grammar, where a name should say what it holds
@@ -48,9 +45,9 @@ MOST_CONSTANTS_OF_DIAGNOSE = 60
 @cache
 def modules() -> dict[str, ast.Module]:
     """Name such as "passivity/ports" -> syntax tree."""
-    files = sorted(PACKAGE.rglob("*.py"))
     return {
-        f.relative_to(PACKAGE).with_suffix("").as_posix(): ast.parse(f.read_text()) for f in files
+        path.relative_to(PACKAGE).with_suffix("").as_posix(): tree
+        for path, tree in syntax_trees().items()
     }
 
 

@@ -102,7 +102,7 @@ def lagrangian(spatial: bool):
     return sp.lambdify(names, values, "numpy", cse=True), Chain(tuple(links))
 
 
-@pytest.mark.parametrize("spatial", [False, True])
+@pytest.mark.parametrize("spatial", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_forces_are_those_of_lagranges_equations(spatial):
     call, arm = lagrangian(spatial)
     q, v, a = np.random.default_rng(1).normal(size=(3, len(arm.links), 20))

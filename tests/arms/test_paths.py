@@ -49,6 +49,7 @@ def test_paths_tell_more_than_one_sine_a_joint_within_its_limits(poor):
         assert position[0] == pytest.approx(position[-1], abs=1e-9)
 
 
+@pytest.mark.slow
 def test_the_same_records_give_the_same_paths(poor):
     diagnosis, _ = poor
     one, two = (propose_paths(diagnosis, duration=10.0, seed=3) for _ in range(2))

@@ -115,7 +115,10 @@ def test_the_true_parameters_leave_the_error_that_the_simulation_says(
 # the floor
 
 
-@pytest.mark.parametrize(("effect", "seed"), [("stribeck", 8), (None, 4), ("spring", 8)])
+@pytest.mark.parametrize(
+    ("effect", "seed"),
+    [("stribeck", 8), (None, 4), pytest.param("spring", 8, marks=pytest.mark.slow)],
+)
 def test_the_floor_is_what_step_and_noise_leave_on_the_true_motion(effect, seed, tmp_path):
     """Within 30 % of the floor that the simulator finds by drawing errors onto its true motion."""
     folder = write_own(tmp_path / "case", effect, seed=seed)
@@ -133,7 +136,7 @@ def test_the_floor_is_what_step_and_noise_leave_on_the_true_motion(effect, seed,
     assert 0.65 < floor.value / truth["noise_floor"] < 1.3
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3))])
 def test_a_right_model_lies_at_its_floor(seed, tmp_path):
     folder = write_own(tmp_path / "case", None, seed=seed)
     experiment = load_experiment(folder)

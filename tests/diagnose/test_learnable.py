@@ -43,7 +43,9 @@ def of_fit_records(prepared):
     return replace(prepared, stretches=kept)
 
 
-@pytest.mark.parametrize("records", ["check records", "blocks of fit records"])
+@pytest.mark.parametrize(
+    "records", ["check records", pytest.param("blocks of fit records", marks=pytest.mark.slow)]
+)
 def test_a_law_that_the_model_lacks_could_be_learned(records, diagnosis, prepared):
     prepared = prepared if records == "check records" else of_fit_records(prepared)
     model = diagnosis.before.model

@@ -146,6 +146,7 @@ def write_pendulum(folder):
     )
 
 
+@pytest.mark.slow
 def test_a_pendulum_at_constant_speeds_shows_its_gravity(tmp_path):
     (tmp_path / "pendulum.py").write_text(GRAVITY)
     gravity = load_effect(tmp_path / "pendulum.py")

@@ -63,7 +63,7 @@ def test_where_nothing_is_missing_nothing_is_named(tmp_path):
     assert len(found.rungs) == 1
 
 
-@pytest.mark.parametrize("pushes", [1, 4])
+@pytest.mark.parametrize("pushes", [1, pytest.param(4, marks=pytest.mark.slow)])
 def test_what_happens_once_is_no_missing_physics(pushes, tmp_path):
     experiment = load_experiment(write_own(tmp_path / "null", None, seed=4))
     (check,) = experiment.check_records
@@ -118,7 +118,7 @@ def test_a_parameter_led_astray_does_not_make_what_is_missing_pass_for_noise(tmp
 # the fit does not lean on the user's numbers
 
 
-@pytest.mark.parametrize("factor", [0.8, 1.2])
+@pytest.mark.parametrize("factor", [0.8, pytest.param(1.2, marks=pytest.mark.slow)])
 def test_starting_values_off_by_a_fifth_lead_to_the_same_fit(factor, experiment, diagnosis):
     from teleopdesign import fit
 
@@ -140,6 +140,7 @@ def test_an_effect_of_the_users_model_left_to_defaults_is_found_its_values(exper
     assert found.check_error < 1.1 * diagnosis.rungs[1].fit.check_error
 
 
+@pytest.mark.slow
 def test_a_fit_alone_gives_what_a_diagnosis_that_adds_nothing_gives(experiment):
     from teleopdesign import fit
 

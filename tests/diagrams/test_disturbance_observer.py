@@ -50,7 +50,7 @@ def observed(made, *, inertia, damping=0.0):
 sizes = st.floats(0.05, 5.0).map(lambda x: round(x, 3))
 
 
-@settings(max_examples=6)
+@settings(max_examples=4)
 @given(mass=sizes, viscous=sizes, inertia=sizes, damping=sizes)
 def test_to_its_port_it_is_a_damper_and_a_spring(mass, viscous, inertia, damping):
     """Z = M s + B + g (M_n + B_n/s), passive for any nominal body; 1e-12: rounding of pi."""

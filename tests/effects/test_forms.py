@@ -119,8 +119,15 @@ def test_the_true_model_leaves_next_to_nothing_of_an_independent_simulation(name
     assert without > 5 * true
 
 
-@pytest.mark.parametrize("structure", ["transmission_compliance", "backlash"])
-@pytest.mark.parametrize("contact", [(), ("contact_hardening",)])
+@pytest.mark.parametrize(
+    ("structure", "contact"),
+    [  # each pair is a simulation of its own to compile
+        ("transmission_compliance", ()),
+        ("backlash", ("contact_hardening",)),
+        pytest.param("transmission_compliance", ("contact_hardening",), marks=pytest.mark.slow),
+        pytest.param("backlash", (), marks=pytest.mark.slow),
+    ],
+)
 def test_what_a_device_touches_it_touches_with_its_tip(structure, contact):
     touched = ("environment", *contact)
     motion = simulated(*touched, structure)

@@ -185,7 +185,11 @@ def test_lowpass_has_no_phase_and_half_power_squared_at_the_corner() -> None:
 
 @pytest.mark.parametrize(
     ("level", "effects", "kind"),
-    [("null", None, "device"), ("clear", ["stribeck"], "device"), ("null", None, "teleoperator")],
+    [
+        ("null", None, "device"),
+        ("clear", ["stribeck"], "device"),
+        pytest.param("null", None, "teleoperator", marks=pytest.mark.slow),
+    ],
 )
 def test_case_meets_its_level(
     tmp_path: Path, level: str, effects: list[str] | None, kind: str

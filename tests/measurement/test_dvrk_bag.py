@@ -17,7 +17,7 @@ DEFINITIONS = {
 }
 JOINTS = ["outer_yaw", "outer_pitch", "outer_insertion"]
 MOVING = 2
-ROWS = 4000
+ROWS = 2500
 
 
 def motion(log_rate=500.0):

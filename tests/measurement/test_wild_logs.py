@@ -53,7 +53,12 @@ def from_log(make, folder, log, monkeypatch):
     return td.load_experiment("joint")
 
 
-@pytest.mark.parametrize("make", LOGS, ids=lambda make: make.__name__)
+@pytest.mark.parametrize(
+    "make",
+    # bags are read in the plain run by `test_dvrk_bag.py` too, and take seconds to write
+    [pytest.param(m, marks=[pytest.mark.slow] * (m.__name__ == "ros_bag")) for m in LOGS],
+    ids=lambda make: make.__name__,
+)
 def test_a_raw_log_is_understood_without_an_editor(make, tmp_path, log, monkeypatch, capsys):
     if make.__name__ == "ros_bag":
         pytest.importorskip("rosbags")

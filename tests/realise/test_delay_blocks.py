@@ -172,6 +172,7 @@ def test_a_delay_block_comes_back_from_its_file(time, analog, tmp_path_factory):
     assert read_diagram(path) == held(time, analog=analog)
 
 
+@pytest.mark.slow
 def test_python_control_has_a_pade_approximation_where_its_order_is_asked_for():
     """Order 8 for 10 ms, moved at some Hz: 1e-6 of the range."""
     import control

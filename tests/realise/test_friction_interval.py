@@ -95,7 +95,7 @@ def test_no_level_within_reach_and_errors_leaves_the_interval(body, seed):
 
 
 @pytest.mark.slow
-@settings(max_examples=40)
+@settings(max_examples=12)
 @given(body=bodies(), seed=st.integers(0, 2**31))
 def test_a_wider_reach_has_no_narrower_interval(body, seed):
     found = check_levels_within(body, seed)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-import subprocess
-import sys
-from pathlib import Path
 
+import hidden_effects
 import numpy as np
 import pytest
 from _campaign import plan, run_campaign, write_plan
@@ -26,7 +24,6 @@ from shared_data import shared_folder
 
 from teleopdesign import EFFECTS
 
-STUDIES = Path(__file__).resolve().parents[2] / "studies"
 STRIBECK, BIAS = ("stribeck", "device"), ("bias", "device")
 ASYMMETRY = ("coulomb_asymmetry", "device")
 
@@ -307,19 +304,19 @@ def test_a_delay_and_a_lag_are_told_by_their_second_coefficient():
 
 
 @pytest.mark.slow
-def test_the_study_runs_quickly_and_writes_tables_rows_and_figures(tmp_path):
-    command = [sys.executable, str(STUDIES / "hidden_effects.py"), "--quick", "--baselines"]
-    done = subprocess.run(
-        [*command, "--output", str(tmp_path)], capture_output=True, text=True, timeout=1800
-    )
-    assert done.returncode == 0, done.stderr
-    assert "one clear effect" in done.stdout
-    assert {p.name for p in tmp_path.iterdir()} == {
+def test_the_study_writes_tables_rows_and_figures(tmp_path, capsys):
+    """Of one case, the quickest; `make studies STUDY_ARGS=--quick` runs the study as users do."""
+    written = tmp_path / "written"
+    arguments = ["--cases", "1", "--levels", "null", "--kind", "device", "--baselines"]
+    arguments += ["--folder", str(tmp_path / "cases"), "--output", str(written)]
+    hidden_effects.main(arguments)
+    assert "one clear effect" in capsys.readouterr().out
+    assert {p.name for p in written.iterdir()} == {
         "hidden_effects.md", "hidden_effects_more.md", "hidden_effects.csv", "hidden_effects.nc",
         "hidden_effects_parameters.csv", "hidden_effects_confusion.pdf",
         "hidden_effects_confusion.png", "hidden_effects_confusion.svg",
         "hidden_effects_calibration.pdf", "hidden_effects_calibration.png",
         "hidden_effects_calibration.svg",
     }  # fmt: skip
-    rows = (tmp_path / "hidden_effects.csv").read_text()
-    assert rows.count("\n") == 3 and "no answer" not in rows
+    rows = (written / "hidden_effects.csv").read_text()
+    assert rows.count("\n") == 2 and "no answer" not in rows

@@ -31,7 +31,7 @@ def test_simulated_onset_of_the_teleoperator_is_the_balance_of_energy():
         assert np.all(np.diff(grown.astype(int), axis=0) >= 0)  # once it grows, more grows too
 
 
-@pytest.mark.parametrize("kind", ["delay", "period"])
+@pytest.mark.parametrize("kind", ["delay", pytest.param("period", marks=pytest.mark.slow)])
 def test_a_late_coupling_swings_up_beyond_its_bound_and_not_below(kind):
     late = 16 * coupling.TICK
     bound = coupling.limit(kind, late)

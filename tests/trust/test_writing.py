@@ -1,9 +1,8 @@
 """Every file of the package is written beside its target and takes its name when it is whole."""
 
 import ast
-from pathlib import Path
 
-import teleopdesign
+from syntax_trees import PACKAGE, syntax_trees
 
 #: what writes a file at once -> where its path stands: before the dot, or the last argument
 AT_ONCE = {"write_text": "object", "write_bytes": "object"} | dict.fromkeys(
@@ -19,14 +18,14 @@ ELSEWHERE = {
 
 def test_every_file_is_written_beside_its_target():
     """In the package, files are written to the path that `replacing` gives, named `part`."""
-    folder, wrong = Path(teleopdesign.__file__).parent, []
-    for path in folder.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text())):
+    wrong = []
+    for path, tree in syntax_trees().items():
+        for node in ast.walk(tree):
             if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
                 continue
             if (where := AT_ONCE.get(node.func.attr)) is None:
                 continue
             target = node.func.value if where == "object" else node.args[-1]
             if not (isinstance(target, ast.Name) and target.id in ("part", "out")):
-                wrong.append(f"{path.relative_to(folder)}: {ast.unparse(node.func)}")
+                wrong.append(f"{path.relative_to(PACKAGE)}: {ast.unparse(node.func)}")
     assert [w for w in wrong if w not in ELSEWHERE] == []

@@ -60,9 +60,19 @@ def test_a_planted_dependence_is_said_with_variable_range_and_size(rows, floor_s
     ("name", "missing", "size"),
     [
         ("force", lambda a: a.push * -0.06, -0.06),
-        ("friction over time", lambda a: a.grip * 0.2 * np.exp(-a.signals["time"] / 3.0), None),
+        pytest.param(
+            "friction over time",
+            lambda a: a.grip * 0.2 * np.exp(-a.signals["time"] / 3.0),
+            None,
+            marks=pytest.mark.slow,
+        ),
         ("lateness", lambda a: a.push * 1.5e-3 * a.signals["force_rate"], 1.5e-3),
-        ("mass", lambda a: a.push * 0.02 * a.signals["acceleration"], 0.02),
+        pytest.param(
+            "mass",
+            lambda a: a.push * 0.02 * a.signals["acceleration"],
+            0.02,
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_a_planted_constant_has_its_sign_and_size(
@@ -153,10 +163,10 @@ def test_nothing_is_learnt_from_the_checked_rows(rows, floor_squares):
 @pytest.mark.slow
 def test_noise_alone_is_called_a_dependence_in_less_than_one_record_of_fifty(rows, floor_squares):
     """Residuals of the sensors' own spectrum, drawn anew."""
-    rng, alarms, draws = np.random.default_rng(8), 0, 100
+    rng, alarms, draws = np.random.default_rng(8), 0, 50
     size = np.sqrt(np.mean(rows.residual**2))
     for _ in range(draws):
         noise = rows.lowpassed(lambda a: rng.standard_normal((1, len(a.push))))[:, 0]
         here = replace(rows, residual=size * noise / np.std(noise))
         alarms += bool(dependences(here, floor_squares)[0])
-    assert alarms <= 2
+    assert alarms <= draws // 50

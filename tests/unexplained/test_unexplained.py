@@ -47,6 +47,7 @@ def test_a_model_that_leaves_only_noise_is_said_to_be_fine(rod, adequate):
     assert finding.concern == "fine"
 
 
+@pytest.mark.slow
 def test_what_is_left_is_counted_in_the_floors_that_a_diagnosis_kept_to(rod, adequate):
     floor = noise_floor(adequate.model, rod, np.random.default_rng(0))
     kept = floor.at_most(0.25 * floor.drawn)
