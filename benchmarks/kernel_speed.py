@@ -1,11 +1,12 @@
 """What one simulated second costs, as a ratio to C: scalar and side by side, in one run.
 
 A device with a Dahl bristle and viscous friction under a sinusoidal force: 1 s, steps of 0.1 ms.
-C is the same scheme written by hand for this one model, compiled on the spot with -O3 -march=native
-where gcc is; it is not part of the package. scipy takes a compiled right-hand side, python-control
-its own form of the diagram, both by LSODA at rtol 1e-6. Times are processor time of one thread,
-medians; engines take turns, so that other jobs weigh on all of them. Errors: largest difference of
-the position from the kernel at a fifth of the step, over its largest value.
+C is the same scheme written by hand for this one model, scalar and with a lane for each simulation
+(`in_c.py`), compiled on the spot where gcc is; it is not part of the package. scipy takes a
+compiled right-hand side, python-control its own form of the diagram, both by LSODA at rtol 1e-6.
+Times are processor time of one thread, medians; engines take turns, so that other jobs weigh on all
+of them. Errors: largest difference of the position from the kernel at a fifth of the step, over its
+largest value.
 
     python benchmarks/kernel_speed.py [--json FILE] [--quick]
 """
@@ -16,8 +17,6 @@ import argparse
 import ctypes
 import json
 import math
-import shutil
-import subprocess
 import tempfile
 import time
 from collections.abc import Callable
@@ -27,6 +26,7 @@ from typing import Any
 
 import control
 import numpy as np
+from in_c import SCALAR, SIMD, compiled, pointer
 from numba import njit
 from scipy.integrate import solve_ivp
 
@@ -38,46 +38,8 @@ from teleopdesign.realise.kernel import execute
 from teleopdesign.realise.side_by_side import LANES, Reduction, execute_many
 from teleopdesign.simulate import prepare
 
-MASS, LEVEL, STIFFNESS, DAMPING = 0.15, 0.5, 1e5, 0.1
+MASS, LEVEL, STIFFNESS, DAMPING = DEVICE = 0.15, 0.5, 1e5, 0.1
 STEPS, INNER, H = 10_000, 10, 1e-4
-
-C = r"""
-#include <math.h>
-static void phi(double z, double *e, double *p1, double *p2, double *p3) {
-  if (fabs(z) < 1.0) {
-    double s = 0.0, c = 1.0 / 1307674368000.0;
-    static const double f[12] = {1.0/6, 1.0/24, 1.0/120, 1.0/720, 1.0/5040, 1.0/40320, 1.0/362880,
-      1.0/3628800, 1.0/39916800, 1.0/479001600, 1.0/6227020800.0, 1.0/87178291200.0};
-    s = c;
-    for (int k = 11; k >= 0; k--) s = f[k] + z * s;
-    *p3 = s; *p2 = z * s + 0.5; *p1 = z * *p2 + 1.0; *e = z * *p1 + 1.0;
-  } else {
-    *e = exp(z); *p1 = (*e - 1) / z; *p2 = (*p1 - 1) / z; *p3 = (*p2 - 0.5) / z;
-  }
-}
-void simulate(long steps, long inner, double h, const double *p, const double *force, double *out) {
-  const double m = p[0], level = p[1], stiffness = p[2], damping = p[3];
-  double x = 0, v = 0, z = 0;
-  for (long j = 0; j <= steps; j++) {
-    if (j % inner == 0) out[j / inner] = x;
-    if (j == steps) break;
-    double u0 = force[2*j], u1 = force[2*j+1], u2 = force[2*j+2];
-    double a = -stiffness * fabs(v) / level, e, p1, p2, p3;
-    phi(0.5 * h * a, &e, &p1, &p2, &p3);
-    double q1 = 0.5*(e+1)*p1, q2 = 0.25*(p1*p1+2*p2), q3 = 0.125*(p1*p2+p2+2*p3);
-    double w0 = q1-3*q2+4*q3, w1 = 2*q2-4*q3, w3 = 4*q3-q2, g = 0.5*h*p1;
-#define RATE(V, Z, U) ((U - damping*(V) - stiffness*(Z)) / m)
-#define REST(V, Z) ((V) - stiffness*fabs(V)/level*(Z) - a*(Z))
-    double a0 = RATE(v, z, u0), n0 = REST(v, z);
-    double v1 = v + 0.5*h*a0, z1 = e*z + g*n0, a1 = RATE(v1, z1, u1), n1 = REST(v1, z1);
-    double v2 = v + 0.5*h*a1, z2 = e*z + g*n1, a2 = RATE(v2, z2, u1), n2 = REST(v2, z2);
-    double v3 = v + h*a2, z3 = e*z1 + g*(2*n2-n0), a3 = RATE(v3, z3, u2), n3 = REST(v3, z3);
-    x += h/6*(v + 2*(v1+v2) + v3);
-    v += h/6*(a0 + 2*(a1+a2) + a3);
-    z = e*e*z + h*(w0*n0 + w1*(n1+n2) + w3*n3);
-  }
-}
-"""
 
 
 def force(t: Any) -> Any:
@@ -94,23 +56,39 @@ def rate(t, y):  # type: ignore[no-untyped-def]
 
 def compiled_c(folder: Path) -> Callable[[], np.ndarray] | None:
     """The simulation in C, or None where there is no gcc."""
-    if shutil.which("gcc") is None:
+    library = compiled(SCALAR, folder, "model")
+    if library is None:
         return None
-    (folder / "model.c").write_text(C)
-    library = folder / "model.so"
-    options = ["-O3", "-march=native", "-shared", "-fPIC"]
-    subprocess.run(["gcc", *options, "-o", library, folder / "model.c", "-lm"], check=True)
-    function = ctypes.CDLL(str(library)).simulate
-    parameters = np.array([MASS, LEVEL, STIFFNESS, DAMPING])
-    table = force(0.5 * H * np.arange(2 * STEPS + 1))
+    parameters, table = np.array(DEVICE), half_steps()
     out = np.zeros(STEPS // INNER + 1)
-    pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for a in (parameters, table, out)]
+    counts = ctypes.c_long(STEPS), ctypes.c_long(INNER), ctypes.c_double(H)
 
     def call() -> np.ndarray:
-        function(ctypes.c_long(STEPS), ctypes.c_long(INNER), ctypes.c_double(H), *pointers)
+        library.simulate(*counts, *map(pointer, (parameters, table, out)))
         return out
 
     return call
+
+
+def simd_c(folder: Path) -> Callable[[], np.ndarray] | None:
+    """A block of `LANES` simulations in C, a lane each; positions of the first one."""
+    library = compiled(SIMD.replace("MANY", str(LANES)), folder, "lanes")
+    if library is None:
+        return None
+    parameters, table = np.repeat(DEVICE, LANES), half_steps()
+    out, squares = np.zeros((STEPS // INNER + 1, LANES)), np.zeros(LANES)
+    counts = ctypes.c_long(STEPS), ctypes.c_long(INNER), ctypes.c_double(H)
+
+    def call() -> np.ndarray:
+        library.simulate(*counts, *map(pointer, (parameters, table, out, squares)))
+        return out[:, 0]
+
+    return call
+
+
+def half_steps() -> np.ndarray:
+    """The force at every half step, N."""
+    return np.asarray(force(0.5 * H * np.arange(2 * STEPS + 1)))
 
 
 def engines(folder: Path) -> dict[str, tuple[int, Callable[[], np.ndarray]]]:
@@ -160,6 +138,8 @@ def engines(folder: Path) -> dict[str, tuple[int, Callable[[], np.ndarray]]]:
         made["C, by hand"] = 1, c
     made["kernel, one simulation"] = 1, scalar
     made[f"kernel, {LANES} side by side"] = LANES, side_by_side
+    if (lanes := simd_c(folder)) is not None:
+        made[f"C, by hand, {LANES} lanes"] = LANES, lanes
     made["scipy, compiled right-hand side"] = 1, scipy
     made["python-control"] = 1, python_control
     fine = setup.timing(5 * INNER)

@@ -47,6 +47,9 @@ SIZES = (1.0, 2.0, 4.0)
 SEEN = (0.5, 1.0, 2.0)
 #: of the median speed: slower than that a machine stands still
 STANDSTILL = 0.02
+#: share of the command that a graft takes at most: no motor's torque varies by more, and a gear
+#: that loses more is worn out
+MOST_OF_COMMAND = 0.5
 #: bandwidths up to which the motion of a graft is taken
 MOTION = 3.0
 Array = np.ndarray
@@ -58,15 +61,17 @@ class Graft:
 
     force: of the motion (position, velocity, direction, command) and the recording's scales
     needs: effects that the model must have;  axis: on which it is an effect ("": either)
+    of_command: the force is in proportion to the new command, and `force` is that of the old one
     """
 
     force: Callable[[SimpleNamespace, SimpleNamespace], Array]
     needs: frozenset[str] = frozenset()
     axis: str = ""
+    of_command: bool = False
 
 
 def _load_dependent(now: SimpleNamespace, of: SimpleNamespace) -> Array:
-    """Level per force carried: to the first order in it, the force carried is the old command."""
+    """Level per force carried, by the command."""
     return np.abs(now.command) * now.direction
 
 
@@ -76,7 +81,8 @@ GRAFTS: Mapping[str, Graft] = {
     "cogging": Graft(lambda now, of: np.sin(2 * np.pi * 5 * now.position / of.travel)),
     "gravity": Graft(lambda now, of: np.sin(now.position + 0.4), axis="revolute"),
     "torque_ripple": Graft(
-        lambda now, of: now.command * np.sin(2 * np.pi * 5 * now.position / of.travel)
+        lambda now, of: now.command * np.sin(2 * np.pi * 5 * now.position / of.travel),
+        of_command=True,
     ),
     "stribeck": Graft(
         lambda now, of: np.exp(-((now.velocity / of.slow) ** 2)) * now.direction,
@@ -88,7 +94,9 @@ GRAFTS: Mapping[str, Graft] = {
         lambda now, of: np.sin(2 * np.pi * 4 * now.position / of.travel) * now.direction,
         needs=frozenset({"coulomb"}),
     ),
-    "load_dependent_friction": Graft(_load_dependent, needs=frozenset({"coulomb"})),
+    "load_dependent_friction": Graft(
+        _load_dependent, needs=frozenset({"coulomb"}), of_command=True
+    ),
 }
 
 
@@ -177,8 +185,12 @@ def _rms(parts: Sequence[Array]) -> float:
     return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
 
 
-def grafted(machine: Machine, effect: str, size: float) -> td.Experiment:
-    """The experiment as a machine with the effect gives it, of that many times what is left."""
+def grafted(machine: Machine, effect: str, size: float) -> td.Experiment | None:
+    """The experiment as a machine with the effect gives it, of that many times what is left.
+
+    Where the effect takes a share of the command, the command grows by the whole series; the size
+    is that of its first term. None: the effect would take more than `MOST_OF_COMMAND`.
+    """
     (body,) = machine.experiment.bodies
     forces = [GRAFTS[effect].force(now, machine.scales) for *_, now in machine.parts]
     seen = [
@@ -189,7 +201,13 @@ def grafted(machine: Machine, effect: str, size: float) -> td.Experiment:
     records = machine.experiment.records
     commands = [np.array(record.signals[f"{body}.actuator_force"]) for record in records]
     for (k, rows, _, now), force in zip(machine.parts, forces, strict=True):
-        commands[k][rows] = now.command + strength * force
+        more = strength * force
+        if GRAFTS[effect].of_command:
+            share = np.divide(more, now.command, np.zeros_like(more), where=now.command != 0.0)
+            if np.abs(share).max() > MOST_OF_COMMAND:
+                return None
+            more = more / (1.0 - share)  # what the new command takes, not the old one
+        commands[k][rows] = now.command + more
     return replace(
         machine.experiment,
         records=tuple(
@@ -199,9 +217,14 @@ def grafted(machine: Machine, effect: str, size: float) -> td.Experiment:
     )
 
 
-def row_of(machine: Machine, effect: str, size: float, quick: bool) -> dict[str, Any]:
-    """What the diagnosis says with this graft ("": none); the user's model is the machine's."""
+def row_of(machine: Machine, effect: str, size: float, quick: bool) -> dict[str, Any] | None:
+    """What the diagnosis says with this graft ("": none); the user's model is the machine's.
+
+    None: so large a graft is no such effect.
+    """
     experiment = grafted(machine, effect, size) if effect else machine.experiment
+    if experiment is None:
+        return None
     found = td.find_missing(
         experiment,
         machine.model,
@@ -337,7 +360,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
         for effect, size in plan:
             if (name, effect, size) in done or (effect and not machine.takes(effect)):
                 continue
-            rows.append(row_of(machine, effect, size, options.quick))
+            row = row_of(machine, effect, size, options.quick)
+            if row is None:
+                print(f"{name}: {effect} {size:g}: it would take half of the command: left out")
+                continue
+            rows.append(row)
             path.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
             said = rows[-1]
             print(

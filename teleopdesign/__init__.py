@@ -29,7 +29,8 @@ The names that a user types:
                   simulate_diagram, simulate_many, Simulation, Sampling, sine, to_iosystem
     design        design_compensation, Design, Assumptions
     studies       study, Study, read_study, measure, MEASURES, latin_hypercube, sobol,
-                  random_samples, sensitivity_samples, tune, limit, trade_off
+                  random_samples, sensitivity_samples, tune, limit, trade_off,
+                  fit_simulation, sensitivities
     passivity     diagram_claims, positive_real, Claim, Certificate
     errors        TeleopDesignError, ExperimentError, ModelError
 
@@ -130,11 +131,13 @@ if TYPE_CHECKING:
     from .studies import (
         MEASURES,
         Study,
+        fit_simulation,
         latin_hypercube,
         limit,
         measure,
         random_samples,
         read_study,
+        sensitivities,
         sensitivity_samples,
         sobol,
         study,
@@ -187,6 +190,7 @@ __all__ = [
     "find_missing",
     "find_missing_in_arm",
     "fit",
+    "fit_simulation",
     "from_control",
     "hand",
     "haptic_interface",
@@ -203,6 +207,7 @@ __all__ = [
     "rank",
     "read_diagram",
     "read_study",
+    "sensitivities",
     "sensitivity_samples",
     "simulate_diagram",
     "simulate_many",
@@ -301,6 +306,8 @@ GROUPS: dict[str, dict[str, str]] = {
         "tune": "studies",
         "limit": "studies",
         "trade_off": "studies",
+        "fit_simulation": "studies",
+        "sensitivities": "studies",
     },
     "passivity": {
         "diagram_claims": "passivity",

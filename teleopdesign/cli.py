@@ -6,22 +6,16 @@ Ctrl-C at any moment ends in one line and status 130. What takes time to import 
 
 from __future__ import annotations
 
-import _thread
-import atexit
-import os
-import signal
 import sys
 import threading
-from contextlib import suppress
-from importlib.machinery import ExtensionFileLoader
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .commands import STOPPED
+from .commands._ctrl_c import end_at_once, hear_ctrl_c, tell_of_stop
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Sequence
-    from types import FrameType
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -33,7 +27,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     mistake of the package (one line says where); 130: stopped
     """
     request = threading.Event()
-    is_heard = arguments is None and _hear_ctrl_c(request)
+    is_heard = arguments is None and hear_ctrl_c(request)
     status = 1  # of Python, where something is raised that is not named here
     try:
         from .commands._command_line import run
@@ -42,14 +36,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         status = STOPPED
         if is_heard:
-            _end_at_once(status)
-        _say_stopped()
+            end_at_once(status)
+        tell_of_stop()
     except SystemExit as end:  # help was shown, or a wrong argument refused
         status = end.code if isinstance(end.code, int) else 0
         raise
     finally:
         if is_heard:
-            _end_at_once(status)
+            end_at_once(status)
     return status
 
 
@@ -57,74 +51,6 @@ def _parser() -> argparse.ArgumentParser:
     from .commands._command_line import parser
 
     return parser()
-
-
-def _hear_ctrl_c(request: threading.Event) -> bool:
-    """Let Ctrl-C raise KeyboardInterrupt, and none be lost; whether this process hears it at all.
-
-    Python only prints what is raised where nothing can catch it: in a `__del__`, in a call from C.
-    Code in C may drop it, or abort, while its module is imported: Ctrl-C waits for that import.
-    request: set by Ctrl-C: a library may turn its exception into one of its own
-    """
-    loader = ExtensionFileLoader
-    in_c = {loader.create_module.__code__, loader.exec_module.__code__}
-
-    def interrupt(_: int, frame: FrameType | None) -> None:
-        while frame is not None and frame.f_code not in in_c:
-            frame = frame.f_back
-        if frame is not None:
-            interrupt_later(0.01)
-            return
-        request.set()
-        raise KeyboardInterrupt
-
-    def interrupt_later(seconds: float) -> None:
-        again = threading.Timer(seconds, _interrupt_main)
-        again.daemon = True
-        again.start()
-
-    def lost(unraisable: Any) -> None:
-        if issubclass(unraisable.exc_type, KeyboardInterrupt):
-            interrupt_later(0.001)  # s: once this call is over
-        else:
-            sys.__unraisablehook__(unraisable)
-
-    if threading.current_thread() is not threading.main_thread():
-        return False
-    if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:  # who asked decides
-        return False
-    signal.signal(signal.SIGINT, interrupt)
-    sys.unraisablehook = lost
-    # Python takes its handlers away before it ends; registered first, this is done last
-    atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)
-    return True
-
-
-def _interrupt_main() -> None:
-    """As Ctrl-C does: it ends a wait of the main thread too."""
-    main = threading.main_thread().ident
-    if hasattr(signal, "pthread_kill") and main is not None:
-        signal.pthread_kill(main, signal.SIGINT)
-    else:  # Windows
-        _thread.interrupt_main()
-
-
-def _end_at_once(status: int) -> None:
-    """Let Ctrl-C end the process without a word from here on: all is done or told."""
-    leave = os._exit  # names of modules may be gone at the end
-    signal.signal(signal.SIGINT, lambda *_: leave(status))
-
-
-def _say_stopped() -> None:
-    with suppress(OSError, ValueError, AttributeError):  # its reader is stopped too, or closed
-        print("teleopdesign: stopped", file=sys.stderr)
-    try:
-        if sys.stdout is not None:
-            sys.stdout.flush()
-    except (OSError, ValueError):
-        from .commands._command_line import close_output
-
-        close_output()
 
 
 if __name__ == "__main__":

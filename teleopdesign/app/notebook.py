@@ -9,7 +9,7 @@ app = marimo.App(width="medium", app_title="teleopdesign")
 def _():
     import marimo as mo
 
-    from teleopdesign.app import charts, export, files, logs, pages, settings
+    from teleopdesign.app import export, files, logs, pages, settings, views
     from teleopdesign.app.task import BackgroundTask
     from teleopdesign.app.workbench import Workbench
     from teleopdesign.errors import TeleopDesignError
@@ -21,13 +21,13 @@ def _():
         TeleopDesignError,
         Workbench,
         among,
-        charts,
         export,
         files,
         folder,
         logs,
         mo,
         pages,
+        views,
     )
 
 
@@ -94,7 +94,7 @@ def _(files, folder, get_names, mo):
 
 
 @app.cell
-def _(TeleopDesignError, folder, log, logs, mo):
+def _(TeleopDesignError, folder, log, logs, views):
     columns, trouble, duration = (), "", 1.0
     proposed = ((0.0, 0.7), (0.7, 1.0))
     if log.value is not None:
@@ -105,27 +105,8 @@ def _(TeleopDesignError, folder, log, logs, mo):
         else:
             columns, duration = first_look.columns, first_look.survey.duration
             proposed = first_look.spans()
-    fit_span, check_span = (
-        mo.ui.range_slider(
-            start=0.0,
-            stop=duration,
-            step=duration / 500,
-            value=list(span),
-            show_value=True,
-            debounce=True,
-            full_width=True,
-            label=f"{use} span (s)",
-        )
-        for use, span in zip(("fit", "check"), proposed, strict=True)
-    )
-    form = mo.ui.dictionary(
-        {
-            "axis": mo.ui.dropdown(["prismatic", "revolute"], label="axis"),
-            **{n: mo.ui.dropdown(columns, label=n) for n in logs.ASKED},
-            "torque constant": mo.ui.text(label="torque constant (N*m/A)"),
-            "gear ratio": mo.ui.text(label="gear ratio"),
-        }
-    )
+    fit_span, check_span = views.span_sliders(duration, proposed)
+    form = views.column_form(columns)
     return check_span, columns, fit_span, form, trouble
 
 
@@ -144,36 +125,21 @@ def _(
     set_names,
     set_note,
     trouble,
+    views,
 ):
+    def make(understood, spans):
+        try:
+            made = logs.make_experiment(folder, understood, spans)
+            set_note(f"{made} is made: open it above")
+        except TeleopDesignError as error:
+            set_note(str(error))
+        set_names(lambda n: n + 1)
+
     parts = [drop]
     if log.value is not None:
         parts.append(log)
     if columns:
-        try:
-            understood = logs.preview(folder, log.value, logs.choices_of(form.value))
-            spans = logs.spans_of_sliders(fit_span.value, check_span.value, understood)
-        except TeleopDesignError as error:
-            parts += [form, fit_span, check_span, mo.callout(str(error), kind="warn")]
-        else:
-
-            def make(_):
-                try:
-                    made = logs.make_experiment(folder, understood, spans)
-                    set_note(f"{made} is made: open it above")
-                except TeleopDesignError as error:
-                    set_note(str(error))
-                set_names(lambda n: n + 1)
-
-            parts += [
-                mo.md("What is left empty is found. Choose what was found wrongly:"),
-                mo.hstack(list(form.elements.values()), wrap=True, justify="start"),
-                mo.md(understood.table()),
-                mo.md("What is fitted, and what is checked:"),
-                fit_span,
-                check_span,
-                understood.plot(spans),
-                mo.ui.button(label="Make the experiment", on_click=make, kind="success"),
-            ]
+        parts += views.log_parts(folder, log.value, form, (fit_span, check_span), make)
     elif trouble:
         parts.append(mo.callout(trouble, kind="warn"))
     log_view = mo.vstack(parts)
@@ -181,11 +147,11 @@ def _(
 
 
 @app.cell
-def _(choice, folder, log_view, mo, names, open_button):
+def _(choice, folder, log_view, mo, names, open_button, views):
     mo.vstack(
         [
             mo.md(f"# teleopdesign\n\nWhat does the model lack? Folder: `{folder.name}`"),
-            mo.hstack([choice, open_button], justify="start")
+            views.beside(choice, open_button)
             if names
             else mo.md("No experiment here yet: drop a log, and look at its columns."),
             mo.accordion({"Bring a log of your own": log_view}),
@@ -203,7 +169,7 @@ def _(get_task, mo, set_bench, set_note, set_task):
 
 
 @app.cell
-def _(cancel, get_note, mo, pulse, set_bench, set_note, set_task, task):
+def _(cancel, get_note, mo, pulse, set_bench, set_note, set_task, task, views):
     if task is None:
         shown = mo.callout(get_note(), kind="warn") if get_note() else mo.md("")
     elif task.done:
@@ -215,9 +181,7 @@ def _(cancel, get_note, mo, pulse, set_bench, set_note, set_task, task):
         shown = mo.md("")
     else:
         pulse.value  # noqa: B018 - the cell runs again at each of its beats
-        shown = mo.hstack(
-            [mo.md(f"**{task.name}** … {task.progress}"), cancel, pulse], justify="start"
-        )
+        shown = views.beside(mo.md(f"**{task.name}** … {task.progress}"), cancel, pulse)
     shown  # noqa: B018 - a cell shows its last line
     return
 
@@ -236,15 +200,8 @@ def _(get_bench, mo, pages):
 
 
 @app.cell
-def _(bench, body, charts, mo, pages, rung, use):
-    data = pages.residuals(bench, rung.value)
-    residual_view = mo.vstack(
-        [
-            mo.hstack([body, use, rung], justify="start"),
-            charts.residual_chart(data, body.value, use.value),
-            mo.md("Draw a span in one panel: the others show the same samples."),
-        ]
-    )
+def _(bench, body, rung, use, views):
+    residual_view = views.residual_view(bench, body, use, rung)
     return (residual_view,)
 
 
@@ -257,24 +214,8 @@ def _(bench, mo, pages):
 
 
 @app.cell
-def _(bench, body, charts, mo, one_model, other_model, pages, use):
-    pair = one_model.value, other_model.value
-    compare_parts = [mo.hstack([one_model, other_model], justify="start")]
-    if pair[0] == pair[1]:
-        compare_parts.append(mo.md("Choose two models of the ladder; *Add* makes another one."))
-    else:
-        names_of_pair = (one_model.selected_key, other_model.selected_key)
-        compare_parts += [
-            mo.md(pages.compared(bench, *pair)),
-            charts.comparison_chart(
-                pages.residuals(bench, pair[0]),
-                pages.residuals(bench, pair[1]),
-                body.value,
-                use.value,
-                names_of_pair,
-            ),
-        ]
-    compare_view = mo.vstack(compare_parts)
+def _(bench, body, one_model, other_model, use, views):
+    compare_view = views.compare_view(bench, (one_model, other_model), body, use)
     return (compare_view,)
 
 
@@ -314,16 +255,11 @@ def _(BackgroundTask, TeleopDesignError, bench, mo, pages, set_bench, set_note, 
 
 
 @app.cell
-def _(add_button, all_button, back_button, bench, candidate, mo, pages, rank_button):
-    ladder_view = mo.vstack(
-        [
-            mo.md(pages.ladder(bench)),
-            mo.hstack([candidate, add_button, back_button], justify="start"),
-            mo.hstack([rank_button, all_button], justify="start"),
-            mo.ui.table(pages.candidate_rows(bench), selection=None, page_size=8)
-            if bench.candidates
-            else mo.md("The candidates beside this model were not looked at yet."),
-        ]
+def _(add_button, all_button, back_button, bench, candidate, rank_button, views):
+    ladder_view = views.ladder_view(
+        bench,
+        candidate,
+        {"add": add_button, "back": back_button, "rank": rank_button, "all": all_button},
     )
     return (ladder_view,)
 
@@ -344,17 +280,8 @@ def _(mo):
 
 
 @app.cell
-def _(bench, factor, mo, pages, which):
-    slider_view = (
-        mo.vstack(
-            [
-                mo.hstack([which, factor], justify="start"),
-                mo.md(pages.moved(bench, which.value, factor.value)),
-            ]
-        )
-        if which.value
-        else mo.md("This model has no free parameter.")
-    )
+def _(bench, factor, views, which):
+    slider_view = views.slider_view(bench, which, factor)
     return (slider_view,)
 
 
@@ -372,22 +299,14 @@ def _(bench, body, mo, pages):
 
 
 @app.cell
-def _(bench, export, folder, mo, set_note):
+def _(bench, export, folder, mo, set_note, views):
     def write(_):
         set_note(export.write_all(bench, folder))
 
     write_button = mo.ui.button(
         label="Write report, answer, model and script", on_click=write, kind="success"
     )
-    export_view = mo.vstack(
-        [
-            mo.md(
-                "Report (html), answer (json), figure (svg), and a script that repeats these steps."
-            ),
-            write_button,
-            mo.accordion({"The script": mo.md(f"```python\n{export.script(bench)}\n```")}),
-        ]
-    )
+    export_view = views.export_view(bench, write_button)
     return (export_view,)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..diagnose.comparison import residual_data
 from ..errors import TeleopDesignError
+from ..report.words import number, unit_text, with_error
 from .workbench import Workbench
 
 if TYPE_CHECKING:
@@ -87,14 +88,15 @@ def _estimate(model: Model, name: str) -> str:
     if name not in model.parameters:
         return "-"
     value = model.parameters[name]
-    sure = f" ± {value.stderr:.2g}" if value.stderr == value.stderr else ""
-    return f"{value.value:.4g}{sure} {model.unit(name)}"
+    best, error = with_error(value.value, value.stderr)
+    sure = f" ± {error}" if value.stderr == value.stderr else ""
+    return f"{best}{sure} {unit_text(model.unit(name))}"
 
 
 def moved(bench: Workbench, parameter: str, factor: float) -> str:
     """What the errors become where one parameter is `factor` times its value."""
     value = bench.model.parameters[parameter]
-    name, unit = parameter, bench.model.unit(parameter)
+    unit = unit_text(bench.model.unit(parameter))
     try:
         errors = bench.errors({parameter: factor * value.value})
     except TeleopDesignError as error:
@@ -105,9 +107,9 @@ def moved(bench: Workbench, parameter: str, factor: float) -> str:
         ("check", there.check_error, errors[1]),
     )
     table = "\n".join(f"| {n} | {_percent(a)} | {_percent(b)} |" for n, a, b in rows)
-    sure = f" ± {value.stderr:.2g}" if value.stderr == value.stderr else ""
+    there_now = f"{number(factor * value.value)} {unit}"
     return (
-        f"`{name}` = {factor * value.value:.4g} {unit} (estimated: {value.value:.4g}{sure} {unit})"
+        f"`{parameter}` = {there_now} (estimated: {_estimate(bench.model, parameter)})"
         f"\n\n| error | as estimated | as moved |\n|---|---:|---:|\n{table}"
     )
 

@@ -14,7 +14,7 @@ from importlib import import_module
 from .. import __version__, commands
 from ._failures import TRACEBACK, failure
 from ._paths import check_paths
-from ._terminal import printable_streams
+from ._terminal import plain_warnings, printable_streams
 
 
 def run(arguments: Sequence[str] | None, is_stopped: Callable[[], bool] = lambda: False) -> int:
@@ -23,7 +23,7 @@ def run(arguments: Sequence[str] | None, is_stopped: Callable[[], bool] = lambda
     is_stopped: whether Ctrl-C was heard: what is raised after it is no error of its own
     raises KeyboardInterrupt: the command is stopped
     """
-    with printable_streams():
+    with printable_streams(), plain_warnings():
         try:
             return _run(arguments, is_stopped)
         except BrokenPipeError:

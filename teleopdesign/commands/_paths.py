@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import shlex
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,11 @@ from ..errors import ExperimentError
 #: options that name what a command reads, and what it writes: a file or a folder
 INPUTS = ("folder", "logs", "source", "file", "diagram", "answer", "check", "effect")
 OUTPUTS = ("json", "predictions", "figure", "report", "output", "out", "effect_file")
+
+
+def shell_word(path: Path | str) -> str:
+    """A path as it is typed in a shell: in quotes where it holds spaces."""
+    return shlex.quote(str(path))
 
 
 def inputs(options: argparse.Namespace | None) -> Iterator[Path]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, TextIO
@@ -50,6 +51,22 @@ def printable_streams() -> Iterator[None]:
         yield
     finally:
         sys.stdout, sys.stderr = before
+
+
+@contextmanager
+def plain_warnings() -> Iterator[None]:
+    """Within it, a warning is one line without code.
+
+    That a figure's font lacks a sign is not told: the figure shows a box in its place.
+    """
+
+    def show(message: Warning | str, *_: Any, **__: Any) -> None:
+        print(f"teleopdesign: warning: {message}", file=sys.stderr)
+
+    with warnings.catch_warnings():  # puts back how warnings were shown, too
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font")
+        warnings.showwarning = show
+        yield
 
 
 def replace_line(text: str) -> None:

@@ -12,6 +12,7 @@ from ..errors import ExperimentError
 from ..plain_data import write_json
 from ._diagnosis import add_experiment, experiment_of, stated_model
 from ._options import check_output
+from ._paths import shell_word
 
 if TYPE_CHECKING:
     from ..finding import Finding
@@ -100,7 +101,7 @@ def _unreadable(folder: Path, problem: ExperimentError) -> tuple[Finding, ...]:
         findings.append(Finding("reading", "note", text, where=files[0]))
     if len(findings) == 1:
         return ()
-    command = f"teleopdesign new {place / files[0]}"
+    command = f"teleopdesign new {shell_word(place / files[0])}"
     findings.append(Finding("reading", "note", f"for a description made from the log: {command}."))
     return tuple(findings)
 

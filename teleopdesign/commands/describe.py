@@ -11,6 +11,7 @@ from ..plain_data import replacing, write_json
 from ._arms import add_body
 from ._diagnosis import add_experiment, diagnosis_of, experiment_and_answer, stated_model
 from ._options import check_output
+from ._paths import shell_word
 
 if TYPE_CHECKING:
     from ..diagnose.fit import Fit
@@ -106,4 +107,5 @@ def _write(description: ResidualDescription, path: Path, folder: Path) -> None:
         raise ModelError(f"{path}: not written: what is left depends on nothing for sure")
     part, described = largest
     write_effect(path, part, described, description.prepared)
-    print(f"\nwritten: {path}; next: teleopdesign diagnose {folder} --effect {path}")
+    command = f"teleopdesign diagnose {shell_word(folder)} --effect {shell_word(path)}"
+    print(f"\nwritten: {path}; next: {command}")

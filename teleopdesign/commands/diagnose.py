@@ -17,6 +17,7 @@ from ._diagnosis import (
 )
 from ._folders import diagnose_all
 from ._options import add_effect_files, check_output, count_argument, say
+from ._paths import shell_word
 from ._report import write_arm_page, write_page
 
 if TYPE_CHECKING:
@@ -145,7 +146,8 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
         write_arm_page(diagnosis, options.report)
     for joint, one in diagnosis.joints.items():
         if one.verdict != "model_adequate" and one.more_is_missing:
-            print(f"\nwhere it fails: teleopdesign describe {options.folder[0]} --body {joint}")
+            place = shell_word(options.folder[0])
+            print(f"\nwhere it fails: teleopdesign describe {place} --body {joint}")
     return 0
 
 
@@ -168,7 +170,7 @@ def _next_commands(diagnosis: Diagnosis, folder: Path) -> list[str]:
     """What helps on from here: nothing where all is explained."""
     lines = []
     if diagnosis.groups:
-        lines.append(f"what to measure to tell them: teleopdesign next {folder}")
+        lines.append(f"what to measure to tell them: teleopdesign next {shell_word(folder)}")
     if diagnosis.verdict != "model_adequate" and diagnosis.more_is_missing:
-        lines.append(f"where it fails: teleopdesign describe {folder}")
+        lines.append(f"where it fails: teleopdesign describe {shell_word(folder)}")
     return ["", *lines] if lines else []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,6 +11,8 @@ from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError
 from ..plain_data import replacing
+from ._paths import shell_word
+from ._values import number_and_unit
 
 if TYPE_CHECKING:
     from ..measurement.new_folder import FitAndCheck
@@ -111,8 +112,8 @@ def run(options: argparse.Namespace) -> int:
     with replacing(picture) as part:
         draw_survey(survey, experiment).savefig(part, format="png")
     print(f"\nwritten: {folder / 'experiment.toml'}, {picture}")
-    print(f"next: teleopdesign check {folder}")
-    print(f"      teleopdesign diagnose {folder} --report report.html")
+    print(f"next: teleopdesign check {shell_word(folder)}")
+    print(f"      teleopdesign diagnose {shell_word(folder)} --report report.html")
     return 0
 
 
@@ -180,13 +181,13 @@ def _constant(text: str | None) -> tuple[float, str] | None:
     """A number and a unit, "0.037 N*m/A"."""
     if text is None:
         return None
-    match = re.fullmatch(r"\s*([-+0-9.eE]+)\s*(\S.*?)\s*", text)
-    try:
-        if match is not None:
-            return float(match.group(1)), match.group(2)
-    except ValueError:
-        pass
-    raise ExperimentError(f'--torque-constant: found {text!r}, expected such as "0.037 N*m/A"')
+    value, unit = number_and_unit(text, where="--torque-constant", example="0.037 N*m/A")
+    if not unit.endswith(("/A", "/mA", "/V")):
+        raise ExperimentError(
+            f"--torque-constant: found the unit {unit!r}, expected a force or torque for each "
+            'ampere or volt, such as "N*m/A" or "N/A"'
+        )
+    return value, unit
 
 
 def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> Choices:

@@ -24,6 +24,7 @@ from ._controller import (
     Stage,
     parameter_symbol,
 )
+from ._declarations import broken_declarations, is_linear
 from ._exact import as_written, in_exact_numbers, resolvent
 from ._from_control import from_control, inverted
 from ._from_file import load_controller
@@ -39,12 +40,14 @@ __all__ = [
     "ControllerState",
     "Stage",
     "as_written",
+    "broken_declarations",
     "calls_in",
     "controller",
     "from_control",
     "in_exact_numbers",
     "inverted",
     "is_call",
+    "is_linear",
     "laws_that_declare",
     "load_controller",
     "parameter_symbol",

@@ -10,6 +10,7 @@ from ..errors import ModelError
 from ..names import check_name
 from ..users_files import checked_path, load_once, run
 from ._controller import ControlLaw
+from ._declarations import broken_declarations
 
 _LOADED: WeakValueDictionary[tuple[Path, str], ControlLaw] = WeakValueDictionary()
 
@@ -19,7 +20,8 @@ def load_controller(path: str | Path) -> ControlLaw:
 
     It is used as a law of the catalogue is: `controller(load_controller("my_law.py"), values)`.
     A file that has not changed since gives the same law again.
-    raises ModelError: the file cannot be read or run, or defines no CONTROLLER
+    raises ModelError: the file cannot be read or run, defines no CONTROLLER, or one that does
+        not do what it declares
     """
     path = checked_path(path, "control law", "my_law.py")
     return _of_file(path.resolve(), path)
@@ -40,4 +42,7 @@ def _checked(module: ModuleType, path: Path) -> ControlLaw:
         raise ModelError(f"{path}: found no CONTROLLER = ControlLaw(...)")
     for name in law.parameters:
         check_name(name, where=f"{path}")
-    return law.named(path.stem, module.__doc__ or "")
+    law = law.named(path.stem, module.__doc__ or "")
+    if broken := broken_declarations(law):
+        raise ModelError(f"{path}: declares {broken[0]}")
+    return law

@@ -24,7 +24,11 @@ _OUTPUT = "output asked for"
 
 
 def rows(diagram: Diagram) -> list[Row]:
-    """One equation (sum = 0) for each block and junction."""
+    """One equation (sum = 0) for each block and junction.
+
+    raises ModelError: a block is called as the derivation calls a part of another one
+    """
+    _check_names(diagram)
     equations: list[Row] = []
     for part in diagram.parts:
         if isinstance(part, Moving):
@@ -46,6 +50,24 @@ def rows(diagram: Diagram) -> list[Row]:
             terms = [(part.output, sp.S(1)), *weights]
         equations.append(_row(terms))
     return equations
+
+
+def _check_names(diagram: Diagram) -> None:
+    """Two things under one symbol would be one in every transfer function."""
+    for part in diagram.blocks:
+        if isinstance(part, Moving) and has_actuation(part):
+            meanings = {f"A_{part.name}": f"the actuator of {part.name}"}
+        elif isinstance(part, Linked):
+            entries = (part.entry_name(i, j) for i, j in part.entries)
+            meanings = dict.fromkeys(entries, f"an entry of {part.name}")
+        else:
+            continue
+        for name, what in meanings.items():
+            if diagram.has(name):
+                raise ModelError(
+                    f"{diagram.name}: {name} is {what}, and the name of a block: call the block "
+                    "otherwise"
+                )
 
 
 def paths(diagram: Diagram, part: Control) -> list[tuple[str, sp.Expr]]:

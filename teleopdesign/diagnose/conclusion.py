@@ -23,7 +23,7 @@ from .plausibility import implausible_effects
 from .prepare import Prepared
 from .probability import probable
 from .rung import Rung
-from .rungs import estimate_without, falling, first_rise, refitted, without_rise
+from .rungs import estimate_without, first_rise, refitted, without_rise
 from .untold import untold
 
 
@@ -122,7 +122,7 @@ def without_doubtful(
     without = estimate_without(state.fit.model, rung, search.prepared)
     if rung.added.key in gone or without is None:
         return None
-    order = falling(refitted(fewer, without, search.prepared), search.prepared)
+    order = refitted(fewer, without, search.prepared)
     if order is None:
         return None
     aside = SetAside(rung.added, rung.fit.check_error, why)

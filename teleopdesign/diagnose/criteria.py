@@ -73,6 +73,14 @@ class Criteria:
     #: Lower: what stands in for something unknown is named; higher: a machine with many small
     #: remainders has no name at all
     outweighing: float = 2.0
+    #: part of what is left that counts as open to another effect though a black box that sees it
+    #: learns less. Half: of 20 known forces of 0.4 to 1.2 times what is left, grafted onto two real
+    #: recordings, boosted trees recovered 0.54 to 1.03 of the squares, 0.98 in the middle. Lower:
+    #: what they miss is taken for what does not repeat; higher: that stands against every name
+    missed: float = 0.5
+    #: check error over fit error from which the text says that the records differ: 0.7 to 1.6 on
+    #: nine recordings of real machines. Lower: said of chance; higher: of other machines only
+    differ: float = 3.0
     #: probability from which an effect is said to be missing: less likely than not is not named
     named: float = 0.5
 

@@ -20,7 +20,7 @@ from .moves import remove
 from .noise_floor import NoiseFloor
 from .ranking import Ranked, Ranking
 from .rung import Replaced, Rung
-from .rungs import estimate_without, falling, refitted
+from .rungs import estimate_without, refitted
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def exchange(search: LadderSearch, state: LadderState) -> LadderState | None:
     alternatives = alternatives_of(replacement, best.ranking, without, floor, criteria=criteria)
     rung = Rung(replacement.candidate, replacement.fit, best.ranking, alternatives)
     kept = [r for r in state.rungs if r.added is not best.dropped]
-    order = falling(refitted([*kept, rung], replacement.fit, prepared), prepared)
+    order = refitted([*kept, rung], replacement.fit, prepared)
     if order is None:
         return None
     moved = replace(state.with_rungs(order), exchanges=state.exchanges + 1)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..blocks import Value
 from ..quantity import unit_of
+from .criteria import CRITERIA
 from .decision import helps_but_is_barred
 from .fit import Fit
 from .record_offsets import offset_groups
@@ -144,6 +145,13 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     lines += refused_lines(diagnosis)
     lines += [f"set aside: {one}" for one in diagnosis.set_aside]
     lines += [f"left out: {words}" for words in diagnosis.left_out]
+    after = diagnosis.after
+    if after.check_error >= CRITERIA.differ * after.fit_error > 0.0:
+        lines.append(
+            f"records: the check records leave {after.check_error / after.fit_error:.2g} times "
+            "what the fit records do: the machine was not the same in both (friction, temperature, "
+            "load), or moved differently"
+        )
     lines.append("")
     lines.append(sentence(diagnosis))
     return "\n".join(lines)
@@ -193,4 +201,22 @@ def sentence(diagnosis: Diagnosis) -> str:
         return f"verdict: undecided between {names}: these records cannot tell.{rest}"
     return (
         f"verdict: undecided. No effect tried explains the {left:.1f} noise floors that are left."
+        f"{_nearest(diagnosis)}"
     )
+
+
+def _nearest(diagnosis: Diagnosis) -> str:
+    """The candidate that leaves least where none is supported; "" where none helps by much."""
+    if diagnosis.open is not None:  # read from a file, which has no rankings
+        others = [q.others[0] for q in diagnosis.open if q.added is None]
+    else:
+        ranked = diagnosis.last.ranked
+        others = [(r.candidate, r.fit) for r in ranked if r.counts and r.score > 0.0]
+    least = (1.0 - CRITERIA.relevant) * diagnosis.after.check_error**2
+    for candidate, fit in others[:1]:
+        if fit.check_error**2 < least:
+            return (
+                f" {candidate} comes nearest and would leave {100 * fit.check_error:.3g} %: these "
+                "records do not tell that from chance."
+            )
+    return ""

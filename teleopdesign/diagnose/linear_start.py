@@ -23,8 +23,9 @@ from .bodies_apart import of_bodies
 from .fit import Fit
 from .prepare import Prepared
 
-#: columns that are carried through the friction balance at once: bounds the memory
-AT_ONCE = 48
+#: columns that are carried through the friction balance at once: as many as a processor's second
+#: cache holds of a record. With twice as many a search by periods takes a tenth longer
+AT_ONCE = 24
 
 
 @dataclass(frozen=True)
@@ -73,11 +74,11 @@ def linear_starts(
     starts = []
     edges = list(range(0, len(probes), AT_ONCE)) + [len(probes)]
     for first, last in pairwise(edges):
-        columns = _columns(absent, probes[first:last], prepared)
-        columns -= basis @ (basis.T @ columns)
+        slopes = _slopes(absent, probes[first:last], prepared)
+        slopes -= (slopes @ basis) @ basis.T
         for i in range(0, last - first, len(phases)):
             start = models[(first + i) // len(phases)]
-            starts.append(_start(start, effect, at, left, columns[:, i : i + len(phases)]))
+            starts.append(_start(start, effect, at, left, slopes[i : i + len(phases)]))
     return sorted(starts, key=lambda s: s.promised)
 
 
@@ -96,22 +97,40 @@ def _size(columns: Array) -> Array:
     return np.where(size > 0, size, 1.0)
 
 
-def _columns(model: Model, probes: list[Probe], prepared: Prepared) -> Array:
+def _slopes(model: Model, probes: list[Probe], prepared: Prepared) -> Array:
+    """Derivatives (probes, rows) of the residual; each lies in one piece of memory."""
     stretches = prepared.of("fit")
     moved = of_bodies(stretches, {model.holder(probe.at) for probe in probes})
     _, slopes = moved.relative(model, probes)
-    columns = np.zeros((sum(len(s.keep) for s in stretches), len(probes)))
-    columns[moved.rows] = slopes
-    return columns
+    whole = np.zeros((len(probes), sum(len(s.keep) for s in stretches)))
+    whole[:, moved.rows] = slopes.T
+    return whole
 
 
-def _start(model: Model, effect: Effect, at: str, left: Array, columns: Array) -> LinearStart:
-    """The strength, and phase, that takes most away from what is left."""
+def _best_multiples(rows: Array, target: Array) -> Array:
+    """Multiples of one or two rows, each of length 1 or 0, that come next to a target (n,)."""
+    first = rows[0] @ target
+    if len(rows) == 1:
+        return np.array([first])
+    along = rows[0] @ rows[1]
+    across = rows[1] - along * rows[0]
+    size = np.linalg.norm(across)
+    if size < 1e-5:  # nearly along each other: one orthogonalisation would leave errors over 1e-10
+        return np.asarray(np.linalg.lstsq(rows.T, target, rcond=1e-10)[0])
+    second = across @ target / size**2
+    return np.array([first - along * second, second])
+
+
+def _start(model: Model, effect: Effect, at: str, left: Array, slopes: Array) -> LinearStart:
+    """The strength, and phase, that takes most away from what is left.
+
+    slopes: (1 or 2, rows) of the residual, by the strength at each phase
+    """
     assert effect.strength is not None
-    if not np.isfinite(columns).all():  # no finite motion with these values
+    if not np.isfinite(slopes).all():  # no finite motion with these values
         return LinearStart(model, {}, math.inf)
-    size = _size(columns)
-    by = -np.linalg.lstsq(columns / size, left, rcond=1e-10)[0] / size
+    size = _size(slopes.T)
+    by = -_best_multiples(slopes / size[:, None], left) / size
     values = {effect.strength: float(by[0])}
     if effect.phase:
         values = {
@@ -122,6 +141,6 @@ def _start(model: Model, effect: Effect, at: str, left: Array, columns: Array) -
     inside = float(np.clip(values[effect.strength], declared.lower, declared.upper))
     part = inside / values[effect.strength] if values[effect.strength] else 0.0
     values[effect.strength] = inside
-    rest = left + part * (columns @ by)
+    rest = left + part * (by @ slopes)
     full = {f"{at}.{effect.name}.{n}": v for n, v in values.items()}
     return LinearStart(model, full, float(rest @ rest))

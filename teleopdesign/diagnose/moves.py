@@ -12,7 +12,7 @@ from .decision import alternatives_of, is_adequate, is_better, others_that_help,
 from .ladder_state import LadderSearch, LadderState
 from .ranking import Ranked
 from .rung import Rung, replaced_by
-from .rungs import estimate_without, falling, refitted
+from .rungs import estimate_without, refitted
 
 
 def add(search: LadderSearch, state: LadderState) -> LadderState | None:
@@ -52,7 +52,7 @@ def _added(search: LadderSearch, state: LadderState, best: Ranked) -> LadderStat
         assert earlier.added is not None
         if earlier.instead_of == best.candidate:  # both are there: nothing was replaced
             rungs = [replace(r, replaced=None) if r is earlier else r for r in state.rungs]
-            order = falling(refitted(rungs, best.fit, prepared), prepared)
+            order = refitted(rungs, best.fit, prepared)
             if order is None:
                 return None
             back = state.came_back | {best.candidate.key}
@@ -60,7 +60,7 @@ def _added(search: LadderSearch, state: LadderState, best: Ranked) -> LadderStat
         if best.instead_of == earlier.added:  # that one only stood in for this
             kept = [r for r in state.rungs if r is not earlier]
             rung = replace(rung, replaced=earlier.replaced)
-            order = falling(refitted([*kept, rung], best.fit, prepared), prepared)
+            order = refitted([*kept, rung], best.fit, prepared)
             if order is None:
                 return None
             return replace(state.with_rungs(order), came_back=state.came_back | {earlier.added.key})
@@ -75,6 +75,6 @@ def remove(search: LadderSearch, state: LadderState) -> LadderState | None:
         if without is None or is_better(without, last, state.floor, criteria=search.criteria):
             continue
         fewer = [r for r in state.rungs if r is not rung]
-        order = falling(refitted(fewer, without, search.prepared), search.prepared)
+        order = refitted(fewer, without, search.prepared)
         return state.with_rungs(order) if order is not None else None
     return None

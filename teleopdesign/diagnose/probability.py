@@ -5,7 +5,9 @@ noise. What an accepted effect's truth depends on there is what is left in the e
 noise, nearly all accepted effects are true; where much more is left, a wrong one may well have
 stood in for what the catalogue does not have. On a real machine more than noise is nearly always
 left. There an effect is believed by how far what it explains outweighs what is left: a stand-in
-leaves a part of the order of what it explains, or a better one would not be worth looking for.
+leaves a part of the order of what it explains, or a better one would not be worth looking for. Of
+what is left, that counts which another effect could still explain: where a black box does as well
+from the motion alone, what it cannot learn does not repeat, and hides no other effect.
 """
 
 from __future__ import annotations
@@ -36,7 +38,8 @@ class CandidateEvidence:
     left: error after the last step, in noise floors
     barred: which check it failed on this step, whatever it explains; "" where none
     outweighs: squares that it takes away on this step over these and what the last step leaves
-        above the noise floor, 0 to 1; of the force or seen at the command, the smaller
+        above the noise floor and another effect could explain, 0 to 1; of the force or seen at the
+        command, the smaller
     at_most: probability of the accepted effects that it needs: it is not there without them
     """
 
@@ -165,17 +168,36 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
     return {k: w / total for k, w in weights.items()}
 
 
+def open_to_others(diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA) -> float:
+    """Part of the squares left that another effect could explain, 0 to 1; 1 without a black box.
+
+    Another effect would be a function of the motion. A black box that predicts the force from the
+    motion alone, and leaves no more than the model with its effects, sees all that is as large as
+    what is left; one that leaves twice the squares sees nothing so small. What it sees and cannot
+    learn does not repeat, but for what it may have missed.
+    """
+    box, after = diagnosis.learnable, diagnosis.after.check_error
+    if box is None or not (after > 0.0 and box.left > 0.0):
+        return 1.0
+    sees = float(np.clip(2.0 - (box.alone / after) ** 2, 0.0, 1.0))
+    learned = float(np.clip(1.0 - (box.error / box.left) ** 2, criteria.missed, 1.0))
+    return 1.0 - sees * (1.0 - learned)
+
+
 def _outweighs(diagnosis: Diagnosis, base: Fit, fit: Fit) -> float:
-    """What a candidate takes away on its step, over that and what the last step leaves."""
-    last, floor = diagnosis.after, diagnosis.floor
-    of_force = _over_both(base.check_error, fit.check_error, last.check_error, floor.value)
-    before, after, rest = (f.at_command.error for f in (base, fit, last))
-    return min(of_force, _over_both(before, after, rest, floor.value_at_command))
+    """What a candidate takes away on its step, over that and what the last step leaves open."""
+    last, floor, part = diagnosis.after, diagnosis.floor, open_to_others(diagnosis)
+    errors = (f.check_error for f in (base, fit, last))
+    at_command = (f.at_command.error for f in (base, fit, last))
+    return min(
+        _over_both(*errors, floor=floor.value, part=part),
+        _over_both(*at_command, floor=floor.value_at_command, part=part),
+    )
 
 
-def _over_both(before: float, after: float, last: float, floor: float) -> float:
+def _over_both(before: float, after: float, last: float, *, floor: float, part: float) -> float:
     gain = before**2 - after**2
-    left = max(last**2 - floor**2, 0.0)  # NaN seen at the command (blind everywhere): no belief
+    left = part * max(last**2 - floor**2, 0.0)  # NaN at the command (blind everywhere): no belief
     return gain / (gain + left) if gain > 0.0 and np.isfinite(left) else 0.0
 
 

@@ -35,8 +35,9 @@ from .threads import in_threads
 #: nor which it is, so that each pair has its turn (by the largest give, turns look as if friction
 #: remembered; by the smallest it breaks away at once; damping resists what moves the contact, be it
 #: a turn or a level that changes). 0 is Dahl's friction, 0.5 what the authors of LuGre chose:
-#: stiffness 1e5 N/m, damping sqrt(1e5) N s/m at 1 kg
-GIVES, DAMPED = (0.3, 0.1, 0.03), (0.0, 0.5)
+#: stiffness 1e5 N/m, damping sqrt(1e5) N s/m at 1 kg. 1e-9 stands for 0: it moves a position by
+#: less than 1e-10 of its travel, and both ratios share one loop, which takes 2.5 s to compile
+GIVES, DAMPED = (0.3, 0.1, 0.03), (1e-9, 0.5)
 #: shift, over the estimate (in decades' logarithms and angles: as it is), from which nothing is
 #: corrected: what reading moves so far is not known well enough
 LARGEST = 0.5

@@ -73,8 +73,12 @@ class Rung(ByValue):
         raises ModelError: another effect of the model needs what was added
         """
         assert self.added is not None
-        less = model.without_effect(self.added.effect.name, at=self.added.at)
-        return less if self.replaced is None else self.replaced.back_in(less)
+        name, at = self.added.key
+        # back first: what needs either of the two is never without both
+        whole = model if self.replaced is None else self.replaced.back_in(model)
+        if whole.body(at).has(name) or not model.body(at).has(name):
+            return whole.without_effect(name, at=at)
+        return whole  # of one kind a body has one: what came back took its place
 
     def __repr__(self) -> str:
         return f"Rung {self.said or 'of the model'}: {self.fit!r}"

@@ -76,11 +76,18 @@ def _ranked_alone(base: Fit, rung: Rung, fit: Fit, prepared: Prepared) -> Rankin
     return Ranking(base, (alone,))
 
 
-def refitted(rungs: Sequence[Rung], last: Fit, prepared: Prepared) -> tuple[Rung, ...]:
-    """The rungs with each fit made again, from the values of the last, without what comes later."""
+def refitted(rungs: Sequence[Rung], last: Fit, prepared: Prepared) -> tuple[Rung, ...] | None:
+    """The rungs in an order in which the check error falls, each fitted without what comes later.
+
+    last: the fit with all of them, from whose values the others begin
+    returns: None where no order falls, or where an earlier effect needs a later one
+    """
     backwards = [replace(rungs[-1], fit=last)]
     model = last.model
     for later, rung in zip(rungs[:0:-1], rungs[-2:0:-1], strict=False):
-        model = later.taken_from(model)
+        try:
+            model = later.taken_from(model)
+        except ModelError:
+            return None
         backwards.append(replace(rung, fit=estimate(model, prepared)))
-    return (rungs[0], *reversed(backwards))
+    return falling((rungs[0], *reversed(backwards)), prepared)

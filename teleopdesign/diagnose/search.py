@@ -25,6 +25,7 @@ from .fit import Fit, Solution, estimate, fit_of, fit_squares, free_parameters, 
 from .linear_start import linear_starts
 from .prepare import Prepared
 from .search_plan import PLAN
+from .stated import at_stated, has_moved, is_at_stated
 
 
 @dataclass(frozen=True)
@@ -92,7 +93,7 @@ def estimate_from_starts(
     if base is not None:
         curved = _with_strength(model) is None
         kept = kept if curved else PLAN.stepped
-        if curved and stated is not None and _moved(base.coarse, stated):
+        if curved and stated is not None and has_moved(base.coarse, stated):
             models += [at_stated(m, stated) for m in models]
         most = PLAN.corrected_predicted if rugged else PLAN.curved_predicted
         models = _promising(model, models, coarse, base, most=most, worth=worth)
@@ -115,10 +116,13 @@ def from_stated(fit: Fit, prepared: Prepared, stated: Model, at: str) -> Fit:
     """The fit, or the one that its user's values lead to where that leaves less.
 
     An effect stated without values was led astray by what is missing: it starts anew as well. Both
-    are followed on few samples; only what leaves less there is estimated on all of them.
+    are followed on few samples; only what leaves less there is estimated on all of them. Where the
+    fit came to lie at the user's values, within what users err by, there is no other way to go.
     at: place of a new effect: other bodies stay, for what their user's values lead to beside it is
         what they led to without it
     """
+    if is_at_stated(fit, stated, at):
+        return fit
     coarse = prepared.coarse
     models = started(at_stated(fit.model, stated, at), prepared.scales)
     if len(models) > PLAN.curved_stepped + 1:
@@ -154,19 +158,6 @@ def _squares(solution: Solution) -> float:
 def with_parameters_of(model: Model, other: Model) -> Model:
     """The model with the parameters, and shifts of the records, that another of its effects has."""
     return model.with_values(dict(other.parameters)).with_record_shift(other.record_shift)
-
-
-def at_stated(model: Model, stated: Model, at: str | None = None) -> Model:
-    """The model with its user's values: without an effect that is missing, others may have gone
-    where no step leads back from.
-
-    at: place whose body gets them; None: all bodies
-    """
-    there = model.parameters  # an effect of the user's may have given way to another
-    values = {n: v.value for n, v in stated.parameters.items() if n in there}
-    if at is not None:
-        values = {n: v for n, v in values.items() if model.locate(n)[0] == model.holder(at)}
-    return model.with_values(values)
 
 
 def unchanged(model: Model, base: Fit) -> Fit:
@@ -224,13 +215,6 @@ def _with_strength(model: Model) -> tuple[Effect, str] | None:
     effect, place = absent[0]
     strength = f"{place}.{effect.name}.{effect.strength}"
     return absent[0] if not model.parameters[strength].fixed else None
-
-
-def _moved(base: Fit, stated: Model) -> bool:
-    """Whether the base moved a parameter further from the user's value than users usually err."""
-    here, there = base.model.parameters, stated.parameters
-    pairs = [(here[n].value, there[n].value) for n in base.free if n in there]
-    return any(abs(value - before) > PLAN.moved * abs(before) for value, before in pairs)
 
 
 def _by_strength(

@@ -4,6 +4,7 @@ from ..arguments import check_arguments
 from .admittance_device import admittance_device
 from .arms import Arm, by_jacobian, joint, teleoperator_of_arms
 from .control_parts import controller_parts, plant_parts
+from .coupled_plants import coupled_plant_parts
 from .disturbance_observer import disturbance_observer
 from .energy_tanks import energy_tanks
 from .felt_friction import FeltFriction, felt_friction
@@ -51,6 +52,7 @@ __all__ = [
     "admittance_device",
     "by_jacobian",
     "controller_parts",
+    "coupled_plant_parts",
     "disturbance_observer",
     "energy_tanks",
     "felt_friction",

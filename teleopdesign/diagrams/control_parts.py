@@ -38,8 +38,6 @@ def controller_parts(
     share are there once for each.
     raises ModelError: numbers of signals do not fit, an entry that `from_control` refuses
     """
-    import control
-
     if (system.noutputs, system.ninputs) != (len(outputs), len(inputs)):
         raise ModelError(
             f"{name}: the system has {system.ninputs} inputs and {system.noutputs} outputs, found "
@@ -51,15 +49,7 @@ def controller_parts(
         terms: dict[str, float] = {}
         for j, source in enumerate(inputs):
             entry_name = f"{name}_{i + 1}_{j + 1}"
-            if isinstance(system, control.TransferFunction):
-                entry = control.tf(system.num[i][j], system.den[i][j], system.dt)
-            elif isinstance(system, control.StateSpace):
-                entry = control.ss(
-                    system.A, system.B[:, [j]], system.C[[i]], system.D[[i]][:, [j]], system.dt
-                )
-            else:
-                raise ModelError(f"{name}: expected a transfer function or a state space")
-            made = from_control(entry, name="entry")
+            made = from_control(entry_of(system, i, j, name), name="entry")
             form = made.linear_form(entry_name, sp.Symbol("s"), sp.S(0), held=True)
             if form == 0:
                 continue
@@ -67,6 +57,18 @@ def controller_parts(
             terms[f"{entry_name}_out"] = 1.0
         sums.append(Junction(output, terms))
     return tuple(controls), tuple(sums)
+
+
+def entry_of(system: control.InputOutputSystem, row: int, column: int, name: str) -> control.LTI:
+    """One entry of a system, row and column from 0, in the numbers as they came."""
+    import control
+
+    if isinstance(system, control.TransferFunction):
+        return control.tf(system.num[row][column], system.den[row][column], system.dt)
+    if not isinstance(system, control.StateSpace):
+        raise ModelError(f"{name}: expected a transfer function or a state space")
+    b, c, d = system.B[:, [column]], system.C[[row]], system.D[[row]][:, [column]]
+    return control.ss(system.A, b, c, d, system.dt)
 
 
 def plant_parts(

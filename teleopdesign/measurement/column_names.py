@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 
 from ..quantity import is_unit, measures
 from .conversion import COUNTS
+from .doors._log import bare_column
 
 #: how loggers write units -> as this package reads them
 ALIASES = {
@@ -19,27 +21,37 @@ ALIASES = {
     "u/min": "rpm", "1/min": "rpm", "min-1": "rpm",
 }  # fmt: skip
 _BRACKETS = re.compile(r"[(\[{]\s*([^()\[\]{}]+?)\s*[)\]}]\s*$")
+#: units of two parts as names of columns write them: "v_mm_s", "rad_per_s", "tau_N_m"
+_OF_TWO = re.compile(
+    r"(?:^|_|\s)(?:(?P<length>rad|deg|mm|um|m)_(?:per_)?(?:s|sec)|(?P<force>m?N)_(?P<arm>c?m))$"
+)
 _TAIL = re.compile(r"(?:_|\s|/)([A-Za-zµ°%][A-Za-z0-9µ°%^*/·]*)$")
 
 #: quantity -> words that a name of it may hold, the surest first
 WORDS: dict[str, tuple[str, ...]] = {
-    "time": ("time", "timestamp", "zeit", "stamp", "temps", "t", "seconds"),
+    "time": ("time", "timestamp", "zeit", "stamp", "temps", "t", "seconds", "tiempo", "tempo",
+             "時間", "时间", "時刻"),
     "position": (
         "position", "pos", "angle", "winkel", "weg", "theta", "enc", "encoder", "phi", "q", "x",
-        "actualq",
+        "actualq", "posicion", "posizione", "angulo", "angolo", "位置", "角度", "位移",
     ),
     "velocity": (
         "velocity", "vel", "speed", "geschwindigkeit", "drehzahl", "omega", "qd", "dq", "xd", "v",
+        "vitesse", "velocidad", "velocita", "速度",
     ),
     "interaction_force": (
         "interaction", "hand", "contact", "external", "ext", "sensor", "wrench", "fh", "ft", "load",
+        "mano", "操作力", "外力", "手",
     ),
     "actuator_force": (
         "torque", "current", "strom", "moment", "drehmoment", "effort", "motor", "command", "cmd",
-        "tau", "force", "kraft", "u", "i", "f", "control",
+        "tau", "force", "kraft", "u", "i", "f", "control", "couple", "courant", "corriente",
+        "corrente", "coppia", "par", "fuerza", "forza", "トルク", "電流", "电流", "力矩", "指令",
     ),
     "segment": ("segment", "run", "trial"),
 }  # fmt: skip
+#: place in these lists from which words count alike: still sure
+LAST_RANK = 12
 #: words of what was wanted, and no reading of a sensor
 WANTED = (
     "target",
@@ -55,9 +67,13 @@ WANTED = (
 )
 
 
+#: beginnings of words that say the same: "Sollwinkel", "targetPosition"
+WANTED_BEGINNINGS = ("soll", "target", "desired", "setpoint", "referen", "consigne", "目標", "指令")
+
+
 def bare_name(name: str) -> str:
     """A name without the unit in brackets at its end."""
-    return _BRACKETS.sub("", name).strip()
+    return _BRACKETS.sub("", bare_column(name)).strip()
 
 
 def unit_in_name(name: str, quantity: str | None = None, axis: str = "prismatic") -> str | None:
@@ -65,7 +81,14 @@ def unit_in_name(name: str, quantity: str | None = None, axis: str = "prismatic"
 
     quantity: what the column is, if that is known: what is no unit of it is a part of the name
     """
+    name = bare_column(name)
     match = _BRACKETS.search(name)
+    of_two = _OF_TWO.search(name)
+    if match is None and of_two is not None:
+        length, force, arm = of_two["length"], of_two["force"], of_two["arm"]
+        both = f"{length}/s" if length else f"{force}*{arm}"
+        if quantity is None or _suits(both, quantity, axis):
+            return both
     tail = _TAIL.search(name)
     for text, sure in ((match, True), (tail, False)):
         if text is None:
@@ -99,9 +122,11 @@ def _suits(unit: str, quantity: str, axis: str) -> bool:
 
 
 def words_of(name: str) -> list[str]:
-    """The words of a name in lower case: "Actual_Pos2 (deg)" -> actual, pos."""
+    """The words of a name, lower case, without accents: "Actual_Pos2 (deg)" -> actual, pos."""
     bare = re.sub(r"([a-z])([A-Z])", r"\1 \2", bare_name(name))
-    return [w for w in re.split(r"[^a-zA-Zäöüß]+", bare.lower()) if w]
+    letters = unicodedata.normalize("NFD", bare.lower())
+    plain = "".join(c for c in letters if not "\u0300" <= c <= "\u036f")
+    return [w for w in re.split(r"[\W\d_]+", unicodedata.normalize("NFC", plain)) if w]
 
 
 def likeness(name: str, quantity: str) -> float:
@@ -110,15 +135,19 @@ def likeness(name: str, quantity: str) -> float:
     if len(words) > 1 and all(len(w) == 1 for w in words):
         words.append("".join(words))  # a letter with its index: "f_h"
     listed = WORDS[quantity]
+    may_end = quantity != "interaction_force"  # a "Stromsensor" measures no force
     best = 0.0
     for word in words:
         for rank, known in enumerate(listed):
-            exact = word == known
-            if exact or len(known) > 3 and word.startswith(known):
-                best = max(best, (1.0 if exact else 0.9) - 0.02 * rank)
+            exact = word == known or not known.isascii() and known in word  # no spaces between
+            # the last part of a compound names it: "Drehmoment", "Istwinkel"
+            ends = may_end and len(known) > 4 and word.endswith(known)
+            if exact or ends or len(known) > 3 and word.startswith(known):
+                best = max(best, (1.0 if exact else 0.9) - 0.02 * min(rank, LAST_RANK))
     return best
 
 
 def is_wanted(name: str) -> bool:
     """Whether a name says that its column is what was asked for, not what was read."""
-    return any(word in WANTED for word in words_of(name))
+    words = words_of(name)
+    return any(word in WANTED or word.startswith(WANTED_BEGINNINGS) for word in words)

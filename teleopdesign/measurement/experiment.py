@@ -1,5 +1,6 @@
 """An experiment: a folder with one experiment.toml and the record files that it names."""
 
+import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,6 +16,7 @@ from .description import BodyDescription, EnvironmentDescription, bodies_from, e
 from .doors.bag import is_bag
 from .reading import ReadingStep, reading_table
 from .record import OWN, Record, read_record
+from .tables import is_log, tables_in
 from .toml_table import Table, described, read_toml
 
 _FILE = "experiment.toml"
@@ -150,9 +152,11 @@ def _found_folder(path: Path) -> Path:
         if path.is_file() and (path.parent / _FILE).is_file():
             path = path.parent
         elif path.is_file() and path.suffix not in (".toml", ".json"):
+            if not is_log(path):
+                raise ExperimentError(f"{path}: expected a folder with {_FILE}, or an answer.json")
             raise ExperimentError(
-                f"{path.name}: a log with no {_FILE} beside it; to make one: "
-                f"teleopdesign new {path.name}"
+                f"{path}: a log with no {_FILE} beside it; to make one: "
+                f"teleopdesign new {shlex.quote(str(path))}"
             )
         path = path.resolve()
         if path.is_dir():
@@ -237,7 +241,7 @@ def _check_path(table: Table, folder: Path, file: str) -> None:
     try:
         path = (folder / file).resolve()
         inside = path.is_relative_to(folder)
-        exists = path.is_file() or is_bag(path)
+        exists = path.is_file() or is_bag(path) or path.is_dir() and bool(tables_in(path))
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", None) or str(problem)
         raise ExperimentError(f"{where}: {quoted(file)} cannot be read: {reason}") from None

@@ -28,21 +28,19 @@ class Spectrum:
         self.margin = max(1, min(round(CONTINUED / sample_time), n - 1))
         self.length = fft.next_fast_len(n + 4 * self.margin, real=True)
         self.frequency = np.arange(self.length // 2 + 1) / (self.length * sample_time)
+        ramp = np.linspace(0.0, 1.0, self.length - n - 2 * self.margin + 2)[1:-1]
+        # a smooth bridge closes the circle without a step in level or slope
+        self._bridge = ramp * ramp * (3.0 - 2.0 * ramp)
 
     def __reduce__(self) -> tuple[object, ...]:
         return spectrum, (self.n, self.sample_time)
 
     def transform(self, y: Array) -> NDArray[np.complex128]:
         """Transform of (..., n) signals, continued at both ends."""
-        m, n = self.margin, self.n
+        m = self.margin
         left = 2 * y[..., :1] - y[..., m:0:-1]
         right = 2 * y[..., -1:] - y[..., -2 : -m - 2 : -1]
-        gap = self.length - n - 2 * m
-        ramp = np.linspace(0.0, 1.0, gap + 2)[1:-1]
-        # a smooth bridge closes the circle without a step in level or slope
-        bridge = right[..., -1:] + (left[..., :1] - right[..., -1:]) * (
-            ramp * ramp * (3.0 - 2.0 * ramp)
-        )
+        bridge = right[..., -1:] + (left[..., :1] - right[..., -1:]) * self._bridge
         whole = np.concatenate([left, y, right, bridge], axis=-1)
         return np.asarray(fft.rfft(whole), dtype=np.complex128)
 
@@ -67,7 +65,7 @@ class Spectrum:
 
     def derivative(self, order: int) -> NDArray[np.complex128]:
         """(j omega)^order."""
-        return np.asarray((2j * np.pi * self.frequency) ** order, dtype=np.complex128)
+        return _derivative(self.n, self.sample_time, order)
 
     def ahead(self, time: float) -> NDArray[np.complex128] | float:
         """A signal read so much later (s): what is to come moves forward; 1 for none."""
@@ -85,6 +83,14 @@ class Spectrum:
 def spectrum(n: int, sample_time: float) -> Spectrum:
     """The Spectrum for that grid, made once."""
     return Spectrum(n, sample_time)
+
+
+@lru_cache(maxsize=32)
+def _derivative(n: int, sample_time: float, order: int) -> NDArray[np.complex128]:
+    """`Spectrum.derivative` on that grid, made once."""
+    gain = (2j * np.pi * spectrum(n, sample_time).frequency) ** order
+    gain.setflags(write=False)
+    return np.asarray(gain, dtype=np.complex128)
 
 
 @lru_cache(maxsize=32)

@@ -63,7 +63,9 @@ def clock_of_log(
     steps: list[ReadingStep] = []
     if len(stamps) and abs(stamps[0]) > DATE:
         stamps = stamps - stamps[0]
-        steps.append(ReadingStep(file, "stamps that are dates", "time from the first row", "none"))
+        steps.append(
+            ReadingStep(file, "stamps that count from long ago", "time from the first row", "none")
+        )
     segments = segments_of(None if labels is None else labels[rows], len(rows))
     if sample_rate is not None and empty == 0:
         clock = RecordClock(rows, time, rows, time, sample_time, segments, segments)
@@ -77,7 +79,7 @@ def clock_of_log(
                 file,
                 f"{count_of(empty, 'row')} with a cell that holds no number",
                 "read as lost",
-                f"{empty / len(filled):.2g} of the rows",
+                f"{100 * empty / len(filled):.2g} % of the rows",
             )
         )
     return LogClock(clock, stamped), steps + _order(clock, file, len(filled)) + more

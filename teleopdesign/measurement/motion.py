@@ -96,14 +96,11 @@ class Motion(ByValue):
         staircase: (..., n), or (..., k n) with k values in turn for equal parts of each row
         """
         parts = staircase.shape[-1] // len(self.time)
-        smoothing = self.smoothing * self.spectrum.ahead(self.command_late)
-        held = (
-            self.spectrum.multiply(
-                staircase[..., k::parts], self.spectrum.hold(parts, k) * smoothing
-            )
-            for k in range(parts)
-        )
-        return np.asarray(sum(held))
+        s = self.spectrum
+        held = s.transform(staircase[..., ::parts]) * s.hold(parts, 0)
+        for k in range(1, parts):
+            held += s.transform(staircase[..., k::parts]) * s.hold(parts, k)
+        return s.back(held * (self.smoothing * s.ahead(self.command_late)))
 
     def lowpassed(self, y: Array, at: NDArray[np.intp] | None = None) -> Array:
         """Signals (..., n) through the comparison's zero-phase low-pass;  at: these rows of it."""

@@ -38,7 +38,11 @@ def reading_table(steps: Sequence[ReadingStep]) -> list[str]:
     if not steps:
         return []
     rows = [("record", "in the log", "how it was read, and what that does to the answer")]
-    rows += [(s.file, s.observed, f"{s.rule}; {s.effect}") for s in steps]
+    alike: dict[tuple[str, str], list[str]] = {}
+    for s in steps:
+        text = s.rule if s.effect == "none" else f"{s.rule}; {s.effect}"
+        alike.setdefault((s.observed, text), []).append(s.file)
+    rows += [(", ".join(files), observed, text) for (observed, text), files in alike.items()]
     first = min(WIDEST, max(len(row[0]) for row in rows))
     second = min(WIDEST, max(len(row[1]) for row in rows))
     rest = WIDTH - first - second - 6

@@ -1,5 +1,6 @@
 """One recording: signals in SI units on a uniform time, and what was done to the log for that."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +18,8 @@ from .signals_of_log import signals_of_log
 from .spans import cut_to
 from .tables import LogColumns, read_columns
 
+#: the end of the name of a record that is a part of a log: "log.csv 0-14.4 s"
+_SPAN = re.compile(r" [-+.\de]+-[-+.\de]+ s$")
 #: what a record may have of its own: "own" at these keys of [[records]]
 OWN = ("position_zero", "bias", "friction_level")
 
@@ -77,7 +80,7 @@ def read_record(
     columns = read_columns(folder / file, name, wanted_columns(channels))
     if span is not None:
         columns = cut_to(columns, span, channels, bodies, sample_rate, name)
-        file = f"{file} {span[0]:g}-{span[1]:g} s"
+        file = f"{file} {span[0]:g}-{span[1]:g} s"  # taken off again by `log_name`
     return record_of(
         columns,
         name,
@@ -88,6 +91,11 @@ def read_record(
         bodies=bodies,
         sample_rate=sample_rate,
     )
+
+
+def log_name(file: str) -> str:
+    """The name of the log that a record was cut from; of a record that is a whole log, its own."""
+    return _SPAN.sub("", file)
 
 
 def wanted_columns(channels: Mapping[str, Channel]) -> dict[str, str]:

@@ -185,7 +185,7 @@ def _lost(
         step = encoder_step(channel, values)
         wrong = filling_error(values, clock.clock, rule_of(channel, values), step=step)
         if channel.quantity == "position":
-            unit = f"{wrong / step:.2g} steps" if step > 0 else f"{wrong:.2g}"
+            unit = f"{float(f'{wrong / step:.2g}'):g} steps" if step > 0 else f"{wrong:.2g}"
             positions.append(unit)
         elif channel.quantity in ("actuator_force", "interaction_force"):
             error += part * wrong**2

@@ -4,6 +4,7 @@ here.
 
 from __future__ import annotations
 
+import shlex
 import zlib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -14,9 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ExperimentError, did_you_mean, quoted
-from .doors._log import Log, listed
+from .doors._cells import number_of
+from .doors._log import Log, bare_column, listed
 from .doors.arrays import open_arrays
 from .doors.bag import is_bag, open_bag
+from .doors.folder import open_folder
 from .doors.hdf5 import open_hdf5
 from .doors.matlab import open_matlab
 from .doors.parquet import open_parquet
@@ -45,6 +48,8 @@ DOORS: Mapping[str, Callable[[Path, str], Log]] = {
     ".mcap": open_bag,
     ".db3": open_bag,
 }
+#: what makes a folder an experiment
+EXPERIMENT = "experiment.toml"
 #: whole numbers above are stamps in nanoseconds: 2^53, beyond which float64 skips some
 _LONG = 2**53
 
@@ -63,7 +68,7 @@ class LogColumns:
 
     def steps(self, file: str) -> tuple[ReadingStep, ...]:
         """What was found about the file, as steps of reading it."""
-        return tuple(ReadingStep(file, note, "read so", "none") for note in self.notes)
+        return tuple(ReadingStep(file, note, "read accordingly", "none") for note in self.notes)
 
 
 def open_log(path: Path, file: str) -> Log:
@@ -73,15 +78,36 @@ def open_log(path: Path, file: str) -> Log:
     raises ExperimentError: unknown kind of file, or one that cannot be read
     """
     opened: Callable[[Path, str], Log] | None = open_bag if is_bag(path) else None
+    if opened is None and path.is_dir() and (parts := tables_in(path)):
+        return _reading(lambda: open_folder(path, file, parts, open_log), file)
     if opened is None:
         name = path.name.lower()
         opened = next((door for ending, door in DOORS.items() if name.endswith(ending)), None)
-    if opened is None:
+    if opened is None and (path / EXPERIMENT).exists():
+        word = shlex.quote(str(path))
         raise ExperimentError(
-            f"{file}: found a file of kind {quoted(path.suffix)}, expected {', '.join(DOORS)}"
+            f"{file}: is an experiment already; next: teleopdesign diagnose {word}"
         )
+    if opened is None:
+        kind = "a folder" if path.is_dir() else f"a file of kind {quoted(path.suffix)}"
+        more = ", or a folder of tables" if path.is_dir() else ""
+        raise ExperimentError(f"{file}: found {kind}, expected {', '.join(DOORS)}{more}")
     door = opened
     return _reading(lambda: door(path, file), file)
+
+
+def tables_in(folder: Path) -> list[Path]:
+    """The files of a folder that are tables, in the order of their names; none of an experiment."""
+    if (folder / EXPERIMENT).exists():
+        return []
+    inside = folder.resolve()  # no link leads out of it
+    files = [p for p in folder.iterdir() if p.is_file() and p.resolve().parent == inside]
+    return sorted(p for p in files if is_log(p) and not is_bag(p))
+
+
+def is_log(path: Path) -> bool:
+    """Whether a file's name ends as that of a log that can be read."""
+    return path.name.lower().endswith(tuple(DOORS))
 
 
 def _reading(read: Callable[[], Result], file: str) -> Result:
@@ -126,6 +152,12 @@ def require_columns(columns: Iterable[str], file: str, wanted: Wanted) -> None:
     """Raise an ExperimentError for the first wanted column that is not among those found."""
     columns = list(columns)
     for column, channel in wanted.items():
+        same = [name for name in columns if bare_column(name) == column]
+        if column not in columns and same:
+            raise ExperimentError(
+                f"{file}: {channel}: found {len(same)} columns {quoted(column)}, "
+                f"expected one of {', '.join(map(quoted, same))}"
+            )
         if column not in columns:
             raise ExperimentError(
                 f"{file}: {channel}: no column {quoted(column)}, "
@@ -174,7 +206,9 @@ def _seconds(values: NDArray[Any]) -> Array:
 
 
 def _plain_objects(values: NDArray[Any]) -> NDArray[Any]:
-    """Objects as numbers where all are: None is an empty cell."""
+    """Objects as numbers where all are, written as text or not: None is an empty cell."""
+    if any(isinstance(v, str) for v in values):
+        values = np.array([number_of(v) if isinstance(v, str) else v for v in values], dtype=object)
     if all(v is None or isinstance(v, int | float | np.number) for v in values):
         return np.array([np.nan if v is None else v for v in values], dtype=np.float64)
     if len(values) and hasattr(values[0], "isoformat"):

@@ -40,15 +40,21 @@ def lanes(signals: int) -> int:
 
 
 @kept
-def one_way(y: Array, sos: Array, steady_state: Array, backward: bool) -> None:
-    """Filter the columns of y (samples, signals) in place, from one end to the other."""
-    n, r = y.shape
-    states = np.empty((2, 2, r))
-    begin = n - 1 if backward else 0
+def settle(states: Array, steady_state: Array, row: Array) -> None:
+    """Set the states (2, 2, signals) to those of a signal that has always been this row."""
     for s in range(2):
         for i in range(2):
-            for j in range(r):
-                states[s, i, j] = steady_state[s, i] * y[begin, j]
+            for j in range(len(row)):
+                states[s, i, j] = steady_state[s, i] * row[j]
+
+
+@kept
+def go_on(y: Array, states: Array, sos: Array, backward: bool) -> None:
+    """Filter the columns of y (samples, signals) in place, from these states on.
+
+    states: (2, 2, signals), afterwards those at the other end
+    """
+    n, r = y.shape
     b0, b1, b2, a1, a2 = sos[0, 0], sos[0, 1], sos[0, 2], sos[0, 4], sos[0, 5]
     d0, d1, d2, c1, c2 = sos[1, 0], sos[1, 1], sos[1, 2], sos[1, 4], sos[1, 5]
     for step in range(n):
@@ -65,6 +71,26 @@ def one_way(y: Array, sos: Array, steady_state: Array, backward: bool) -> None:
 
 
 @kept
+def one_way(y: Array, sos: Array, steady_state: Array, backward: bool) -> None:
+    """Filter the columns of y (samples, signals) in place, from one end to the other."""
+    n, r = y.shape
+    states = np.empty((2, 2, r))
+    settle(states, steady_state, y[n - 1 if backward else 0])
+    go_on(y, states, sos, backward)
+
+
+@kept
+def copied(values: Array, to: Array) -> None:
+    """Copy the rows of one array into another; both lie without gaps in memory.
+
+    One by one: for rows at once numba compiles a check of shapes, which takes three times as long.
+    """
+    flat, there = values.ravel(), to.ravel()
+    for i in range(values.size):
+        there[i] = flat[i]
+
+
+@kept
 def both_ways(y: Array, extended: Array, sos: Array, steady_state: Array) -> None:
     """Filter the columns of y (n samples, signals) forward and backward: zero phase.
 
@@ -76,10 +102,7 @@ def both_ways(y: Array, extended: Array, sos: Array, steady_state: Array) -> Non
         for j in range(r):
             extended[k, j] = 2.0 * y[0, j] - y[m - k, j]
             extended[m + n + k, j] = 2.0 * y[n - 1, j] - y[n - 2 - k, j]
-    # one by one: for rows at once numba compiles a check of shapes, which takes three times as long
-    for k in range(n):
-        for j in range(r):
-            extended[m + k, j] = y[k, j]
+    copied(y, extended[m : m + n])
     one_way(extended, sos, steady_state, False)
     one_way(extended[m:], sos, steady_state, True)
 

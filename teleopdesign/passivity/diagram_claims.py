@@ -17,15 +17,12 @@ from ..arguments import checked
 from ..diagrams import Diagram
 from ..errors import ModelError
 from ..notebook import html_table
-from .claims.axis_units import in_units_of
 from .claims.claim import Claim, Proof, Refutation, Unknown
 from .device_claims import device_claims
 from .friction_pairs import FrictionPair, friction_pairs, pair_claims
-from .linear.hidden_modes import growth_within
-from .linear.positive_real import NEARBY, positive_real
+from .linear_diagrams import WHOLE, linear_claims
 from .ports import (
     Port,
-    impedance_matrix,
     judged,
     nonlinear_parts,
     ports,
@@ -36,11 +33,6 @@ from .ports import (
 from .search.by_simulation import Computer, SimulatedMotion, search_counterexample
 from .theorems import TopicClaim
 from .theorems.wave_channel import wave_claim
-from .two_port.claims import absolutely_stable, passive
-from .two_port.two_port import two_port
-
-#: topics that settle all ports at once
-WHOLE = ("all ports, any motion", "the port, any motion", "both ports, any motion")
 
 
 @checked
@@ -122,92 +114,6 @@ def wave_claims(diagram: Diagram) -> list[TopicClaim]:
     if not isinstance(claim.verdict, Proof):
         return []
     return [TopicClaim(WHOLE[2], claim)]
-
-
-def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
-    """Passivity of a linear diagram at its ports, and absolute stability where there are two.
-
-    What is refuted is so for all values nearby, too: none rests on the rounding of a number. What
-    is proved has no mode inside that grows by itself, though no port shows it from rest.
-    """
-    claims = _linear_claims(diagram, all_ports)
-    if any(one.claim.status == "proved" for one in claims):
-        claims = _beside_what_grows(claims, growth_within(diagram))
-    if not any(one.claim.status == "refuted" for one in claims):
-        return claims
-    nearby = [_linear_claims(other, all_ports) for other in _nearby(diagram)]
-    return [
-        one if all(other[k].claim.status == "refuted" for other in nearby) else _on_rounding(one)
-        for k, one in enumerate(claims)
-    ]
-
-
-def _beside_what_grows(claims: list[TopicClaim], rate: float | None) -> list[TopicClaim]:
-    if rate is None:
-        return claims
-    why = (
-        f"from rest its impedance is that of a passive one, but a mode inside that no port shows "
-        f"grows by itself at {rate:.4g} 1/s"
-    )
-    return [
-        replace(one, claim=Claim(one.claim.statement, Unknown(why)))
-        if one.claim.status == "proved"
-        else one
-        for one in claims
-    ]
-
-
-def _nearby(diagram: Diagram) -> list[Diagram]:
-    """The diagram with its values a few last digits of a float away, in turn to either side."""
-    values = diagram.values
-    return [
-        diagram.with_values(
-            {
-                name: value * (1 + side * (-1) ** (k >> bit) * NEARBY)
-                for k, (name, value) in enumerate(values.items())
-            }
-        )
-        for bit in range(2)
-        for side in (1, -1)
-    ]
-
-
-def _on_rounding(one: TopicClaim) -> TopicClaim:
-    if one.claim.status != "refuted":
-        return one
-    why = f"it fails by less than a change of {NEARBY:.1g} of its values decides: rounding"
-    return replace(one, claim=Claim(one.claim.statement, Unknown(why)))
-
-
-def _linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
-    if len(all_ports) > 2:
-        statement = f"{diagram.name}: its {len(all_ports)} ports are passive together"
-        why = "the exact tests are for one port or two"
-        return [TopicClaim(WHOLE[0], Claim(statement, Unknown(why)))]
-    try:
-        z = impedance_matrix(diagram, all_ports)
-        if len(all_ports) == 1:
-            claim = in_units_of(_axis(diagram, all_ports), positive_real(z[0, 0]))
-            return [TopicClaim(WHOLE[1], claim)]
-    except ModelError as problem:
-        claim = Claim(f"{diagram.name}: its ports are passive", Unknown(str(problem)))
-        return [TopicClaim(WHOLE[0], claim)]
-    system = two_port(z.tolist())
-    axis = _axis(diagram, all_ports)
-    return [
-        TopicClaim(WHOLE[2], in_units_of(axis, passive(system))),
-        TopicClaim(
-            "both ports, whatever passive holds them",
-            in_units_of(axis, absolutely_stable(system)),
-        ),
-    ]
-
-
-def _axis(diagram: Diagram, all_ports: Sequence[Port]) -> str:
-    """The axis that all bodies at the ports share; "prismatic" where they differ."""
-    motions = {motion.removesuffix("_tip") for port in all_ports for motion in port.weights}
-    axes = {getattr(b.body, "axis", "") for b in diagram.bodies if b.motion in motions}
-    return axes.pop() if len(axes) == 1 else "prismatic"
 
 
 def composed_claim(

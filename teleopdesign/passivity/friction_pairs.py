@@ -9,6 +9,7 @@ from ..controllers import Controller, Stage
 from ..diagrams import Control, Diagram, Moving
 from ..errors import ModelError
 from .claims.claim import Claim, Unknown
+from .declarations import keeps_its_bound
 from .identified import IdentifiedDevice, about_device, identified
 from .theorems import Question, TopicClaim, settle
 
@@ -82,7 +83,7 @@ def _is_bounded(control: Control, part: Moving, diagram: Diagram) -> bool:
     made = {j.output: j.terms for j in diagram.junctions}
     adds = control.output == part.command or made.get(part.command, {}).get(control.output) == 1
     users = [p.name for p in diagram.parts if control.output in p.inputs]
-    known = bool(law.stages[0].law.bound)
+    known = keeps_its_bound(law.stages[0])
     acts = not any(e.role == "actuation" for e in getattr(part.body, "effects", ()))
     return known and adds and len(users) == 1 and acts
 

@@ -26,6 +26,7 @@ from ..realise.reach import ANY_MOTION, Reach
 from ..realise.simulated import without_absent
 from .claims.axis_units import in_units_of
 from .claims.claim import Claim, Unknown
+from .declarations import unchecked_energy
 
 _PRESLIDING = EFFECTS["presliding"]
 #: roles of the friction level: their laws are in the interval of the level, whatever they do
@@ -142,17 +143,23 @@ def _resistance(body: Body, damping: Interval, reach: Reach | None) -> Interval:
 def effects_left_open(body: Body, reach: Reach | None = None, *, errors: float) -> tuple[str, ...]:
     """Effects that may supply energy, or are of a kind that no theorem on friction is about.
 
+    Those of one's own that declare not to, where nothing has checked that, are among them.
     errors: standard errors of the parameters to either side
     """
     body = without_absent(body, surely=True)
     supplying = damping_interval(body, reach, errors=errors).supplying
-    return (*(e.name for e in body.effects if _is_open(e)), *supplying)
+    unchecked = unchecked_energy(body, reach, errors=errors)
+    left = (*(e.name for e in body.effects if _is_open(e)), *supplying, *unchecked)
+    return tuple(dict.fromkeys(left))
 
 
-def of_whole_device(claim: Claim, *, over: str, left: Sequence[str]) -> Claim:
+def of_whole_device(
+    claim: Claim, *, over: str, left: Sequence[str], declared: Sequence[str] = ()
+) -> Claim:
     """A claim about friction as one about its device: over which reach, and with all its effects.
 
     over: `FrictionInterval.over`;  left: effects that it leaves open
+    declared: of these, which declare that they take energy, where nothing has checked that
     What holds for friction alone is not known of a device with an effect that may supply energy.
     """
     if over != ANY_MOTION:
@@ -160,7 +167,10 @@ def of_whole_device(claim: Claim, *, over: str, left: Sequence[str]) -> Claim:
     if not left or not claim.holds:
         return claim
     why = f"holds for friction alone, {claim.verdict}; but {', '.join(left)} may supply energy, or "
-    return Claim(claim.statement, Unknown(why + "are of a kind that no theorem here is about"))
+    why += "are of a kind that no theorem here is about"
+    if stated := [n for n in left if n in declared]:
+        why += f"; as declared by {', '.join(stated)} it takes energy, which nothing has checked"
+    return Claim(claim.statement, Unknown(why))
 
 
 def about_device(device: IdentifiedDevice, claim: Claim, *, besides: Sequence[str] = ()) -> Claim:
@@ -170,7 +180,8 @@ def about_device(device: IdentifiedDevice, claim: Claim, *, besides: Sequence[st
     """
     left = [name for name in device.set_aside if name not in besides]
     claim = in_units_of(device.body.axis, claim)
-    return of_whole_device(claim, over=device.friction.over, left=left)
+    declared = [e.name for e in device.body.effects if e.energy != "supplies"]
+    return of_whole_device(claim, over=device.friction.over, left=left, declared=declared)
 
 
 def _is_open(effect: Effect) -> bool:

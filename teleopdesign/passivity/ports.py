@@ -22,6 +22,7 @@ from ..errors import ModelError
 from ..realise.lti import LinearBlocks, S, linear_blocks
 from ..realise.simulated import without_absent
 from ..realise.tips import with_tips
+from .declarations import falsely_linear
 from .linear.impedance import exact
 
 #: blocks that hold a port, by the names that the package gives them: not part of what is judged
@@ -113,6 +114,7 @@ def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
         form = part.controller.linear_form(part.name, S, speed)
         if form is not None and form.has(speed):
             names.append(part.name)
+    names += falsely_linear(diagram)
     names += [k.name for k in diagram.kinematics]
     return (*names, *(j.name for j in diagram.junctions if j.arms))
 

@@ -57,11 +57,15 @@ def draw_graph(
 
 
 def thin_series(series: Series, most: int) -> Series:
-    """The series with at most `most` points: the lowest and the highest of each bucket of them."""
+    """The series with at most `most` points: the lowest and the highest of each bucket of them.
+
+    Of a cloud ("rest") every k-th point: the extremes alone would leave its middle empty.
+    """
     n = len(series.x)
     if n <= most:
         return series
-    kept = extremes(series.y, most // 2)
+    cloud = series.kind == "rest"
+    kept = np.linspace(0, n - 1, most).astype(np.intp) if cloud else extremes(series.y, most // 2)
     cut = [None if b is None else b[kept] for b in (series.low, series.high)]
     return Series(series.name, series.x[kept], series.y[kept], series.kind, cut[0], cut[1])
 

@@ -69,11 +69,10 @@ def residual_along(
     acting = acting_along(body, motion, along)
     along = along.with_signals({SIGNALS["acting_force"]: acting})
     inertia = along.evaluate(body.symbols()["inertia"] * SIGNALS["acceleration"])
-    needed = acting + interaction - inertia
+    forces = [_force(effect, along) for effect in along.present(body.effects, "force")]
     if motion.carried is not None:
-        needed = needed - _carried(motion, motion.carried, along)
-    for effect in along.present(body.effects, "force"):
-        needed = needed - _force(effect, along)
+        forces = [_carried(motion, motion.carried, along), *forces]
+    needed = (acting + interaction).less([inertia, *forces])
     contact = body.contact()
     structures = along.present(body.effects, "structure")
     if contact != 0 and structures:
@@ -141,7 +140,7 @@ def _led(effect: Effect, motion: Motion, along: Along, unexplained: Traced) -> T
     """Force that it takes to lead a hidden body as its position is corrected."""
     momentum = effect.led_momentum()
     if momentum == 0:
-        return Traced(np.zeros_like(unexplained.value), np.zeros_like(unexplained.tangent))
+        return along.constant(np.zeros_like(unexplained.value))
     slope = motion.spectrum.derivative(1) * motion.smoothing
     led = along.with_signals({UNEXPLAINED: unexplained}).evaluate(momentum)
     return through(lambda y: motion.spectrum.multiply(y, slope), led)

@@ -14,7 +14,15 @@ from numpy.typing import NDArray
 
 from ..machine_code import kept
 from ..measurement.filtering import Array
-from ..measurement.zero_phase import both_ways, columns, margin, sections
+from ..measurement.zero_phase import both_ways, lanes, margin, sections
+from ..measurement.zero_phase_spans import (
+    between,
+    crossings,
+    filter_spans,
+    reach,
+    spans_of,
+    windows,
+)
 from .traced import Traced
 
 #: projected steps: on 109 simulated records of right models the 95th percentile of what they leave,
@@ -27,49 +35,113 @@ def _balance(
     left: Array,
     rows: NDArray[np.intp],
     there: Array,
-    sos: Array,
-    steady: Array,
+    spans: NDArray[np.intp],
     m: int,
+    filters: tuple[Array, Array, Array, Array],
 ) -> Array:
     """Friction at the rows where its bounds leave it open; columns: the value, then its tangents.
 
     left: needed less friction at all samples, changed in place
     there: (3, rows, columns), what is needed at these rows, least and largest friction
+    spans: of `spans_of` these rows;  m: samples by which records are continued
+    filters: as `filter_spans` takes them
     """
     n, r = left.shape
+    sos, steady, _, _ = filters
     needed, low, high = there[0], there[1], there[2]
     extended = np.zeros((n + 2 * m, r))
-    friction: Array = np.empty_like(needed)
-    ahead = needed.copy()
+    friction: Array = np.zeros_like(needed)
+    smooth, ahead, now = np.zeros_like(needed), needed.copy(), np.empty(r)
     momentum, carried = 1.0, 0.0
     for turn in range(STEPS + 1):
-        if turn > 0:
+        if turn == 1:
             both_ways(left, extended, sos, steady)
+            for k in range(n):  # from here on: by what it changes from one step to the next
+                for j in range(r):
+                    left[k, j] = 0.0
+        elif turn > 1:
+            filter_spans(left, extended, spans, filters)
+        if turn > 0:
             later = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * momentum**2))
             carried = (momentum - 1.0) / later
             momentum = later
         for i, k in enumerate(rows):
-            value = ahead[i, 0] + extended[m + k, 0]
-            above, below = value >= high[i, 0], value <= low[i, 0]
-            for j in range(r):  # where the value is clipped, its tangents are the bound's
-                before, within = friction[i, j], ahead[i, j] + extended[m + k, j]
-                now = high[i, j] if above else low[i, j] if below else within
-                friction[i, j] = now
-                ahead[i, j] = now + carried * (now - before) if turn > 0 else now
-                left[k, j] = needed[i, j] - ahead[i, j]
+            for j in range(r):
+                smooth[i, j] += extended[m + k, j]
+            value = ahead[i, 0] + smooth[i, 0]
+            # where the value is clipped, its tangents are the bound's; a loop for each case, for
+            # with all in one numba makes no vector instructions
+            if value >= high[i, 0]:
+                for j in range(r):
+                    now[j] = high[i, j]
+            elif value <= low[i, 0]:
+                for j in range(r):
+                    now[j] = low[i, j]
+            else:
+                for j in range(r):
+                    now[j] = ahead[i, j] + smooth[i, j]
+            for j in range(r):
+                next_ahead = now[j] + carried * (now[j] - friction[i, j])
+                left[k, j] = ahead[i, j] - next_ahead
+                ahead[i, j] = next_ahead
+                friction[i, j] = now[j]
     return friction
+
+
+def side_by_side(signal: Traced, at: slice | NDArray[np.intp] = slice(None)) -> Array:
+    """Value and tangents of a signal at some samples, as columns (samples, lanes)."""
+    count = 1 + len(signal.tangent)
+    value = signal.value[at]
+    beside = np.zeros((len(value), lanes(count)))
+    beside[:, 0] = value
+    if not signal.is_constant:
+        beside[:, 1:count] = signal.tangent[:, at].T
+    return beside
 
 
 def balanced(
     needed: Traced, low: Traced, high: Traced, *, bandwidth: float, sample_time: float
 ) -> Traced:
     """Friction between its bounds, with its tangents; bandwidth: Hz;  sample_time: s."""
-    is_open = (low.value != high.value) | (low.tangent != high.tangent).any(axis=0)
-    rows = np.flatnonzero(is_open)
-    sos, steady = sections(bandwidth, sample_time)
-    left = columns((needed - low).rows())
-    there = np.stack([columns(a.rows(rows)) for a in (needed, low, high)])
-    m = margin(len(left), sample_time)
+    is_open = low.value != high.value
+    both = None if low.moving is None or high.moving is None else {*low.moving, *high.moving}
+    for j in range(len(low.tangent)) if both is None else both:
+        is_open |= low.tangent[j] != high.tangent[j]
+    rows, n = np.flatnonzero(is_open), len(is_open)
+    if not len(rows):
+        return low
+    m = margin(n, sample_time)
     friction = low.rows()
-    friction[:, rows] = _balance(left, rows, there, sos, steady, m)[:, : len(friction)].T
+    for first, last in windows(rows, n, m, reach(bandwidth, sample_time)):
+        here, mine = slice(first, last), rows[(rows >= first) & (rows < last)] - first
+        friction[:, first + mine] = _at_open_rows(
+            needed.between(here),
+            low.between(here),
+            high.between(here),
+            mine,
+            # between others a window's ends are felt at no open row
+            m if first == 0 or last == n else 1,
+            (bandwidth, sample_time),
+        )
     return Traced(friction[0], friction[1:])
+
+
+def _at_open_rows(
+    needed: Traced,
+    low: Traced,
+    high: Traced,
+    rows: NDArray[np.intp],
+    m: int,
+    of_filter: tuple[float, float],
+) -> Array:
+    """Friction and its tangents (1 + p, rows) where its bounds leave it open.
+
+    m: samples by which the signals are continued;  of_filter: its bandwidth (Hz) and sample time
+    """
+    left = side_by_side(needed - low)
+    there = np.stack([side_by_side(a, rows) for a in (needed, low, high)])
+    m = min(m, len(left) - 1)
+    bandwidth, sample_time = of_filter
+    spans = spans_of(rows, len(left), m, bandwidth * sample_time)
+    filters = (*sections(*of_filter), *between(spans, *crossings(*of_filter)))
+    return _balance(left, rows, there, spans, m, filters)[:, : 1 + len(needed.tangent)].T

@@ -40,8 +40,8 @@ def damping_interval(body: Body, reach: Reach | None = None, *, errors: float) -
     forces = [e for e in body.effects if e.role == "force" and e.energy != "stores"]
     plain = [e for e in forces if not e.states]
     open_ones = [e for e in forces if e.energy == "supplies"]
-    for counted in ([e for e in plain if _bound(body, [e], reach, errors)], _taking(plain)):
-        least = _bound(body, counted, reach, errors)
+    for counted in ([e for e in plain if least_damping(body, [e], reach, errors)], _taking(plain)):
+        least = least_damping(body, counted, reach, errors)
         if least is not None and least.low >= 0:
             left = tuple(e.name for e in open_ones if e not in counted)
             return DampingInterval(least, left)
@@ -63,10 +63,10 @@ def _taking(effects: Sequence[Effect]) -> list[Effect]:
     return [e for e in effects if e.energy == "dissipates"]
 
 
-def _bound(
+def least_damping(
     body: Body, effects: Sequence[Effect], reach: Reach | None, errors: float
 ) -> Interval | None:
-    """The least damping of these together; None where none is known."""
+    """The least damping of these forces together at any speed, N s/m; None: no bound is known."""
     try:
         force = sum((e.expression() for e in effects), sp.S(0))
         against = DIRECTION * force.subs(SIGNALS["velocity"], DIRECTION * SPEED)

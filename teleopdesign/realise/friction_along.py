@@ -13,7 +13,7 @@ from ..effects import SIGNALS, ordered
 from ..measurement.motion import Motion
 from .balance import balanced
 from .scan import driven_scan, shape_bounds
-from .traced import Along, Traced
+from .traced import Along, Traced, constant
 
 _DIRECTION, _ACTING = SIGNALS["direction"], SIGNALS["acting_force"]
 
@@ -41,8 +41,9 @@ def bound_friction(
     def towards(way: float) -> Traced:
         this_way = along.with_signals({_DIRECTION: along.constant(np.full(n, way))})
         size = this_way.evaluate(level)
-        size.tangent[:, size.value < 0] = 0.0
-        return Traced(np.maximum(size.value, 0.0), size.tangent)
+        if not size.is_constant:
+            size.tangent[:, size.value < 0] = 0.0
+        return Traced(np.maximum(size.value, 0.0), size.tangent, size.moving)
 
     forward = towards(1.0)
     backward = towards(-1.0) if level.has(_DIRECTION) else forward
@@ -55,6 +56,8 @@ def bound_friction(
 def _bound_sliding(motion: Motion, forward: Traced, backward: Traced) -> tuple[Traced, Traced]:
     """sgn v times the level where the direction is known; elsewhere any force up to the level."""
     ahead, back = motion.direction > 0, motion.direction < 0
+    if forward is backward:
+        return forward.times(np.where(ahead, 1.0, -1.0)), forward.times(np.where(back, -1.0, 1.0))
     low = Traced(
         np.where(ahead, forward.value, -backward.value),
         np.where(ahead, forward.tangent, -backward.tangent),
@@ -77,7 +80,7 @@ def balance_friction(motion: Motion, needed: Traced, low: Traced, high: Traced) 
 def friction_of_acting_force(level: sp.Expr, friction: Traced, along: Along) -> Traced:
     """The part of the friction that the acting force itself makes."""
     if not level.has(_ACTING):
-        return Traced(np.zeros_like(friction.value), np.zeros_like(friction.tangent))
+        return constant(np.zeros_like(friction.value), len(friction.tangent))
     rest = level.subs(_ACTING, 0)
     share = along.evaluate(sp.Piecewise((1 - rest / level, level > 0), (0, True)))
     tangent = friction.tangent * share.value + friction.value * share.tangent

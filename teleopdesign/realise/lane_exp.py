@@ -50,7 +50,7 @@ def _compiled_power_of_two(n):  # type: ignore[no-untyped-def]
     return lambda n: _power_of_two(n)  # type: ignore[call-arg,unused-ignore]
 
 
-@njit(nogil=True, error_model="numpy", forceinline=True)  # type: ignore[untyped-decorator,unused-ignore]
+@njit(nogil=True, error_model="numpy", forceinline=True, fastmath={"contract", "arcp"})  # type: ignore[untyped-decorator,unused-ignore]
 def exp(x: float) -> float:
     """exp(x)"""
     inside = min(max(x, _LEAST), _MOST)

@@ -75,6 +75,15 @@ def _stage_source(effect: Effect) -> str:
     used, names = _used(effect), _names(effect)
     by = _slopes_by(effect, "command")
     parameters = [names[s] for s in effect.symbols().values()]
+    step = [
+        *assignments({"a": a}, names),
+        *_lines("a", a, by, names),
+        "e, p1, p2, p3 = phi(a * h)",
+        "s1 = p1 - p2",
+        "s2 = p2 - 2.0 * p3",
+    ]
+    # a lag that no signal changes moves on alike in each sample: an exponential for all of them
+    each = any(a.has(SIGNALS[n]) for n in used)
     return f"""{_HEAD}
 
 @jitted
@@ -83,16 +92,15 @@ def stage(h, columns, {", ".join([*parameters, *(f"{n}_" for n in used)])}, dcom
     p, n = dcommand.shape
     dz = np.zeros(p)
     {_STATE} = 0.0
+{indented([] if each else step, 4)}
     for k in range(n):
 {indented([f"u_{n} = {n}_[k]" for n in used], 8)}
-{indented(assignments({"a": a, "b": b}, names), 8)}
+{indented(step if each else [], 8)}
+{indented(assignments({"b": b}, names), 8)}
         starting = k == 0 and a != 0.0
         if starting:
             {_STATE} = -b / a  # settled
-{indented(_lines("a", a, by, names) + _lines("b", b, by, names), 8)}
-        e, p1, p2, p3 = phi(a * h)
-        s1 = p1 - p2
-        s2 = p2 - 2.0 * p3
+{indented(_lines("b", b, by, names), 8)}
         z = {_STATE}
         mean[k] = z * p1 + b * h * p2
         end[k] = z
@@ -298,6 +306,13 @@ def _stopped_source(effect: Effect) -> str:
     )
 
 
+@lru_cache(maxsize=64)
+def _shape_of(effect: Effect) -> tuple[str, tuple[str, ...]]:
+    """Source of a shape's bounds, and the signals besides that it is called with."""
+    source = _stopped_source(effect) if effect.stops() else _shape_source(effect)
+    return source, tuple(_used_by_shape(effect))
+
+
 def shape_bounds(
     effect: Effect, motion: Motion, along: Along, *, forward: Traced, backward: Traced
 ) -> tuple[Traced, Traced]:
@@ -309,11 +324,10 @@ def shape_bounds(
     They coincide where the motion is told; where it is not, they lie apart by what half a step of
     the position means to the bristle, and no further than the level.
     """
-    source = _stopped_source(effect) if effect.stops() else _shape_source(effect)
+    source, used = _shape_of(effect)
     scan = compiled(source, "shape")
-    used = _used_by_shape(effect)
     low, high = np.empty_like(forward.value), np.empty_like(forward.value)
-    dlow, dhigh = np.empty_like(forward.tangent), np.empty_like(forward.tangent)
+    dlow, dhigh = np.empty(forward.tangent.shape), np.empty(forward.tangent.shape)
     scan(
         along.step,
         0.5 * motion.step,
@@ -324,9 +338,9 @@ def shape_bounds(
         *[along.values[s] for s in effect.symbols().values()],
         *[along.signals[SIGNALS[n]].value for n in used],
         forward.value,
-        forward.tangent,
+        np.ascontiguousarray(forward.tangent),
         backward.value,
-        backward.tangent,
+        np.ascontiguousarray(backward.tangent),
         low,
         dlow,
         high,

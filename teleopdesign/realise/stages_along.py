@@ -14,6 +14,7 @@ import sympy as sp
 
 from ..blocks import Body
 from ..effects import SIGNALS, Effect, delayed
+from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from .scan import stage_scan
 from .traced import Along, Traced, through
@@ -65,11 +66,16 @@ def stages_along(body: Body, motion: Motion, along: Along) -> list[ActuationStag
     along: at the rows, the command among its signals
     """
     effects = along.present(body.effects, "actuation")
+    if not effects:
+        return []
+    laws = [law for e in effects for law in (e.expression(), *e.rates().values())]
     late = any(e.states or e.expression().has(delayed) for e in effects)
     parts = min(PARTS * motion.merged, MOST_PARTS) if late else 1
     signal = through(lambda y: np.repeat(y, parts, axis=-1), along.signals[_COMMAND])
     signals = {
-        SIGNALS[name]: along.constant(np.repeat(getattr(motion, name), parts)) for name in _MOTION
+        SIGNALS[name]: along.constant(np.repeat(getattr(motion, name), parts))
+        for name in _MOTION
+        if any(law.has(SIGNALS[name]) for law in laws)
     }
     fine = replace(along, signals=signals, step=along.step / parts)
     stages: list[ActuationStage] = []
@@ -100,13 +106,20 @@ def _shift(along: Along, delay: sp.Expr) -> Traced:
     signal, step = along.signals[_COMMAND], along.step
     tau = float(delay.subs(along.values))
     whole, part = divmod(max(tau, 0.0) / step, 1.0)
-    n = signal.value.shape[-1]
-    late = np.clip(np.arange(n) - int(whole), 0, None)
-    later = np.clip(late - 1, 0, None)
-    shifted = through(lambda y: (1 - part) * y[..., late] + part * y[..., later], signal)
+    late, later = int(whole), int(whole) + 1
+    shifted = through(lambda y: (1 - part) * _later(y, late) + part * _later(y, later), signal)
     tangent = shifted.tangent.copy()
-    slope = (signal.value[later] - signal.value[late]) / step
+    slope = (_later(signal.value, later) - _later(signal.value, late)) / step
     for i, column in enumerate(along.columns):
         if isinstance(column, sp.Symbol) and delay.has(column):
             tangent[i] += slope * float(sp.diff(delay, column).subs(along.values))
     return replace(shifted, tangent=tangent)
+
+
+def _later(y: Array, steps: int) -> Array:
+    """Signals (..., n) so many steps later: before they begin they are what they begin with."""
+    held = min(steps, y.shape[-1])
+    shifted = np.empty_like(y)
+    shifted[..., :held] = y[..., :1]
+    shifted[..., held:] = y[..., : y.shape[-1] - held]
+    return shifted

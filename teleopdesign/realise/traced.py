@@ -20,27 +20,63 @@ from ..measurement.filtering import Array
 
 @dataclass(frozen=True)
 class Traced:
-    """A signal of n samples and its tangents (p, n) by the p parameters asked for."""
+    """A signal of n samples and its tangents (p, n) by the p parameters asked for.
+
+    moving: rows of the tangents that may differ from zero; None: any of them
+    """
 
     value: Array
     tangent: Array
+    moving: tuple[int, ...] | None = None
 
     def rows(self, at: slice | NDArray[np.intp] = slice(None)) -> Array:
         """Value and tangents as rows of one array (1 + p, n);  at: of some samples only."""
         return np.vstack([self.value[at][None], self.tangent[:, at]])
 
+    def between(self, at: slice) -> Traced:
+        """The signal from one sample to another."""
+        return Traced(self.value[at], self.tangent[:, at], self.moving)
+
     @property
     def is_constant(self) -> bool:
         """Whether no parameter changes the signal."""
-        return self.tangent.strides == (0, 0) or not self.tangent.any()
+        if self.tangent.strides == (0, 0):
+            return True
+        return self.moving == () or (self.moving is None and not self.tangent.any())
 
     def __add__(self, other: Traced) -> Traced:
         tangent = self.tangent if other.is_constant else self.tangent + other.tangent
         return Traced(self.value + other.value, tangent)
 
     def __sub__(self, other: Traced) -> Traced:
-        tangent = self.tangent if other.is_constant else self.tangent - other.tangent
-        return Traced(self.value - other.value, tangent)
+        return self.less([other])
+
+    def less(self, others: Sequence[Traced]) -> Traced:
+        """The signal without others; of their tangents only rows that may not be zero are read."""
+        value = self.value
+        for other in others:
+            value = value - other.value
+        changing = [other for other in others if not other.is_constant]
+        if not changing:
+            return Traced(value, self.tangent, self.moving)
+        tangent = np.array(self.tangent)
+        for other in changing:
+            if other.moving is None:
+                tangent -= other.tangent
+            else:
+                for j in other.moving:
+                    tangent[j] -= other.tangent[j]
+        return Traced(value, tangent)
+
+    def times(self, factor: Array) -> Traced:
+        """The signal times a factor at each sample (n,)."""
+        if self.is_constant or self.moving is None:
+            tangent = self.tangent if self.is_constant else self.tangent * factor
+            return Traced(self.value * factor, tangent, self.moving)
+        tangent = np.zeros(self.tangent.shape)
+        for j in self.moving:
+            tangent[j] = self.tangent[j] * factor
+        return Traced(self.value * factor, tangent, self.moving)
 
 
 def constant(value: Array, parameters: int) -> Traced:
@@ -57,11 +93,16 @@ def through(filtered: Callable[[Array], Array], signal: Traced) -> Traced:
     """A signal and its tangents through a linear filter; tangents that are zero stay so."""
     if signal.is_constant:
         return constant(filtered(signal.value), len(signal.tangent))
-    moving = signal.tangent.any(axis=1)
-    both = filtered(np.vstack([signal.value[None], signal.tangent[moving]]))
+    rows = signal.moving
+    if rows is None:
+        rows = tuple(np.flatnonzero(signal.tangent.any(axis=1)).tolist())
+    if len(rows) == len(signal.tangent):
+        both = filtered(signal.rows())
+        return Traced(both[0], both[1:])
+    both = filtered(np.vstack([signal.value[None], signal.tangent[list(rows)]]))
     tangent = np.zeros((len(signal.tangent), both.shape[-1]))
-    tangent[moving] = both[1:]
-    return Traced(both[0], tangent)
+    tangent[list(rows)] = both[1:]
+    return Traced(both[0], tangent, rows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,6 +162,7 @@ class Along:
 class NumericLaw:
     """A sympy expression as a numpy function of signals and parameters, with its derivatives."""
 
+    expression: sp.Expr
     signals: tuple[sp.Symbol, ...]
     parameters: tuple[sp.Symbol, ...]
     call: Callable[..., Any]
@@ -131,28 +173,34 @@ class NumericLaw:
         n = len(next(iter(signals.values())).value)
         with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
             out = self.call(*arrays, *[np.float64(values[p]) for p in self.parameters])
-        value = np.broadcast_to(np.asarray(out[0], dtype=float), (n,))
-        tangent = np.zeros((len(columns), n))
+        value = np.broadcast_to(np.asarray(out[0], dtype=float), (n,)).copy()
         places = {column: j for j, column in enumerate(columns)}
+        symbols = [getattr(column, "symbol", column) for column in columns]  # a probe: its strength
+        moved = [s for s in self.signals if not signals[s].is_constant]
+        if not moved and not any(s in self.parameters for s in symbols):
+            return constant(value, len(columns))
+        by_signal = dict(zip(self.signals, out[1 : 1 + len(arrays)], strict=True))
+        parts = (by_signal[s] * signals[s].tangent for s in moved)
+        tangent = next(parts) if moved else np.zeros((len(columns), n))
+        for part in parts:
+            tangent += part
         for p, d in zip(self.parameters, out[1 + len(arrays) :], strict=True):
             if p in places:
                 tangent[places[p]] += d
         for j, column in enumerate(columns):
             if isinstance(column, Probe) and column.symbol in self.parameters:
                 tangent[j] += self._slope(column, arrays, values)
-        for s, d in zip(self.signals, out[1 : 1 + len(arrays)], strict=True):
-            if not signals[s].is_constant:
-                tangent += d * signals[s].tangent
-        return Traced(value.copy(), tangent)
+        rows = tuple(j for j, s in enumerate(symbols) if s in self.parameters)
+        return Traced(value, tangent, None if moved else rows)
 
     def _slope(
         self, probe: Probe, arrays: Sequence[Array], values: Mapping[sp.Symbol, float]
     ) -> Any:
         """Derivative by the probe's strength, at the probe's values of the other parameters."""
         numbers = [np.float64(probe.values.get(p, values[p])) for p in self.parameters]
+        call = _slope_call(self.expression, self.signals, self.parameters, probe.symbol)
         with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
-            out = self.call(*arrays, *numbers)
-        return out[1 + len(arrays) + self.parameters.index(probe.symbol)]
+            return call(*arrays, *numbers)
 
 
 _SIGNALS = tuple(SIGNALS.values())
@@ -180,4 +228,17 @@ def law_of(
     gradients = [slope(expression, s) if s in traced else sp.S(0) for s in used]
     gradients += [slope(expression, p) for p in parameters]
     call = sp.lambdify([*used, *parameters], [expression, *gradients], "numpy", cse=True)
-    return NumericLaw(used, parameters, call)
+    return NumericLaw(expression, used, parameters, call)
+
+
+@lru_cache(maxsize=512)
+def _slope_call(
+    expression: sp.Expr,
+    signals: tuple[sp.Symbol, ...],
+    parameters: tuple[sp.Symbol, ...],
+    symbol: sp.Symbol,
+) -> Callable[..., Any]:
+    """One derivative of a law as a numpy function of its signals and parameters."""
+    arguments = [*signals, *parameters]
+    call: Callable[..., Any] = sp.lambdify(arguments, slope(expression, symbol), "numpy", cse=True)
+    return call

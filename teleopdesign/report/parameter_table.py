@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from ..blocks import CONTACT, NINETY_FIVE, Value
 from ..diagnose import Diagnosis
+from ..effects import EFFECTS
 from ..errors import ExperimentError
 from ..model import Model
 from ..plain_data import plain
@@ -149,7 +150,8 @@ def _stated(diagnosis: Diagnosis) -> dict[str, float]:
     """Values that the experiment's own file gives, by full name (SI)."""
     experiment = diagnosis.experiment
     try:
-        model = Model.from_experiment(experiment, diagnosis.model.known)
+        # a diagnosis that tried some effects knows no others; the file's model may have them
+        model = Model.from_experiment(experiment, {**EFFECTS, **diagnosis.model.known})
     except ExperimentError:  # diagnosed with a model of its own: the file's cannot be built
         return {}
     stated = {f"{place}.inertia" for place in experiment.bodies}

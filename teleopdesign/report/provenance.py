@@ -6,12 +6,16 @@ import hashlib
 from dataclasses import dataclass
 
 from ..measurement.experiment import Experiment
+from ..measurement.record import log_name
 from ..quantity import unit_of
+
+#: bytes that are read at once: a log may be larger than the memory
+_BLOCK = 1 << 20
 
 
 @dataclass(frozen=True)
 class RecordRow:
-    """A record file and what is in it; duration in s, rate in Hz, digest: SHA-256 of the file."""
+    """A record file and what is in it; duration in s, rate in Hz, digest: SHA-256 of its log."""
 
     file: str
     use: str
@@ -53,11 +57,23 @@ def record_rows(experiment: Experiment) -> tuple[RecordRow, ...]:
 
 
 def _digest(experiment: Experiment, file: str) -> str:
-    """SHA-256 of a record file; empty where it is no longer there."""
+    """SHA-256 of a record's log; empty where it is no longer there.
+
+    Of a folder (a bag): of its files one after the other, in the order of their names.
+    """
+    path = experiment.folder / file
+    if not path.exists():  # a part of a log
+        path = experiment.folder / log_name(file)
+    files = sorted(p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
+    whole = hashlib.sha256()
     try:
-        return hashlib.sha256((experiment.folder / file).read_bytes()).hexdigest()
+        for one in files:
+            with one.open("rb") as stream:
+                while block := stream.read(_BLOCK):
+                    whole.update(block)
     except OSError:
         return ""
+    return whole.hexdigest()
 
 
 def channel_rows(experiment: Experiment) -> tuple[ChannelRow, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.rung import Rung
@@ -11,6 +12,11 @@ from ..measurement.experiment import Experiment
 _SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 MINUS = "\u2212"
 NONE = "–"
+
+
+#: between two units, and behind one
+_PRODUCT = re.compile(r"(?<=[A-Za-z])\*(?=[A-Za-z])")
+_POWER = re.compile(r"(?<=[a-z])\^([23])(?!\d)")
 
 
 def number(value: float | None, digits: int = 4) -> str:
@@ -64,6 +70,15 @@ def unit_text(unit: str) -> str:
     if unit == "1":
         return ""
     return unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
+
+
+def typeset(sentence: str) -> str:
+    """A sentence of a terminal as a page prints it: a capital letter, ± and units with dots."""
+    first = sentence.partition(" ")[0].rstrip(",:;")
+    if first.isalpha() and first.isascii():  # no number, and no key of a file
+        sentence = sentence[0].upper() + sentence[1:]
+    sentence = _PRODUCT.sub("·", sentence.replace(" +- ", " ± "))
+    return _POWER.sub(lambda power: "²" if power[1] == "2" else "³", sentence)
 
 
 def listed(names: list[str], last: str = "and") -> str:

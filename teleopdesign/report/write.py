@@ -21,7 +21,7 @@ from ..finding import Finding
 from ..plain_data import write_text
 from .figures import WIDE, colour_scale, graph_figure, ladder_figure, step_figure
 from .page import Page, page_data, page_of
-from .words import number, percent, short, unit_text, with_error
+from .words import number, percent, short, typeset, unit_text, with_error
 
 TEMPLATES = Path(__file__).with_name("templates")
 
@@ -154,6 +154,7 @@ def _environment() -> Environment:
         "share": _share,
         "named": _named,
         "soft": _soft,
+        "typeset": typeset,
     }
     return environment
 

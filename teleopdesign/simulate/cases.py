@@ -71,7 +71,7 @@ def refused(diagram: Diagram, columns: Mapping[str, np.ndarray]) -> dict[int, st
     """Case -> why the diagram does not take its values."""
     suspect = np.zeros(_cases(columns), dtype=bool)
     for name, column in columns.items():
-        lower, upper = _bounds(diagram, name)
+        lower, upper = bounds_of_value(diagram, name)
         suspect |= ~((column >= lower) & (column <= upper))
     suspect |= _slides_by_itself(diagram, columns)
     reasons = {}
@@ -175,13 +175,13 @@ def _cases(columns: Mapping[str, np.ndarray]) -> int:
 
 def _changed(diagram: Diagram, name: str) -> Diagram:
     """The diagram with one value a little off, within its bounds."""
-    value, (lower, upper) = diagram.values[name], _bounds(diagram, name)
+    value, (lower, upper) = diagram.values[name], bounds_of_value(diagram, name)
     more = value + _CHANGE * (abs(value) or 1.0)
     less = value - _CHANGE * (abs(value) or 1.0)
     return diagram.with_values({name: float(more if lower <= more <= upper else less)})
 
 
-def _bounds(diagram: Diagram, name: str) -> tuple[float, float]:
+def bounds_of_value(diagram: Diagram, name: str) -> tuple[float, float]:
     """Least and largest value of a parameter; infinite where its block knows none."""
     block_name, _, within = name.partition(".")
     block = diagram.block(block_name)

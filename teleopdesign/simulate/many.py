@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -11,27 +11,17 @@ from numpy.typing import ArrayLike
 
 from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
+from .case_results import REDUCTIONS, CaseResults
 from .cases import Group, columns_of, groups, refused, simulated_values
+from .on_grid import Input, samples_of
 from .sampling import SAMPLED, Sampling
-from .setup import MOST_NUMBERS, Input, Setup, prepare, samples_of, simulated_form
+from .setup import Setup, prepare, simulated_form
 from .trajectory import Trajectory
-from .units import signal_units
 
 if TYPE_CHECKING:
     import xarray
 
     from ..realise.side_by_side import Reduction
-
-#: what `reduce` knows, with the words of the result
-REDUCTIONS = {
-    "final": "last value",
-    "maximum": "largest value",
-    "minimum": "least value",
-    "peak": "largest size",
-    "mean": "mean",
-    "rms": "root mean square",
-    "energy": "energy that flows in at the port",
-}
 
 
 def simulate_many(
@@ -75,11 +65,11 @@ def simulate_many(
     wanted = None if reduce is None else dict(reduce)
     study = _Study(diagram, columns, arguments, long_step, tuple(keep), wanted, after)
     period = (SAMPLED if isinstance(computer, str) else computer).period
-    result = _Result(cases)
+    result = CaseResults(cases)
     result.open_rows(samples_of(duration, period), period, study.keep)
     result.refuse(refused(diagram, columns))
     study.run_all(result)
-    return result.labelled(study)
+    return result.labelled(diagram, columns, study.wanted_of(result.numbers), duration)
 
 
 class _Mistake(ModelError):
@@ -104,7 +94,13 @@ class _Study:
             return {} if self.keep else {f"{name}_rms": (name, "rms") for name in columns}
         return self.reduce
 
-    def run_all(self, result: _Result) -> None:
+    def wanted_of(self, numbers: Iterable[str]) -> dict[str, tuple[Any, str]]:
+        """The reductions; by default those that there are numbers of."""
+        if self.reduce is not None or self.keep:
+            return self.wanted(())
+        return {name: (name.removesuffix("_rms"), "rms") for name in numbers}
+
+    def run_all(self, result: CaseResults) -> None:
         """Simulate the cases group by group; ModelError where all groups fail."""
         first_error: ModelError | None = None
         for group in groups(self.diagram, self.columns, np.flatnonzero(result.open)):
@@ -118,7 +114,7 @@ class _Study:
         if first_error is not None and not np.isfinite(result.steps).any():
             raise first_error
 
-    def run(self, group: Group, result: _Result) -> None:
+    def run(self, group: Group, result: CaseResults) -> None:
         """Simulate the cases of one structure."""
         from ..realise.side_by_side import rates_of_cases
 
@@ -172,7 +168,7 @@ class _Study:
         numbers: np.ndarray,
         kept: dict[str, int],
         reductions: dict[str, Reduction],
-        result: _Result,
+        result: CaseResults,
     ) -> list[tuple[int, int]]:
         """Run cases on one grid; returns those that need a finer one, with its steps a sample."""
         from ..realise.side_by_side import execute_many
@@ -288,69 +284,3 @@ def _delays(setup: Setup, names: tuple[str, ...], numbers: np.ndarray) -> list[t
         at = {symbols[name]: float(x) for name, x in zip(names, row, strict=True)}
         delays.append(tuple(float(delay.subs(at)) for delay in equations.delays))
     return [delays[i] for i in which.reshape(-1)]
-
-
-class _Result:
-    """Numbers of all cases as they come."""
-
-    def __init__(self, cases: int) -> None:
-        self.open: np.ndarray = np.ones(cases, dtype=bool)
-        self.reasons = [""] * cases
-        self.steps: np.ndarray = np.full(cases, np.nan)
-        self.rows: dict[str, np.ndarray] = {}
-        self.numbers: dict[str, np.ndarray] = {}
-        self.time: np.ndarray = np.zeros(0)
-
-    def refuse(self, reasons: Mapping[int, str]) -> None:
-        for case, reason in reasons.items():
-            self.open[case] = False
-            self.reasons[case] = reason
-
-    def open_rows(self, samples: int, period: float, names: Sequence[str]) -> None:
-        """Room for the samples that are kept."""
-        if not names:
-            return
-        cases, rows = len(self.open), samples + 1
-        if (numbers := cases * rows * len(names)) > MOST_NUMBERS:
-            raise ModelError(
-                f"simulate_many: keep: {len(names)} signals of {cases} cases with {rows} samples "
-                f"need {8e-9 * numbers:.2g} GB: keep fewer, or reduce them"
-            )
-        self.time = period * np.arange(rows)
-        self.rows = {name: np.full((cases, rows), np.nan) for name in names}
-
-    def labelled(self, study: _Study) -> xarray.Dataset:
-        import xarray
-
-        units, texts = signal_units(study.diagram), study.diagram.texts
-        data: dict[str, Any] = {
-            name: (("case", "time"), rows, {"units": units(name), "text": texts.get(name, "")})
-            for name, rows in self.rows.items()
-        }
-        for name, (signal, kind) in self._reduced(study).items():
-            unit = "J" if kind == "energy" else units(signal)
-            text = f"{REDUCTIONS[kind]} of {' on '.join(signal) if kind == 'energy' else signal}"
-            empty = np.full(len(self.open), np.nan)
-            numbers = self.numbers.get(name, empty)
-            data[name] = ("case", numbers, {"units": unit, "text": text})
-        coordinates: dict[str, Any] = {
-            "case": np.arange(len(self.open)),
-            "reason": ("case", np.array(self.reasons, dtype=str)),
-            "step": ("case", self.steps, {"units": "s", "text": "inner step of the simulation"}),
-        }
-        coordinates |= {name: ("case", column) for name, column in study.columns.items()}
-        if self.rows:
-            coordinates["time"] = ("time", self.time, {"units": "s"})
-        attributes = {
-            "diagram": study.diagram.name,
-            "scheme": "exponential Runge-Kutta of order 4",
-            "duration_s": study.arguments["duration"],
-        }
-        fixed = {n: v for n, v in study.diagram.values.items() if n not in study.columns}
-        attributes |= {f"parameter {n}": v for n, v in fixed.items()}
-        return xarray.Dataset(data, coordinates, attributes)
-
-    def _reduced(self, study: _Study) -> dict[str, tuple[Any, str]]:
-        if study.reduce is not None or study.keep:
-            return study.wanted(())
-        return {name: (name.removesuffix("_rms"), "rms") for name in self.numbers}

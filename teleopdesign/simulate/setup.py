@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -13,13 +13,13 @@ from ..diagrams import Diagram
 from ..errors import GrowsWithoutBound, ModelError, did_you_mean
 from ..realise.delays import is_whole, late_samples
 from ..realise.simulated import in_computer, simulated
+from .on_grid import Input, input_table, late_steps, samples_of, whole_steps
 from .sampling import SAMPLED, Sampling
 from .trajectory import Trajectory
 
 if TYPE_CHECKING:
     from ..realise.kernel import Program, Timing
 
-Input = float | np.ndarray | Callable[[np.ndarray], np.ndarray]
 #: most numbers that one simulation may hold, 2 GB
 MOST_NUMBERS = 250_000_000
 _MOST_REFINED = 200  # inner steps a default one may become
@@ -118,19 +118,29 @@ class Setup:
     motion: Mapping[str, Trajectory]
     initial: Mapping[str, float]
 
-    @property
+    @cached_property
     def delays(self) -> list[float]:
         """Delay of each late signal, s: of the analog ones, then of the computer's."""
         values, parameters = self.diagram.values, self.program.equations.parameters
         at = {x: values[n] for x, n in parameters.items()}
         return [float(d.subs(at)) for d in self.program.equations.delays]
 
-    @property
+    @cached_property
     def _of_blocks(self) -> list[bool]:
         """Whether each analog late signal is that of a delay block, in place of an actuator."""
         e, names = self.program.equations, {c.name for c in self.diagram.controls}
         late = (d.free_symbols for _, d in e.late.values())
         return [any(e.parameters[x].partition(".")[0] in names for x in d) for d in late]
+
+    @property
+    def whole_step_delays(self) -> frozenset[str]:
+        """Parameters of delays that are whole steps, which move simulated signals by jumps."""
+        e, smooth = self.program.equations, self.program.functions["SMOOTH"]
+        flags = zip(self._of_blocks, smooth, strict=False)
+        whole = [not (of_block and is_smooth) for of_block, is_smooth in flags]
+        late = [delay for _, delay in e.late.values()]
+        jumping = [d for d, is_whole in zip(late, whole, strict=True) if is_whole]
+        return frozenset(e.parameters[x] for d in jumping for x in d.free_symbols)
 
     def inner(self, delays: Sequence[float] | None = None) -> int:
         """Steps a sample: as asked for, or the next number at which delay blocks are whole steps.
@@ -155,14 +165,14 @@ class Setup:
         of_blocks, smooth = self._of_blocks, self.program.functions["SMOOTH"]
         analog = len(of_blocks)
         late = [
-            _late_steps(d, step, can_be_between=of_block and is_smooth)
+            late_steps(d, step, can_be_between=of_block and is_smooth)
             for d, of_block, is_smooth in zip(delays, of_blocks, smooth, strict=False)
         ]
         return Timing(
             step,
             inner,
             samples_of(self.duration, s.period),
-            _steps(s.delay, step, "the computer's delay"),
+            whole_steps(s.delay, step, "the computer's delay"),
             tuple(late),
             s.encoder_step,
             velocity_smoothing(s.velocity_bandwidth, s.period),
@@ -180,8 +190,8 @@ class Setup:
             )
         samples = timing.period * np.arange(timing.samples + 1)
         return {
-            "inputs": _table(layout.inputs, signals, half),
-            "sampled": _table(layout.sampled_inputs, signals, samples),
+            "inputs": input_table(layout.inputs, signals, half),
+            "sampled": input_table(layout.sampled_inputs, signals, samples),
             "start": self.initial,
         }
 
@@ -285,42 +295,3 @@ class Setup:
 
         if inner > self.inner() * _MOST_REFINED:
             raise too_long(self.step, self.sampling.period / inner, "is far too long")
-
-
-def samples_of(duration: float, period: float) -> int:
-    """Samples of a run, at least one; both in s."""
-    return max(round(duration / period), 1) if 0 < duration < float("inf") else 1
-
-
-def _late_steps(delay: float, step: float, *, can_be_between: bool) -> float:
-    """The delay of an analog signal in steps; between two where the signal changes within them."""
-    count = delay / step
-    if not can_be_between or is_whole(count):
-        count = float(_steps(delay, step, "a delay of an actuator or of a held command"))
-    if count < 1:
-        raise ModelError(f"simulate: a delay of {delay:g} s is below the step, {step:g} s")
-    return count
-
-
-def _steps(delay: float, step: float, what: str) -> int:
-    """The delay in steps; if no whole number of them, the force would be silently late."""
-    count = round(delay / step)
-    if abs(count * step - delay) > 0.02 * delay + 1e-12:
-        raise ModelError(
-            f"simulate: {what} of {delay * 1e3:g} ms is no whole number of steps of "
-            f"{step * 1e3:g} ms: use a step that divides it"
-        )
-    return count
-
-
-def _table(names: tuple[str, ...], signals: Mapping[str, Input], time: np.ndarray) -> np.ndarray:
-    table = np.zeros((max(len(names), 1), len(time)))
-    for i, name in enumerate(names):
-        value = signals.get(name, 0.0)
-        row = np.asarray(value(time) if callable(value) else value, dtype=float)
-        if row.ndim and row.shape != time.shape:
-            raise ModelError(
-                f'simulate: input "{name}" has {len(row)} samples, expected {len(time)}'
-            )
-        table[i] = row
-    return table

@@ -15,8 +15,9 @@ from ..diagrams import Diagram
 from ..errors import ModelError, did_you_mean
 from ..notebook import html_table
 from ..plain_data import write_netcdf
+from .on_grid import Input
 from .sampling import SAMPLED, Sampling
-from .setup import Input, Setup, prepare
+from .setup import Setup, prepare
 from .trajectory import Trajectory
 from .units import signal_units
 

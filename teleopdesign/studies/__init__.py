@@ -18,17 +18,19 @@ from .case import SimulatedCase
 from .chosen_measures import Measure, measure
 from .diagnosed import diagnosed
 from .from_toml import read_study_file
-from .journal import PointOutcome
 from .limits import TuningLimit, limit
 from .measures import MEASURES
 from .onset import growth, least_that_grows
+from .outcomes import PointOutcome
 from .point import Amount, Point
 from .progress import Progress
 from .recheck import CheckedLimit
 from .result import Study, read_study
 from .run import study
 from .samples import Samples, latin_hypercube, random_samples, sensitivity_samples, sobol
+from .sensitivities import sensitivities
 from .sensitivity import sensitivity
+from .simulation_fit import SimulationFit, fit_simulation
 from .trade_off import ParetoFront, trade_off
 from .tune import Tuned, tune
 
@@ -45,8 +47,10 @@ __all__ = [
     "Point",
     "Progress",
     "Samples",
+    "SimulationFit",
     "Study",
     "diagnosed",
+    "fit_simulation",
     "growth",
     "latin_hypercube",
     "limit",
@@ -55,6 +59,7 @@ __all__ = [
     "random_samples",
     "read_study",
     "read_study_file",
+    "sensitivities",
     "sensitivity",
     "sensitivity_samples",
     "sobol",

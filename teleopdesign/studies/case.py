@@ -22,7 +22,7 @@ from ..diagrams import Diagram
 from ..diagrams.units import first_axis, unit_of_value
 from ..errors import ModelError, did_you_mean
 from ..quantity import unit_of
-from ..simulate import Sampling, Simulation, Trajectory, simulate, sine
+from ..simulate import Sampling, Setup, Simulation, Trajectory, prepare, simulate, sine
 from ..simulate.sampling import SAMPLED
 from ..simulate.units import signal_units
 
@@ -64,6 +64,19 @@ class SimulatedCase(ByValue):
             step=self.step,
             give=self.give,
             every_step=self.every_step,
+        )
+
+    def setup(self) -> Setup:
+        """The simulation ready to run; raises ModelError as `simulate`."""
+        return prepare(
+            self.diagram,
+            duration=self.duration,
+            inputs=self.inputs,
+            motion=self.motion,
+            initial=self.initial,
+            computer=self.computer,
+            step=self.step,
+            give=self.give,
         )
 
     def names(self) -> tuple[str, ...]:
@@ -152,6 +165,14 @@ class SimulatedCase(ByValue):
     def settings(self) -> dict[str, Any]:
         """How it is simulated, without the diagram: plain where it is."""
         return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "diagram"}
+
+
+def case_of(diagram: Diagram | SimulatedCase, **settings: Any) -> SimulatedCase:
+    """The diagram and how it is simulated; a case as it is."""
+    if isinstance(diagram, SimulatedCase):
+        return diagram
+    kept = {n: v for n, v in settings.items() if v is not None}
+    return SimulatedCase(diagram, **kept)
 
 
 def _is_sine(motion: Trajectory) -> bool:

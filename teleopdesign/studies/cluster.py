@@ -11,7 +11,7 @@ from typing import Any
 
 from ..errors import ExperimentError, ModelError
 from .evaluate import StudyTask
-from .journal import PointOutcome
+from .outcomes import PointOutcome
 from .processes import Sink, one_thread, packed
 from .side_by_side import Unit, evaluate_unit
 from .versions import versions

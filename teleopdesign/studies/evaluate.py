@@ -11,7 +11,7 @@ from ..diagrams import Diagram
 from ..errors import ModelError, TeleopDesignError, did_you_mean
 from .case import SimulatedCase
 from .chosen_measures import Measure
-from .journal import PointOutcome
+from .outcomes import PointOutcome
 from .point import Amount, Point
 from .points import Points
 

@@ -19,7 +19,8 @@ from ..measurement.files import content_digest
 from .chosen_measures import measures_of
 from .evaluate import StudyTask
 from .fingerprint import fingerprint
-from .journal import Journal, PointOutcome
+from .journal import Journal
+from .outcomes import PointOutcome
 from .points import points_of
 from .processes import run_on_this_machine
 from .progress import Clock, Progress

@@ -15,30 +15,16 @@ import json
 import os
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ..errors import ExperimentError
+from .outcomes import Outcomes, PointOutcome
 
 try:
     import fcntl
 except ImportError:  # no such thing on Windows: there two processes are not kept apart
     fcntl = None  # type: ignore[assignment]
-
-
-@dataclass(frozen=True)
-class PointOutcome:
-    """What became of a point.
-
-    form: what its values are: (name, kind, unit, text, dimension ...) of each;  values: in that
-    order;  reason: why it failed, "" where it did not
-    """
-
-    point: int
-    form: tuple[Any, ...] = ()
-    values: tuple[Any, ...] = ()
-    reason: str = ""
 
 
 class Journal:
@@ -50,7 +36,7 @@ class Journal:
         raises ExperimentError: it is of another study, in use, or cannot be written
         """
         self.path, self.study, self.points = path, study, points
-        self.outcomes: dict[int, PointOutcome] = {}
+        self.outcomes = Outcomes(points)
         self._forms: dict[str, tuple[Any, ...]] = {}
         self._file: int | None = None
         if path is not None:
@@ -104,11 +90,13 @@ class Journal:
 
     def _take(self, content: Mapping[str, Any]) -> None:
         index = int(content["point"])
+        if not 0 <= index < self.points:
+            return
         form = self._forms.get(content.get("form", ""), ())
         outcome = PointOutcome(
             index, form, _tuples(content.get("values", ())), content.get("reason", "")
         )
-        self.outcomes[index] = outcome  # a failure that was forgotten may have a later line
+        self.outcomes.keep(outcome)  # a failure that was forgotten may have a later line
 
     def add(self, outcome: PointOutcome) -> None:
         """Keep an outcome; raises ExperimentError where the disk refuses."""
@@ -121,7 +109,7 @@ class Journal:
             else:
                 content |= {"form": self._known(outcome.form), "values": outcome.values}
             self._write(content)
-        self.outcomes[outcome.point] = outcome
+        self.outcomes.keep(outcome)
 
     def _known(self, form: tuple[Any, ...]) -> str:
         """Name of a form, which is written before its first use."""
@@ -146,7 +134,8 @@ class Journal:
 
     def forget_failures(self) -> None:
         """Take failed points as not done: they may be tried again."""
-        self.outcomes = {i: o for i, o in self.outcomes.items() if not o.reason}
+        for point in self.outcomes.failed():
+            self.outcomes.drop(point)
 
     def close(self) -> None:
         """Close the file; what it holds stays."""

@@ -15,11 +15,11 @@ from .point import Amount, Kind, Point
 
 def _rows(point: Point, signal: str, after: float) -> tuple[np.ndarray, str]:
     """A signal from that time on, and its unit."""
-    data = point.simulation[signal]
-    kept = point.simulation.data["time"].values >= after - 1e-9
+    rows = point.signal(signal)
+    kept = rows.time >= after - 1e-9
     if not kept.any():
         raise ModelError(f"measure: after = {after:g} s is beyond the end of the simulation")
-    return data.values[kept], str(data.attrs["units"])
+    return rows.values[kept], rows.unit
 
 
 def _rms(point: Point, *, signal: str, after: float) -> Amount:
@@ -90,7 +90,7 @@ def _limit_cycle_amplitude(point: Point, *, signal: str, last: float) -> Amount:
     """half the range of a signal over the last part of the simulation (`last` of its time)"""
     if not 0 < last <= 1:
         raise ModelError(f"measure limit_cycle_amplitude: last: found {last:g}, expected 0 to 1")
-    end = float(point.simulation.data["time"].values[-1])
+    end = float(point.signal(signal).time[-1])
     values, unit = _rows(point, signal, (1 - last) * end)
     half = float(values.max() - values.min()) / 2
     return Amount(half, unit, f"half the range of {signal} in the last {100 * last:g} % of time")
@@ -101,10 +101,10 @@ def _growth(point: Point, *, signal: str) -> Amount:
 
     -1 where the swing has died out, infinite where signals grow beyond all bounds
     """
-    from .onset import growth
+    from .onset import growth_of
 
     text = f"range of {signal} in the last third over the middle third, less 1"
-    return Amount(growth(lambda: point.simulation, signal), "1", text)
+    return Amount(growth_of(lambda: point.signal(signal).values), "1", text)
 
 
 def _onset(
@@ -155,7 +155,8 @@ def _passivity(point: Point, *, stroke: float, speed: float, tries: int) -> Any:
 
     "refuted" if any claim on a port is; else the weakest of the claims that settle it
     """
-    from ..passivity.diagram_claims import WHOLE, Search, diagram_claims
+    from ..passivity.diagram_claims import Search, diagram_claims
+    from ..passivity.linear_diagrams import WHOLE
 
     case = point.case
     search = Search(stroke, speed, tries, case.computer)

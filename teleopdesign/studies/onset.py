@@ -20,8 +20,13 @@ def growth(simulated: Callable[[], Simulation], signal: str) -> float:
 
     -1 where the swing has died out;  infinite where signals grow beyond all bounds
     """
+    return growth_of(lambda: np.asarray(simulated()[signal].values))
+
+
+def growth_of(samples: Callable[[], np.ndarray]) -> float:
+    """The same of the samples of a signal, (rows,)."""
     try:
-        values = simulated()[signal].values
+        values = samples()
     except GrowsWithoutBound:
         return math.inf
     middle, last = (float(np.ptp(part)) for part in np.array_split(values, 3)[1:])

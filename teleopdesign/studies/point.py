@@ -31,18 +31,29 @@ class Amount:
 
 
 @dataclass(frozen=True, eq=False)
+class SignalRows:
+    """Samples of a signal, (rows,), over time, s, with its unit."""
+
+    time: np.ndarray
+    values: np.ndarray
+    unit: str
+
+
+@dataclass(frozen=True, eq=False)
 class Point:
     """One point as measures see it.
 
     content: what the model gave there: a `SimulatedCase`, or anything that its function returned
     values: parameter -> value;  seed: of this point, the same wherever it is computed
-    simulated: gives the simulation, where it was computed with those of other points
+    simulated: gives the simulation, where it was computed with those of other points;  rows: alike
+        one signal of it, without a labelled array for each point, which takes 0.3 ms
     """
 
     content: Any
     values: Mapping[str, Any]
     seed: tuple[int, ...] = (0, 0)
     simulated: Callable[[], Simulation] | None = None
+    rows: Callable[[str], SignalRows] | None = None
 
     @property
     def case(self) -> SimulatedCase:
@@ -57,6 +68,13 @@ class Point:
         if self.simulated is not None:
             return self.simulated()
         return self.content if isinstance(self.content, Simulation) else self.case.simulate()
+
+    def signal(self, name: str) -> SignalRows:
+        """A signal of the simulation."""
+        if self.rows is not None:
+            return self.rows(name)
+        data = self.simulation[name]
+        return SignalRows(data["time"].values, data.values, str(data.attrs["units"]))
 
     @property
     def result(self) -> Any:

@@ -13,8 +13,8 @@ from ..passivity.intervals.box import ValueBox
 from .case import SimulatedCase
 from .chosen_measures import Measure
 from .evaluate import StudyTask
-from .journal import PointOutcome
 from .limits import TuningLimit, margin_function
+from .outcomes import PointOutcome
 from .points import points_of
 from .processes import run_on_this_machine
 from .samples import Samples
@@ -22,8 +22,6 @@ from .side_by_side import units_of
 
 #: vertices of the intervals of a limit that the search looks at, beside their middle
 _MOST_VERTICES = 16
-#: intervals whose ends differ by more than this factor are searched in logarithms
-_WIDE = 9.9
 #: N s/m, 1 or 1/s: rounding of a claim's margin where it is zero
 _ROUNDING = 1e-9
 #: of the spread of a claim's margins: what the best point has at least, as the last check is exact
@@ -72,28 +70,6 @@ class Problem:
         self.margins = [self._margin(one) for one in self.limits]
         self.slack = [_SLACK] * len(self.limits)
 
-    @property
-    def wide(self) -> np.ndarray:
-        """Which parameters are searched in logarithms, (n,)."""
-        low, high = np.array(self.parameters.low), np.array(self.parameters.high)
-        return np.asarray((low > 0) & (high > _WIDE * low))
-
-    def values(self, unit: np.ndarray) -> np.ndarray:
-        """Values from shares of the intervals, (..., n)."""
-        low, high, wide = np.array(self.parameters.low), np.array(self.parameters.high), self.wide
-        safe = np.where(wide, low, 1.0)
-        ratio = np.where(wide, high / safe, 1.0)
-        share = np.clip(unit, 0, 1)
-        inside = np.where(wide, safe * ratio**share, low + share * (high - low))
-        return np.asarray(np.clip(inside, low, high))
-
-    def share(self, values: np.ndarray) -> np.ndarray:
-        """The shares of the intervals that values are, (n,)."""
-        low, high, wide = np.array(self.parameters.low), np.array(self.parameters.high), self.wide
-        safe, x = np.where(wide, low, 1.0), np.clip(values, low, high)
-        logarithmic = np.log(np.where(wide, x, 1.0) / safe) / np.log(np.where(wide, high / safe, 2))
-        return np.asarray(np.where(wide, logarithmic, (x - low) / (high - low)))
-
     def tries(self, points: np.ndarray) -> list[TrialPoint]:
         """Each point tried once; those that keep the claims are simulated side by side."""
         keys = [tuple(map(float, p)) for p in points]
@@ -120,11 +96,7 @@ class Problem:
 
     def start_values(self) -> np.ndarray:
         """The case's own values of the parameters, brought into their intervals."""
-        listed = [self.case.value(n) for n in self.parameters.names]
-        numbers = [np.nan if x is None else float(x) for x in listed]
-        centre = self.parameters.centre
-        inside = np.where(np.isnan(numbers), centre, numbers)
-        return np.asarray(np.clip(inside, self.parameters.low, self.parameters.high))
+        return start_values(self.case, self.parameters)
 
     def start(self) -> TrialPoint:
         """The case's own values, tried."""
@@ -248,3 +220,11 @@ def box_over(one: TuningLimit) -> ValueBox:
     """The box of a limit's intervals."""
     ends = one.over.values()
     return ValueBox(tuple(one.over), tuple(a for a, _ in ends), tuple(b for _, b in ends))
+
+
+def start_values(case: SimulatedCase, box: ValueBox) -> np.ndarray:
+    """The case's own values of the parameters (n,), brought into their intervals."""
+    listed = [case.value(n) for n in box.names]
+    numbers = [np.nan if x is None else float(x) for x in listed]
+    inside = np.where(np.isnan(numbers), box.centre, numbers)
+    return np.asarray(np.clip(inside, box.low, box.high))

@@ -24,7 +24,7 @@ from typing import Any, BinaryIO, cast
 from ..errors import ModelError, TeleopDesignError
 from .evaluate import StudyTask
 from .frames import receive, send
-from .journal import PointOutcome
+from .outcomes import PointOutcome
 from .side_by_side import Unit, evaluate_unit
 
 Sink = Callable[[PointOutcome], None]

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from .journal import PointOutcome
+from .outcomes import PointOutcome
 
 #: s between two reports: as often as one can read
 _BETWEEN = 0.5

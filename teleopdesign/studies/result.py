@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,7 +15,7 @@ from ..by_value import ByValue
 from ..errors import ExperimentError, ModelError, did_you_mean
 from ..notebook import html_table
 from ..plain_data import replacing
-from .journal import PointOutcome
+from .outcomes import PointOutcome
 from .points import SAMPLE, Points
 
 if TYPE_CHECKING:
@@ -184,26 +184,31 @@ def labelled(
     import xarray
 
     n = len(points)
-    form, reasons = _form_of([outcomes[i] for i in range(n)])
+    form, reasons = _form_of(outcomes, n)
     coordinates: dict[str, Any] = {}
     for name, column in points.columns.items():
         values = column.values
         coordinates[name] = ((column.dimension,), values, {"units": units.get(name, "1")})
     if SAMPLE in points.sizes:
         coordinates[SAMPLE] = ((SAMPLE,), np.arange(points.sizes[SAMPLE]), {"units": "1"})
+    arrays = []
+    for _, kind, _, _, *over in form:
+        width = (len(over[1]),) if over else ()
+        empty = "" if kind == "text" else np.nan
+        arrays.append(np.full((n, *width), empty, dtype=_DTYPES[kind]))
+    for i in range(n):
+        if not reasons[i]:
+            for array, value in zip(arrays, outcomes[i].values, strict=True):
+                array[i] = value
     data: dict[str, Any] = {}
-    for k, (name, kind, unit, text, *over) in enumerate(form):
-        shape, dims = points.shape, tuple(points.sizes)
+    for values, (name, _, unit, text, *over) in zip(arrays, form, strict=True):
+        dims = tuple(points.sizes)
         if over:
             dimension, along, along_unit = over
-            shape, dims = (*shape, len(along)), (*dims, dimension)
+            dims = (*dims, dimension)
             coordinates[dimension] = ((dimension,), np.array(along), {"units": along_unit})
-        width = shape[len(points.shape) :]
-        values = np.full((n, *width), "" if kind == "text" else np.nan, dtype=_DTYPES[kind])
-        for i in range(n):
-            if not reasons[i]:
-                values[i] = outcomes[i].values[k]
-        data[name] = (dims, values.reshape(shape), {"units": unit, "text": text})
+        shaped = values.reshape((*points.shape, *values.shape[1:]))
+        data[name] = (dims, shaped, {"units": unit, "text": text})
     data[REASON] = (
         tuple(points.sizes),
         reasons.reshape(points.shape),
@@ -212,13 +217,16 @@ def labelled(
     return Study(xarray.Dataset(data, coordinates, dict(attributes)))
 
 
-def _form_of(outcomes: Sequence[PointOutcome]) -> tuple[list[tuple[Any, ...]], np.ndarray]:
+def _form_of(
+    outcomes: Mapping[int, PointOutcome], many: int
+) -> tuple[list[tuple[Any, ...]], np.ndarray]:
     """What the measures give, and why points have failed, "" where they have not."""
-    first = next((o.form for o in outcomes if not o.reason), ())
+    first = next((o.form for i in range(many) if not (o := outcomes[i]).reason), ())
     units = ["" for _ in first]
     verdicts: dict[tuple[Any, ...], str] = {}  # few forms, many points
     reasons = []
-    for outcome in outcomes:
+    for i in range(many):
+        outcome = outcomes[i]
         if not outcome.reason and outcome.form not in verdicts:
             verdicts[outcome.form] = _against(first, outcome.form, units)
         reasons.append(outcome.reason or verdicts[outcome.form])

@@ -18,7 +18,8 @@ from .case import SimulatedCase
 from .chosen_measures import measures_of
 from .evaluate import StudyTask, check_parameters
 from .fingerprint import fingerprint
-from .journal import Journal, PointOutcome
+from .journal import Journal
+from .outcomes import PointOutcome
 from .points import Points, points_of
 from .processes import run_on_this_machine
 from .progress import Clock, Progress
@@ -151,7 +152,7 @@ def _run(
     scheduler: str,
     progress: Callable[[Progress], object] | None,
 ) -> None:
-    todo = [i for i in range(len(task.points)) if i not in journal.outcomes]
+    todo = (i for i in range(len(task.points)) if i not in journal.outcomes)
     clock = Clock(len(task.points), len(journal.outcomes), progress)
 
     def sink(outcome: PointOutcome) -> None:
@@ -159,9 +160,9 @@ def _run(
             journal.add(outcome)
             clock.count(outcome)
 
-    if not todo:
-        return
     units = units_of(task, todo)
+    if not units:
+        return
     if scheduler:
         from .cluster import run_on_cluster
 

@@ -7,7 +7,8 @@ the same ones are side by side wherever and whenever they are computed.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,14 +17,14 @@ from ..errors import GrowsWithoutBound, ModelError, TeleopDesignError
 from ..simulate import Simulation, simulate_many
 from .case import SimulatedCase
 from .evaluate import StudyTask, evaluate, outcome_of
-from .journal import PointOutcome
-from .point import Point
+from .outcomes import PointOutcome
+from .point import Point, SignalRows
 
 if TYPE_CHECKING:
     import xarray
 
 #: points that are computed, and kept, together
-Unit = tuple[int, ...]
+Unit = tuple[int, ...] | range
 
 #: steps of all simulations of a block: about half a second, which is what a kill can cost
 _STEPS_OF_BLOCK = 8e6
@@ -41,7 +42,7 @@ def units_of(task: StudyTask, todo: Iterable[int]) -> list[Unit]:
     if size == 1:
         return [(i,) for i in todo]
     firsts = sorted({i - i % size for i in todo})
-    return [tuple(range(first, min(first + size, len(task.points)))) for first in firsts]
+    return [range(first, min(first + size, len(task.points))) for first in firsts]
 
 
 def block_size(task: StudyTask) -> int:
@@ -72,35 +73,43 @@ def evaluate_unit(task: StudyTask, unit: Unit) -> list[PointOutcome]:
         return [evaluate(task, unit[0])]
     assert isinstance(task.model, SimulatedCase)
     table = task.points.table(unit[0], unit[-1] + 1)
-    values = task.model.diagram.values
-    within = [n for n in table if n in values]
-    beside = [n for n in table if n not in values]
-    groups: dict[tuple[float, ...], list[int]] = {}
-    for row in range(len(unit)):
-        groups.setdefault(tuple(table[n][row].item() for n in beside), []).append(row)
     outcomes: dict[int, PointOutcome] = {}
-    for content, rows in groups.items():
-        chosen = np.array(rows)
-        columns = {n: table[n][chosen] for n in within}
-        others = dict(zip(beside, content, strict=True))
+    for rows, columns, others in alike(task.model, table):
         try:
-            signals = _simulated(task, columns, others)
+            case = task.model.with_values({**task.points.fixed, **others})
+            block = _block(simulate_rows(case, columns, signals_of(task)))
         except TeleopDesignError:
             # what is wrong with all of them: each says its own reason
             outcomes |= {unit[row]: evaluate(task, unit[row]) for row in rows}
             continue
         for k, row in enumerate(rows):
-            point = _point(task, unit[row], k, signals)
+            point = _point(task, unit[row], k, block)
             outcomes[unit[row]] = outcome_of(task, unit[row], point)
     return [outcomes[index] for index in unit]
 
 
-def _simulated(
-    task: StudyTask, columns: dict[str, np.ndarray], others: dict[str, float]
+def alike(
+    case: SimulatedCase, table: Mapping[str, np.ndarray]
+) -> Iterator[tuple[list[int], dict[str, np.ndarray], dict[str, Any]]]:
+    """Rows of a table that differ in values of the diagram alone, so that lanes may hold them.
+
+    table: parameter -> values (rows,);  yields rows, their values of the diagram (each an array),
+        and the values that they share
+    """
+    within = [n for n in table if n in case.diagram.values]
+    beside = [n for n in table if n not in case.diagram.values]
+    groups: dict[tuple[float, ...], list[int]] = {}
+    for row in range(len(next(iter(table.values())))):
+        groups.setdefault(tuple(table[n][row].item() for n in beside), []).append(row)
+    for content, rows in groups.items():
+        columns = {n: table[n][np.array(rows)] for n in within}
+        yield rows, columns, dict(zip(beside, content, strict=True))
+
+
+def simulate_rows(
+    case: SimulatedCase, columns: Mapping[str, np.ndarray], keep: tuple[str, ...]
 ) -> xarray.Dataset:
-    """Signals of one group over `case` and `time`."""
-    assert isinstance(task.model, SimulatedCase)
-    case = task.model.with_values({**task.points.fixed, **others})
+    """Signals over `case` and `time` of a case with these values of its diagram side by side."""
     return simulate_many(
         case.diagram,
         columns,
@@ -111,25 +120,57 @@ def _simulated(
         computer=case.computer,
         step=case.step,
         give=case.give,
-        keep=signals_of(task),
+        keep=keep,
     )
 
 
-def _point(task: StudyTask, index: int, row: int, signals: xarray.Dataset) -> Callable[[], Point]:
+@dataclass(frozen=True, eq=False)
+class _Block:
+    """Signals of points that were simulated side by side, as arrays.
+
+    rows: signal -> (points, rows);  reasons: why a point has none, "" where it has
+    """
+
+    time: np.ndarray
+    rows: Mapping[str, np.ndarray]
+    attributes: Mapping[str, Mapping[str, Any]]
+    reasons: tuple[str, ...]
+
+    def check(self, row: int) -> None:
+        """Raise what the simulation of that point ended with."""
+        if reason := self.reasons[row]:
+            words = GrowsWithoutBound.words
+            raise GrowsWithoutBound(reason) if words in reason else ModelError(reason)
+
+
+def _block(signals: xarray.Dataset) -> _Block:
+    names = [str(name) for name in signals.data_vars]
+    return _Block(
+        signals["time"].values,
+        {name: signals[name].values for name in names},
+        {name: signals[name].attrs for name in names},
+        tuple(map(str, signals["reason"].values)),
+    )
+
+
+def _point(task: StudyTask, index: int, row: int, block: _Block) -> Callable[[], Point]:
     """What makes the point, whose simulation is a row of the block."""
+
+    def rows(name: str) -> SignalRows:
+        block.check(row)
+        return SignalRows(block.time, block.rows[name][row], str(block.attributes[name]["units"]))
 
     def simulated() -> Simulation:
         import xarray
 
         assert isinstance(task.model, SimulatedCase)
-        if reason := str(signals["reason"].values[row]):
-            words = GrowsWithoutBound.words
-            raise GrowsWithoutBound(reason) if words in reason else ModelError(reason)
-        time = signals["time"].variable
+        block.check(row)
         data: dict[str, Any] = {
-            str(name): xarray.Variable("time", rows.values[row], rows.attrs)
-            for name, rows in signals.data_vars.items()
+            name: ("time", values[row], block.attributes[name])
+            for name, values in block.rows.items()
         }
+        time = ("time", block.time, {"units": "s"})
         return Simulation(task.model.diagram, xarray.Dataset(data, {"time": time}))
 
-    return lambda: Point(task.model, task.points.at(index), (task.seed, index), simulated)
+    seed = (task.seed, index)
+    return lambda: Point(task.model, task.points.at(index), seed, simulated, rows)

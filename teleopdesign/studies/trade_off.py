@@ -18,10 +18,10 @@ from ..diagrams import Diagram
 from ..errors import ModelError
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
-from .case import SimulatedCase
+from .case import SimulatedCase, case_of
 from .problem import Problem, TrialPoint
 from .recheck import recheck
-from .tune import Tuned, case_of, problem_of, search, tuned_of
+from .tune import Tuned, problem_of, search, tuned_of
 
 if TYPE_CHECKING:
     import matplotlib.figure

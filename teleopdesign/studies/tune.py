@@ -26,16 +26,15 @@ from ..arguments import checked
 from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError
-from ..expectations import described
 from ..notebook import html_table
-from ..passivity.intervals.box import ValueBox
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
-from .case import SimulatedCase
+from .case import SimulatedCase, case_of
 from .chosen_measures import measures_of
 from .limits import limit_of
 from .problem import Problem, TrialPoint
 from .recheck import CheckedLimit, recheck
+from .shares import AT_END, box_of_parameters, shares_of, unit_box, values_at
 
 #: times that the worst point of an interval, which the search had not looked at, joins it
 _ROUNDS = 3
@@ -43,8 +42,6 @@ _ROUNDS = 3
 _FURTHER = 100.0
 #: share of the points that the simplex gets
 _POLISH = 0.25
-#: of a parameter's interval: nearer to an end, it is said to be there
-AT_END = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,14 +146,6 @@ def tune(
     return tuned_of(problem, problem.best(), start, checked_limits)
 
 
-def case_of(diagram: Diagram | SimulatedCase, **settings: Any) -> SimulatedCase:
-    """The diagram and how it is simulated; a case as it is."""
-    if isinstance(diagram, SimulatedCase):
-        return diagram
-    kept = {n: v for n, v in settings.items() if v is not None}
-    return SimulatedCase(diagram, **kept)
-
-
 def problem_of(
     case: SimulatedCase,
     parameters: Mapping[str, tuple[float, float]],
@@ -167,13 +156,7 @@ def problem_of(
 ) -> Problem:
     """The search that is asked for; raises ModelError where its parts do not fit the case."""
     case.check_names(parameters)
-    if not parameters:
-        raise ModelError("tune: found no parameter, expected a name with (low, high)")
-    for name, ends in parameters.items():
-        if len(ends) != 2 or not all(map(np.isfinite, ends)) or not ends[0] < ends[1]:
-            raise ModelError(f"tune: {name}: found {described(ends)}, expected (low, high)")
-    low, high = (tuple(float(ends[k]) for ends in parameters.values()) for k in (0, 1))
-    box = ValueBox(tuple(parameters), low, high)
+    box = box_of_parameters(parameters, "tune")
     measures = tuple(measures_of([one])[0] for one in objectives)
     limits = tuple(map(limit_of, subject_to))
     for one in limits:
@@ -216,7 +199,7 @@ def search(problem: Problem, evaluations: int, *, number: int = 0, most: float =
     scale = _Scale()
 
     def merit(points: np.ndarray) -> np.ndarray:
-        trials = problem.tries(problem.values(points))
+        trials = problem.tries(values_at(problem.parameters, points))
         return np.array([scale.merit(t, number, most) for t in trials])
 
     generations = max(1, round((1 - _POLISH) * evaluations / population) - 1)
@@ -244,11 +227,10 @@ def search(problem: Problem, evaluations: int, *, number: int = 0, most: float =
 
 def _first(problem: Problem, population: int, best: TrialPoint | None) -> np.ndarray:
     """Sobol points of the first generation; the diagram's own values and the best so far are in."""
-    unit = ValueBox(problem.parameters.names, *zip(*[(0.0, 1.0)] * len(problem.wide), strict=True))
-    points = unit.inside(population, problem.seed)
-    points[0] = problem.share(problem.start_values())
+    points = unit_box(problem.parameters.names).inside(population, problem.seed)
+    points[0] = shares_of(problem.parameters, problem.start_values())
     if best is not None:
-        points[1] = problem.share(np.array(best.values))
+        points[1] = shares_of(problem.parameters, np.array(best.values))
     return points
 
 
@@ -279,7 +261,7 @@ def tuned_of(
     number: int = 0,
 ) -> Tuned:
     """The result at a point."""
-    share = problem.share(np.array(trial.values))
+    share = shares_of(problem.parameters, np.array(trial.values))
     ends = [
         n for n, u in zip(problem.parameters.names, share, strict=True) if min(u, 1 - u) < AT_END
     ]

@@ -12,7 +12,7 @@ from teleopdesign.diagnose.bodies_apart import apart, of_bodies
 from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.prepare import prepare
-from teleopdesign.diagnose.search import at_stated
+from teleopdesign.diagnose.stated import at_stated
 
 
 @pytest.fixture(scope="module")

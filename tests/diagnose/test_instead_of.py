@@ -12,13 +12,15 @@ import pytest
 from diagnose.contract import violations
 from diagnose.made_records import dahl, write_made
 
-from teleopdesign import Model, find_missing, load_experiment
+from teleopdesign import Body, Model, find_missing, load_experiment
 from teleopdesign.diagnose.answer import answer, write_answer
 from teleopdesign.diagnose.answers import load_answer, restored
+from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.decision import objection, superfluous_beside
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
-from teleopdesign.diagnose.search import at_stated
+from teleopdesign.diagnose.rung import Rung, replaced_from
+from teleopdesign.diagnose.stated import at_stated
 from teleopdesign.effects import EFFECTS
 from teleopdesign.next_experiment.rivals import rival_instead
 from teleopdesign.report.parameter_table import parameter_rows
@@ -176,3 +178,43 @@ def test_what_ends_at_its_absence_gives_way_before_what_is_only_open(found):
     gone = unsure.with_values({names[1]: replace(unsure.parameters[names[1]], value=0.0)})
     ended = replace(fit, model=gone, at_bound=(names[1],))
     assert superfluous_beside(base, ended, candidate).effect.name == "viscous"
+
+
+#: an effect that another can count as -> its parameter
+STRENGTH = {"viscous": "damping"}
+
+
+def chains():
+    """(stands in, is replaced, rests on either) of the catalogue, by `counts_as` and `needs`."""
+    return [
+        (new, old, other.name)
+        for new, effect in EFFECTS.items()
+        for old in effect.counts_as
+        for other in EFFECTS.values()
+        if old in other.needs and old not in other.parameters_of_others()
+    ]
+
+
+@pytest.mark.parametrize(("new", "old", "other"), chains())
+def test_what_rests_on_either_stays_while_one_gives_way_to_the_other(new, old, other):
+    """Each order of the two rungs can be taken back: no effect is left without what it needs."""
+    axis = "prismatic"
+    plain = Model(
+        {"device": Body(axis, {"inertia": 1.0, f"{old}.{STRENGTH[old]}": 2.0}, (EFFECTS[old],))}
+    )
+    before = plain.with_effect(other)
+    gave_way = replaced_from(Candidate(EFFECTS[old], "device"), before)
+    model = Model({"device": Body(axis, {"inertia": 1.0}, ())}).with_effect(new).with_effect(other)
+    rung = Rung(Candidate(EFFECTS[new], "device"), None, replaced=gave_way)
+    back = rung.taken_from(model)
+    assert {n for n, _ in back.effects} == {old, other}
+    assert back.parameters[f"device.{old}.{STRENGTH[old]}"].value == 2.0
+
+
+def test_a_shape_of_friction_that_comes_back_takes_the_place_of_the_other():
+    body = Body("prismatic", {"inertia": 1.0, "coulomb.level": 1.0}, (EFFECTS["coulomb"],))
+    plain = Model({"device": body})
+    before, after = plain.with_effect("presliding"), plain.with_effect("maxwell_slip")
+    gave_way = replaced_from(Candidate(EFFECTS["presliding"], "device"), before)
+    rung = Rung(Candidate(EFFECTS["maxwell_slip"], "device"), None, replaced=gave_way)
+    assert {n for n, _ in rung.taken_from(after).effects} == {"coulomb", "presliding"}

@@ -8,7 +8,14 @@ from hypothesis import strategies as st
 
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
-from teleopdesign.diagnose.probability import CandidateEvidence, evidence_of, shares, standing
+from teleopdesign.diagnose.learnable import Learnable
+from teleopdesign.diagnose.probability import (
+    CandidateEvidence,
+    evidence_of,
+    open_to_others,
+    shares,
+    standing,
+)
 from teleopdesign.effects import EFFECTS
 
 
@@ -89,3 +96,45 @@ def test_an_effect_is_not_named_without_the_accepted_one_that_it_needs(diagnosis
     assert standing(whole, {on.key, friction.key}) == (on, friction)
     assert standing(whole, {friction.key}) == ()
     assert standing(whole, {on.key}) == (on,)
+
+
+def with_box(diagnosis, *, alone, learned):
+    """The diagnosis with a black box beside it.
+
+    alone: its squares without a model, over those that the model leaves;  learned: of the latter
+    """
+    left = diagnosis.after.check_error
+    box = Learnable(left=left, error=left * (1.0 - learned) ** 0.5, alone=left * alone**0.5)
+    return replace(diagnosis, learnable=box)
+
+
+@pytest.mark.parametrize(
+    ("alone", "learned", "part"),
+    [
+        (2.0, 0.0, 1.0),  # it sees nothing so small: that it learns nothing says nothing
+        (50.0, 0.0, 1.0),
+        (1.0, 1.0, 1.0),  # all that is left follows the motion
+        (1.0, 0.0, CRITERIA.missed),  # trees miss some of what they could see
+        (0.5, 0.7, 0.7),
+        (1.5, 0.7, 0.85),
+    ],
+)
+def test_what_a_black_box_sees_and_cannot_learn_is_open_to_no_other_effect(
+    diagnosis, alone, learned, part
+):
+    seen = with_box(diagnosis, alone=alone, learned=learned)
+    assert open_to_others(seen) == pytest.approx(part, abs=1e-9)
+    assert open_to_others(replace(seen, learnable=None)) == 1.0
+
+
+def test_an_effect_is_believed_more_the_less_of_what_is_left_follows_the_motion(diagnosis):
+    floor = replace(diagnosis.floor, value=0.5 * diagnosis.after.check_error)
+    noisy = replace(diagnosis, floor=floor)
+
+    def outweighs(one):
+        return next(e.outweighs for e in evidence_of(one) if e.accepted)
+
+    shares_learned = (CRITERIA.missed, 0.7, 0.9, 1.0)
+    values = [outweighs(with_box(noisy, alone=1.0, learned=x)) for x in shares_learned]
+    assert values == sorted(values, reverse=True) and values[0] > values[-1]
+    assert values[-1] == pytest.approx(outweighs(replace(noisy, learnable=None)))

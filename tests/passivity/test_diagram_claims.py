@@ -28,7 +28,7 @@ from teleopdesign.diagrams import (
 )
 from teleopdesign.errors import ModelError
 from teleopdesign.passivity import Search, diagram_claims, hand_port, passive, two_port
-from teleopdesign.passivity.diagram_claims import linear_claims
+from teleopdesign.passivity.linear_diagrams import linear_claims
 from teleopdesign.passivity.ports import impedance_matrix, ports
 from teleopdesign.realise.lti import S, linear_blocks
 

@@ -139,8 +139,14 @@ def test_a_users_force_that_does_not_say_leaves_claims_open():
     found = claims_on(body)["any law within the level"]
     assert found.status == "unknown"
     assert "own may supply energy" in str(found.verdict)
-    declared = body_of().with_effect(own("force", law, energy="dissipates"), {"size": 0.1})
-    assert identified(declared).set_aside == ()
+    false = body_of().with_effect(own("force", law, energy="dissipates"), {"size": 0.1})
+    assert identified(false).set_aside == ("own",)
+
+    def damping(now, p):
+        return p.size * now.velocity
+
+    true = body_of().with_effect(own("force", damping, energy="dissipates"), {"size": 0.1})
+    assert identified(true).set_aside == ()
     damper = own("force", lambda now, p: p.size * now.velocity)
     assert identified(body_of().with_effect(damper, {"size": 0.1})).set_aside == (), "it is proved"
 

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import control
 import numpy as np
 import pytest
+import sympy as sp
 from devices import body
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -12,7 +13,13 @@ from hypothesis import strategies as st
 from teleopdesign.controllers import from_control
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.frequency import transfer_function
-from teleopdesign.passivity import Claim, Refutation, diagram_claims, positive_real
+from teleopdesign.passivity import (
+    Claim,
+    Refutation,
+    diagram_claims,
+    positive_real,
+    sampled_passivity,
+)
 
 MASS, DAMPING = 0.15, 2.0
 BANDWIDTHS = (1, 2, 5, 10, 20, 50, 100, 200, 500)  # Hz
@@ -84,3 +91,22 @@ def test_what_fails_by_more_than_rounding_is_still_refuted():
     s = control.tf("s")
     assert positive_real(0.15 * s - 1e-9).status == "refuted"
     assert positive_real(1 / (s**2 + 1) + 2).status == "refuted"
+
+
+def test_a_wave_whose_energy_is_lost_in_the_rounding_of_its_replay_refutes_nothing():
+    """A mass and a decaying pole of order 4: Re Z is 1e-25 of abs(Z) where it is negative."""
+    s = sp.Symbol("s")
+    above = (2000, "18/25", "61/625000", "747/125000000000", "15067/100000000000000000",
+             "233295/200000000000000000000000", "6561/250000000000000000000000000")  # fmt: skip
+    below = (1, "9/25000", "243/5000000000", "729/250000000000000", "6561/100000000000000000000", 0)
+    p, q = (sp.Poly([sp.Rational(c) for c in row], s) for row in (above, below))
+    claim = positive_real(p.as_expr() / q.as_expr())
+    assert claim.status == "unknown" and "it shows nothing" in str(claim.verdict)
+
+
+def test_a_sampled_law_that_leaves_double_precision_is_refuted_by_a_shorter_motion():
+    """A pole at z = 2, nearly cancelled: over 270 000 samples it overflows."""
+    z = sp.Symbol("z")
+    law = (15000 * z - 30003) / (100 * z - 200)
+    claim = sampled_passivity(law, damping=0.0075, sample_time=0.0001)
+    assert claim.status == "refuted" and claim.record.replay() > 0

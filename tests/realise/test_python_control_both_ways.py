@@ -3,6 +3,8 @@
 1e-6 of the range: two integrators at tight tolerances on the same equations.
 """
 
+from dataclasses import replace
+
 import control
 import numpy as np
 import pytest
@@ -15,10 +17,14 @@ from teleopdesign.diagrams import (
     Diagram,
     Moving,
     controller_parts,
+    coupled_plant_parts,
     haptic_interface,
     plant_parts,
 )
 from teleopdesign.errors import ModelError
+from teleopdesign.frequency import bode
+from teleopdesign.passivity import ports
+from teleopdesign.passivity.linear_diagrams import linear_claims
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.simulate import Sampling, Trajectory, simulate
 
@@ -371,3 +377,144 @@ def test_what_is_no_plant_is_said_in_one_line(plant, words):
 def test_signals_that_do_not_fit_a_system_are_counted():
     with pytest.raises(ModelError, match="2 inputs and 2 outputs, found 1 and 2 signals"):
         controller_parts(CROSSED, name="C", inputs=("x",), outputs=("u", "w"), motion="x")
+
+
+def mechanical(masses, damping, stiffness):
+    """x'' = M^-1 (F - B x' - K x) in state space, forces in and positions out."""
+    m, b, k = (np.array(x, dtype=float) for x in (masses, damping, stiffness))
+    n, inverse = len(m), np.linalg.inv(np.array(masses, dtype=float))
+    zero, same = np.zeros((n, n)), np.eye(n)
+    return control.ss(
+        np.block([[zero, same], [-inverse @ k, -inverse @ b]]),
+        np.vstack([zero, inverse]),
+        np.hstack([same, zero]),
+        zero,
+    )
+
+
+TWO_AXES = mechanical(
+    [[0.3, 0.05], [0.05, 0.2]], [[4.0, -1.0], [-1.0, 3.0]], [[900, -200], [-200, 700]]
+)
+COUPLED = {
+    "masses": TWO_AXES,
+    "free masses": mechanical([[0.3, 0.05], [0.05, 0.2]], [[4, -1], [-1, 3]], np.zeros((2, 2))),
+    "three axes": mechanical(
+        [[0.3, 0.05, 0], [0.05, 0.2, 0.02], [0, 0.02, 0.4]],
+        np.diag([4.0, 3.0, 5.0]),
+        [[900, -200, 0], [-200, 700, -100], [0, -100, 500]],
+    ),
+    "more states than two an axis": control.tf(
+        [[[1.0, 60.0], [2.0]], [[1.0], [1.0]]],
+        [
+            [[0.2, 15.0, 420.0, 9e3], [0.02, 2.3, 60.0, 900.0]],
+            [[0.05, 4.0, 90.0, 1500.0], [0.25, 4.0, 500.0]],
+        ],
+    ),
+}  # fmt: skip
+
+
+def with_axes(plant, name="P"):
+    numbers = range(1, plant.ninputs + 1)
+    named = {key: [f"{letter}{i}" for i in numbers] for key, letter in
+             (("motions", "x"), ("commands", "u"), ("drivers", "f"))}  # fmt: skip
+    parts, sums = coupled_plant_parts(plant, name=name, **named)
+    law = from_control(control.tf([-40.0, -10.0], [0.01, 1.0]))
+    laws = [Control(f"K{i}", law, f"x{i}", f"u{i}", f"x{i}", True) for i in numbers]
+    outside = {f"f{i}": "force" for i in numbers}
+    return Diagram("plant", (*parts, *laws), sums, outside, tuple(named["motions"]))
+
+
+def opened(diagram):
+    """The plant alone: what its controllers make is zero."""
+    silent = from_control(control.tf([0.0], [1.0]))
+    for part in diagram.controls:
+        if part.name.startswith("K"):
+            diagram = replace(
+                diagram,
+                blocks=tuple(replace(b, controller=silent) if b.name == part.name else b
+                             for b in diagram.blocks),
+            )  # fmt: skip
+    return diagram
+
+
+@pytest.mark.parametrize("name", COUPLED)
+def test_a_plant_of_several_axes_is_its_own_transfer_functions(name):
+    """Matrices in, transfer functions out: 1e-6 of each entry, over four decades."""
+    alone = opened(with_axes(COUPLED[name]))
+    points = 1j * np.array([0.3, 20.0, 70.0, 400.0])
+    for i in range(COUPLED[name].noutputs):
+        for j in range(COUPLED[name].ninputs):
+            found, left_out = transfer_function(alone, output=f"x{i + 1}", input=f"f{j + 1}")
+            given = np.array([COUPLED[name](p)[i, j] for p in points])
+            np.testing.assert_allclose(found(points), given, rtol=1e-6)
+            assert left_out == ()
+
+
+def test_the_bode_plot_of_a_plant_of_several_axes_is_its_own_response():
+    frequency = np.array([0.1, 3.0, 30.0])
+    found = bode(opened(with_axes(TWO_AXES)), output="x1", input="f2", frequency=frequency)
+    given = [TWO_AXES(2j * np.pi * f)[0, 1] for f in frequency]
+    np.testing.assert_allclose(found.data["magnitude"].values.ravel(), np.abs(given), rtol=1e-9)
+    turned = np.exp(1j * (np.radians(found.data["phase"].values.ravel()) - np.angle(given)))
+    np.testing.assert_allclose(turned, 1.0, atol=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["masses", "more states than two an axis"])
+def test_a_plant_of_several_axes_is_the_same_through_both(name):
+    diagram = with_axes(COUPLED[name])
+    motions = [f"x{i + 1}" for i in range(COUPLED[name].noutputs)]
+    assert compare(diagram, {"f1": push, "f2": pull}, motions) < 1e-6
+
+
+def test_a_plant_of_several_axes_in_discrete_time_is_the_one_before_its_hold():
+    """Held forces: each sample of the diagram is that of the discrete plant; 1e-6 of the range."""
+    sampled = control.sample_system(TWO_AXES, PERIOD, method="zoh")
+    diagram = opened(with_axes(sampled))
+    forces = {"f1": 1.5, "f2": -0.7}
+    computer = Sampling(period=PERIOD)
+    found = simulate(diagram, duration=0.1, inputs=forces, computer=computer, step=1e-4, jit=False)
+    time = PERIOD * np.arange(101)
+    held = np.tile([[1.5], [-0.7]], (1, 101))
+    answer = control.forced_response(sampled, time, held).outputs
+    at = np.searchsorted(found["time"].values, time - PERIOD / 1e3)
+    for k, motion in enumerate(("x1", "x2")):
+        assert np.abs(found[motion].values[at] - answer[k]).max() < 1e-6 * np.ptp(answer[k])
+
+
+def test_a_plant_of_several_axes_is_judged_at_its_ports():
+    """A passive plant under springs is proved passive, one with a negative damper refuted."""
+    held = with_axes(TWO_AXES)
+    claims = linear_claims(held, ports(held))
+    assert [one.claim.status for one in claims] == ["proved", "proved"]
+    driven = mechanical([[0.3, 0.05], [0.05, 0.2]], [[-4, 0], [0, 3]], [[900, -200], [-200, 700]])
+    free = opened(with_axes(driven))
+    assert linear_claims(free, ports(free))[0].claim.status == "refuted"
+
+
+UNSTABLE_ZERO = control.tf(
+    [[[1.0, -5.0], [0.0]], [[0.0], [1.0]]],
+    [[[0.1, 1.0, 5.0, 9.0], [1.0]], [[1.0], [1.0, 1.0, 3.0]]],
+)
+
+
+@pytest.mark.parametrize(
+    ("plant", "words"),
+    [
+        (control.tf([[[1.0], [1.0]], [[1.0], [1.0]]], [[[1.0, 1, 1]] * 2] * 2), "singular"),
+        (UNSTABLE_ZERO, "zeros that do not decay"),
+        (mechanical([[0.3, 0.5], [0.5, 0.2]], np.eye(2), np.eye(2)), "not positive definite"),
+        (control.ss(-np.eye(2), np.eye(2), np.eye(2), np.zeros((2, 2))), "not positive definite"),
+        (
+            control.ss(np.eye(3), np.eye(3)[:, :2], np.eye(3)[:2], np.zeros((2, 2)), 1e-3),
+            "4 states",
+        ),
+        (control.tf([1.0], [1.0, 1.0, 3.0]), "1 inputs and 1 outputs, found 2 commands"),
+    ],
+)
+def test_what_is_no_plant_of_two_axes_is_said_in_one_line(plant, words):
+    with pytest.raises(ModelError, match=words) as caught:
+        coupled_plant_parts(
+            plant, name="P", motions=("x1", "x2"), commands=("u1", "u2"), drivers=("f1", "f2")
+        )
+    assert "\n" not in str(caught.value)

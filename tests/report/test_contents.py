@@ -12,6 +12,7 @@ from teleopdesign.report.candidate_table import candidate_rows
 from teleopdesign.report.cannot_tell import cannot_tell
 from teleopdesign.report.page import page_of
 from teleopdesign.report.parameter_table import parameter_rows
+from teleopdesign.report.provenance import record_rows
 from teleopdesign.report.residuals import CELLS, body_views
 
 
@@ -192,3 +193,32 @@ def test_records_come_with_the_digest_of_their_files(page, diagnosis):
 def test_a_record_file_that_is_gone_has_no_digest(diagnosis, tmp_path):
     gone = replace(diagnosis, experiment=replace(diagnosis.experiment, folder=tmp_path))
     assert {r.digest for r in page_of(gone).records} == {""}
+
+
+def test_a_record_that_is_a_part_of_a_log_or_a_bag_comes_with_its_digest(tmp_path, diagnosis):
+    import hashlib
+
+    (tmp_path / "log.csv").write_bytes(b"whole")
+    (tmp_path / "bag").mkdir()
+    for name, content in (("b.db3", b"ole"), ("a.yaml", b"wh")):
+        (tmp_path / "bag" / name).write_bytes(content)
+    record = diagnosis.experiment.records[0]
+    files = ("log.csv", "log.csv 0-14.4 s", "log.csv 1e-05-2.5e+03 s", "bag", "bag 0-2 s")
+    whole = replace(
+        diagnosis.experiment,
+        folder=tmp_path,
+        records=tuple(replace(record, file=file) for file in files),
+    )
+    digest = hashlib.sha256(b"whole").hexdigest()
+    assert [row.digest for row in record_rows(whole)] == [digest] * len(files)
+
+
+def test_what_the_file_states_is_shown_also_where_few_effects_were_tried(diagnosis):
+    few = {"stribeck": diagnosis.model.known["stribeck"]}
+    rungs = tuple(
+        replace(rung, fit=replace(rung.fit, model=replace(rung.fit.model, known=few)))
+        for rung in diagnosis.rungs
+    )
+    rows = parameter_rows(replace(diagnosis, rungs=rungs))
+    assert [r.stated for r in rows] == [r.stated for r in parameter_rows(diagnosis)]
+    assert any(r.stated is not None for r in rows)

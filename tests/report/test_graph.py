@@ -139,3 +139,11 @@ def test_the_same_figure_gives_the_same_bytes():
 )
 def test_a_quantity_is_shown_in_the_prefix_that_reads_well(unit, size, shown):
     assert scaled(unit, size).unit == shown
+
+
+def test_a_cloud_that_is_thinned_keeps_its_middle():
+    y = np.random.default_rng(4).standard_normal(20_000)
+    found = thin_series(Series("a", np.arange(20_000.0), y, "rest"), 400)
+    assert len(found.y) == 400
+    # a standard normal has 0.26 of its points within a third of its spread; of 400, +- 0.022
+    assert np.mean(np.abs(found.y) < 1 / 3) == pytest.approx(0.26, abs=0.09)

@@ -8,7 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.diagnose.ranking import Ranking
-from teleopdesign.report.words import listed, number, percent, short, unit_text, verdict, with_error
+from teleopdesign.report.words import (
+    listed,
+    number,
+    percent,
+    short,
+    typeset,
+    unit_text,
+    verdict,
+    with_error,
+)
 
 FINITE = st.floats(-1e12, 1e12).filter(lambda x: x == 0 or abs(x) > 1e-12)
 
@@ -100,3 +109,16 @@ def test_effects_that_explain_most_but_are_unlikely_are_said_to(diagnosis):
     text = verdict(replace(diagnosis, verdict="undecided", named=()))
     assert text.startswith("Undecided: with stribeck at device the force error")
     assert "less likely than not" in text
+
+
+@pytest.mark.parametrize(
+    ("sentence", "printed"),
+    [
+        ("travels 2 rad, at 3 +- 0.1 N*m*s^2/rad^2.", "Travels 2 rad, at 3 ± 0.1 N·m·s²/rad²."),
+        ("channels.time.unit was guessed", "channels.time.unit was guessed"),
+        ("01_epoch.csv: 2*x^2 is a formula", "01_epoch.csv: 2*x² is a formula"),
+        ("10 kg*m^20", "10 kg·m^20"),
+    ],
+)
+def test_sentences_of_a_terminal_are_typeset(sentence, printed):
+    assert typeset(sentence) == printed

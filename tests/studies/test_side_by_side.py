@@ -27,7 +27,7 @@ def task(axes=AXES, measures=MEASURES):
 def test_blocks_have_the_numbers_and_reasons_of_single_simulations():
     one = task()
     (unit,) = side_by_side.units_of(one, [5])
-    assert unit == tuple(range(42))
+    assert unit == range(42)
     for together in side_by_side.evaluate_unit(one, unit):
         alone = evaluate(one, together.point)
         assert (together.reason, together.form) == (alone.reason, alone.form)
@@ -38,9 +38,9 @@ def test_blocks_have_the_numbers_and_reasons_of_single_simulations():
 
 def test_a_point_does_not_depend_on_those_beside_it():
     whole = task()
-    blocks = side_by_side.evaluate_unit(whole, tuple(range(42)))
+    blocks = side_by_side.evaluate_unit(whole, range(42))
     for first, last in ((0, 7), (6, 23), (30, 42)):
-        part = side_by_side.evaluate_unit(whole, tuple(range(first, last)))
+        part = side_by_side.evaluate_unit(whole, range(first, last))
         assert part == blocks[first:last]
 
 

@@ -50,6 +50,23 @@ def test_a_graft_changes_the_command_alone_and_has_the_size_asked_for(machine, e
     np.testing.assert_allclose(rms, 2.0 * machine.left, rtol=1e-9)
 
 
+@pytest.mark.parametrize("effect", ["torque_ripple", "load_dependent_friction"])
+def test_what_takes_a_share_of_the_command_takes_it_of_the_new_one(machine, effect):
+    experiment = study.grafted(machine, effect, 0.5)
+    first = []
+    for k, rows, period, now in machine.parts:
+        new = experiment.records[k].signals["device.actuator_force"][rows]
+        share = np.divide(new - now.command, new, np.zeros_like(new), where=new != 0.0)
+        assert np.abs(share).max() <= study.MOST_OF_COMMAND
+        first.append(study._low_passed(share * now.command, machine.bandwidth, period))
+    rms = np.sqrt(np.mean(np.concatenate(first) ** 2))
+    np.testing.assert_allclose(rms, 0.5 * machine.left, rtol=1e-9)
+
+
+def test_a_graft_that_would_take_half_of_the_command_is_none(machine):
+    assert study.grafted(machine, "torque_ripple", 1e3) is None
+
+
 def test_what_a_model_has_is_not_grafted_nor_what_its_axis_has_not(machine):
     assert machine.takes("spring") and machine.takes("stribeck")
     assert not machine.takes("gravity")  # the rod is prismatic

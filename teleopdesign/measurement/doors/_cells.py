@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import warnings
 from collections.abc import Sequence
@@ -12,6 +13,11 @@ from ...errors import ExperimentError, quoted
 from ._log import Array
 
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?$|[-+]?(nan|inf|infinity)$", re.I)
+#: what loggers and tables write where there is no reading, in lower case
+NO_READING = frozenset(
+    "n/a na n.a. #n/a #na null none nil - -- --- ? * . missing invalid "
+    "#value! #div/0! #num! #ref!".split()
+)
 _DAY = re.compile(r"(\d{1,2})\.(\d{1,2})\.(\d{4})[ T](.*)$")
 _ZONE = re.compile(r"(Z|[-+]\d{2}:?\d{2})$")
 _TIME_OF_DAY = re.compile(r"(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)$")
@@ -19,8 +25,24 @@ _TIME_OF_DAY = re.compile(r"(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)$")
 _NO_ROWS = np.empty(0)
 
 
+def is_empty(cell: str) -> bool:
+    """Whether a cell holds no reading: nothing, or a word for it ("n/a", "-")."""
+    bare = cell.strip()
+    return not bare or bare.lower() in NO_READING
+
+
 def is_number(cell: str, comma: bool) -> bool:
     return bool(_NUMBER.match(cell.replace(",", ".") if comma else cell))
+
+
+def number_of(cell: str) -> float | str:
+    """A cell as a number, NaN where it holds no reading; the cell itself where it is a text."""
+    cell = cell.strip()
+    if is_empty(cell):
+        return math.nan
+    if not _NUMBER.match(cell):
+        return cell
+    return float(cell.replace("d", "e").replace("D", "e") if "n" not in cell.lower() else cell)
 
 
 def seconds_of(cell: str) -> float | None:
@@ -89,7 +111,7 @@ class CellColumns:
 
 
 def _begins_with_text(cells: Sequence[str]) -> bool:
-    filled = next((c for c in cells if c), "")
+    filled = next((c for c in cells if not is_empty(c)), "")
     return bool(filled) and not is_number(filled, comma=False)
 
 
@@ -99,14 +121,11 @@ def _seconds_or_numbers(cells: Sequence[str], where: str) -> Array:
 
 
 def _numbers(cells: Sequence[str], where: str, before: int = 0) -> Array:
-    """Numbers, NaN for an empty cell; before: rows before the first."""
+    """Numbers, NaN for a cell without a reading; before: rows before the first."""
     out = np.full(len(cells), np.nan)
     for k, cell in enumerate(cells, start=before + 1):
-        if not cell:
-            continue
-        if not _NUMBER.match(cell):
+        number = number_of(cell) if cell else math.nan
+        if isinstance(number, str):
             raise ExperimentError(f"{where}, row {k}: found {quoted(cell)}, expected a number")
-        out[k - before - 1] = float(
-            cell.replace("d", "e").replace("D", "e") if "n" not in cell.lower() else cell
-        )
+        out[k - before - 1] = number
     return out

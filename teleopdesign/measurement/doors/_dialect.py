@@ -12,6 +12,7 @@ from typing import IO, cast
 from ...errors import ExperimentError, quoted
 from ...quantity import is_unit
 from ._cells import is_number, seconds_of
+from ._log import number_names
 
 COMMENTS = ("#", "%", "//")
 SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
@@ -65,7 +66,7 @@ def dialect_of(path: Path, file: str) -> Dialect:
     named = bool(header)
     if not named:
         header = tuple(f"column {k + 1}" for k in range(width))
-    return Dialect(encoding, separator, comma, header, units, first, named)
+    return Dialect(encoding, separator, comma, number_names(header), units, first, named)
 
 
 def _refuse_without_rows(lines: Sequence[str], separator: str, file: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from ...errors import ExperimentError, quoted
 
+_NUMBER = re.compile(r" #\d+$")
 Array = NDArray[np.float64]
 Columns = Mapping[str, Any]
 
@@ -68,6 +70,21 @@ def refuse_size(rows: int, file: str) -> None:
         raise ExperimentError(
             f"{file}: found {rows:.4g} rows, expected at most {MOST_ROWS:.4g}: cut the record"
         )
+
+
+def number_names(names: Sequence[str]) -> tuple[str, ...]:
+    """Names of columns, each once: those that are there several times get "#1", "#2" ..."""
+    count: dict[str, int] = {}
+    out = []
+    for name in names:
+        count[name] = count.get(name, 0) + 1
+        out.append(f"{name} #{count[name]}" if names.count(name) > 1 else name)
+    return tuple(out)
+
+
+def bare_column(name: str) -> str:
+    """The name of a column as the file has it, without the number of `number_names`."""
+    return _NUMBER.sub("", name)
 
 
 def parts_of(name: str, shape: Sequence[int]) -> dict[str, tuple[str, int | None]]:

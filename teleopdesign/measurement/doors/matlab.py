@@ -16,6 +16,8 @@ from ...errors import ExperimentError
 from ._log import Log, how_to_save, part, parts_of, refuse_size
 from .hdf5 import open_hdf5
 
+#: how an HDF5 file begins, at its first byte or behind a head of so many bytes
+_HDF5, _HEAD = b"\x89HDF\r\n\x1a\n", 512
 #: structs within structs that are looked into
 _DEPTH = 4
 
@@ -24,6 +26,8 @@ def open_matlab(path: Path, file: str) -> Log:
     """A MAT file of any version."""
     from scipy.io import loadmat, matlab, whosmat
 
+    if _is_hdf5(path):
+        return open_hdf5(path, file)
     try:
         listed = whosmat(path)
         for _, shape, _ in listed:
@@ -66,6 +70,13 @@ def open_matlab(path: Path, file: str) -> Log:
 
     notes = tuple(f"{how_to_save(name)}; it is left out" for name in objects)
     return Log(tuple(n for n in columns), read, notes=notes)
+
+
+def _is_hdf5(path: Path) -> bool:
+    """Whether a file is HDF5: of MATLAB 7.3 or of another program, which writes no MATLAB head."""
+    with path.open("rb") as stream:
+        head = stream.read(_HEAD + len(_HDF5))
+    return head.startswith(_HDF5) or head[_HEAD:] == _HDF5
 
 
 def _fields(name: str, value: Any, depth: int) -> dict[str, Any]:

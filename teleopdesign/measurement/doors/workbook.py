@@ -14,7 +14,7 @@ import numpy as np
 
 from ...errors import ExperimentError
 from ._dialect import is_unit_cell
-from ._log import MOST_BYTES, Log, optional, refuse_size
+from ._log import MOST_BYTES, Log, number_names, optional, refuse_size
 
 #: rows above the first row of numbers that may be titles, names and units
 _TOP = 50
@@ -61,16 +61,16 @@ def _log(rows: Sequence[Sequence[Any]], first: int, notes: tuple[str, ...]) -> L
         units = [c.strip("[]() ") for c in above.pop()]
     header = above[-1] if above else []
     width = max(len(row) for row in rows[first : first + _TOP])
-    names = [
-        header[k] if k < len(header) and header[k] else f"column {k + 1}" for k in range(width)
-    ]
+    names = number_names(
+        [header[k] if k < len(header) and header[k] else f"column {k + 1}" for k in range(width)]
+    )
     data = rows[first:]
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         return {n: _column([row[names.index(n)] for row in data]) for n in wanted}
 
     said = {n: u for n, u in zip(names, units, strict=False) if u}
-    return Log(tuple(names), read, said, notes)
+    return Log(names, read, said, notes)
 
 
 def _text(cell: Any) -> str:

@@ -8,12 +8,13 @@ which tells the sign. What rests on neither is said to be a guess.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from ...errors import ExperimentError
+from ...errors import ExperimentError, did_you_mean
+from ...quantity import is_unit
 from ..doors._log import Log, listed
 from .clock import numeric_columns, on_one_grid, time_column
-from .content import NONE, Choices, Survey, SurveyedColumn
+from .content import NONE, Array, Choices, Survey, SurveyedColumn
 from .forces import describe_forces
 from .position import axis_of, describe_position, find_position
 from .unused import unused_columns
@@ -27,6 +28,11 @@ __all__ = [
     "survey_log",
 ]
 
+#: units that a misspelt one may mean
+UNITS = (
+    *("s", "ms", "us", "ns", "m", "mm", "um", "rad", "deg", "turns", "counts"),
+    *("m/s", "mm/s", "rad/s", "deg/s", "rpm", "N", "mN", "N*m", "Nm", "mN*m", "A", "mA", "V"),
+)
 #: part of a log that is fitted, where one log is all there is; the rest is the check record
 FIT_PART = 0.6
 
@@ -36,15 +42,19 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
 
     raises ExperimentError: no position, no force among the columns, or a column that is not there
     """
-    raw = numeric_columns(log, file)
+    raw, unread = numeric_columns(log, file)
     for key in ("time", "position", "actuator_force", "interaction_force"):
         name = getattr(choices, key)
         if name is not None and name != NONE and name not in raw:
-            raise ExperimentError(f"{file}: {key}: no column {name!r}, found {listed(raw)}")
+            why = f"column {name!r}: {unread[name]}" if name in unread else f"no column {name!r}"
+            raise ExperimentError(
+                f"{file}: {key}: {why}, found {listed(raw)}{did_you_mean(name, raw)}"
+            )
+    _check_units(choices, raw, file)
     guesses: dict[str, str] = {}
     time_name, unit = time_column(raw, log, choices, guesses, file)
     time, columns = on_one_grid(raw, log, time_name, unit, choices, file)
-    survey = Survey("", {}, float(time[-1] - time[0]), guesses, time, columns)
+    survey = Survey("", {}, float(time[-1] - time[0]), guesses, time, columns, unread=unread)
     if time_name is not None:
         survey.channels["time"] = {"column": time_name, "unit": unit}
     else:
@@ -53,8 +63,41 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     survey.axis = axis_of(survey, position, choices)
     describe_position(survey, position, velocity, choices)
     describe_forces(survey, position, velocity, time_name, choices, file)
+    _units_in_use(survey, choices, file)
     survey.unused = unused_columns(log, raw, survey)
     return survey
+
+
+def _check_units(choices: Choices, raw: Mapping[str, Array], file: str) -> None:
+    """Refuse a unit of a column that is not there, and a unit that is none."""
+    for column, unit in choices.units.items():
+        if column not in raw:
+            raise ExperimentError(
+                f"{file}: unit of {column!r}: no such column, found {listed(raw)}"
+                f"{did_you_mean(column, raw)}"
+            )
+        if unit != "counts" and not is_unit(unit):
+            raise ExperimentError(
+                f"{file}: unit of {column!r}: found {unit!r}, expected a unit such as "
+                f'"deg", "mm", "N*m" or "A"{did_you_mean(unit, UNITS)}'
+            )
+
+
+def _units_in_use(survey: Survey, choices: Choices, file: str) -> None:
+    """Refuse a unit that was chosen for a column, but is none of what the column is taken for."""
+    for key, entry in survey.channels.items():
+        column = entry.get("column")
+        unit = choices.units.get(column) if isinstance(column, str) else None
+        if unit is not None and unit != entry.get("unit"):
+            raise ExperimentError(
+                f"{file}: unit of {column!r}: found {unit!r}, expected one of a {_noun(key)} on a "
+                f"{survey.axis} axis, such as {entry.get('unit')!r}"
+            )
+
+
+def _noun(key: str) -> str:
+    """What a channel holds, as a sentence calls it."""
+    return "force" if key.endswith("force") else key
 
 
 def spans_of(duration: float) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -68,4 +111,7 @@ def same_columns(logs: Sequence[Log], files: Sequence[str]) -> None:
     for log, file in zip(logs[1:], files[1:], strict=True):
         missing = [n for n in logs[0].names if n not in log.names]
         if missing:
-            raise ExperimentError(f"{file}: has no column {missing[0]!r}, which {files[0]} has")
+            raise ExperimentError(
+                f"{file}: has no column {missing[0]!r}, which {files[0]} has; if both are parts of "
+                "one run, put them into a folder and give the folder"
+            )

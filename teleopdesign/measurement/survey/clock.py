@@ -7,33 +7,50 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...errors import ExperimentError
+from ...errors import ExperimentError, quoted
 from ...quantity import measures, si_factor
-from ..column_names import is_wanted, likeness, unit_in_name
+from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text
 from ..doors._log import Log, listed
 from ..tables import numbers_of
 from ..time_grid import clock_of
-from .content import Array, Choices, SurveyedColumn, rises
+from .content import SURE_NAME, Array, Choices, SurveyedColumn, reasons, rises
 
 #: rows that are looked at
 MOST = 60_000
 
 
-def numeric_columns(log: Log, file: str) -> dict[str, Array]:
-    """Columns that hold numbers or dates, by name."""
+def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, str]]:
+    """Columns that hold numbers or dates, by name; and of the others, why they hold none."""
     raw: dict[str, Array] = {}
-    for name in log.names:
-        if log.names.count(name) > 1:
-            continue
+    unread: dict[str, str] = {}
+    single = [name for name in log.names if log.names.count(name) == 1]
+    try:
+        together = log.read(dict.fromkeys(single, ""))  # a file of text is read once, not once each
+    except ExperimentError:
+        together = {}
+    for name in single:
         try:
-            values = numbers_of(log.read({name: ""})[name], name, file)
-        except ExperimentError:
+            values = together[name] if name in together else log.read({name: ""})[name]
+            values = numbers_of(values, name, file)
+        except ExperimentError as problem:
+            unread[name] = _without_name(str(problem), name, file)
             continue
-        if len(values) > 1 and np.isfinite(values).mean() > 0.5:
+        finite = float(np.isfinite(values).mean()) if len(values) > 1 else 0.0
+        if finite > 0.5:
             raw[name] = values
+        else:
+            unread[name] = f"numbers in {finite:.0%} of its rows"
     if not raw:
-        raise ExperimentError(f"{file}: found no column of numbers among {listed(log.names)}")
-    return raw
+        raise ExperimentError(
+            f"{file}: found no column of numbers among {listed(log.names)}{reasons(unread)}"
+        )
+    return raw, unread
+
+
+def _without_name(message: str, column: str, file: str) -> str:
+    """What a message says of a column, without the names of the file and of the column."""
+    short = message.removeprefix(f"{file}: ").removeprefix("column ").removeprefix(quoted(column))
+    return short.lstrip(":, ")
 
 
 def time_column(
@@ -52,7 +69,7 @@ def time_column(
     elif log.clocks:
         name = _busiest_clock(log, raw, choices)
     else:
-        scores = {n: likeness(n, "time") for n in rising}
+        scores = {n: max(likeness(n, "time"), SURE_NAME * _is_unit_of_time(n)) for n in rising}
         if not scores:
             guesses["sample_rate"] = "no column rises like a time: 1000 Hz is a guess"
             return None, "s"
@@ -61,11 +78,19 @@ def time_column(
             name = next(iter(rising))
             guesses["channels.time.column"] = f"{name!r} is the first column that always rises"
     unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name, "time")
+    if unit is None and _is_unit_of_time(name):
+        unit = unit_of_text(bare_name(name))
     if unit is None or not measures(unit, "time"):
-        unit, why = _time_unit(raw[name])
+        unit, why = unit_of_steps(raw[name])
         if why:
             guesses["channels.time.unit"] = why
     return name, unit
+
+
+def _is_unit_of_time(name: str) -> bool:
+    """Whether a name is nothing but a unit of time: "ms", "Sekunden"."""
+    unit = unit_of_text(bare_name(name))
+    return unit is not None and unit != "counts" and measures(unit, "time")
 
 
 def _busiest_clock(log: Log, raw: Mapping[str, Array], choices: Choices) -> str:
@@ -77,7 +102,7 @@ def _busiest_clock(log: Log, raw: Mapping[str, Array], choices: Choices) -> str:
     return log.clocks[best]
 
 
-def _time_unit(stamps: Array) -> tuple[str, str]:
+def unit_of_steps(stamps: Array) -> tuple[str, str]:
     """Unit of a time from its usual step, and why if it is a guess."""
     step = float(np.median(np.abs(np.diff(stamps[np.isfinite(stamps)]))))
     scales = ((0.2, "s"), (200.0, "ms"), (2e5, "us"), (math.inf, "ns"))

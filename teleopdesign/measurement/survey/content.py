@@ -41,7 +41,7 @@ class Survey:
     questions: what a person is asked: key -> (question, what is taken otherwise)
     time: (n,) s from the first row;  columns: by name, on it;  first: values of a first model
     explained: column that may be a force -> part of it that the motion explains (up to 1)
-    unused: column that is in no channel -> why
+    unused: column that is in no channel -> why;  unread: column without numbers -> why
     """
 
     axis: str
@@ -54,6 +54,7 @@ class Survey:
     notes: list[str] = field(default_factory=list)
     explained: dict[str, float] = field(default_factory=dict)
     unused: dict[str, str] = field(default_factory=dict)
+    unread: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -105,6 +106,13 @@ def sample_time_of(survey: Survey) -> float:
 def as_likely(scores: Mapping[str, float], best: str) -> list[str]:
     """The columns whose score is that of the best one but for `AS_LIKELY`."""
     return [n for n, s in scores.items() if n != best and s > scores[best] - AS_LIKELY]
+
+
+def reasons(unread: Mapping[str, str], most: int = 3) -> str:
+    """Why columns of a log are no numbers, for the end of a message; "" where all are."""
+    shown = [f"{name!r}: {why}" for name, why in list(unread.items())[:most]]
+    more = ["..."] if len(unread) > most else []
+    return f"; not read as numbers: {'; '.join(shown + more)}" if unread else ""
 
 
 def alike(column: str, others: Sequence[str], what: str) -> str:

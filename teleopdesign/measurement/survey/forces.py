@@ -8,7 +8,7 @@ from typing import Any
 
 from ...errors import ExperimentError
 from ...quantity import is_unit, measures, si_factor, unit_of
-from ..column_names import WANTED, is_wanted, likeness, words_of
+from ..column_names import is_wanted, likeness, unit_in_name
 from ..doors._log import listed
 from ..first_guess import FirstGuess, explain_force
 from .content import (
@@ -22,6 +22,7 @@ from .content import (
     as_likely,
     is_unit_of,
     moves,
+    reasons,
     rises,
     sample_time_of,
 )
@@ -74,7 +75,7 @@ def describe_forces(
     else:
         raise ExperimentError(
             f"{file}: found no column that could be a force beside {position!r}, "
-            f"found {listed(survey.columns)}"
+            f"found {listed(survey.columns)}{reasons(survey.unread)}"
         )
     if choices.actuator_force is None and likeness(force, "actuator_force") < SURE_NAME:
         share = physics[force].explained
@@ -110,8 +111,7 @@ def _force_score(column: SurveyedColumn, guess: FirstGuess) -> float:
     score = likeness(column.name, "actuator_force") + max(guess.explained, 0.0)
     score -= 0.7 * (likeness(column.name, "interaction_force") >= SURE_NAME)
     # the command is wanted, not what a drive says that it reached
-    wanted_words = set(words_of(column.name)) & set(WANTED)
-    score += 0.3 * bool(wanted_words) + 0.5 * is_unit_of(column.unit, "force")
+    score += 0.3 * is_wanted(column.name) + 0.5 * is_unit_of(column.unit, "force")
     return score - 0.6 * (likeness(column.name, "position") >= SURE_NAME)
 
 
@@ -126,7 +126,8 @@ def _hand(free: Mapping[str, SurveyedColumn], force: str, choices: Choices) -> s
 def _force_entry(survey: Survey, name: str, key: str, choices: Choices) -> dict[str, Any]:
     """A force with its unit, and the constant that a current needs."""
     axis = survey.axis
-    unit = choices.units.get(name) or survey.columns[name].unit
+    # known as a force, a name may end with a unit of one letter: "F_cmd_N", "i_A"
+    unit = choices.units.get(name) or survey.columns[name].unit or unit_in_name(name, "force", axis)
     entry: dict[str, Any] = {"column": name}
     if unit is None and choices.torque_constant is not None and key == "actuator_force":
         unit = choices.torque_constant[1].rpartition("/")[2]

@@ -22,10 +22,14 @@ from .content import (
     as_likely,
     is_unit_of,
     moves,
+    reasons,
     rises,
     sample_time_of,
 )
 
+#: steps between neighbouring readings up to which their number is sure from the smallest gap,
+#: which may be 1 % off where few digits were written
+STEPS_APART = 20
 #: correlation from which one column is the derivative of another
 DERIVATIVE = 0.9
 
@@ -46,7 +50,8 @@ def wrap_of(x: Array) -> float | None:
     jump = float(np.median(jumps))
     if np.any(np.abs(jumps - jump) > 0.1 * jump):
         return None
-    for period in (360.0, 2 * math.pi, 1.0, 400.0, *(2.0**k for k in range(8, 33))):
+    turns = (360.0, 2 * math.pi, 1.0, 400.0, 180.0, math.pi)
+    for period in (*turns, *(2.0**k for k in range(8, 33))):
         if abs(period - jump) < 0.1 * period and reach <= 1.001 * period:
             return period
     return None
@@ -83,7 +88,7 @@ def find_position(
         score += 0.5 * ("position" in kinds) - 0.8 * bool(kinds and "position" not in kinds)
         score -= 0.4 * max(likeness(name, "velocity"), likeness(name, "actuator_force"))
         for other, column_2 in moving.items():
-            if other == name or (is_unit_of(column_2.unit, "force") and column_2.unit):
+            if other == name or _is_force(column_2):  # friction alone is much like a velocity
                 continue
             _, agree = derivative_factor(flat[name], column_2.values, h)
             if agree > max(DERIVATIVE, derivative.get(name, ("", 0.0))[1]):
@@ -94,9 +99,16 @@ def find_position(
     elif scores:
         best = max(scores, key=lambda n: scores[n])
     else:
-        raise ExperimentError(f"{file}: found no column that moves among {listed(survey.columns)}")
+        raise ExperimentError(
+            f"{file}: found no column that moves among {listed(survey.columns) or 'none'}"
+            f"{reasons(survey.unread)}"
+        )
     if choices.position is None and likeness(best, "position") < SURE_NAME:
-        why = "its derivative is there too" if best in derivative else "by its name and unit"
+        named = likeness(best, "position") > 0 or is_unit_of(
+            survey.columns[best].unit or "", "position"
+        )
+        why = "by its name and unit" if named else "it is the first that moves and may be one"
+        why = "its derivative is there too" if best in derivative else why
         survey.guesses["channels.position.column"] = f"{best!r} is taken for the position: {why}"
     elif choices.position is None and (others := as_likely(scores, best)):
         survey.guesses["channels.position.column"] = alike(best, others, "the position")
@@ -104,6 +116,13 @@ def find_position(
     if velocity is not None:
         survey.notes.append(f"{velocity!r} is the derivative of {best!r}")
     return best, velocity
+
+
+def _is_force(column: SurveyedColumn) -> bool:
+    """Whether unit or name say that a column is a force."""
+    if column.unit is not None:
+        return is_unit_of(column.unit, "force")
+    return likeness(column.name, "actuator_force") >= SURE_NAME > likeness(column.name, "velocity")
 
 
 def axis_of(survey: Survey, position: str, choices: Choices) -> str:
@@ -122,7 +141,7 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
         words = words_of(position)
         turning = {"q", "angle", "winkel", "theta", "phi", "enc", "encoder", "joint"} & set(words)
         axis = "revolute" if turning or unit == "counts" or "A" in units else "prismatic"
-        why = f"the position is called {position!r}"
+        why = f"the position is called {position!r}" if turning else "no unit or name says which"
     survey.guesses["model.device.axis"] = f'"{axis}": {why}'
     return axis
 
@@ -178,9 +197,19 @@ def _seen_step(values: Array) -> float:
     step = reading_step(raw)
     if step <= 0 or len(some) < 10:
         return 0.0
+    step = _mean_step(raw, step)
     places = (raw - raw[0]) / step
     on = np.abs(np.exp(2j * np.pi * places).mean())
     return step if on > 0.9 and np.ptp(raw) > 20 * step else 0.0
+
+
+def _mean_step(raw: Array, step: float) -> float:
+    """A step from all gaps between neighbouring values: digits that were cut off average out."""
+    gaps = np.diff(np.unique(raw))
+    counts = np.round(gaps / step)
+    near = (counts > 0) & (counts < STEPS_APART)
+    total = float(counts[near].sum())
+    return float(gaps[near].sum()) / total if total > 0 else step
 
 
 def _position_unit(

@@ -38,7 +38,8 @@ def _why(name: str, log: Log, raw: Mapping[str, Array], survey: Survey) -> str:
     if (count := log.names.count(name)) > 1:
         return f"{count} columns have this name"
     if name not in raw:
-        return "holds no numbers"
+        why = survey.unread.get(name)
+        return f"holds no numbers ({why})" if why else "holds no numbers"
     if name in log.clocks.values():
         return "stamps of a topic that is not used"
     column = survey.columns.get(name)

@@ -17,7 +17,8 @@ from ...diagrams import Control, Diagram
 from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.simulated import without_absent
 from ...realise.tips import with_tips
-from ..linear.hidden_modes import cancelled_poles, stage_denominator
+from ..linear.hidden_modes import cancelled_poles
+from ..linear.in_full import stage_rows
 from ..ports import impedance_matrix, ports
 from .box import ValueBox
 
@@ -152,13 +153,10 @@ def _stage_denominator(stage: Stage, symbols: Mapping[str, sp.Symbol]) -> sp.Exp
                 if name.startswith("denominator_")
             )
         )
-    if "a_0_0" in stage.values:  # of a system in state space no number is a symbol
-        return stage_denominator(stage, "K").as_expr()
-    alone = Controller((stage,))
-    form = sp.Add(*(alone.linear_parts("K", S, sp.S(0)) or (sp.S(0),)))
-    numbers = {parameter_symbol("K", f"{stage.name}.{n}"): placed(n, v)
-               for n, v in stage.values.items()}  # fmt: skip
-    return sp.fraction(sp.together(in_exact_numbers(sp.sympify(form).subs(numbers))))[1]
+    known = {f"{stage.name}.{n}": placed(n, v) for n, v in stage.values.items()}
+    rates, _ = stage_rows(stage, known)
+    n = len(rates)
+    return (S * sp.eye(n) - sp.Matrix(n, n, lambda i, j: rates[i][j])).det(method="berkowitz")
 
 
 def _apart(diagram: Diagram) -> Diagram:

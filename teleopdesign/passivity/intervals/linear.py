@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import reduce
 
 import numpy as np
 import sympy as sp
@@ -13,8 +14,8 @@ from ...diagrams import Diagram
 from ...errors import ModelError
 from ...realise.lti import S
 from ..claims.claim import Claim, Unknown
-from ..diagram_claims import linear_claims
 from ..linear.polynomials import is_hurwitz
+from ..linear_diagrams import linear_claims
 from ..ports import judged, nonlinear_parts, ports
 from .at_points import judge_at_points
 from .box import ValueBox
@@ -83,7 +84,12 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
         how = str(exact.verdict)
         worst = worst if worst.margin < 0 else replace(worst, margin=-np.inf)
         return parts_of(statement, "refuted", worst, box, unit, how, at_worst=exact)
-    if family.is_rational and _proved(ask, z, claim) and hides_no_growth(ask, family, z):
+    if (
+        exact.holds
+        and family.is_rational
+        and _proved(ask, z, claim)
+        and hides_no_growth(ask, family, z)
+    ):
         bound = 0.0 if stable else _bound(ask, z, worst.margin)
         how = _how(ask, "its conditions are polynomials of one sign")
         worst = replace(worst, margin=max(worst.margin, bound))
@@ -121,22 +127,18 @@ def _proved(ask: Conditions, z: sp.Matrix, claim: str) -> bool:
 
 
 def hides_no_growth(ask: Conditions, family: Family, z: sp.Matrix) -> bool:
-    """Whether all modes that the ports, left free, do not show are shown to die out; 0 may stay.
+    """Whether all modes that the ports, left free, do not show are shown to die out.
 
     An impedance is what ports do from rest: what a zero cancels in it may grow by itself inside.
+    Shown are the poles of the ports' positions for their forces, a free mass among them.
     """
-    whole = sp.fraction(sp.cancel(family.characteristic()))[0]
-    shown = sp.fraction(sp.cancel(z.det()))[0]
-    if shown == 0:
+    if sp.cancel(z.det()) == 0:
         return False
-    hidden = ask.poly(sp.fraction(sp.cancel(whole / shown))[0])
-    s = ask.poly(S)
-    while hidden.degree() > 0:
-        rest, at_zero = sp.div(hidden, s)
-        if not at_zero.is_zero:
-            break
-        hidden = rest
-    return ask.is_hurwitz(hidden)
+    moved = (z.inv() / S).applyfunc(sp.cancel)
+    minors = [*moved, moved.det()]
+    shown = reduce(sp.lcm, (ask.poly(sp.fraction(sp.cancel(one))[1]) for one in minors))
+    whole = sp.fraction(sp.cancel(family.characteristic()))[0]
+    return ask.is_hurwitz(ask.poly(sp.fraction(sp.cancel(whole / shown.as_expr()))[0]))
 
 
 def _bound(ask: Conditions, z: sp.Matrix, margin: float) -> float:

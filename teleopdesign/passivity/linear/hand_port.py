@@ -14,11 +14,14 @@ from ...derive import symbol_values, transfer
 from ...diagrams import Diagram
 from ...realise.lti import linear_blocks
 from ...realise.tips import led, linear_tips
+from ..declarations import falsely_linear
 from .impedance import Impedance, impedance
 
 
 def hand_port(diagram: Diagram, *, speed: float = 0.0) -> tuple[Impedance, tuple[str, ...]]:
     """Force over velocity at the hand (N s/m), and the names of what has no linear form.
+
+    What is declared linear and is not is among the names, its form in Z meaningless.
 
     diagram: a haptic interface without position loop;  speed: where smoothed friction and schedules
     are frozen, m/s: what holds there is a statement about that linear system only
@@ -29,4 +32,4 @@ def hand_port(diagram: Diagram, *, speed: float = 0.0) -> tuple[Impedance, tuple
     linear = linear_blocks(apart, speed=speed)
     form = transfer(apart.opened("K"), "E", (motion,), given=motion)[motion]
     z = impedance(sp.sympify(form).subs(symbol_values(linear)), motion="position")
-    return z, linear.left_out
+    return z, (*linear.left_out, *falsely_linear(apart))

@@ -2,111 +2,260 @@
 
 An impedance is what ports do from rest. A pole of a controller that a zero of the next one cancels
 is not in it: from rest it never moves, but the least disturbance grows without end, and may come
-out at a port. So what is passive by its impedance is so of the device only where the determinant of
-all its equations, denominators multiplied out and nothing cancelled, has no root with Re s > 0.
+out at a port. So what is passive by its impedance is so of the device only where no mode of all its
+equations grows: none with Re s > 0, and none on the axis that another one of the same s drives.
+
+The second is a matter of ranks. P(s) w = 0 are all equations (`in_full`), r(s) a factor of det P
+with roots on the axis, m how often det P has it, n the nullity of P at its roots. The elementary
+divisors of P there are n powers of r, whose exponents sum up to m. What the ports show is contained
+in them: k divisors, whose exponents sum up to m - h. Where n = k + h each mode that no port shows
+is a divisor of its own, of exponent 1, and stays as large as it is. Otherwise one may grow as a
+power of time. What the ports show, a free mass among it, is judged by the impedance.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import reduce
+from itertools import combinations
+from typing import Any
 
 import numpy as np
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from ...controllers import (
-    Controller,
-    Stage,
-    as_written,
-    in_exact_numbers,
-    parameter_symbol,
-    resolvent,
-)
+from ...controllers import Controller, controller, in_exact_numbers
 from ...derive import symbol_values
 from ...derive.elimination import rows
-from ...diagrams import Control, Diagram
+from ...diagrams import Block, Control, Diagram, Moving
 from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.tips import with_tips
 from ..checker.polynomials import is_free_of_growth, polynomial
-from .impedance import exact
-from .polynomials import fraction
+from ..ports import Port, ports
+from .impedance import exact, impedance
+from .in_full import (
+    Equation,
+    denominators,
+    effect_forms,
+    equations_in_full,
+    equations_of,
+    polynomial_in_s,
+    ratio,
+    stage_denominator,
+    stages_of,
+)
+from .polynomials import fraction, is_hurwitz
+
+#: why nothing is proved of a system for which `grows_unseen` holds
+UNSEEN = "from rest its impedance is that of a passive one, but a mode that no port shows grows"
+_ONE = sp.Poly(1, S, domain="QQ")
 
 
 def growth_within(diagram: Diagram) -> float | None:
     """Rate (1/s) of the fastest mode that grows by itself with free ports; None where none does.
 
+    0: one grows as a power of time
     diagram: with values, linear and without dead times (of others nothing is known here: None)
+    raises ModelError: no force from outside drives a body
     """
-    whole = _characteristic(with_tips(diagram))
-    if whole is None or _is_free_of_growth(whole):
+    at, diagram = ports(diagram), with_tips(diagram)
+    linear = linear_blocks(diagram)
+    values = symbol_values(linear)
+    forms = [{n: e.xreplace(values) for n, e in row.items()} for row in rows(diagram)]
+    if linear.dead_times or any(e.has(sp.exp) for row in forms for e in row.values()):
         return None
-    return float(np.roots([float(c) for c in whole.sqf_part().monic().all_coeffs()]).real.max())
+    whole, shown = _whole(diagram, forms, at)
+    if whole.is_zero:
+        return None
+    if not _is_free_of_growth(whole):
+        return float(np.roots([float(c) for c in whole.sqf_part().monic().all_coeffs()]).real.max())
+    return 0.0 if _drives_itself(whole, shown, equations_in_full(diagram)) else None
 
 
 def hides_growth(part: Control, linear: LinearBlocks) -> bool:
     """Whether a mode grows within a controller that its linear form does not show."""
-    return not _is_free_of_growth(cancelled_poles(part, linear))
+    forms = [linear.blocks[part.name], linear.along.get(part.name, sp.S(0))]
+    whole = reduce(sp.Poly.mul, map(stage_denominator, stages_of(part)), _ONE)
+    if not _is_free_of_growth(cancelled_poles(part, linear)):
+        return True
+    known = {part.input, part.motion}
+    equations = [{n: p for n, p in row.items() if n not in known} for row in equations_of(part)]
+    return _drives_itself(whole, sp.Matrix([forms]), equations)
+
+
+def body_hides_growth(part: Moving, linear: LinearBlocks) -> bool:
+    """Whether effects of a body cancel a pole of one another that does not decay."""
+    forms = effect_forms(part)[0]
+    product = reduce(sp.Poly.mul, (ratio(form)[1] for form in forms), _ONE)
+    hidden = product.quo(ratio(linear.blocks[part.name])[1])
+    return hidden.degree() > 0 and not is_hurwitz(hidden)
+
+
+def grows_unseen(system: Any) -> bool:
+    """Whether a system of python-control has a mode that grows and that its port does not show.
+
+    At rest such a mode stays at rest, so that it is in no impedance; the least disturbance grows.
+    """
+    if hasattr(system, "num"):
+        states = [[sp.Add(*(exact(c) * S**k for k, c in enumerate(system.den[0][0][::-1])))]]
+    elif hasattr(system, "A"):
+        a = [[exact(x) for x in row] for row in system.A]
+        states = [[S * int(i == j) - x for j, x in enumerate(row)] for i, row in enumerate(a)]
+    else:
+        return False
+    equations = [{str(j): polynomial_in_s(x) for j, x in enumerate(row)} for row in states]
+    whole = polynomial_in_s(sp.Matrix(states).det(method="berkowitz")) if states else _ONE
+    shown = impedance(system).expression
+    hidden = whole.quo(ratio(shown)[1])
+    return not _is_free_of_growth(hidden) or _drives_itself(whole, sp.Matrix([shown]), equations)
+
+
+def cancelled_poles(part: Control, linear: LinearBlocks) -> sp.Poly:
+    """What the states of a controller's laws have more than its linear forms, in S."""
+    forms = (linear.blocks[part.name], linear.along.get(part.name, sp.S(0)))
+    whole = reduce(sp.Poly.mul, map(stage_denominator, stages_of(part)), _ONE)
+    return whole.quo(reduce(sp.lcm, (ratio(form)[1] for form in forms), _ONE))
 
 
 def _is_free_of_growth(p: sp.Poly) -> bool:
     return is_free_of_growth(polynomial(fraction(c) for c in p.all_coeffs()[::-1]))
 
 
-def _characteristic(diagram: Diagram) -> sp.Poly | None:
-    """det of all equations, with what stages cancel; None with dead times."""
-    linear = linear_blocks(diagram)
-    values = symbol_values(linear)
-    equations = [{n: e.xreplace(values) for n, e in row.items()} for row in rows(diagram)]
-    if linear.dead_times or any(e.has(sp.exp) for row in equations for e in row.values()):
-        return None
+def _whole(
+    diagram: Diagram, forms: list[dict[str, sp.Expr]], at: Sequence[Port]
+) -> tuple[sp.Poly, sp.Matrix]:
+    """det of all equations, with what blocks cancel; and motions of the ports for their forces."""
     unknown = [n for n in diagram.signals if n not in diagram.outside]
-    if len(equations) != len(unknown):
-        return None
-    ring, matrix = sp.QQ[S], []
-    for row in equations:
-        forms = [sp.fraction(sp.cancel(in_exact_numbers(row.get(n, sp.S(0))))) for n in unknown]
-        below = reduce(sp.lcm, [sp.Poly(q, S, domain="QQ") for _, q in forms])
-        matrix.append(
-            [ring.from_sympy((sp.Poly(p, S, domain="QQ") * below.quo(sp.Poly(q, S, domain="QQ")))
-                             .as_expr()) for p, q in forms]
-        )  # fmt: skip
-    size = len(unknown)
-    determinant = DomainMatrix(matrix, (size, size), ring).to_field().det()
-    whole = sp.Poly(ring.to_sympy(ring.convert_from(determinant, ring.get_field())), S, domain="QQ")
-    for part in diagram.controls:
-        whole *= cancelled_poles(part, linear)
-    return whole if not whole.is_zero else None
+    forces = [port.force for port in at]
+    field = sp.QQ.frac_field(S)
+
+    def placed(names: Sequence[str]) -> DomainMatrix:
+        entries = [
+            [field.from_sympy(in_exact_numbers(row.get(n, sp.S(0)))) for n in names]
+            for row in forms
+        ]
+        return DomainMatrix(entries, (len(forms), len(names)), field)
+
+    if len(forms) != len(unknown):
+        return sp.Poly(0, S, domain="QQ"), sp.zeros(0)
+    matrix = placed(unknown)
+    above, below = ratio(field.to_sympy(matrix.det()))
+    if above.is_zero:
+        return above, sp.zeros(0)
+    whole, rest = (above * denominators(diagram)).div(below)
+    assert rest.is_zero
+    answers = matrix.lu_solve(placed(forces)).to_Matrix()
+    weights = sp.Matrix([[exact(port.weights.get(n, 0)) for n in unknown] for port in at])
+    return whole, weights * answers
 
 
-def cancelled_poles(part: Control, linear: LinearBlocks) -> sp.Poly:
-    """What the denominators of a controller's stages have more than its linear forms, in S."""
-    assert isinstance(part.controller, Controller)
-    forms = (linear.blocks[part.name], linear.along.get(part.name, sp.S(0)))
-    whole = sp.Poly(1, S, domain="QQ")
-    for stage in part.controller.stages:
-        whole *= stage_denominator(stage, part.name)
-    return whole.quo(_common_denominator(forms))
+def _drives_itself(whole: sp.Poly, shown: sp.Matrix, equations: list[Equation]) -> bool:
+    """Whether a mode on the axis may grow as a power of time that the forms do not show."""
+    mirror = whole.compose(sp.Poly(-S, S, domain="QQ"))
+    for factor, _ in sp.gcd(whole, mirror).factor_list()[1]:
+        order, divisors = _shown(shown, factor)
+        hidden = _multiplicity(whole, factor) - order
+        if hidden and _nullity(equations, factor) != divisors + hidden:
+            return True
+    return False
 
 
-def stage_denominator(stage: Stage, prefix: str) -> sp.Poly:
-    """Denominator of one stage: det(s I - A), or as it was given."""
-    values = stage.values
-    if "denominator_0" in values:
-        order = max(int(n.rpartition("_")[2]) for n in values if n.startswith("denominator_"))
-        return sp.Poly([exact(values[f"denominator_{k}"]) for k in range(order, -1, -1)], S)
-    if "a_0_0" in values:
-        order = int(np.sqrt(sum(n.startswith("a_") for n in values)))
-        a = [[fraction(exact(values[f"a_{i}_{j}"])) for j in range(order)] for i in range(order)]
-        below, _ = resolvent(a, a[0], a[0])
-        return sp.Poly([sp.Rational(c) for c in below], S, domain="QQ")
-    alone = Controller((stage,))
-    numbers = {parameter_symbol(prefix, n): as_written(x) for n, x in alone.names().items()}
-    # from the input, and from the motion that it acts along: in their sum a mode could cancel
-    forms = alone.linear_parts(prefix, S, sp.S(0)) or ()
-    return _common_denominator(in_exact_numbers(sp.sympify(x).subs(numbers)) for x in forms)
+def _shown(forms: sp.Matrix, factor: sp.Poly) -> tuple[int, int]:
+    """Sum of the exponents of its poles there, and how many divisors they are (Smith, McMillan)."""
+    orders = [0]
+    for size in range(1, min(forms.shape) + 1):
+        minors = (
+            forms.extract(list(i), list(j)).det()
+            for i in combinations(range(forms.rows), size)
+            for j in combinations(range(forms.cols), size)
+        )
+        largest = max(_multiplicity(ratio(minor)[1], factor) for minor in minors)
+        if largest <= orders[-1]:
+            break
+        orders.append(largest)
+    return orders[-1], len(orders) - 1
 
 
-def _common_denominator(forms: Iterable[sp.Expr]) -> sp.Poly:
-    below = [sp.Poly(sp.fraction(sp.cancel(form))[1], S, domain="QQ") for form in forms]
-    return reduce(sp.lcm, below, sp.Poly(1, S, domain="QQ"))
+def _multiplicity(p: sp.Poly, factor: sp.Poly) -> int:
+    times = 0
+    while p.degree() > 0:
+        p, rest = p.div(factor)
+        if not rest.is_zero:
+            break
+        times += 1
+    return times
+
+
+def _nullity(equations: list[Equation], factor: sp.Poly) -> int:
+    """Of the equations where an irreducible factor is zero: elimination in the field it makes."""
+    names = list(dict.fromkeys(n for row in equations for n in row))
+    left = [{n: p.rem(factor) for n, p in row.items()} for row in equations]
+    left = [{n: p for n, p in row.items() if not p.is_zero} for row in left]
+    rank = 0
+    while left := [row for row in left if row]:
+        pivot = min(left, key=len)
+        name = next(iter(pivot))
+        inverse = pivot[name].invert(factor)
+        rank += 1
+        for row in left:
+            if row is pivot or name not in row:
+                continue
+            share = row[name] * inverse
+            for n, p in pivot.items():
+                changed = (row.get(n, _ONE * 0) - share * p).rem(factor)
+                if changed.is_zero:
+                    row.pop(n, None)
+                else:
+                    row[n] = changed
+        left = [row for row in left if row is not pivot]
+    return len(names) - rank
+
+
+def controllers_grow(diagram: Diagram) -> bool:
+    """Whether laws beside dead times have a mode that grows while all bodies stand still.
+
+    Such a mode is a pole of the impedance in the right half plane, or no port shows it. False too
+    where a dead time lies within a loop of laws: nothing is known here of those
+    """
+    diagram = with_tips(diagram)
+    made = [_standing_still(diagram, factor) for factor in (1.0, 2.0, 0.0)]
+    wholes = [whole for whole, _ in made]
+    if any(whole.is_zero or whole != wholes[0] for whole in wholes):
+        return False
+    return any(
+        not _is_free_of_growth(whole) or _drives_itself(whole, sp.zeros(0), equations)
+        for whole, equations in made
+    )
+
+
+def _standing_still(diagram: Diagram, factor: float) -> tuple[sp.Poly, list[Equation]]:
+    """det of all equations but those of bodies, which do not move, and the equations.
+
+    factor: what a dead time does in them
+    """
+    law = controller("gain", {"gain": factor}).stages[0]
+
+    def without_delay(part: Block) -> Block:
+        if not isinstance(part, Control):
+            return part
+        stages = (law if g.law.dead_time else g for g in stages_of(part))
+        return replace(part, controller=Controller(tuple(stages)))
+
+    blocks = tuple(without_delay(part) for part in diagram.blocks)
+    still = {b.motion for b in diagram.blocks if isinstance(b, Moving)}
+    equations = equations_in_full(replace(diagram, blocks=blocks), standing=True)
+    equations = [{n: p for n, p in row.items() if n not in still} for row in equations]
+    names = list(dict.fromkeys(n for row in equations for n in row))
+    if len(names) != len(equations):
+        return _ONE * 0, equations
+    ring = sp.QQ[S]
+    entries = [
+        [ring.from_sympy(row[n].as_expr()) if n in row else ring.zero for n in names]
+        for row in equations
+    ]
+    shape = (len(names), len(names))
+    matrix = DomainMatrix(entries, shape, ring).to_field()
+    above, below = ratio(matrix.domain.to_sympy(matrix.det()))
+    assert below.degree() <= 0
+    return above.monic() if not above.is_zero else above, equations

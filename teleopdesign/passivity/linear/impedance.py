@@ -18,7 +18,6 @@ from ...arguments import described
 from ...controllers import resolvent
 from ...errors import ModelError
 from ...realise.lti import S
-from ..checker.polynomials import is_free_of_growth, polynomial
 from .polynomials import fraction
 
 Motion = Literal["velocity", "position"]
@@ -202,26 +201,6 @@ def _from_control(system: Any) -> Impedance:
         raise ModelError(f"impedance: no linear system: {type(system).__name__}")
     _check_degree(len(system.A))
     return from_state_space(system.A, system.B, system.C, system.D)
-
-
-#: why nothing is proved of a system for which `grows_unseen` holds
-UNSEEN = "from rest its impedance is that of a passive one, but a mode that no port shows grows"
-
-
-def grows_unseen(system: Any) -> bool:
-    """Whether a system of python-control has a mode that grows, seen at its port or not.
-
-    At rest such a mode stays at rest, so that it is in no impedance; the least disturbance grows.
-    """
-    if hasattr(system, "num"):
-        below = [exact(c) for c in system.den[0][0]]
-    elif hasattr(system, "A"):
-        a = [[fraction(exact(x)) for x in row] for row in np.atleast_2d(system.A)]
-        nothing = [Fraction(0)] * len(a)
-        below = [sp.Rational(c) for c in resolvent(a, nothing, nothing)[0]]
-    else:
-        return False
-    return not is_free_of_growth(polynomial(fraction(c) for c in below[::-1]))
 
 
 def from_state_space(a: Any, b: Any, c: Any, d: Any) -> Impedance:

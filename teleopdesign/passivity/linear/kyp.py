@@ -22,7 +22,8 @@ from ...by_value import ByValue
 from ...errors import ModelError
 from ..claims.certificate import Term, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
-from .impedance import UNSEEN, Impedance, Motion, grows_unseen, impedance
+from .hidden_modes import UNSEEN, grows_unseen
+from .impedance import Impedance, Motion, impedance
 from .polynomials import fraction
 from .squares import sum_of_squares
 

@@ -17,7 +17,8 @@ import sympy as sp
 from ..claims.certificate import positive_real_certificate
 from ..claims.claim import Claim, Refutation, Unknown, accepted
 from ..search.growing_wave import GrowingWave, growing_wave
-from .impedance import UNSEEN, Impedance, Motion, exact, gaussian, grows_unseen, impedance
+from .hidden_modes import UNSEEN, grows_unseen
+from .impedance import Impedance, Motion, exact, gaussian, impedance
 from .polynomials import (
     X,
     even_part,

@@ -31,6 +31,8 @@ _DIGITS = 40  # of numerical values to begin with
 _WEAKEST = 1e-11
 #: share of abs(Z) by which Re Z in double precision spares the digits of an exact look
 _PLAIN = 1e-6
+#: share of a sum of energies in double precision that is rounding: sixteen last digits of each term
+ROUNDING = 2.0**-48
 
 
 @dataclass(frozen=True)
@@ -76,13 +78,16 @@ class GrowingWave:
         return t, wave.real, (wave @ self.value.T).real
 
     def replay(self) -> float:
-        """Energy given out, J: minus the integral of force times velocity over `samples`."""
+        """Energy given out, J: minus the integral of force times velocity over `samples`.
+
+        0 where the sum is no more than the rounding of its terms: it shows nothing
+        """
         periods = min(12.0 * self.s.imag / self.s.real / (2 * math.pi), LONGEST)
         t, v, f = self.samples(2 * int(500 * (1 + periods)) + 1)
         power = (f * v).sum(axis=1)
         weights = np.ones(len(t))  # Simpson's rule
         weights[1:-1:2], weights[2:-1:2] = 4, 2
-        return float(-(t[1] - t[0]) / 3 * (weights @ power))
+        return float(-(t[1] - t[0]) / 3 * beyond_rounding(weights * power))
 
     def as_dict(self) -> dict[str, object]:
         """Plain data, to be written as JSON."""
@@ -94,6 +99,12 @@ class GrowingWave:
             "velocity": [[v.real, v.imag] for v in self.velocity],
             "energy": self.energy,
         }
+
+
+def beyond_rounding(terms: np.ndarray) -> float:
+    """Their sum; 0 where it is no more than what the rounding of the terms may come to."""
+    total = float(terms.sum())
+    return total if abs(total) > ROUNDING * float(np.abs(terms).sum()) else 0.0
 
 
 def value_at(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> np.ndarray:

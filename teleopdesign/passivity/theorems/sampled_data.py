@@ -31,7 +31,7 @@ from ..claims.certificate import positive_real_certificate
 from ..claims.claim import Claim, Refutation, Unknown, accepted
 from ..linear.impedance import Impedance, decimal, exact, impedance, readable
 from ..linear.positive_real import NO_WAVE, damping_excess, is_positive_real
-from ..search.growing_wave import growing_wave
+from ..search.growing_wave import ROUNDING, growing_wave
 from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, REAL, under
 from ._theorem import Question, Theorem, TopicClaim
 
@@ -224,6 +224,8 @@ def _largest(
     Energy is quadratic in the travel, so that its largest eigenvector is the best mixture.
     """
     out = _given_out(np.array([one, other, one + other]), *system)
+    if not np.isfinite(out).all():
+        return -np.inf, one  # a controller that leaves double precision on the way
     mixed = (out[2] - out[0] - out[1]) / 2
     share = np.linalg.eigh(np.array([[out[0], mixed], [mixed, out[1]]]))[1][:, -1]
     travel = share[0] * one + share[1] * other
@@ -238,7 +240,10 @@ def _factor(rate: Fraction, frequency: Fraction) -> complex:
 def _given_out(
     travel: np.ndarray, law: sp.Expr, damping: sp.Expr, sample_time: sp.Expr, stiffness: sp.Expr
 ) -> np.ndarray:
-    """Energy given out, J, by each of the motions (..., n)."""
+    """Energy given out, J, by each of the motions (..., n).
+
+    0 where it is no more than rounding; not finite where the controller leaves double precision
+    """
     from scipy.signal import lfilter
 
     position = np.cumsum(travel, axis=-1)
@@ -247,10 +252,13 @@ def _given_out(
     a = [float(c) for c in below.all_coeffs()]
     b = [float(c) for c in above.all_coeffs()]  # of a law that does nothing: [0]
     b = [0.0] * (len(a) - len(b)) + b
-    held = lfilter(b, a, before)
-    lost = float(damping) / float(sample_time) * (travel**2).sum(axis=-1)
-    stored = float(stiffness) * position[..., -1] ** 2 / 2
-    return np.asarray(-((held * travel).sum(axis=-1) + lost + stored))
+    with np.errstate(over="ignore", invalid="ignore"):  # what grows leaves double precision
+        work = lfilter(b, a, before) * travel
+        lost = float(damping) / float(sample_time) * (travel**2).sum(axis=-1)
+        stored = float(stiffness) * position[..., -1] ** 2 / 2
+        out = -(work.sum(axis=-1) + lost + stored)
+        size = np.abs(work).sum(axis=-1) + np.abs(lost) + np.abs(stored)
+        return np.where(np.abs(out) > ROUNDING * size, out, np.where(np.isfinite(out), 0.0, out))
 
 
 def _claims(question: Question) -> list[TopicClaim]:

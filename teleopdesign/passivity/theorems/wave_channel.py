@@ -25,7 +25,8 @@ from ...errors import ModelError
 from ...realise.lti import S, linear_blocks
 from ..claims.certificate import Certificate, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
-from ..linear.hidden_modes import hides_growth
+from ..declarations import falsely_linear, is_shipped
+from ..linear.hidden_modes import body_hides_growth, hides_growth
 from ..linear.impedance import decimal, exact
 from ..linear.positive_real import positive_real
 from ..ports import judged, without_holding
@@ -122,12 +123,23 @@ def wave_claim(diagram: Diagram) -> Claim:
         coupling=exact(wave_impedance) * linear.blocks["P"],
         wave_impedance=wave_impedance,
     )
-    bent = [n for n in linear.left_out if n not in ("Z_m.coulomb", "Z_s.coulomb")]
+    opposing = {
+        f"{b.name}.coulomb"
+        for b in alone.bodies
+        for effect in getattr(b.body, "effects", ())
+        if effect.name == "coulomb" and is_shipped(effect)
+    }
+    bent = [n for n in (*linear.left_out, *falsely_linear(alone)) if n not in opposing]
     bent += [f"the actuator of {n}" for n, stage in linear.actuation.items() if stage != 1]
     bent += [
         f"a growing mode within {part.name} that a zero cancels"
         for part in alone.controls
         if part.dead_time is None and hides_growth(part, linear)
+    ]
+    bent += [
+        f"a mode of {part.name} that its effects cancel"
+        for part in alone.blocks
+        if isinstance(part, Moving) and body_hides_growth(part, linear)
     ]
     # the channel acts on one side of a compliance, the hand on the other: two ports, not one
     bent += [

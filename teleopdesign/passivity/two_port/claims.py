@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import reduce
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -112,6 +113,16 @@ def _late_verdict(system: TwoPort) -> Verdict:
         return Refutation(f"port 2 {waves[best]}, a growing wave", best)
     why = "; ".join(hidden) or "the criterion fails"
     return Unknown(f"{why}; no termination that makes it grow was found")
+
+
+def is_shown_unstable(system: TwoPort) -> bool:
+    """Whether `absolutely_stable` refutes it; with dead times at the first wave, not the best."""
+    if not system.has_delay:
+        return isinstance(absolutely_stable(system).verdict, Refutation)
+    frequencies, margin = _lowest(system, stable_margin)
+    lowest = frequencies if margin < 0 else []
+    waves = (pair for f in lowest for pair in _terminated(system, f))
+    return any(w.replay() > 0 < w.energy for _, w in chain(waves, _terminated_elsewhere(system)))
 
 
 def _rational(system: TwoPort) -> sp.ImmutableMatrix:

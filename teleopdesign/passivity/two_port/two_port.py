@@ -143,8 +143,11 @@ def over_frequency(system: TwoPort, frequency: np.ndarray | None = None) -> Freq
 
 
 def passive_margin(z: np.ndarray) -> np.ndarray:
-    """Smallest eigenvalue of the Hermitian part; z: (n, 2, 2)."""
-    return np.linalg.eigvalsh((z + z.conj().swapaxes(1, 2)) / 2)[:, 0]
+    """Smallest eigenvalue of the Hermitian part; z: (n, 2, 2); NaN at a pole."""
+    finite = np.isfinite(z).all(axis=(1, 2))
+    margin = np.full(len(z), np.nan)
+    margin[finite] = np.linalg.eigvalsh((z[finite] + z[finite].conj().swapaxes(1, 2)) / 2)[:, 0]
+    return margin
 
 
 def stable_margin(z: np.ndarray) -> np.ndarray:

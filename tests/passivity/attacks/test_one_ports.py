@@ -81,6 +81,9 @@ def judged(rng, kind):
             lower = damping_excess(expression(*ratio)).lower
             less = plus(ratio[0], [lower * c for c in ratio[1]], -1), ratio[1]
             assert active_point(rng, less) is None, (kind, ratio, margin)
+    elif claim.status == "unknown":
+        # the wave gives out so little that double precision does not show it: nothing is claimed
+        assert "it shows nothing" in str(claim.verdict), (kind, ratio, claim)
     else:
         assert claim.status == "refuted", (kind, ratio, claim)
         wave = claim.record
@@ -116,6 +119,8 @@ def test_no_growing_wave_gives_out_energy_where_a_port_is_proved_passive(seed, n
     assert counts["proved", False] > number / 5
     # the attacker sees what there is to see, or its silence would say nothing
     assert counts["refuted", True] > 20 * counts["refuted", False]
+    unknown = sum(n for (status, _), n in counts.items() if status == "unknown")
+    assert unknown <= number / 100
 
 
 @attacked(3, 40)

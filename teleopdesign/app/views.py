@@ -1,0 +1,148 @@
+"""The parts of the page as they are laid out: buttons, tables and charts in rows and columns.
+
+Each function lays out what a cell of the notebook gives it; what a button does is in the notebook.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import marimo as mo
+
+from ..errors import TeleopDesignError
+from . import charts, export, logs, pages
+from .workbench import Workbench
+
+#: what marimo shows: an element of the page
+Element = Any
+Spans = Sequence[tuple[float, float]]
+
+
+def beside(*elements: Element) -> Element:
+    """Elements in a row, on a narrow page in several."""
+    return mo.hstack(list(elements), justify="start", wrap=True)
+
+
+def span_sliders(duration: float, proposed: Spans) -> tuple[Element, Element]:
+    """Two sliders: what is fitted, and what is checked, s from the first row."""
+    fit, check = (
+        mo.ui.range_slider(
+            start=0.0,
+            stop=duration,
+            step=duration / 500,
+            value=list(span),
+            show_value=True,
+            debounce=True,
+            full_width=True,
+            label=f"{use} span (s)",
+        )
+        for use, span in zip(("fit", "check"), proposed, strict=True)
+    )
+    return fit, check
+
+
+def column_form(columns: Sequence[str]) -> Element:
+    """What a person can say of a log: axis, columns, constants."""
+    return mo.ui.dictionary(
+        {
+            "axis": mo.ui.dropdown(["prismatic", "revolute"], label="axis"),
+            **{name: mo.ui.dropdown(columns, label=name) for name in logs.ASKED},
+            "torque constant": mo.ui.text(label="torque constant (N*m/A)"),
+            "gear ratio": mo.ui.text(label="gear ratio"),
+        }
+    )
+
+
+def log_parts(
+    folder: Path,
+    name: str,
+    form: Element,
+    sliders: tuple[Element, Element],
+    make: Callable[[logs.Preview, Any], object],
+) -> list[Element]:
+    """A log as it is understood, and the button that makes an experiment of it.
+
+    make: what the button does with the log and its spans
+    """
+    try:
+        understood = logs.preview(folder, name, logs.choices_of(form.value))
+        spans = logs.spans_of_sliders(sliders[0].value, sliders[1].value, understood)
+    except TeleopDesignError as error:
+        return [form, *sliders, mo.callout(str(error), kind="warn")]
+    return [
+        mo.md("What is left empty is found. Choose what was found wrongly:"),
+        beside(*form.elements.values()),
+        mo.md(understood.table()),
+        mo.md("What is fitted, and what is checked:"),
+        *sliders,
+        understood.plot(spans),
+        mo.ui.button(
+            label="Make the experiment",
+            on_click=lambda _: make(understood, spans),
+            kind="success",
+        ),
+    ]
+
+
+def residual_view(bench: Workbench, body: Element, use: Element, rung: Element) -> Element:
+    """The residual of one model, with what chooses it."""
+    data = pages.residuals(bench, rung.value)
+    return mo.vstack(
+        [
+            beside(body, use, rung),
+            charts.residual_chart(data, body.value, use.value),
+            mo.md("Draw a span in one panel: the others show the same samples."),
+        ]
+    )
+
+
+def compare_view(
+    bench: Workbench, models: tuple[Element, Element], body: Element, use: Element
+) -> Element:
+    """Two models beside each other."""
+    one, other = models
+    parts = [beside(one, other)]
+    if one.value == other.value:
+        parts.append(mo.md("Choose two models of the ladder; *Add* makes another one."))
+    else:
+        parts += [
+            mo.md(pages.compared(bench, one.value, other.value)),
+            charts.comparison_chart(
+                pages.residuals(bench, one.value),
+                pages.residuals(bench, other.value),
+                body.value,
+                use.value,
+                (one.selected_key, other.selected_key),
+            ),
+        ]
+    return mo.vstack(parts)
+
+
+def ladder_view(bench: Workbench, candidate: Element, buttons: Mapping[str, Element]) -> Element:
+    """The ladder and the candidates; buttons: "add", "back", "rank", "all"."""
+    return mo.vstack(
+        [
+            mo.md(pages.ladder(bench)),
+            beside(candidate, buttons["add"], buttons["back"]),
+            beside(buttons["rank"], buttons["all"]),
+            mo.ui.table(pages.candidate_rows(bench), selection=None, page_size=8)
+            if bench.candidates
+            else mo.md("The candidates beside this model were not looked at yet."),
+        ]
+    )
+
+
+def slider_view(bench: Workbench, which: Element, factor: Element) -> Element:
+    """One parameter moved, and the errors that the model then has."""
+    if not which.value:
+        return mo.md("This model has no free parameter.")
+    return mo.vstack([beside(which, factor), mo.md(pages.moved(bench, which.value, factor.value))])
+
+
+def export_view(bench: Workbench, write: Element) -> Element:
+    """The button that writes, and the script that repeats what was clicked."""
+    said = "Report (html), answer (json), figure (svg), and a script that repeats these steps."
+    script = mo.md(f"```python\n{export.script(bench)}\n```")
+    return mo.vstack([mo.md(said), write, mo.accordion({"The script": script})])

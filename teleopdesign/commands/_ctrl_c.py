@@ -1,0 +1,88 @@
+"""Ctrl-C at any moment of a command: heard once, never lost, and told in one line.
+
+Nothing but the standard library is imported here: Ctrl-C is not heard before this module is there.
+"""
+
+from __future__ import annotations
+
+import _thread
+import atexit
+import os
+import signal
+import sys
+import threading
+from contextlib import suppress
+from importlib.machinery import ExtensionFileLoader
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+
+def hear_ctrl_c(request: threading.Event) -> bool:
+    """Let Ctrl-C raise KeyboardInterrupt, and none be lost; whether this process hears it at all.
+
+    Python only prints what is raised where nothing can catch it: in a `__del__`, in a call from C.
+    Code in C may drop it, or abort, while its module is imported: Ctrl-C waits for that import.
+    request: set by Ctrl-C: a library may turn its exception into one of its own
+    """
+    loader = ExtensionFileLoader
+    in_c = {loader.create_module.__code__, loader.exec_module.__code__}
+
+    def interrupt(_: int, frame: FrameType | None) -> None:
+        while frame is not None and frame.f_code not in in_c:
+            frame = frame.f_back
+        if frame is not None:
+            interrupt_later(0.01)
+            return
+        request.set()
+        raise KeyboardInterrupt
+
+    def interrupt_later(seconds: float) -> None:
+        again = threading.Timer(seconds, _interrupt_main)
+        again.daemon = True
+        again.start()
+
+    def lost(unraisable: Any) -> None:
+        if issubclass(unraisable.exc_type, KeyboardInterrupt):
+            interrupt_later(0.001)  # s: once this call is over
+        else:
+            sys.__unraisablehook__(unraisable)
+
+    if threading.current_thread() is not threading.main_thread():
+        return False
+    if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:  # who asked decides
+        return False
+    signal.signal(signal.SIGINT, interrupt)
+    sys.unraisablehook = lost
+    # Python takes its handlers away before it ends; registered first, this is done last
+    atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)
+    return True
+
+
+def _interrupt_main() -> None:
+    """As Ctrl-C does: it ends a wait of the main thread too."""
+    main = threading.main_thread().ident
+    if hasattr(signal, "pthread_kill") and main is not None:
+        signal.pthread_kill(main, signal.SIGINT)
+    else:  # Windows
+        _thread.interrupt_main()
+
+
+def end_at_once(status: int) -> None:
+    """Let Ctrl-C end the process without a word from here on: all is done or told."""
+    leave = os._exit  # names of modules may be gone at the end
+    signal.signal(signal.SIGINT, lambda *_: leave(status))
+
+
+def tell_of_stop() -> None:
+    """One line on standard error, where there is still one."""
+    with suppress(OSError, ValueError, AttributeError):  # its reader is stopped too, or closed
+        print("teleopdesign: stopped", file=sys.stderr)
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except (OSError, ValueError):
+        from ._command_line import close_output
+
+        close_output()

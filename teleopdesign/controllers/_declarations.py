@@ -1,0 +1,119 @@
+"""What a control law declares of itself, held against the law: claims and linear forms rest on it.
+
+Symbolic: whether a law is linear, a dead time and nothing else, a smoothed level, a bristle or a
+low-pass. How large its force can be (`bound`) is a matter of intervals and no part of this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+
+import sympy as sp
+
+from ..effects import delayed
+from ._controller import Controller, ControllerEquation, parameter_symbol
+from ._law import SIGNALS, ControlLaw, Stage
+
+_S = sp.Symbol("s")
+
+
+@lru_cache(maxsize=64)
+def broken_declarations(law: ControlLaw) -> tuple[str, ...]:
+    """Declarations that a law in continuous time does not keep, in words; (): it keeps them."""
+    if law.system is not None or law.response is not None or law.shift is not None:
+        return ()  # no law that is written down: claims leave these out
+    values = {n: p.lower if p.lower > 0 else 1.0 for n, p in law.parameters.items()}
+    stage = Stage(law, values)
+    signals = {**SIGNALS, "period": sp.S(0)}
+    made = Controller((stage,)).equation("law", signals)
+    symbols = {n: parameter_symbol("law", f"{stage.name}.{n}") for n in law.parameters}
+    checks = {
+        "dead_time, for its output is not its input of that time earlier": (
+            bool(law.dead_time) and made.output != _late(law, symbols)
+        ),
+        "linear = True, for it is not linear in its input, velocity and states": (
+            law.linear and not _keeps_linear(made)
+        ),
+        "a transfer function, for its states have another one": (
+            law.transfer is not None and not law.dead_time and not _keeps_transfer(stage, made)
+        ),
+        "smoothing, for it is not bound v/(smoothing + abs(v))": (
+            bool(law.smoothing) and not _keeps_smoothing(law, made.output, symbols)
+        ),
+        "bristle_stiffness, for its law is not that of `dahl`": (
+            bool(law.bristle_stiffness) and not _keeps_bristle(law, made, symbols)
+        ),
+        "filter_bandwidth, for it is no low-pass of first order": (
+            bool(law.filter_bandwidth) and not _keeps_bandwidth(law, made, symbols)
+        ),
+    }
+    return tuple(words for words, is_broken in checks.items() if is_broken)
+
+
+def is_linear(laws: Iterable[sp.Expr], signals: Iterable[sp.Symbol]) -> bool:
+    """Whether laws are linear in these, and zero where these are; all else is constant."""
+    signals = list(signals)
+    for law in laws:
+        plain = law.replace(delayed, lambda signal, _: signal)  # late is linear, too
+        slopes = [_simple(sp.diff(plain, x)) for x in signals]
+        if any(slope.has(*signals) for slope in slopes if signals):
+            return False
+        if not _is_zero(plain - sp.Add(*(a * x for a, x in zip(slopes, signals, strict=True)))):
+            return False
+    return True
+
+
+def _late(law: ControlLaw, symbols: Mapping[str, sp.Symbol]) -> sp.Expr:
+    return delayed(SIGNALS["input"], symbols[law.dead_time])
+
+
+def _keeps_linear(made: ControllerEquation) -> bool:
+    driving = [SIGNALS[n] for n in ("input", "velocity", "travel_rate")]
+    return is_linear((made.output, *made.rates.values()), [*driving, *made.rates])
+
+
+def _keeps_transfer(stage: Stage, made: ControllerEquation) -> bool:
+    """At the values of the stage; a stated transfer function is that of the input alone."""
+    assert stage.law.transfer is not None
+    numbers = {parameter_symbol("law", f"{stage.name}.{n}"): v for n, v in stage.values.items()}
+    states = sp.solve([_S * x - rate for x, rate in made.rates.items()], *made.rates)
+    output = made.output.subs(states if made.rates else {})
+    stated = stage.law.transfer(stage.values, _S) * SIGNALS["input"]
+    return _is_zero(sp.nsimplify((output - stated).subs(numbers)))
+
+
+def _keeps_smoothing(law: ControlLaw, output: sp.Expr, symbols: Mapping[str, sp.Symbol]) -> bool:
+    if not law.bound:
+        return False
+    v = SIGNALS["velocity"]
+    shape = symbols[law.bound] * v / (symbols[law.smoothing] + sp.Abs(v))
+    return _is_zero(output.subs(SIGNALS["speed"], sp.Abs(v)) - shape)
+
+
+def _keeps_bristle(
+    law: ControlLaw, made: ControllerEquation, symbols: Mapping[str, sp.Symbol]
+) -> bool:
+    if len(made.rates) != 1 or not law.bound:
+        return False
+    ((z, rate),), moved = made.rates.items(), SIGNALS["travel_rate"]
+    stiffness, level = symbols[law.bristle_stiffness], symbols[law.bound]
+    bent = moved - stiffness / level * sp.Abs(moved) * z
+    return _is_zero(made.output - stiffness * z) and _is_zero(rate - bent)
+
+
+def _keeps_bandwidth(
+    law: ControlLaw, made: ControllerEquation, symbols: Mapping[str, sp.Symbol]
+) -> bool:
+    if list(made.rates) != [made.output]:
+        return False
+    corner = 2 * sp.pi * symbols[law.filter_bandwidth]
+    return _is_zero(made.rates[made.output] - corner * (SIGNALS["input"] - made.output))
+
+
+def _is_zero(expression: sp.Expr) -> bool:
+    return bool(expression == 0 or _simple(expression) == 0)
+
+
+def _simple(expression: sp.Expr) -> sp.Expr:
+    return expression if not expression.args else sp.simplify(expression)

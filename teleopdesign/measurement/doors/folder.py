@@ -1,0 +1,111 @@
+"""A folder of tables that one run left side by side: a drive's log beside that of a force sensor.
+
+Each table keeps its own clock, as each topic of a bag does. The name of a table stands before the
+names of its columns ("drive.position").
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...errors import ExperimentError
+from ...quantity import measures, si_factor
+from ._log import Array, Log, listed
+
+#: part of the shortest table for which all tables must run at the same time
+SHARED = 0.5
+
+
+def open_folder(
+    folder: Path, file: str, tables: Sequence[Path], open_one: Callable[[Path, str], Log]
+) -> Log:
+    """The tables as one log.
+
+    tables: the files of the folder that are tables;  open_one: opens one of them
+    raises ExperimentError: tables of the same columns, one without a time, or that share no time
+    """
+    stems = [t.name.split(".")[0] for t in tables]
+    names = stems if len(set(stems)) == len(stems) else [t.name for t in tables]
+    logs = {n: open_one(t, f"{file}/{t.name}") for n, t in zip(names, tables, strict=True)}
+    _refuse_same_columns(logs, folder, [t.name for t in tables])
+    time_of = {name: _time_column(log, f"{file}/{name}") for name, log in logs.items()}
+    seconds = {n: _seconds(log, time_of[n], f"{file}/{n}") for n, log in logs.items()}
+    _require_shared_time(seconds, file)
+    origin = min(float(np.nanmin(s)) for s in seconds.values())
+    columns = {f"{n}.{c}": (n, c) for n, log in logs.items() for c in log.names}
+    units = {f"{n}.{c}": u for n, log in logs.items() for c, u in log.units.items()}
+    units |= {f"{n}.{time}": "s" for n, time in time_of.items()}
+
+    def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
+        out: dict[str, Any] = {}
+        for name, log in logs.items():
+            in_table = {w: columns[w][1] for w in wanted if columns[w][0] == name}
+            here = {column: wanted[w] for w, column in in_table.items()}
+            values = log.read({c: ch for c, ch in here.items() if c != time_of[name]})
+            out |= {f"{name}.{c}": v for c, v in values.items()}
+            if time_of[name] in here:
+                out[f"{name}.{time_of[name]}"] = seconds[name] - origin
+        return out
+
+    clocks = {w: f"{n}.{time_of[n]}" for w, (n, c) in columns.items() if c != time_of[n]}
+    notes = [f"{n}: {note}" for n, log in logs.items() for note in log.notes]
+    notes.append(f"{len(logs)} tables, each with its own clock: {listed(names)}")
+    return Log(tuple(columns), read, units, tuple(notes), clocks)
+
+
+def _refuse_same_columns(logs: Mapping[str, Log], folder: Path, files: Sequence[str]) -> None:
+    headers = [log.names for log in logs.values()]
+    if len(headers) > 1 and len(set(headers)) < len(headers):
+        paths = shlex.join(str(folder / f) for f in files)
+        raise ExperimentError(
+            f"{folder}: found tables of the same columns, expected parts of one run; for several "
+            f"runs: teleopdesign new {paths}"
+        )
+
+
+def _time_column(log: Log, file: str) -> str:
+    from ..column_names import likeness
+
+    best = max(log.names, key=lambda name: likeness(name, "time"))
+    if likeness(best, "time") == 0.0:
+        raise ExperimentError(
+            f"{file}: found no column that is called time among {listed(log.names)}: tables side "
+            "by side need one each"
+        )
+    return best
+
+
+def _seconds(log: Log, column: str, file: str) -> Array:
+    """The stamps of a table in s, from the same instant for all tables."""
+    from ..column_names import unit_in_name
+    from ..survey.clock import unit_of_steps
+    from ..tables import numbers_of
+
+    values = np.asarray(log.read({column: "channels.time"})[column])
+    if values.dtype.kind == "M":
+        return np.asarray((values - np.datetime64(0, "s")) / np.timedelta64(1, "ns") * 1e-9)
+    stamps = (
+        values.reshape(-1).astype(np.float64)
+        if values.dtype.kind in "iu"  # nanoseconds since 1970 to 256 ns
+        else numbers_of(values, column, file)
+    )
+    unit = log.units.get(column) or unit_in_name(column, "time")
+    if unit is None or not measures(unit, "time"):
+        unit = unit_of_steps(stamps)[0]
+    return np.asarray(stamps * si_factor(unit, quantity="time"))
+
+
+def _require_shared_time(seconds: Mapping[str, Array], file: str) -> None:
+    ends = {name: (float(np.nanmin(s)), float(np.nanmax(s))) for name, s in seconds.items()}
+    shared = min(end for _, end in ends.values()) - max(begin for begin, _ in ends.values())
+    if shared < SHARED * min(end - begin for begin, end in ends.values()):
+        spans = ", ".join(f"{n} from {b:.9g} to {e:.9g} s" for n, (b, e) in ends.items())
+        raise ExperimentError(
+            f"{file}: found tables that do not run at the same time ({spans}), expected one clock "
+            "for all; shift the time of one, or log a common time"
+        )

@@ -1,0 +1,190 @@
+"""The comparison's low-pass of signals that are zero but for a few rows: exact, and faster.
+
+What friction takes up changes only where the motion is not told. Between such rows the filter
+swings freely: from one span of them to the next its states follow powers of one matrix, and what
+it puts out on the way reaches the way back by another. Both are put together from those of one,
+two, four ... rows. Nothing is left out.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..machine_code import kept
+from .filtering import Array
+from .zero_phase import copied, go_on, sections, settle
+
+#: rows between two spans up to which they are one: to cross costs as much as to filter so many
+NEAR = 16
+#: what is left of a row's part in the filter's output, over that part, that counts as nothing:
+#: below rounding
+NOTHING = 1e-18
+#: share of a record in windows above which it is taken as a whole: each window costs a call
+MOST_SHARE = 0.7
+#: cutoff over the sample rate from which the filter's states are carried between spans: 1e-9 of
+#: them is lost to rounding at half of it, and the more the lower it is. Below, one span holds all
+LEAST_CUTOFF = 1e-3
+#: powers of two that the rows between two spans are made of: more than any record has
+DOUBLINGS = 40
+#: elements of such a power that count as nothing: their squares would leave the range of numbers
+TINY = 1e-100
+
+
+def spans_of(rows: NDArray[np.intp], n: int, m: int, cutoff: float) -> NDArray[np.intp]:
+    """Spans (k, 2), from and to, of the continued record that hold all that these rows change.
+
+    rows: of the record of n samples, in order; the record is continued by m samples at each end
+    cutoff: of the filter, over the sample rate
+    """
+    if cutoff < LEAST_CUTOFF:
+        return np.array([[0, n + 2 * m]])
+    changed = np.zeros(n + 2 * m, dtype=bool)
+    changed[m + rows] = True
+    # the continuation is mirrored at the outermost rows, and goes with them
+    changed[m - rows[rows <= m]] = True
+    changed[m + 2 * (n - 1) - rows[rows >= n - 1 - m]] = True
+    changed[:m] |= rows[0] == 0
+    changed[m + n :] |= rows[-1] == n - 1
+    changed[[0, -1]] = True  # where the filter begins, either way
+    places = np.flatnonzero(changed)
+    ends = np.flatnonzero(np.diff(places) > NEAR + 1)
+    return np.column_stack([places[np.append(0, ends + 1)], places[np.append(ends, -1)] + 1])
+
+
+@lru_cache(maxsize=16)
+def reach(cutoff: float, sample_time: float) -> int:
+    """Rows after which nothing is left of what a row does to the filter's output."""
+    sos, _ = sections(cutoff, sample_time)
+    slowest = max(float(np.abs(np.roots(section[3:])).max()) for section in sos)
+    return int(np.ceil(np.log(NOTHING) / np.log(slowest)))
+
+
+def windows(rows: NDArray[np.intp], n: int, m: int, reach: int) -> list[tuple[int, int]]:
+    """Windows (from, to) of n samples that hold all that these rows feel of each other.
+
+    rows: in order;  m: samples by which the record is continued at each end;  reach: as above
+    What lies between windows is felt at no row; one window holds all where little lies there.
+    """
+    apart = np.flatnonzero(np.diff(rows) > 2 * reach)
+    begins = np.maximum(rows[np.append(0, apart + 1)] - reach, 0)
+    ends = np.minimum(rows[np.append(apart, -1)] + reach + 1, n)
+    if begins[0] == 0:  # the continuation there is made of the first m rows
+        ends[0] = max(ends[0], min(m + 1, n))
+    if ends[-1] == n:  # and there of the last
+        begins[-1] = min(begins[-1], max(n - 1 - m, 0))
+    if np.any(begins[1:] < ends[:-1]) or (ends - begins).sum() > MOST_SHARE * n:
+        return [(0, n)]
+    return list(zip(begins.tolist(), ends.tolist(), strict=True))
+
+
+@lru_cache(maxsize=16)
+def crossings(cutoff: float, sample_time: float) -> tuple[Array, Array]:
+    """What 1, 2, 4, ... rows of zeros make of the states (k, 4, 4): on the way there, and back.
+
+    The first is of either way; the second is what the states before those rows, there, add to those
+    of the way back after them.
+    """
+    sos, _ = sections(cutoff, sample_time)
+    states, output = np.eye(4).reshape(2, 2, 4), np.zeros((1, 4))
+    go_on(output, states, sos, False)
+    entering, one = np.zeros((2, 2, 1)), np.ones((1, 1))
+    go_on(one, entering, sos, False)
+    free, back = [states.reshape(4, 4)], [entering.reshape(4, 1) @ output]
+    for _ in range(DOUBLINGS - 1):
+        step, swing = free[-1], back[-1]
+        back.append(swing + step @ swing @ step)
+        free.append(np.where(np.abs(step) < TINY, 0.0, step) @ step)
+    return np.array(free), np.array(back)
+
+
+@kept
+def _multiply(to: Array, left: Array, right: Array) -> None:
+    """Matrices (4, 4) times states (4, signals) or matrices, added to what is there."""
+    for i in range(4):
+        for k in range(4):
+            for j in range(right.shape[1]):
+                to[i, j] += left[i, k] * right[k, j]
+
+
+@kept
+def _cross(rows: int, step: Array, swing: Array, free: Array, back: Array) -> None:
+    """Set both matrices (4, 4) of `crossings` for any number of rows, from powers of two.
+
+    step, swing: zeros
+    """
+    for i in range(4):
+        step[i, i] = 1.0
+    power = 0
+    while rows > 0:
+        if rows % 2:
+            pushed, next_step = np.zeros((4, 4)), np.zeros((4, 4))
+            _multiply(pushed, step, back[power])
+            _multiply(swing, pushed, step)
+            _multiply(next_step, step, free[power])
+            for i in range(4):
+                for j in range(4):
+                    step[i, j] = next_step[i, j]
+        rows //= 2
+        power += 1
+
+
+@kept
+def between(spans: NDArray[np.intp], free: Array, back: Array) -> tuple[Array, Array]:
+    """Both matrices of `crossings` from each span to the next, (k, 4, 4); zeros before the first.
+
+    free, back: as `crossings` gives them
+    """
+    steps, swings = np.zeros((len(spans), 4, 4)), np.zeros((len(spans), 4, 4))
+    for c in range(1, len(spans)):
+        _cross(spans[c, 0] - spans[c - 1, 1], steps[c], swings[c], free, back)
+    return steps, swings
+
+
+@kept
+def filter_spans(
+    y: Array,
+    extended: Array,
+    spans: NDArray[np.intp],
+    filters: tuple[Array, Array, Array, Array],
+) -> None:
+    """Filter the columns of y (n, signals) forward and backward; zero outside the spans' rows.
+
+    extended: (m + n + m, signals); afterwards its rows m + k hold row k of the filtered signals
+        where it is in a span, anything elsewhere
+    filters: what `sections` gives, and then `between`
+    """
+    n, r = y.shape
+    sos, steady_state, steps, swings = filters
+    m = (extended.shape[0] - n) // 2
+    count = len(spans)
+    states = np.zeros((2 * count, 4, r))  # after each span, there and back
+    for c in range(count):
+        begin, end = spans[c, 0], spans[c, 1]
+        for e in range(begin, min(end, m)):
+            for j in range(r):
+                extended[e, j] = 2.0 * y[0, j] - y[m - e, j]
+        for e in range(max(begin, m + n), end):
+            for j in range(r):
+                extended[e, j] = 2.0 * y[n - 1, j] - y[m + 2 * (n - 1) - e, j]
+        first, last = max(begin - m, 0), min(end - m, n)
+        if first < last:
+            copied(y[first:last], extended[m + first : m + last])
+        here = states[c]
+        if c == 0:
+            settle(here.reshape(2, 2, r), steady_state, extended[begin])
+        else:
+            _multiply(here, steps[c], states[c - 1])
+        go_on(extended[begin:end], here.reshape(2, 2, r), sos, False)
+    settle(states[count].reshape(2, 2, r), steady_state, extended[n + 2 * m - 1])
+    for c in range(count - 1, -1, -1):
+        begin, end = max(spans[c, 0], m), spans[c, 1]
+        if end <= m:
+            break
+        here = states[2 * count - 1 - c]
+        if c < count - 1:
+            _multiply(here, steps[c + 1], states[2 * count - 2 - c])
+            _multiply(here, swings[c + 1], states[c])
+        go_on(extended[begin:end], here.reshape(2, 2, r), sos, True)

@@ -1,0 +1,128 @@
+"""What files of a user's own declare about energy and size, checked before a claim rests on it.
+
+Effects and laws of the catalogue are held to their declarations by tests. What another file
+declares counts here only where the law itself shows it: a force of no states that is against the
+velocity for all values of its parameters, a force of the position alone, a law whose size is
+bounded by intervals. What nothing has checked is left open, and named.
+"""
+
+from __future__ import annotations
+
+import math
+
+import sympy as sp
+
+from ..blocks import Body
+from ..controllers import (
+    CONTROLLERS,
+    SIGNALS,
+    Controller,
+    Stage,
+    broken_declarations,
+    is_linear,
+    parameter_symbol,
+)
+from ..diagrams import Control, Diagram
+from ..effects import BLOCK_EFFECTS, EFFECTS, Effect
+from ..effects import SIGNALS as BODY_SIGNALS
+from ..errors import ModelError
+from ..realise.damping_interval import least_damping
+from ..realise.extremes import least_value
+from ..realise.reach import Reach
+
+#: of a body, driven by which a linear effect may act; a structure sees the force on its tip, too
+_DRIVING = ("position", "velocity", "acceleration", "command")
+_ANY = (-math.inf, math.inf)
+
+
+def is_shipped(effect: Effect) -> bool:
+    """Whether an effect is one of the catalogue, with or without its optional parameters."""
+    known = {**EFFECTS, **BLOCK_EFFECTS}.get(effect.name)
+    if known is None or not set(effect.parameters) <= set(known.parameters):
+        return False
+    for gone in set(known.parameters) - set(effect.parameters):
+        known = known.without(gone)
+    same = (known.energy, known.linear) == (effect.energy, effect.linear)
+    return same and known.expression() == effect.expression() and known.rates() == effect.rates()
+
+
+def unchecked_energy(body: Body, reach: Reach | None = None, *, errors: float) -> tuple[str, ...]:
+    """Effects of one's own that declare to store or dissipate, and nothing shows that they do.
+
+    Friction levels, and shapes of friction, are judged elsewhere, whatever they declare.
+    """
+    declaring = (
+        e
+        for e in body.effects
+        if e.energy != "supplies" and not e.role.startswith("friction") and not is_shipped(e)
+    )
+    return tuple(e.name for e in declaring if not _shows_energy(e, body, reach, errors))
+
+
+def _shows_energy(effect: Effect, body: Body, reach: Reach | None, errors: float) -> bool:
+    if effect.role != "force" or effect.states:
+        return False
+    if effect.energy == "stores":
+        signals = effect.expression().free_symbols & set(BODY_SIGNALS.values())
+        return bool(signals <= {BODY_SIGNALS["position"]})
+    least = least_damping(body, [effect], reach, errors)
+    return least is not None and least.low >= 0
+
+
+def falsely_linear(diagram: Diagram) -> list[str]:
+    """What is declared linear and is not, as "block.effect" or "block"."""
+    names = []
+    for part in diagram.blocks:
+        body = getattr(part, "body", None)
+        if isinstance(body, Body):
+            declaring = (e for e in body.effects if e.linear and not is_shipped(e))
+            names += [f"{part.name}.{e.name}" for e in declaring if not _acts_linearly(e)]
+        if isinstance(part, Control) and isinstance(part.controller, Controller):
+            names += [part.name] * any(not is_kept(stage) for stage in part.controller.stages)
+    return names
+
+
+def _acts_linearly(effect: Effect) -> bool:
+    driving = [BODY_SIGNALS[n] for n in _DRIVING]
+    driving += [BODY_SIGNALS["interaction_force"]] * (effect.role == "structure")
+    laws = (effect.expression(), *effect.rates().values())
+    states = effect.state_symbols().values()
+    known = {*driving, *states, *effect.symbols().values()}
+    if any(law.free_symbols - known for law in laws):
+        return False
+    return is_linear(laws, [*driving, *states])
+
+
+def is_kept(stage: Stage) -> bool:
+    """Whether a law of a stage does what it declares, as far as its equations tell."""
+    law = stage.law
+    known = CONTROLLERS.get(law.name) is law or law.source == "python-control"
+    return known or not broken_declarations(law)
+
+
+def keeps_its_bound(stage: Stage) -> bool:
+    """Whether the force of a law is surely within the bound that it declares."""
+    law, bound = stage.law, stage.value_of("bound")
+    if bound is None or CONTROLLERS.get(law.name) is law:
+        return bound is not None
+    if not is_kept(stage):
+        return False
+    if law.bristle_stiffness or law.smoothing:
+        return True  # those shapes never leave their level
+    if law.states:
+        return False
+    return all(_stays_within(Controller((stage,)), bound, way) for way in (1, -1))
+
+
+def _stays_within(alone: Controller, bound: float, way: int) -> bool:
+    """Whether a law without states is within the bound at all speeds in that direction."""
+    share = sp.Symbol("share", positive=True)
+    speed = share / (1 - share)  # every speed, and a range that ends
+    signals = {**SIGNALS, "velocity": way * speed, "speed": speed, "period": sp.S(0)}
+    force = sp.cancel(alone.equation("law", signals).output)
+    numbers = {parameter_symbol("law", n): (x, x) for n, x in alone.names().items()}
+    ranges = {SIGNALS["input"]: _ANY, SIGNALS["travel_rate"]: _ANY, share: (0.0, 1.0)}
+    try:
+        return min(least_value(sign * force, ranges | numbers).bound for sign in (1, -1)) >= -bound
+    except ModelError:
+        return False

@@ -1,0 +1,152 @@
+"""Claims on linear diagrams at their ports: exact, or with dead times by waves and over frequency.
+
+What is refuted is so for all values nearby, too. What is proved, or has evidence, has no mode
+inside that grows by itself, though no port shows it from rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import sympy as sp
+
+from ..diagrams import Diagram
+from ..errors import ModelError
+from .claims.axis_units import in_units_of
+from .claims.claim import Claim, Unknown
+from .linear.hidden_modes import controllers_grow, growth_within
+from .linear.positive_real import NEARBY, positive_real
+from .ports import Port, impedance_matrix
+from .search.growing_wave import GrowingWave, wave_of
+from .theorems import TopicClaim
+from .two_port.claims import absolutely_stable, is_shown_unstable, passive
+from .two_port.late_one_port import late_one_port
+from .two_port.two_port import two_port
+
+#: topics that settle all ports at once
+WHOLE = ("all ports, any motion", "the port, any motion", "both ports, any motion")
+
+
+def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
+    """Passivity of a linear diagram at its ports, and absolute stability where there are two.
+
+    What is refuted is so for all values nearby, too: none rests on the rounding of a number. What
+    is proved has no mode inside that grows by itself, though no port shows it from rest.
+    """
+    claims = _linear_claims(diagram, all_ports)
+    if any(one.claim.status == "proved" for one in claims):
+        claims = _beside_what_grows(claims, growth_within(diagram))
+    if any(one.claim.status == "evidence" for one in claims) and controllers_grow(diagram):
+        claims = [_open_inside(one) for one in claims]
+    if not any(one.claim.status == "refuted" for one in claims):
+        return claims
+    for other in _nearby(diagram):
+        claims = _refuted_there_too(claims, other, all_ports)
+    return claims
+
+
+def _refuted_there_too(
+    claims: list[TopicClaim], other: Diagram, all_ports: Sequence[Port]
+) -> list[TopicClaim]:
+    """What is refuted stays so where it fails at other values, too: the same wave will do."""
+    if not any(one.claim.status == "refuted" for one in claims):
+        return claims
+    try:
+        z = impedance_matrix(other, all_ports)
+    except ModelError:
+        return [_on_rounding(one) for one in claims]
+    return [one if _fails(one, z) else _on_rounding(one) for one in claims]
+
+
+def _fails(one: TopicClaim, z: sp.Matrix) -> bool:
+    if one.claim.status != "refuted":
+        return True
+    record = one.claim.record
+    if isinstance(record, GrowingWave) and record.impedance.shape == z.shape:
+        wave = wave_of(sp.ImmutableMatrix(z), record.rate, record.frequency)
+        if wave is not None and wave.energy > 0:
+            return True
+        if z.rows == 2:
+            return passive(two_port(z.tolist())).status == "refuted"
+    if z.rows == 1:
+        judge = late_one_port if z.has(sp.exp) else positive_real
+        return judge(z[0, 0]).status == "refuted"
+    return is_shown_unstable(two_port(z.tolist()))
+
+
+def _beside_what_grows(claims: list[TopicClaim], rate: float | None) -> list[TopicClaim]:
+    if rate is None:
+        return claims
+    how = f"at {rate:.4g} 1/s" if rate else "as a power of time, a multiple pole on the axis"
+    why = (
+        f"from rest its impedance is that of a passive one, but a mode inside that no port shows "
+        f"grows by itself {how}"
+    )
+    return [
+        replace(one, claim=Claim(one.claim.statement, Unknown(why)))
+        if one.claim.status == "proved"
+        else one
+        for one in claims
+    ]
+
+
+def _open_inside(one: TopicClaim) -> TopicClaim:
+    if one.claim.status != "evidence" or not one.claim.holds:
+        return one
+    why = "beside its dead times a law has a mode that grows by itself, which no port shows"
+    return replace(one, claim=Claim(one.claim.statement, Unknown(why)))
+
+
+def _nearby(diagram: Diagram) -> list[Diagram]:
+    """The diagram with its values a few last digits of a float away, in turn to either side."""
+    values = diagram.values
+    return [
+        diagram.with_values(
+            {
+                name: value * (1 + side * (-1) ** (k >> bit) * NEARBY)
+                for k, (name, value) in enumerate(values.items())
+            }
+        )
+        for bit in range(2)
+        for side in (1, -1)
+    ]
+
+
+def _on_rounding(one: TopicClaim) -> TopicClaim:
+    if one.claim.status != "refuted":
+        return one
+    why = f"it fails by less than a change of {NEARBY:.1g} of its values decides: rounding"
+    return replace(one, claim=Claim(one.claim.statement, Unknown(why)))
+
+
+def _linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
+    if len(all_ports) > 2:
+        statement = f"{diagram.name}: its {len(all_ports)} ports are passive together"
+        why = "the exact tests are for one port or two"
+        return [TopicClaim(WHOLE[0], Claim(statement, Unknown(why)))]
+    try:
+        z = impedance_matrix(diagram, all_ports)
+        if len(all_ports) == 1:
+            judge = late_one_port if z.has(sp.exp) else positive_real
+            claim = in_units_of(_axis(diagram, all_ports), judge(z[0, 0]))
+            return [TopicClaim(WHOLE[1], claim)]
+    except ModelError as problem:
+        claim = Claim(f"{diagram.name}: its ports are passive", Unknown(str(problem)))
+        return [TopicClaim(WHOLE[0], claim)]
+    system = two_port(z.tolist())
+    axis = _axis(diagram, all_ports)
+    return [
+        TopicClaim(WHOLE[2], in_units_of(axis, passive(system))),
+        TopicClaim(
+            "both ports, whatever passive holds them",
+            in_units_of(axis, absolutely_stable(system)),
+        ),
+    ]
+
+
+def _axis(diagram: Diagram, all_ports: Sequence[Port]) -> str:
+    """The axis that all bodies at the ports share; "prismatic" where they differ."""
+    motions = {motion.removesuffix("_tip") for port in all_ports for motion in port.weights}
+    axes = {getattr(b.body, "axis", "") for b in diagram.bodies if b.motion in motions}
+    return axes.pop() if len(axes) == 1 else "prismatic"

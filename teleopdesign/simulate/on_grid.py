@@ -1,0 +1,54 @@
+"""What the grid of a simulation makes of durations, delays and inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from ..errors import ModelError
+from ..realise.delays import is_whole
+
+Input = float | np.ndarray | Callable[[np.ndarray], np.ndarray]
+
+
+def samples_of(duration: float, period: float) -> int:
+    """Samples of a run, at least one; both in s."""
+    return max(round(duration / period), 1) if 0 < duration < float("inf") else 1
+
+
+def late_steps(delay: float, step: float, *, can_be_between: bool) -> float:
+    """The delay of an analog signal in steps; between two where the signal changes within them."""
+    count = delay / step
+    if not can_be_between or is_whole(count):
+        count = float(whole_steps(delay, step, "a delay of an actuator or of a held command"))
+    if count < 1:
+        raise ModelError(f"simulate: a delay of {delay:g} s is below the step, {step:g} s")
+    return count
+
+
+def whole_steps(delay: float, step: float, what: str) -> int:
+    """The delay in steps; if no whole number of them, the force would be silently late."""
+    count = round(delay / step)
+    if abs(count * step - delay) > 0.02 * delay + 1e-12:
+        raise ModelError(
+            f"simulate: {what} of {delay * 1e3:g} ms is no whole number of steps of "
+            f"{step * 1e3:g} ms: use a step that divides it"
+        )
+    return count
+
+
+def input_table(
+    names: tuple[str, ...], signals: Mapping[str, Input], time: np.ndarray
+) -> np.ndarray:
+    """Inputs (names, n) at times (n,), s; 0 where a signal is not given."""
+    table = np.zeros((max(len(names), 1), len(time)))
+    for i, name in enumerate(names):
+        value = signals.get(name, 0.0)
+        row = np.asarray(value(time) if callable(value) else value, dtype=float)
+        if row.ndim and row.shape != time.shape:
+            raise ModelError(
+                f'simulate: input "{name}" has {len(row)} samples, expected {len(time)}'
+            )
+        table[i] = row
+    return table

@@ -1,0 +1,181 @@
+"""How simulated signals change with parameters: differences of simulations side by side.
+
+A slope is taken over five sizes of difference, each an eighth of the one before, and is read where
+two neighbours agree best. Too large a difference errs by curvature. Too small a one errs by
+rounding, and where an encoder rounds or motion sticks and slips, by jumps: there no two sizes
+agree, and how far they are apart is told beside each slope.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..errors import ModelError, TeleopDesignError, did_you_mean
+from ..simulate.cases import bounds_of_value
+from .case import SimulatedCase
+from .side_by_side import alike, simulate_rows
+
+#: differences over the parameter's scale. From 10 %, which looks across the jumps of an encoder,
+#: down to 2e-5, where smooth signals bend by 1e-9 of their slope and rounding (1e-13) is 1e-8 of it
+SIZES = 0.1 * 8.0 ** -np.arange(5)
+#: relative: inner steps closer than this are the same
+_SAME_STEP = 1e-9
+#: of a computer, what simulated signals follow without jumps
+_SMOOTH_IN_COMPUTER = "computer.velocity_bandwidth"
+
+
+@dataclass(frozen=True, eq=False)
+class SignalSlopes:
+    """Signals and their slopes in parameters.
+
+    time: (rows,), s;  signals: (signals, rows);  slopes: (parameters, signals, rows), SI
+    apart: (parameters, signals) rms by which the slopes of two sizes of difference are apart, over
+        the rms of the slope; 0 where the signal does not follow, inf where no two could be formed
+    sizes: (parameters, signals) of the difference that is read, SI
+    """
+
+    time: np.ndarray
+    signals: np.ndarray
+    slopes: np.ndarray
+    apart: np.ndarray
+    sizes: np.ndarray
+
+
+def check_slopes_exist(case: SimulatedCase, names: Sequence[str], signals: Sequence[str]) -> None:
+    """ModelError where there is no such signal, or none follows a parameter but by jumps."""
+    case.check_names(names)
+    setup = case.setup()
+    known = setup.program.layout.columns
+    for name in signals:
+        if name not in known:
+            raise ModelError(
+                f'slopes: no signal "{name}", has {", ".join(known)}{did_you_mean(name, known)}'
+            )
+    for name in names:
+        stem = name.partition(".")[0]
+        of_simulation = name in ("duration", "step", "give")
+        of_simulation |= stem == "computer" and name != _SMOOTH_IN_COMPUTER
+        if of_simulation or name in setup.whole_step_delays:
+            raise ModelError(
+                f'slopes: "{name}" moves a simulation by jumps (whole steps, whole samples): vary '
+                "it in a `study`, or search it by `tune`"
+            )
+        if case.value(name) is None:
+            raise ModelError(f'slopes: "{name}" is no number here')
+
+
+def simulated_signals(
+    case: SimulatedCase, names: Sequence[str], points: np.ndarray, signals: tuple[str, ...]
+) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """Time (rows,), signals (points, signals, rows), and why a point has none (NaN then).
+
+    points: (points, names);  all are simulated on the finest grid that one of them asks for
+    """
+    table = {n: points[:, k] for k, n in enumerate(names)}
+    time, rows, steps, reasons = _simulate(case, table, signals)
+    finest = np.nanmin(steps) if np.isfinite(steps).any() else np.nan
+    if np.nanmax(steps, initial=0.0) > finest * (1 + _SAME_STEP):
+        case = replace(case, step=float(finest))
+        time, rows, _, reasons = _simulate(case, table, signals)
+    return time, rows, reasons
+
+
+def _simulate(
+    case: SimulatedCase, table: dict[str, np.ndarray], signals: tuple[str, ...]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[str]]:
+    """Time, signals, steps (s) and reasons of all rows of a table."""
+    many = len(next(iter(table.values())))
+    reasons, steps = [""] * many, np.full(many, np.nan)
+    time: np.ndarray = np.zeros(0)
+    parts: list[tuple[list[int], np.ndarray]] = []
+    for rows, columns, others in alike(case, table):
+        try:
+            data = simulate_rows(case.with_values(others), columns, signals)
+        except TeleopDesignError as error:
+            for row in rows:
+                reasons[row] = str(error)
+            continue
+        time = data["time"].values
+        # without a value of the diagram that varies all rows are one and the same case
+        cases = np.arange(len(rows)) if columns else np.zeros(len(rows), dtype=int)
+        steps[rows] = data["step"].values[cases]
+        for row, k in zip(rows, cases, strict=True):
+            reasons[row] = str(data["reason"].values[k])
+        parts.append((rows, np.stack([data[s].values[cases] for s in signals], axis=1)))
+    values = np.full((many, len(signals), len(time)), np.nan)
+    for rows, part in parts:
+        values[rows] = part
+    return time, values, steps, reasons
+
+
+def slopes_of(
+    case: SimulatedCase,
+    names: Sequence[str],
+    at: np.ndarray,
+    scales: np.ndarray,
+    signals: tuple[str, ...],
+) -> SignalSlopes:
+    """Slopes of the signals at values of parameters.
+
+    at: (names,);  scales: (names,) what a change is small beside, more than 0
+    raises ModelError: the case has no simulation at `at`
+    """
+    offsets = np.stack([_offsets(case, n, x, s) for n, x, s in zip(names, at, scales, strict=True)])
+    points = [np.asarray(at, dtype=float)]
+    for k, row in enumerate(offsets):
+        for offset in row.reshape(-1):
+            point = points[0].copy()
+            point[k] += offset
+            points.append(point)
+    time, values, reasons = simulated_signals(case, names, np.array(points), signals)
+    if reasons[0]:
+        raise ModelError(reasons[0])
+    beside = values[1:].reshape(len(names), len(SIZES), 2, len(signals), len(time))
+    ladder = _difference(values[0], beside, offsets[..., None, None])
+    return SignalSlopes(time, values[0], *_best(ladder, np.abs(offsets).min(axis=2)))
+
+
+def _offsets(case: SimulatedCase, name: str, value: float, scale: float) -> np.ndarray:
+    """Two changes of a parameter for each size, (sizes, 2): to either side where bounds let."""
+    lower, upper = -np.inf, np.inf
+    if name in case.diagram.values:
+        lower, upper = bounds_of_value(case.diagram, name)
+    sizes = SIZES * scale
+    towards = 1.0 if upper - value > value - lower else -1.0
+    fits = (value - sizes > lower) & (value + sizes < upper)
+    both, one = np.array([-1.0, 1.0]), towards * np.array([1.0, 2.0])
+    return np.asarray(sizes[:, None] * np.where(fits[:, None], both, one))
+
+
+def _difference(centre: np.ndarray, beside: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    """Slopes at the centre of the parabolas through it and two points beside it.
+
+    centre: (signals, rows);  beside: (parameters, sizes, 2, signals, rows);  offsets: alike
+    """
+    a, b = offsets[:, :, 0], offsets[:, :, 1]
+    first, second = (beside[:, :, 0] - centre) / a, (beside[:, :, 1] - centre) / b
+    return np.asarray((first * b - second * a) / (b - a))
+
+
+def _best(ladder: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Slopes, how far apart, and sizes, where two neighbours of a ladder agree best.
+
+    ladder: (parameters, sizes, signals, rows);  sizes: (parameters, sizes)
+    """
+    change = _rms(np.diff(ladder, axis=1))
+    slope = _rms(ladder[:, 1:])
+    change = np.where(np.isfinite(change), change, np.inf)
+    best = np.argmin(change, axis=1)
+    k, s = np.indices(best.shape)
+    apart, size = change[k, best, s], slope[k, best, s]
+    relative = np.where(apart == 0.0, 0.0, apart / np.where(size > 0, size, np.nan))
+    relative = np.where(np.isnan(relative), np.inf, relative)
+    slopes = np.where(np.isfinite(apart)[..., None], ladder[k, best + 1, s], 0.0)
+    return slopes, relative, sizes[k, best + 1]
+
+
+def _rms(values: np.ndarray) -> np.ndarray:
+    return np.asarray(np.sqrt(np.mean(values**2, axis=-1)))

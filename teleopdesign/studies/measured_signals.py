@@ -1,0 +1,105 @@
+"""Measured signals beside simulated ones: arrays, a data set, or a record of an experiment."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..by_value import ByValue
+from ..errors import ModelError, did_you_mean
+from ..measurement import Record
+from ..simulate import Trajectory, sampled_motion
+
+#: fewest instants from which anything is fitted
+_FEWEST = 10
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MeasuredCourse(ByValue):
+    """An input as it was measured: linear between samples (n,), held beyond both ends."""
+
+    time: np.ndarray
+    values: np.ndarray
+
+    def __call__(self, t: np.ndarray) -> np.ndarray:
+        return np.asarray(np.interp(t, self.time, self.values))
+
+    def __repr__(self) -> str:
+        return f"course of {len(self.time)} samples"
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredSignals:
+    """Columns (n,) over one time (n,), s, that increases from 0 or later."""
+
+    time: np.ndarray
+    columns: Mapping[str, np.ndarray]
+
+    def column(self, name: str) -> np.ndarray:
+        """The samples of that name; raises ModelError where there are none."""
+        if name not in self.columns:
+            raise ModelError(
+                f'fit_simulation: data: no "{name}", has {", ".join(self.columns)}'
+                f"{did_you_mean(name, self.columns)}"
+            )
+        return self.columns[name]
+
+    def course(self, name: str) -> MeasuredCourse:
+        """The samples of that name as an input; raises ModelError where one is no number."""
+        values = self.column(name)
+        if not np.isfinite(values).all():
+            raise ModelError(f'fit_simulation: "{name}" has samples that are no numbers')
+        return MeasuredCourse(self.time, values)
+
+    def motion(self, name: str) -> Trajectory:
+        """The samples of that name as a motion that is prescribed."""
+        return sampled_motion(self.time, self.column(name))
+
+
+def measured_signals(data: Any) -> MeasuredSignals:
+    """What was measured, from a mapping with "time", a data set over `time`, or a record.
+
+    A record's time is counted from its first sample.
+    raises ModelError: no time, another shape, times that do not increase, a record with gaps
+    """
+    if isinstance(data, Record):
+        if len(data.segments) > 1:
+            raise ModelError(
+                f"fit_simulation: {data.file} has {len(data.segments)} segments, expected one "
+                "without a gap: cut it by `span`"
+            )
+        time = data.time - data.time[0]
+        columns: dict[str, Any] = dict(data.signals)
+    elif hasattr(data, "data_vars") and "time" in data.coords:
+        time = data["time"].values
+        columns = {str(n): x.values for n, x in data.data_vars.items() if x.dims == ("time",)}
+    elif isinstance(data, Mapping) and "time" in data:
+        time, columns = data["time"], {n: x for n, x in data.items() if n != "time"}
+    else:
+        raise ModelError(
+            'fit_simulation: data: expected a mapping with "time" (s), a Dataset over `time`, or '
+            f"a Record, found {type(data).__name__}"
+        )
+    return _in_order(time, columns)
+
+
+def _in_order(time: Any, columns: Mapping[str, Any]) -> MeasuredSignals:
+    try:
+        t = np.asarray(time, dtype=float)
+        arrays = {n: np.asarray(x, dtype=float) for n, x in columns.items()}
+    except (TypeError, ValueError):
+        raise ModelError("fit_simulation: data: expected arrays of numbers") from None
+    if t.ndim != 1 or len(t) < _FEWEST or not (np.diff(t) > 0).all() or t[0] < 0:
+        raise ModelError(
+            f"fit_simulation: time: expected {_FEWEST} or more instants (s) that increase from 0 "
+            "or later; the simulation starts at 0"
+        )
+    for name, array in arrays.items():
+        if array.shape != t.shape:
+            raise ModelError(
+                f'fit_simulation: data: "{name}" has shape {array.shape}, time {t.shape}'
+            )
+    return MeasuredSignals(t, arrays)

@@ -1,0 +1,98 @@
+"""What became of the points of a study, in few bytes a point.
+
+Points whose measures give plain numbers, as most do, are rows of one array; texts, arrays and
+reasons of failures are kept as they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+#: forms that have an array each; points of further ones are kept one by one
+_MOST_FORMS = 8
+#: places of a point: nowhere, among those that are kept one by one; else the number of its form
+_NOWHERE, _APART = 0, -1
+
+
+@dataclass(frozen=True)
+class PointOutcome:
+    """What became of a point.
+
+    form: what its values are: (name, kind, unit, text, dimension ...) of each;  values: in that
+    order;  reason: why it failed, "" where it did not
+    """
+
+    point: int
+    form: tuple[Any, ...] = ()
+    values: tuple[Any, ...] = ()
+    reason: str = ""
+
+
+class Outcomes(Mapping[int, PointOutcome]):
+    """Outcome by number of the point;  points: how many there can be."""
+
+    def __init__(self, points: int) -> None:
+        # pages of zeros take no memory until they are written
+        self._places = np.zeros(points, dtype=np.int8)
+        self._forms: dict[tuple[Any, ...], int] = {}
+        self._rows: list[np.ndarray] = []
+        self._apart: dict[int, PointOutcome] = {}
+        self._many = 0
+
+    def keep(self, outcome: PointOutcome) -> None:
+        """Keep an outcome, in place of an earlier one of that point."""
+        index = outcome.point
+        if index not in self:
+            self._many += 1
+        self._apart.pop(index, None)
+        number = self._form_number(outcome)
+        self._places[index] = number
+        if number == _APART:
+            self._apart[index] = outcome
+        else:
+            self._rows[number - 1][index] = outcome.values
+
+    def drop(self, index: int) -> None:
+        """Forget what became of a point."""
+        self._many -= index in self
+        self._places[index] = _NOWHERE
+        self._apart.pop(index, None)
+
+    def failed(self) -> list[int]:
+        """Points that have a reason."""
+        return [index for index, outcome in self._apart.items() if outcome.reason]
+
+    def _form_number(self, outcome: PointOutcome) -> int:
+        """Number of the form whose rows take the outcome."""
+        if outcome.reason or not all(type(v) is float for v in outcome.values):
+            return _APART
+        if outcome.form not in self._forms:
+            if len(self._forms) == _MOST_FORMS:
+                return _APART
+            self._forms[outcome.form] = len(self._forms) + 1
+            self._rows.append(np.zeros((len(self._places), len(outcome.values))))
+        return self._forms[outcome.form]
+
+    def __contains__(self, index: object) -> bool:
+        if not isinstance(index, int) or not 0 <= index < len(self._places):
+            return False
+        return bool(self._places[index] != _NOWHERE)
+
+    def __getitem__(self, index: int) -> PointOutcome:
+        if index not in self:
+            raise KeyError(index)
+        number = int(self._places[index])
+        if number == _APART:
+            return self._apart[index]
+        form = next(form for form, k in self._forms.items() if k == number)
+        return PointOutcome(index, form, tuple(self._rows[number - 1][index].tolist()))
+
+    def __iter__(self) -> Iterator[int]:
+        return (int(index) for index in np.flatnonzero(self._places))
+
+    def __len__(self) -> int:
+        return self._many

@@ -1,0 +1,237 @@
+"""Parameters that make a simulation follow what was measured.
+
+    fitted = td.fit_simulation(
+        diagram,
+        {"time": t, "L": position},
+        {"Z_M.inertia": (0.05, 0.5), "Z_M.coulomb.level": (0.05, 2.0)},
+        inputs={"R_V": force},
+    )
+
+Bounded least squares (scipy) from the best of many points, slopes by differences of simulations
+side by side. It compares whole motions: where these are unstable or chaotic, or a record is long
+and nothing holds the device, take `td.fit`, which compares forces along the measured motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from ..arguments import checked
+from ..by_value import ByValue
+from ..diagrams import Diagram
+from ..errors import ModelError
+from ..notebook import html_table
+from ..passivity.intervals.box import ValueBox
+from ..simulate import Sampling
+from ..simulate.sampling import SAMPLED
+from ..simulate.units import signal_units
+from .case import SimulatedCase, case_of
+from .differences import check_slopes_exist
+from .follow import MOST_APART, Followed, Target, follow, rms_of
+from .measured_signals import MeasuredSignals, measured_signals
+from .sensitivities import labelled_slopes
+from .shares import box_of_parameters
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+    import xarray
+
+
+#: relative: instants closer than this to a sample are at it
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class SimulationFit(ByValue):
+    """A diagram whose simulation follows measured signals.
+
+    case: with `values`;  errors: standard errors; NaN of parameters in `at_ends` (of their
+        intervals) and `undetermined` (others make up for them, or nothing follows them), and of all
+        where the motion follows one of them by jumps
+    apart: by parameter, how far the slopes behind its error are apart, see `sensitivities`
+    rms: by signal, of simulated less measured (SI);  of_signal: the same over the standard
+        deviation of what was measured;  before: so with the diagram's own values, NaN where these
+        have no simulation
+    data: SIGNAL_measured and SIGNAL_simulated over `time`
+    sensitivities: of the signals at `values`;  searches: made from different points;  agreeing: of
+        these, how many came to these values
+    """
+
+    case: SimulatedCase
+    values: Mapping[str, float]
+    errors: Mapping[str, float]
+    at_ends: tuple[str, ...]
+    undetermined: tuple[str, ...]
+    apart: Mapping[str, float]
+    rms: Mapping[str, float]
+    of_signal: Mapping[str, float]
+    before: Mapping[str, float]
+    data: xarray.Dataset
+    sensitivities: xarray.Dataset
+    searches: int
+    agreeing: int
+
+    @property
+    def diagram(self) -> Diagram:
+        """The diagram with the values."""
+        return self.case.diagram
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What to know before the values are used."""
+        out = []
+        if self.at_ends:
+            out.append(f"at an end of the interval: {', '.join(self.at_ends)}")
+        if self.undetermined:
+            out.append(f"the data do not determine: {', '.join(self.undetermined)}")
+        if rough := [n for n, x in self.apart.items() if x > MOST_APART]:
+            out.append(f"no standard errors, as motion follows by jumps: {', '.join(rough)}")
+        if self.agreeing < self.searches:
+            out.append(f"{self.agreeing} of {self.searches} searches came to these values")
+        return tuple(out)
+
+    def plot(self) -> matplotlib.figure.Figure:
+        """Measured and simulated signals, and the difference below each."""
+        from ..plot.simulation_fit import plot_simulation_fit
+
+        return plot_simulation_fit(self)
+
+    def _rows(self) -> list[tuple[str, str]]:
+        rows = []
+        for name, value in self.values.items():
+            unit, error = self.case.unit(name), self.errors[name]
+            ending = "" if unit in ("", "1") else f" {unit}"
+            sure = f" +- {error:.2g}" if np.isfinite(error) else ""
+            rows.append((name, f"{value:.5g}{sure}{ending}"))
+        units = signal_units(self.diagram)
+        for name, rms in self.rms.items():
+            was = f"{100 * self.before[name]:.3g} -> " if np.isfinite(self.before[name]) else ""
+            share = f"{was}{100 * self.of_signal[name]:.3g} %"
+            rows.append((f"rms of {name}", f"{rms:.3g} {units(name)} ({share} of the signal)"))
+        return rows
+
+    def __repr__(self) -> str:
+        lines = [f"Simulation of the {self.diagram.name}, fitted to {', '.join(self.rms)}"]
+        lines += [f"  {name:<34} {text}" for name, text in self._rows()]
+        return "\n".join([*lines, *(f"  {one}" for one in self.remarks)])
+
+    def _repr_html_(self) -> str:
+        title = f"Simulation of the {self.diagram.name}, fitted to {', '.join(self.rms)}"
+        return html_table(title, ("", ""), self._rows(), note="; ".join(self.remarks))
+
+
+@checked
+def fit_simulation(
+    diagram: Diagram | SimulatedCase,
+    data: Any,
+    parameters: Mapping[str, tuple[float, float]],
+    *,
+    signals: Mapping[str, str] | None = None,
+    noise: Mapping[str, float] | None = None,
+    inputs: Mapping[str, Any] | None = None,
+    motion: Mapping[str, Any] | None = None,
+    initial: Mapping[str, float] | None = None,
+    computer: Sampling | Literal["continuous"] = SAMPLED,
+    step: float = 1e-4,
+    starts: int = 15,
+    seed: int = 0,
+) -> SimulationFit:
+    """Values of parameters whose simulation follows measured signals, with standard errors.
+
+    data: "time" (s; the simulation starts at 0) and samples by signal, SI, NaN where one lacks; a
+        Dataset over `time`; or a `Record`, whose time is counted from its first sample
+    parameters: names of `SimulatedCase` -> (low, high); in logarithms where high is 10 low or more.
+        "initial.L" and the like are parameters too
+    signals: simulated signal -> its name in the data; default: all that have a simulated namesake
+    noise: signal -> standard deviation (SI) by which it is weighed; default: what the fit leaves
+    inputs, motion: as in `simulate`, or the name of a column of the data that is taken for it. A
+        motion is differentiated twice without a low-pass: an encoder's steps make `td.fit` better
+    initial, computer, step: as in `simulate`; of a `SimulatedCase` all is as it has it but the
+        duration: up to the last whole sample of the computer within the data
+    starts: points that are simulated to begin from, beside the diagram's own values
+    returns: standard errors hold for errors of measurement that are correlated over 0.25 s at most
+        (a 30th of the record where that is shorter), and for a simulation that is right but for the
+        parameters: what the model lacks they do not see
+    raises ModelError: no such parameter, signal or column, no interval, no simulation anywhere
+    """
+    measured = measured_signals(data)
+    settings = {"initial": initial, "computer": computer, "step": step}
+    case = _case(diagram, measured, inputs or {}, motion or {}, settings)
+    box = box_of_parameters(parameters, "fit_simulation")
+    names = dict(signals) if signals is not None else _namesakes(case, measured)
+    check_slopes_exist(case, box.names, tuple(names))
+    for end in (box.low, box.high):
+        case.with_values(box.named(np.array(end)))
+    kept = measured.time <= case.duration * (1 + _ROUNDING)
+    columns = {s: measured.column(c)[kept] for s, c in names.items()}
+    target = Target(measured.time[kept], columns, noise or {})
+    return _result(case, box, target, follow(case, box, target, starts, seed))
+
+
+def _case(
+    diagram: Diagram | SimulatedCase,
+    measured: MeasuredSignals,
+    inputs: Mapping[str, Any],
+    motion: Mapping[str, Any],
+    settings: Mapping[str, Any],
+) -> SimulatedCase:
+    """What is simulated, over the time of the data."""
+    driven = {n: measured.course(x) if isinstance(x, str) else x for n, x in inputs.items()}
+    moved = {n: measured.motion(x) if isinstance(x, str) else x for n, x in motion.items()}
+    case = case_of(diagram, inputs=driven, motion=moved, **settings)
+    period = (SAMPLED if isinstance(case.computer, str) else case.computer).period
+    # never beyond the last instant: what drives the simulation is not known there
+    samples = max(np.floor(measured.time[-1] / period * (1 + _ROUNDING)), 1.0)
+    return replace(case, duration=float(samples * period))
+
+
+def _namesakes(case: SimulatedCase, measured: MeasuredSignals) -> dict[str, str]:
+    """Measured columns that have the name of a simulated signal and do not drive it."""
+    known, driving = case.setup().program.layout.columns, {*case.inputs, *case.motion}
+    names = {n: n for n in measured.columns if n in known and n not in driving}
+    if not names:
+        raise ModelError(
+            f"fit_simulation: data: none of {', '.join(measured.columns)} is a signal of the "
+            "simulation: say by `signals` which is"
+        )
+    return names
+
+
+def _result(case: SimulatedCase, box: ValueBox, target: Target, end: Followed) -> SimulationFit:
+    import xarray
+
+    names, of = target.names, end.slopes
+    simulated = target.at_times(of.time, of.signals)
+    units = signal_units(case.diagram)
+    columns = {}
+    for k, name in enumerate(names):
+        unit = {"units": units(name)}
+        columns[f"{name}_measured"] = ("time", target.values[k], unit)
+        columns[f"{name}_simulated"] = ("time", simulated[k], unit)
+    rms, before = (rms_of(x - target.values) for x in (simulated, end.at_start))
+
+    def by_signal(numbers: np.ndarray) -> dict[str, float]:
+        return dict(zip(names, map(float, numbers), strict=True))
+
+    def those(mask: np.ndarray) -> tuple[str, ...]:
+        return tuple(n for n, holds in zip(box.names, mask, strict=True) if holds)
+
+    return SimulationFit(
+        case.with_values(box.named(end.values)),
+        box.named(end.values),
+        box.named(end.errors),
+        those(end.is_at_end),
+        those(~end.is_determined),
+        box.named(end.apart),
+        by_signal(rms),
+        by_signal(rms / target.size),
+        by_signal(before / target.size),
+        xarray.Dataset(columns, {"time": ("time", target.time, {"units": "s"})}),
+        labelled_slopes(case, of, box.names, names, end.values),
+        end.searches,
+        end.agreeing,
+    )

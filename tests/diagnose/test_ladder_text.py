@@ -1,0 +1,50 @@
+"""What the text of a diagnosis adds where nothing is supported, or where records differ."""
+
+from dataclasses import replace
+
+import pytest
+
+from teleopdesign.diagnose.criteria import CRITERIA
+from teleopdesign.diagnose.diagnosis import OpenQuestion
+from teleopdesign.diagnose.ladder_text import ladder_text, sentence
+
+
+@pytest.fixture
+def unsupported(diagnosis):
+    """The diagnosis had its first step added nothing: what was added leads the last ranking."""
+    first = diagnosis.rungs[0]
+    ranking = diagnosis.rungs[1].ranking
+    return replace(diagnosis, verdict="undecided", rungs=(first,), last=ranking, named=())
+
+
+def test_an_undecided_verdict_says_which_candidate_comes_nearest(unsupported):
+    best = unsupported.last.ranked[0]
+    error = 100 * best.fit.check_error
+    assert f"{best.candidate} comes nearest and would leave {error:.3g} %" in sentence(unsupported)
+
+
+def test_the_nearest_is_the_same_where_the_answer_was_read_from_a_file(unsupported):
+    best = unsupported.last.ranked[0]
+    question = OpenQuestion(None, ((best.candidate, best.fit),))
+    read = replace(unsupported, open=(question,), last=replace(unsupported.last, ranked=()))
+    assert sentence(read) == sentence(unsupported)
+
+
+def test_a_candidate_that_hardly_helps_is_not_called_nearest(unsupported):
+    best = unsupported.last.ranked[0]
+    error = (1.0 - 0.5 * CRITERIA.relevant) ** 0.5 * unsupported.after.check_error
+    little = replace(best, fit=replace(best.fit, check_error=error))
+    less = replace(unsupported, last=replace(unsupported.last, ranked=(little,)))
+    assert "nearest" not in sentence(less)
+    assert "nearest" not in sentence(replace(less, last=replace(less.last, ranked=())))
+
+
+@pytest.mark.parametrize(("times", "is_said"), [(0.99, False), (1.01, True), (3.0, True)])
+def test_check_records_that_leave_far_more_than_fit_records_are_said_to_differ(
+    diagnosis, times, is_said
+):
+    last = diagnosis.rungs[-1]
+    error = times * CRITERIA.differ * last.fit.fit_error
+    rungs = (*diagnosis.rungs[:-1], replace(last, fit=replace(last.fit, check_error=error)))
+    text = ladder_text(replace(diagnosis, rungs=rungs))
+    assert ("records: the check records leave" in text) is is_said

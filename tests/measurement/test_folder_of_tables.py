@@ -1,0 +1,76 @@
+"""Tables of one run side by side in a folder: each with its own clock."""
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.cli import main
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.tables import open_log
+
+T = np.arange(4000) / 500.0
+Q = 0.5 * np.sin(2 * np.pi * 0.4 * T) + 0.1 * np.sin(2 * np.pi * 1.7 * T)
+HAND = 0.2 * np.sin(2 * np.pi * 0.9 * T)
+U = 0.01 * np.gradient(np.gradient(Q, T), T) + 0.1 * np.sign(np.gradient(Q, T)) - HAND
+
+
+def table(path, names, *columns):
+    path.parent.mkdir(exist_ok=True)
+    rows = np.column_stack(columns)
+    np.savetxt(path, rows, fmt="%.9g", delimiter=",", header=",".join(names), comments="")
+
+
+@pytest.fixture
+def run(tmp_path):
+    """A drive at 500 Hz in s, a sensor at 250 Hz in ms that begins 10 ms later."""
+    table(tmp_path / "run" / "drive.csv", ["t_s", "q_rad", "tau_Nm"], T + 3.0, Q, U)
+    late = np.interp(T[::2] + 0.01, T, HAND)
+    table(tmp_path / "run" / "sensor.csv", ["t_ms", "hand_Nm"], 1e3 * (T[::2] + 3.01), late)
+    return tmp_path / "run"
+
+
+def test_a_drive_and_a_sensor_with_clocks_of_their_own_are_one_log(run, tmp_path, capsys):
+    assert main(["new", str(run), "--yes", "--output", str(tmp_path / "arm")]) == 0
+    assert "2 tables, each with its own clock" in capsys.readouterr().out
+    record = td.load_experiment(tmp_path / "arm").records[0]
+    assert record.signals["device.position"] == pytest.approx(Q[: len(record.time)], abs=1e-6)
+    hand = record.signals["device.interaction_force"]
+    # the line between two readings 4 ms apart errs by h^2/8 times the largest second derivative
+    error = 0.004**2 / 8 * 0.2 * (2 * np.pi * 0.9) ** 2
+    within = slice(5, None)  # the sensor begins 10 ms later
+    assert hand[within] == pytest.approx(HAND[: len(hand)][within], abs=1.1 * error + 1e-8)
+
+
+def test_a_clock_of_another_day_is_refused(run):
+    table(run / "sensor.csv", ["t_ms", "hand_Nm"], 1e3 * (T + 90.0), HAND)
+    with pytest.raises(ExperimentError, match="do not run at the same time .drive from 3 to"):
+        open_log(run, "run")
+
+
+def test_tables_of_the_same_columns_are_runs_and_not_parts_of_one(run):
+    table(run / "sensor.csv", ["t_s", "q_rad", "tau_Nm"], T, Q, U)
+    with pytest.raises(ExperimentError, match="for several runs: teleopdesign new .*drive.csv"):
+        open_log(run, "run")
+
+
+def test_a_table_without_a_time_is_refused(run):
+    table(run / "sensor.csv", ["hand_Nm", "gauge_V"], HAND, HAND)
+    with pytest.raises(ExperimentError, match="run/sensor: found no column that is called time"):
+        open_log(run, "run")
+
+
+def test_a_link_that_leads_out_of_the_folder_is_not_followed(run, tmp_path):
+    table(tmp_path / "else" / "other.csv", ["t_s", "secret"], T, Q)
+    (run / "other.csv").symlink_to(tmp_path / "else" / "other.csv")
+    assert not [name for name in open_log(run, "run").names if "secret" in name]
+
+
+def test_two_logs_that_are_parts_of_one_run_are_told_what_to_do(run, tmp_path, capsys):
+    logs = [str(run / "drive.csv"), str(run / "sensor.csv")]
+    assert main(["new", *logs, "--yes", "--output", str(tmp_path / "arm")]) == 2
+    assert "put them into a folder and give the folder" in capsys.readouterr().err
+
+
+def test_an_experiment_is_no_log(rod, capsys):
+    assert main(["new", str(rod)]) == 2
+    assert "is an experiment already; next: teleopdesign diagnose" in capsys.readouterr().err

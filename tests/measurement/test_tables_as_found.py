@@ -1,0 +1,136 @@
+"""Tables as loggers and office programs leave them: empty cells, names, units, printed digits."""
+
+import numpy as np
+import openpyxl
+import pandas
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.column_names import is_wanted, likeness, unit_in_name
+from teleopdesign.measurement.doors._cells import NO_READING
+from teleopdesign.measurement.survey import Choices, survey_log
+from teleopdesign.measurement.survey.content import SURE_NAME
+from teleopdesign.measurement.survey.position import _seen_step, wrap_of
+from teleopdesign.measurement.tables import numbers_of, open_log, read_columns
+
+T = np.arange(400) / 200.0
+
+
+def written(folder, ending, header, rows):
+    """A table of cells as a text or a workbook."""
+    path = folder / f"log{ending}"
+    if ending == ".xlsx":
+        book = openpyxl.Workbook()
+        for row in [header, *rows]:
+            book.active.append(row)
+        book.save(path)
+    else:
+        path.write_text("\n".join(",".join(map(str, row)) for row in [header, *rows]) + "\n")
+    return path
+
+
+@pytest.mark.parametrize("ending", [".csv", ".xlsx"])
+@pytest.mark.parametrize("word", sorted(NO_READING))
+def test_a_word_for_no_reading_is_an_empty_cell(tmp_path, ending, word):
+    rows = [[k / 100, float(k)] for k in range(80)]
+    rows[40][1] = word.upper()
+    path = written(tmp_path, ending, ["t", "x"], rows)
+    values = read_columns(path, path.name, {"t": "", "x": ""}).values
+    assert np.flatnonzero(np.isnan(values["x"])).tolist() == [40]
+    assert np.array_equal(values["t"], [row[0] for row in rows])
+
+
+def test_numbers_that_a_frame_holds_as_text_are_numbers():
+    column = pandas.Series(["0.5", "n/a", "-1e-3", None], dtype=object)
+    assert np.array_equal(numbers_of(column, "x", "frame"), [0.5, np.nan, -1e-3, np.nan], True)
+
+
+def test_another_text_is_still_refused_with_its_row():
+    with pytest.raises(ExperimentError, match='row 2: found "left", expected a number'):
+        numbers_of(np.array(["1", "left", "2"], dtype=object), "x", "frame")
+
+
+@pytest.mark.parametrize("ending", [".csv", ".xlsx"])
+def test_columns_of_one_name_are_counted(tmp_path, ending):
+    rows = [[k / 100, float(k), -float(k)] for k in range(80)]
+    path = written(tmp_path, ending, ["t", "Torque [Nm]", "Torque [Nm]"], rows)
+    log = open_log(path, path.name)
+    assert log.names == ("t", "Torque [Nm] #1", "Torque [Nm] #2")
+    second = log.read({"Torque [Nm] #2": ""})["Torque [Nm] #2"]
+    assert np.array_equal(second, [row[2] for row in rows])
+    assert unit_in_name(log.names[2]) == "Nm"
+    with pytest.raises(ExperimentError, match=r"found 2 columns .*, expected one of .*#1.*#2"):
+        read_columns(path, path.name, {"Torque [Nm]": "channels.force"})
+
+
+def test_where_nothing_can_be_used_the_reason_of_each_column_is_said(tmp_path):
+    rows = [[k / 100, "left", "up"] for k in range(80)]
+    path = written(tmp_path, ".xlsx", ["t", "x", "u"], rows)
+    with pytest.raises(ExperimentError, match="found no sheet"):
+        open_log(path, path.name)
+    rows = [[k / 100, k % 7, k % 5, "up"] for k in range(80)]
+    rows[50][1] = "left"
+    path = written(tmp_path, ".csv", ["t", "x", "u", "way"], rows)
+    with pytest.raises(ExperimentError, match="'x': row 51: found \"left\", expected a number"):
+        survey_log(open_log(path, path.name), path.name, Choices(position="x"))
+
+
+@given(
+    step=st.floats(1e-6, 10.0),
+    digits=st.integers(3, 6),
+    seed=st.integers(0, 1000),
+)
+def test_an_encoder_is_seen_through_the_digits_that_were_printed(step, digits, seed):
+    """The last digit is a tenth of a step or less; the travel is 2000 steps."""
+    rng = np.random.default_rng(seed)
+    swing = np.sin(np.linspace(0, 9, 4000) + rng.uniform(0, 6)) * rng.uniform(0.8, 1.2)
+    places = np.round(1000 * swing)
+    last = 10.0 ** np.floor(np.log10(step * 10.0 ** (1 - digits) * 10))
+    readings = np.round(places * step / last) * last
+    assert _seen_step(readings) == pytest.approx(step, rel=1e-3)
+
+
+@pytest.mark.parametrize("period", [360.0, 180.0, 2 * np.pi, np.pi, 1.0, 4096.0])
+def test_a_position_that_wraps_shows_its_period(period):
+    angle = 2.3 * period * np.sin(1.5 * T) + 0.1 * period
+    assert wrap_of(angle % period) == period
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity"),
+    [
+        ("Zeit", "time"), ("temps (s)", "time"), ("tiempo [s]", "time"), ("時間[s]", "time"),
+        ("Istposition", "position"), ("Motorwinkel", "position"), ("posición", "position"),
+        ("位置[rad]", "position"), ("関節角度", "position"), ("Istgeschwindigkeit", "velocity"),
+        ("vitesse", "velocity"), ("Sollmoment", "actuator_force"), ("Istmoment", "actuator_force"),
+        ("couple moteur", "actuator_force"), ("指令トルク[Nm]", "actuator_force"),
+        ("corriente", "actuator_force"), ("Handkraft", "interaction_force"),
+        ("操作力[Nm]", "interaction_force"),
+    ],
+)  # fmt: skip
+def test_names_in_other_languages_are_understood(name, quantity):
+    assert likeness(name, quantity) >= SURE_NAME
+
+
+@pytest.mark.parametrize("name", ["Stromsensor", "temperature", "Status", "triangle"])
+def test_a_part_of_another_word_is_no_hand_and_no_time(name):
+    for quantity in ("interaction_force", "time"):
+        assert likeness(name, quantity) < SURE_NAME
+
+
+@pytest.mark.parametrize("name", ["Sollposition", "x_ref", "targetPosition", "目標位置"])
+def test_what_was_wanted_is_no_reading_in_any_language(name):
+    assert is_wanted(name)
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [
+        ("v_mm_s", "mm/s"), ("joint_velocity_rad_s", "rad/s"), ("qd_rad_per_s", "rad/s"),
+        ("tau_N_m", "N*m"), ("tau_mN_m", "mN*m"), ("x_mm", "mm"), ("items", None), ("q", None),
+    ],
+)  # fmt: skip
+def test_units_of_two_parts_are_read_at_the_end_of_a_name(name, unit):
+    assert unit_in_name(name) == unit

@@ -1,0 +1,166 @@
+"""Modes that no port shows count with their multiplicity: what drives itself is proved nothing."""
+
+import control as ct
+import numpy as np
+import pytest
+import sympy as sp
+from devices import body
+
+from teleopdesign import EFFECTS
+from teleopdesign.controllers import ControlLaw, Controller, ControllerState, Stage, from_control
+from teleopdesign.derive import transfer
+from teleopdesign.diagrams import Control, Diagram, Junction, Moving
+from teleopdesign.errors import ModelError
+from teleopdesign.passivity import positive_real
+from teleopdesign.passivity.intervals.box import ValueBox
+from teleopdesign.passivity.intervals.linear import judge_linear
+from teleopdesign.passivity.linear.hidden_modes import growth_within
+
+CHAIN, APART = [[0.0, 1.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 0.0]]
+SWING = np.array([[0.0, 2.0], [-2.0, 0.0]])
+SWINGS = np.block([[SWING, np.eye(2)], [np.zeros((2, 2)), SWING]])
+COLUMN, ROW = np.array([[0.0], [0.0]]), np.array([[1.0, 0.0]])
+
+
+def states(a, b, c, d=100.0):
+    return from_control(ct.ss(np.array(a), np.array(b), np.array(c), [[d]]))
+
+
+def ratio(*sides):
+    return from_control(ct.tf(*sides), name="ratio")
+
+
+def held(*laws, damping=2.0):
+    """A mass on what the laws make of its position, one after the other."""
+    signals = ["x", *(f"y{k}" for k in range(len(laws)))]
+    controls = [
+        Control(f"C{k}", law, signals[k], signals[k + 1], "x") for k, law in enumerate(laws)
+    ]
+    mass = Moving("M", body(0.15, viscous__damping=damping), "x", "u", {"f": 1}, "f")
+    force = Junction("u", {signals[-1]: -1})
+    return Diagram("held", (mass, *controls), (force,), {"f": "force"}, ())
+
+
+def multiple(power, *, at=0.0):
+    """(s^2 + at^2)^power, or s^power."""
+    factor = [1.0, 0.0] if not at else [1.0, 0.0, at**2]
+    made = np.ones(1)
+    for _ in range(power):
+        made = np.polymul(made, factor)
+    return made
+
+
+#: dw/dt = q, dq/dt = 0: the law's output, a spring, sees neither
+UNSEEN_CHAIN = ControlLaw(
+    law=lambda now, p: 100 * now.input,
+    states={
+        "w": ControllerState("position", lambda now, p: now.q),
+        "q": ControllerState("position", lambda now, p: sp.S(0)),
+    },
+    linear=True,
+    parameters={},
+    name="unseen",
+)
+
+GROWING = {
+    "driven by nothing": [states(CHAIN, COLUMN, ROW)],
+    "read by nothing": [states(CHAIN, [[0.0], [1.0]], 0 * ROW)],
+    "in one ratio": [ratio([100.0, 0.0, 0.0], [1.0, 0.0, 0.0])],
+    "a swing, driven by nothing": [states(SWINGS, np.zeros((4, 1)), np.eye(1, 4))],
+    "a swing in one ratio": [ratio(100 * multiple(2, at=2.0), multiple(2, at=2.0))],
+    "between two blocks": [ratio([1.0], multiple(2)), ratio([100.0, 0, 0], [1.0, 20.0, 100.0])],
+    "within a law of one's own": [Controller((Stage(UNSEEN_CHAIN, {}),))],
+    "one of them read": [
+        states([[0, 1, 0], [0, 0, 0], [0, 0, -1.0]], [[0], [0], [1.0]], [[1, 0, 5.0]])
+    ],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("laws", GROWING.values(), ids=GROWING)
+def test_a_multiple_pole_on_the_axis_that_no_port_shows_grows(laws):
+    assert growth_within(held(*laws)) == 0
+
+
+STAYING = {
+    "nothing hidden": [states([[-1.0]], [[1.0]], [[0.0]])],
+    "a mass without damping": [ratio([100.0], [1.0])],
+    "one pole at 0": [ratio([100.0, 0.0], [1.0, 0.0])],
+    "two that do not drive each other": [states(APART, COLUMN, ROW)],
+    "in two laws": [ratio([100.0, 0.0], [1.0, 0.0]), ratio([1.0, 0.0], [1.0, 0.0])],
+    "a swing": [ratio(100 * multiple(1, at=2.0), multiple(1, at=2.0))],
+}
+
+
+@pytest.mark.parametrize("laws", STAYING.values(), ids=STAYING)
+def test_a_mode_that_stays_as_large_as_it_is_does_not_grow(laws):
+    assert growth_within(held(*laws)) is None
+
+
+def test_a_free_mass_drifts_and_does_not_grow():
+    free = held(ratio([0.0], [1.0]), damping=0.0)
+    assert growth_within(free) is None
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_growth_of_random_hidden_states_is_that_of_their_largest_jordan_block(seed):
+    """States that the ports neither drive nor see, in other coordinates: known by construction."""
+    rng = np.random.default_rng(seed)
+    sizes = rng.integers(1, 4, rng.integers(1, 3))
+    n = int(sizes.sum())
+    a = np.zeros((n, n))
+    start = 0
+    for size in sizes:
+        a[start : start + size, start : start + size] = np.eye(size, k=1)
+        start += size
+    # whole numbers of determinant 1: the blocks stay exactly what they are
+    turn = np.tril(rng.integers(-2, 3, (n, n)), -1) + np.eye(n)
+    a = turn @ a @ np.linalg.inv(turn).round()
+    law = states(a, np.zeros((n, 1)), rng.integers(-1, 2, (1, n)).astype(float))
+    assert growth_within(held(law)) == (0 if sizes.max() > 1 else None)
+
+
+@pytest.mark.parametrize(
+    ("system", "status"),
+    [
+        (ct.ss(CHAIN, COLUMN, ROW, [[2.0]]), "unknown"),
+        (ct.ss(APART, COLUMN, ROW, [[2.0]]), "proved"),
+        (ct.tf([2.0, 0.0, 0.0], [1.0, 0.0, 0.0]), "unknown"),
+        (ct.tf([2.0, 0.0], [1.0, 0.0]), "proved"),
+        (ct.ss(CHAIN, [[1.0], [0.0]], ROW, [[2.0]]), "unknown"),  # 2 + 1/s, and what drives 1/s
+    ],
+)
+def test_an_impedance_of_python_control_is_proved_only_where_its_states_stay(system, status):
+    assert positive_real(system).status == status
+
+
+def test_a_hidden_multiple_pole_is_proved_nothing_over_an_interval():
+    diagram = held(*GROWING["in one ratio"])
+    box = ValueBox(("M.viscous.damping",), (1.0,), (3.0,))
+    assert judge_linear(diagram, box, "passive", 8, 1)["status"] != "proved"
+    for law in ("nothing hidden", "a mass without damping"):
+        assert judge_linear(held(*STAYING[law]), box, "passive", 8, 1)["status"] == "proved"
+
+
+def test_a_mode_that_a_spring_of_zero_stiffness_would_drive_is_proved_nothing_over_an_interval():
+    """dx/dt = -a x + q, dq/dt = 0: x grows at a = 0, an end of the interval, and nowhere else."""
+
+    def driven(a):
+        return held(states([[-a, 1.0], [0.0, 0.0]], [[0.0], [0.0]], ROW))
+
+    assert growth_within(driven(0.0)) == 0 and growth_within(driven(0.5)) is None
+    box = ValueBox(("C0.state_space.a_0_0",), (-1.0,), (0.0,))
+    assert judge_linear(driven(0.5), box, "passive", 8, 1)["status"] != "proved"
+
+
+def test_a_block_of_the_name_of_an_actuator_is_refused():
+    """Under one symbol its stiffness of 100 N/m was taken for the actuator's gain of 0.5."""
+    diagram = held(ratio([100.0], [1.0]))
+    mass, law = diagram.blocks
+    driven = mass.body.with_effect(EFFECTS["actuator_gain"], {"gain": 0.5})
+    blocks = (
+        Moving("M", driven, "x", "u", {"f": 1}, "f"),
+        Control("A_M", law.controller, "x", "y0", "x"),
+    )
+    doubled = Diagram("named", blocks, diagram.junctions, {"f": "force"}, ())
+    with pytest.raises(ModelError, match="A_M is the actuator of M, and the name of a block"):
+        transfer(doubled, "x")

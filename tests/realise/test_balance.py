@@ -1,0 +1,88 @@
+"""Friction that balances within its bounds: as the same steps give it, each on the whole record."""
+
+import numpy as np
+import pytest
+
+from teleopdesign.measurement.zero_phase import zero_phase
+from teleopdesign.realise.balance import STEPS, balanced
+from teleopdesign.realise.traced import Traced, constant
+
+SAMPLE_TIME, BANDWIDTH = 2e-3, 60.0
+
+
+def step_by_step(needed, low, high):
+    """The same accelerated projected steps with every sample filtered in each: slow, and plain."""
+    rows = [a.rows() for a in (needed, low, high)]
+    is_open = (rows[1] != rows[2]).any(axis=0)
+    ahead, momentum = np.where(is_open, rows[0], rows[1]), 1.0
+    friction = ahead
+    for turn in range(STEPS + 1):
+        carried = 0.0
+        trial = ahead
+        if turn > 0:
+            left = np.where(is_open, rows[0] - ahead, rows[0] - rows[1])
+            trial = ahead + zero_phase(left, BANDWIDTH, SAMPLE_TIME)
+            later = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * momentum**2))
+            carried, momentum = (momentum - 1.0) / later, later
+        now = np.where(
+            trial[0] >= rows[2][0], rows[2], np.where(trial[0] <= rows[1][0], rows[1], trial)
+        )
+        now = np.where(is_open, now, rows[1])
+        ahead = now + carried * (now - friction) if turn > 0 else now
+        friction = now
+    return friction
+
+
+def bounded(seed, open_share, tangents=3, n=2_400):
+    rng = np.random.default_rng(seed)
+    time = SAMPLE_TIME * np.arange(n)
+    needed = Traced(
+        np.sin(2 * np.pi * 1.3 * time) + 0.2 * rng.normal(size=n), rng.normal(size=(tangents, n))
+    )
+    level = Traced(0.6 + 0.1 * np.cos(time), rng.normal(size=(tangents, n)))
+    is_open = np.zeros(n, dtype=bool)
+    for begin in rng.integers(0, n, 12):
+        is_open[begin : begin + int(open_share * n / 12)] = True
+    ahead = np.sin(2 * np.pi * 0.7 * time) > 0.0
+    low = level.times(np.where(ahead & ~is_open, 1.0, -1.0))
+    high = level.times(np.where(ahead | is_open, 1.0, -1.0))
+    return needed, low, high
+
+
+@pytest.mark.parametrize("open_share, n", [(0.02, 2_400), (0.3, 2_400), (1.5, 2_400)])
+@pytest.mark.parametrize("seed", [1, 2])
+def test_only_what_changes_is_filtered_and_nothing_else_comes_out(seed, open_share, n):
+    signals = bounded(seed, open_share, n=n)
+    friction = balanced(*signals, bandwidth=BANDWIDTH, sample_time=SAMPLE_TIME)
+    # rounding, through eight turns of a filter that amplifies nothing
+    assert friction.rows() == pytest.approx(step_by_step(*signals), abs=1e-10)
+
+
+@pytest.mark.parametrize(
+    "places",
+    [(0, 9_000), (150, 19_850), (5_000, 5_200, 12_000), (0, 200, 19_700, 19_999), (301, 19_698)],
+)
+def test_windows_about_few_open_rows_give_what_the_whole_record_does(places):
+    needed, low, high = bounded(5, 0.0, n=20_000)
+    is_open = np.zeros(20_000, dtype=bool)
+    for place in places:
+        is_open[place : place + 7] = True
+    up = np.where(is_open & (high.value < 0.0), -1.0, 1.0)
+    down = np.where(is_open & (low.value > 0.0), -1.0, 1.0)
+    signals = (needed, low.times(down), high.times(up))
+    friction = balanced(*signals, bandwidth=BANDWIDTH, sample_time=SAMPLE_TIME)
+    assert friction.rows() == pytest.approx(step_by_step(*signals), abs=1e-10)
+
+
+def test_tangents_that_are_nothing_need_no_memory_and_change_nothing():
+    needed, low, high = bounded(3, 0.3)
+    signals = [Traced(s.value, np.zeros_like(s.tangent)) for s in (needed, low, high)]
+    without = [constant(s.value, len(s.tangent)) for s in signals]
+    of = {"bandwidth": BANDWIDTH, "sample_time": SAMPLE_TIME}
+    one, other = balanced(*signals, **of), balanced(*without, **of)
+    assert (one.value == other.value).all() and not other.tangent.any()
+
+
+def test_where_every_sample_tells_its_motion_friction_is_its_bound():
+    needed, low, _ = bounded(4, 0.0)
+    assert balanced(needed, low, low, bandwidth=BANDWIDTH, sample_time=SAMPLE_TIME) is low
