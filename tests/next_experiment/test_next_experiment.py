@@ -258,10 +258,11 @@ def test_the_command_says_in_one_line_what_is_wrong(one_speed, capsys, arguments
 def known_of(poor, number):
     """Effects to choose from: all of `MOST` for the first of two truths, then the usual ones.
 
-    The time of a search grows with the square of their number.
+    The time of a search grows with the square of their number: for one speed too, the usual ones.
     """
     usual = {"coulomb", "viscous", "quadratic_drag", "bias", "spring", *poor.rivals}
-    return MOST if number == 0 else {n: e for n, e in MOST.items() if n in usual}
+    whole = number == 0 and poor is not POOR["one speed"]
+    return MOST if whole else {n: e for n, e in MOST.items() if n in usual}
 
 
 def proposed(case, number, folder):
