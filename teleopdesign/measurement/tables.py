@@ -9,13 +9,12 @@ import zlib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ExperimentError, did_you_mean, quoted
-from .doors._cells import number_of
 from .doors._log import Log, bare_column, listed
 from .doors.arrays import open_arrays
 from .doors.bag import is_bag, open_bag
@@ -25,6 +24,7 @@ from .doors.matlab import open_matlab
 from .doors.parquet import open_parquet
 from .doors.text import open_text
 from .doors.workbook import open_workbook
+from .numbers_in_cells import numbers_of
 from .reading import ReadingStep
 
 Array = NDArray[np.float64]
@@ -50,8 +50,6 @@ DOORS: Mapping[str, Callable[[Path, str], Log]] = {
 }
 #: what makes a folder an experiment
 EXPERIMENT = "experiment.toml"
-#: whole numbers above are stamps in nanoseconds: 2^53, beyond which float64 skips some
-_LONG = 2**53
 
 
 @dataclass(frozen=True)
@@ -168,62 +166,6 @@ def require_columns(columns: Iterable[str], file: str, wanted: Wanted) -> None:
                 f"{file}: {channel}: found {columns.count(column)} columns {quoted(column)}, "
                 "expected one"
             )
-
-
-def numbers_of(values: Any, column: str, file: str, channel: str = "") -> Array:
-    """A vector of float64 out of what a file holds: (n,), (n, 1) or (1, n) numbers or dates."""
-    values = np.asarray(values)
-    begin = (
-        f"{file}: {channel}: column {quoted(column)}" if channel else f"{file}: {quoted(column)}"
-    )
-    if values.ndim == 2 and 1 in values.shape:
-        values = values.reshape(-1)
-    if values.ndim != 1:
-        raise ExperimentError(
-            f"{begin}: found an array of shape {values.shape}, expected one column"
-        )
-    if values.dtype.kind in "mM":
-        return _seconds(values)
-    if values.dtype.kind in "iu" and len(values) and np.abs(values[0]) > _LONG:
-        return np.asarray(values - values[0], dtype=np.float64)
-    if values.dtype.kind == "O":
-        values = _plain_objects(values)
-    if values.dtype.kind not in "fiub":
-        row, text = _first_non_number(values)
-        raise ExperimentError(f"{begin}, row {row}: found {text}, expected a number")
-    numbers: Array = values.astype(np.float64)
-    return numbers
-
-
-def _seconds(values: NDArray[Any]) -> Array:
-    """Dates and durations as seconds from the first one; NaN where there is none."""
-    empty = np.isnat(values)
-    filled = values[~empty]
-    out = np.full(len(values), np.nan)
-    if len(filled):
-        out[~empty] = (filled - filled[0]) / np.timedelta64(1, "ns") * 1e-9
-    return out
-
-
-def _plain_objects(values: NDArray[Any]) -> NDArray[Any]:
-    """Objects as numbers where all are, written as text or not: None is an empty cell."""
-    if any(isinstance(v, str) for v in values):
-        values = np.array([number_of(v) if isinstance(v, str) else v for v in values], dtype=object)
-    if all(v is None or isinstance(v, int | float | np.number) for v in values):
-        return np.array([np.nan if v is None else v for v in values], dtype=np.float64)
-    if len(values) and hasattr(values[0], "isoformat"):
-        try:
-            return _seconds(values.astype("datetime64[ns]"))
-        except (TypeError, ValueError):
-            return values
-    return values
-
-
-def _first_non_number(values: NDArray[Any]) -> tuple[int, str]:
-    for row, value in enumerate(values, start=1):
-        if not isinstance(value, int | float | np.number):
-            return row, quoted(str(value))
-    return 1, f"values of type {values.dtype}"
 
 
 def _refuse_different_lengths(columns: LogColumns, file: str, wanted: Wanted) -> None:

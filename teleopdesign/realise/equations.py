@@ -17,7 +17,7 @@ from ..controllers import Controller, ControllerEquation, parameter_symbol
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ..diagrams.parts import Weight
 from ..diagrams.second_input import without_motion
-from ..effects import SIGNALS
+from ..effects import SIGNALS, Effect
 from ..errors import ModelError, did_you_mean
 from ._linear import Steps, solve_linear
 from .computer import Computer, computer_signals, held_signals, sensor_signals
@@ -212,6 +212,12 @@ class _Builder:
                 f"{self.diagram.name}: {part.name}: {unknown[0]} has no simulated form: its law "
                 "uses a channel of a record"
             )
+        outside = SIGNALS["interaction_force"]
+        if unknown := [e.name for e in part.body.effects if _uses(e, outside)]:
+            raise ModelError(
+                f"{self.diagram.name}: {part.name}: {unknown[0]} has no simulated form: its law "
+                "uses now.interaction_force, a channel of a record; a diagram has none"
+            )
         equation = part.body.equation()
         position, speed, change = motion_of(self.diagram, part.motion)
         names = {s: parameter_symbol(part.name, n) for n, s in part.body.symbols().items()}
@@ -289,6 +295,11 @@ class _Builder:
             {s.name: e for s, e in solved.items()},
             {s: (e.xreplace(solved), d) for s, (e, d) in late.items()},
         )
+
+
+def _uses(effect: Effect, signal: sp.Symbol) -> bool:
+    """Whether a law of the effect uses this signal of its body."""
+    return any(law.has(signal) for law in (effect.expression(), *effect.rates().values()))
 
 
 def _check_inputs(diagram: Diagram, motions: list[str]) -> None:

@@ -33,6 +33,7 @@ class Journal:
     def __init__(self, path: Path | None, study: str, points: int) -> None:
         """Open the journal, with what an earlier run has left of the same study.
 
+        points: how many it has; their numbers may be higher, where they come from their content
         raises ExperimentError: it is of another study, in use, or cannot be written
         """
         self.path, self.study, self.points = path, study, points
@@ -90,8 +91,6 @@ class Journal:
 
     def _take(self, content: Mapping[str, Any]) -> None:
         index = int(content["point"])
-        if not 0 <= index < self.points:
-            return
         form = self._forms.get(content.get("form", ""), ())
         outcome = PointOutcome(
             index, form, _tuples(content.get("values", ())), content.get("reason", "")

@@ -33,7 +33,10 @@ class PointOutcome:
 
 
 class Outcomes(Mapping[int, PointOutcome]):
-    """Outcome by number of the point;  points: how many there can be."""
+    """Outcome by number of the point.
+
+    points: those below are kept in arrays; what has a higher number, such as a digest, one by one
+    """
 
     def __init__(self, points: int) -> None:
         # pages of zeros take no memory until they are written
@@ -50,7 +53,8 @@ class Outcomes(Mapping[int, PointOutcome]):
             self._many += 1
         self._apart.pop(index, None)
         number = self._form_number(outcome)
-        self._places[index] = number
+        if self._is_counted(index):
+            self._places[index] = number
         if number == _APART:
             self._apart[index] = outcome
         else:
@@ -59,7 +63,8 @@ class Outcomes(Mapping[int, PointOutcome]):
     def drop(self, index: int) -> None:
         """Forget what became of a point."""
         self._many -= index in self
-        self._places[index] = _NOWHERE
+        if self._is_counted(index):
+            self._places[index] = _NOWHERE
         self._apart.pop(index, None)
 
     def failed(self) -> list[int]:
@@ -68,7 +73,8 @@ class Outcomes(Mapping[int, PointOutcome]):
 
     def _form_number(self, outcome: PointOutcome) -> int:
         """Number of the form whose rows take the outcome."""
-        if outcome.reason or not all(type(v) is float for v in outcome.values):
+        plain = self._is_counted(outcome.point) and all(type(v) is float for v in outcome.values)
+        if outcome.reason or not plain:
             return _APART
         if outcome.form not in self._forms:
             if len(self._forms) == _MOST_FORMS:
@@ -77,22 +83,28 @@ class Outcomes(Mapping[int, PointOutcome]):
             self._rows.append(np.zeros((len(self._places), len(outcome.values))))
         return self._forms[outcome.form]
 
+    def _is_counted(self, index: int) -> bool:
+        return 0 <= index < len(self._places)
+
     def __contains__(self, index: object) -> bool:
-        if not isinstance(index, int) or not 0 <= index < len(self._places):
+        if not isinstance(index, int):
             return False
-        return bool(self._places[index] != _NOWHERE)
+        if self._is_counted(index):
+            return bool(self._places[index] != _NOWHERE)
+        return index in self._apart
 
     def __getitem__(self, index: int) -> PointOutcome:
         if index not in self:
             raise KeyError(index)
-        number = int(self._places[index])
-        if number == _APART:
+        if index in self._apart:
             return self._apart[index]
+        number = int(self._places[index])
         form = next(form for form, k in self._forms.items() if k == number)
         return PointOutcome(index, form, tuple(self._rows[number - 1][index].tolist()))
 
     def __iter__(self) -> Iterator[int]:
-        return (int(index) for index in np.flatnonzero(self._places))
+        yield from map(int, np.flatnonzero(self._places))
+        yield from (index for index in self._apart if not self._is_counted(index))
 
     def __len__(self) -> int:
         return self._many

@@ -5,7 +5,7 @@ import pytest
 from effects.along import body_of, encoded, motion_along, signals
 from effects.recorded import write_recorded
 
-from teleopdesign import Model, ModelError, find_missing, fit, load_experiment
+from teleopdesign import Body, Model, ModelError, find_missing, fit, load_effect, load_experiment
 from teleopdesign.diagnose.candidates import candidates
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagrams import haptic_interface
@@ -88,3 +88,23 @@ def test_a_law_on_a_channel_of_a_record_has_no_simulated_form(name):
     needed = [*sorted(EFFECTS[name].needs), name]
     with pytest.raises(ModelError, match=f"{name} has no simulated form"):
         simulate(haptic_interface(body_of(*needed)), duration=0.01, jit=False)
+
+
+def test_a_law_on_the_measured_force_of_the_hand_has_no_simulated_form(tmp_path):
+    """What `describe` writes of a force that follows the hand's; it ended in a traceback."""
+    file = tmp_path / "grip.py"
+    file.write_text(
+        '"""Grip: a share of the hand\'s force."""\n'
+        "from teleopdesign import Effect, Parameter\n"
+        "EFFECT = Effect(\n"
+        '    role="force",\n'
+        "    law=lambda now, p: p.share * now.interaction_force,\n"
+        '    parameters={"share": Parameter("dimensionless", "share of the force")},\n'
+        '    absent={"share": 0.0},\n'
+        '    source="made for a test",\n'
+        ")\n"
+    )
+    grip = load_effect(file)
+    device = Body("prismatic", {"inertia": 0.2, "grip.share": 0.1}, (grip,))
+    with pytest.raises(ModelError, match="grip has no simulated form.*interaction_force"):
+        simulate(haptic_interface(device), duration=0.01, jit=False)

@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.column_names import is_wanted, likeness, unit_in_name
 from teleopdesign.measurement.doors._cells import NO_READING
+from teleopdesign.measurement.numbers_in_cells import numbers_of
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.survey.content import SURE_NAME
 from teleopdesign.measurement.survey.position import _seen_step, wrap_of
-from teleopdesign.measurement.tables import numbers_of, open_log, read_columns
+from teleopdesign.measurement.tables import open_log, read_columns
 
 T = np.arange(400) / 200.0
 

@@ -83,8 +83,8 @@ def _time_column(log: Log, file: str) -> str:
 def _seconds(log: Log, column: str, file: str) -> Array:
     """The stamps of a table in s, from the same instant for all tables."""
     from ..column_names import unit_in_name
-    from ..survey.clock import unit_of_steps
-    from ..tables import numbers_of
+    from ..numbers_in_cells import numbers_of
+    from ..stamp_unit import unit_of_steps
 
     values = np.asarray(log.read({column: "channels.time"})[column])
     if values.dtype.kind == "M":

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -11,7 +10,8 @@ from ...errors import ExperimentError, quoted
 from ...quantity import measures, si_factor
 from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text
 from ..doors._log import Log, listed
-from ..tables import numbers_of
+from ..numbers_in_cells import numbers_of
+from ..stamp_unit import unit_of_steps
 from ..time_grid import clock_of
 from .content import SURE_NAME, Array, Choices, SurveyedColumn, reasons, rises
 
@@ -100,16 +100,6 @@ def _busiest_clock(log: Log, raw: Mapping[str, Array], choices: Choices) -> str:
     scores = {n: likeness(n.rpartition(".")[2], "position") - 0.6 * is_wanted(n) for n in raw}
     best = max(scores, key=lambda n: (scores[n], len(raw[n])))
     return log.clocks[best]
-
-
-def unit_of_steps(stamps: Array) -> tuple[str, str]:
-    """Unit of a time from its usual step, and why if it is a guess."""
-    step = float(np.median(np.abs(np.diff(stamps[np.isfinite(stamps)]))))
-    scales = ((0.2, "s"), (200.0, "ms"), (2e5, "us"), (math.inf, "ns"))
-    unit = next(name for largest, name in scales if step < largest or largest == math.inf)
-    if unit == "s" and step > 1e-5:
-        return "s", ""
-    return unit, f"steps of {step:.4g} are those of a log only in {unit}"
 
 
 def duration_of(

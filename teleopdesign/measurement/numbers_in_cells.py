@@ -1,0 +1,71 @@
+"""Numbers out of what the cells of a column hold: numbers, dates, or texts of either."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ExperimentError, quoted
+from .doors._cells import number_of
+
+Array = NDArray[np.float64]
+#: whole numbers above are stamps in nanoseconds: 2^53, beyond which float64 skips some
+_LONG = 2**53
+
+
+def numbers_of(values: Any, column: str, file: str, channel: str = "") -> Array:
+    """A vector of float64 out of what a file holds: (n,), (n, 1) or (1, n) numbers or dates."""
+    values = np.asarray(values)
+    begin = (
+        f"{file}: {channel}: column {quoted(column)}" if channel else f"{file}: {quoted(column)}"
+    )
+    if values.ndim == 2 and 1 in values.shape:
+        values = values.reshape(-1)
+    if values.ndim != 1:
+        raise ExperimentError(
+            f"{begin}: found an array of shape {values.shape}, expected one column"
+        )
+    if values.dtype.kind in "mM":
+        return _seconds(values)
+    if values.dtype.kind in "iu" and len(values) and np.abs(values[0]) > _LONG:
+        return np.asarray(values - values[0], dtype=np.float64)
+    if values.dtype.kind == "O":
+        values = _plain_objects(values)
+    if values.dtype.kind not in "fiub":
+        row, text = _first_non_number(values)
+        raise ExperimentError(f"{begin}, row {row}: found {text}, expected a number")
+    numbers: Array = values.astype(np.float64)
+    return numbers
+
+
+def _seconds(values: NDArray[Any]) -> Array:
+    """Dates and durations as seconds from the first one; NaN where there is none."""
+    empty = np.isnat(values)
+    filled = values[~empty]
+    out = np.full(len(values), np.nan)
+    if len(filled):
+        out[~empty] = (filled - filled[0]) / np.timedelta64(1, "ns") * 1e-9
+    return out
+
+
+def _plain_objects(values: NDArray[Any]) -> NDArray[Any]:
+    """Objects as numbers where all are, written as text or not: None is an empty cell."""
+    if any(isinstance(v, str) for v in values):
+        values = np.array([number_of(v) if isinstance(v, str) else v for v in values], dtype=object)
+    if all(v is None or isinstance(v, int | float | np.number) for v in values):
+        return np.array([np.nan if v is None else v for v in values], dtype=np.float64)
+    if len(values) and hasattr(values[0], "isoformat"):
+        try:
+            return _seconds(values.astype("datetime64[ns]"))
+        except (TypeError, ValueError):
+            return values
+    return values
+
+
+def _first_non_number(values: NDArray[Any]) -> tuple[int, str]:
+    for row, value in enumerate(values, start=1):
+        if not isinstance(value, int | float | np.number):
+            return row, quoted(str(value))
+    return 1, f"values of type {values.dtype}"

@@ -1,0 +1,20 @@
+"""The unit of a log's stamps, where nothing says it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def unit_of_steps(stamps: Array) -> tuple[str, str]:
+    """Unit of a time from its usual step, and why if it is a guess."""
+    step = float(np.median(np.abs(np.diff(stamps[np.isfinite(stamps)]))))
+    scales = ((0.2, "s"), (200.0, "ms"), (2e5, "us"), (math.inf, "ns"))
+    unit = next(name for largest, name in scales if step < largest or largest == math.inf)
+    if unit == "s" and step > 1e-5:
+        return "s", ""
+    return unit, f"steps of {step:.4g} are those of a log only in {unit}"
