@@ -17,6 +17,7 @@ from .frozen import Frozen
 from .measurement.description import BodyDescription, EnvironmentDescription, ModelValue
 from .measurement.experiment import Experiment
 from .notebook import html_table
+from .standard_error import with_standard_error
 
 
 @dataclass(frozen=True)
@@ -286,8 +287,8 @@ class Model:
         lines = []
         for name, value in self.parameters.items():
             mark = "  (fixed)" if value.fixed else ""
-            error = f" +- {value.stderr:.2g}" if value.stderr == value.stderr else ""
-            lines.append(f"  {name} = {value.value:.5g}{error} {self.unit(name)}{mark}")
+            best = with_standard_error(value.value, value.stderr)
+            lines.append(f"  {name} = {best} {self.unit(name)}{mark}")
         return "Model\n" + "\n".join(lines)
 
     def _repr_html_(self) -> str:

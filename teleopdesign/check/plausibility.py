@@ -16,6 +16,7 @@ from ..finding import Finding
 from ..measurement.soundness.signal import written
 from ..model import Model
 from ..quantity import unit_of
+from ..standard_error import with_standard_error
 from .force_balance import ForceBalance, force_balances
 from .swapped_columns import check_swapped
 from .unit_slips import NEAR, POWERS, slips
@@ -220,6 +221,6 @@ def _agreeing(model: Model, place: str, balance: ForceBalance) -> Finding:
             f"{body.unit('inertia')}, the model says {said:.3g}"
         )
     if balance.other:
-        text += f"; {balance.other} balances at {balance.gain.value:.3f} +- "
-        text += f"{balance.gain.error:.1g} times its size"
+        gain = with_standard_error(balance.gain.value, balance.gain.error)
+        text += f"; {balance.other} balances at {gain} times its size"
     return Finding("signs and units", "fine", f"{text}.", numbers, place)

@@ -7,6 +7,7 @@ import textwrap
 from typing import TYPE_CHECKING
 
 from ..quantity import unit_of
+from ..standard_error import with_standard_error
 
 if TYPE_CHECKING:
     from .outcome import Design  # a design prints itself through this module
@@ -46,10 +47,9 @@ def _friction(design: Design) -> list[str]:
     if f is None:
         return ["  no friction level in the model"]
     known = design.body.parameters.get("coulomb.level")
-    level = "  " if known is None else f"  Coulomb level {known.value:.4g}"
+    level = "  "
     if known is not None:
-        level += f" +- {known.stderr:.2g}" if math.isfinite(known.stderr) else ""
-        level += f" {unit}; "
+        level += f"Coulomb level {with_standard_error(known.value, known.stderr)} {unit}; "
     lines = [
         f"{level}over the identified shape {f.lowest.estimate:.4g} to {f.highest.estimate:.4g} "
         f"{unit}; within {design.assumptions.errors:g} standard errors {f.lowest.low:.4g} to "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..standard_error import with_standard_error
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .fit import Fit
@@ -74,8 +75,6 @@ def doubt(fit: Fit, candidate: Candidate) -> str:
         value = fit.model.parameters[full]
         if not value.stderr < fit.model.from_absence(full):
             unit = fit.model.unit(full)
-            return (
-                f"{name} = {value.value:.3g} +- {value.stderr:.2g} {unit} is not told from absence "
-                "by the errors of the readings"
-            )
+            best = with_standard_error(value.value, value.stderr)
+            return f"{name} = {best} {unit} is not told from absence by the errors of the readings"
     return ""

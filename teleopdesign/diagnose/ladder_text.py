@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..blocks import Value
 from ..quantity import unit_of
+from ..standard_error import with_standard_error
 from .criteria import CRITERIA
 from .decision import helps_but_is_barred
 from .fit import Fit
@@ -35,15 +36,9 @@ def offset_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     return rows
 
 
-def _number(value: float, error: float, unit: str) -> str:
-    if math.isfinite(error) and error > 0:
-        return f"{value:.4g} +- {error:.1g} {unit}"
-    return f"{value:.4g} {unit}"
-
-
 def _estimate_text(value: Value, unit: str) -> str:
     """A value with its error; one that was estimated without an error is not determined."""
-    text = _number(value.value, value.stderr, unit)
+    text = f"{with_standard_error(value.value, value.stderr)} {unit}"
     if value.fixed or math.isfinite(value.stderr):
         return text
     return f"{text}, not determined by these records"

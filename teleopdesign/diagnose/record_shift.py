@@ -32,6 +32,7 @@ from ..measurement.filtering import Array
 from ..model import Model
 from ..plain_data import plain
 from ..realise.stages_along import RECORD_SHIFT
+from ..standard_error import with_standard_error
 from .prepare import Stretch
 from .simulated_course import dead_times
 
@@ -155,7 +156,7 @@ class RecordShift:
     def __str__(self) -> str:
         rows, error = self.late / self.row, self.stderr / self.row
         word = "late" if rows >= 0 else "early"
-        size = f"{abs(rows):.2f} +- {error:.1g}" if np.isfinite(error) else f"{abs(rows):.2f}"
+        size = with_standard_error(abs(rows), error) if error > 0.0 else f"{abs(rows):.2f}"
         text = f"clock of the records: command at {self.at} {size} rows {word}"
         text += f" ({1e3 * self.late:.3g} ms)"
         if self.at_bound:

@@ -23,6 +23,7 @@ from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..plain_data import plain, write_json
 from ..quantity import unit_of
+from ..standard_error import with_standard_error
 from .mean_error import mean_error
 from .steady_runs import SteadyRun, steady_runs
 
@@ -140,22 +141,21 @@ class CoulombLevel(ByValue):
         for name, line in self.lines.items():
             if line is not None:
                 what = "Coulomb level" if name == "both ways" else "level and constant force"
-                lines.append(
-                    f"  {name}: {what} {line.level:.4g} +- {line.level_error:.2g} {force}, damping "
-                    f"{line.damping:.4g} +- {line.damping_error:.2g} {damping}"
-                )
+                level = with_standard_error(line.level, line.level_error)
+                slope = with_standard_error(line.damping, line.damping_error)
+                lines.append(f"  {name}: {what} {level} {force}, damping {slope} {damping}")
         if self.level is None:
             lines.append("  no Coulomb level: runs at two speeds are needed both ways")
         elif self.line is None:
-            level, error = self.level
             lines.append(
-                f"  mean of both: Coulomb level {level:.4g} +- {error:.2g} {force}, for no two "
-                "speeds were run both ways over one travel"
+                f"  mean of both: Coulomb level {with_standard_error(*self.level)} {force}, for no "
+                "two speeds were run both ways over one travel"
             )
         for s in self.speeds:
             lines.append(
-                f"  at {s.speed:.4g} {speed}: friction {s.friction:.4g} +- {s.friction_error:.2g} "
-                f"{force}, constant force {s.middle:.4g} +- {s.middle_error:.2g} {force} "
+                f"  at {s.speed:.4g} {speed}: friction "
+                f"{with_standard_error(s.friction, s.friction_error)} {force}, constant force "
+                f"{with_standard_error(s.middle, s.middle_error)} {force} "
                 f"({s.pairs} pair{'s' * (s.pairs > 1)})"
             )
         return "\n".join(lines)

@@ -23,6 +23,7 @@ from ..errors import ExperimentError, ModelError
 from ..measurement import Experiment, Record
 from ..plain_data import write_netcdf
 from ..simulate import Simulation
+from ..standard_error import with_standard_error
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -91,7 +92,7 @@ class PortEnergy(ByValue):
         error = float(self.data["stderr"][-1])
         verdict = "gave out energy" if self.certain else "gave out no energy beyond doubt"
         return (
-            f"Energy into the port: {final:.4g} +- {error:.2g} J in the end, "
+            f"Energy into the port: {with_standard_error(final, error)} J in the end, "
             f"least {self.lowest:.4g} J at {self.when:.4g} s: {verdict}"
         )
 

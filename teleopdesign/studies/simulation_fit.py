@@ -29,6 +29,7 @@ from ..passivity.intervals.box import ValueBox
 from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
 from ..simulate.units import signal_units
+from ..standard_error import with_standard_error
 from .case import SimulatedCase, case_of
 from .differences import check_slopes_exist
 from .follow import MOST_APART, Followed, Target, follow, rms_of
@@ -105,8 +106,7 @@ class SimulationFit(ByValue):
         for name, value in self.values.items():
             unit, error = self.case.unit(name), self.errors[name]
             ending = "" if unit in ("", "1") else f" {unit}"
-            sure = f" +- {error:.2g}" if np.isfinite(error) else ""
-            rows.append((name, f"{value:.5g}{sure}{ending}"))
+            rows.append((name, f"{with_standard_error(value, error)}{ending}"))
         units = signal_units(self.diagram)
         for name, rms in self.rms.items():
             was = f"{100 * self.before[name]:.3g} -> " if np.isfinite(self.before[name]) else ""
