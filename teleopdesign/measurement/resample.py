@@ -1,8 +1,8 @@
 """Signals of a log on the even grid of a record, each by the rule of what it is.
 
 A command holds until the next row: what acts in a sample is its mean over the sample. A position is
-interpolated where it moves fast; where it moves by single encoder steps the nearer reading is
-taken, so that steps stay steps. Other measured signals follow the straight line between rows.
+interpolated where it moves fast; where it moves by few encoder steps the line between readings is
+read in such steps, so that steps stay steps. Other measured signals follow the straight line.
 """
 
 from __future__ import annotations
@@ -17,8 +17,7 @@ from .record_clock import RecordClock
 Array = NDArray[np.float64]
 Rule = Literal["held", "position", "line"]
 
-#: encoder steps between two rows up to which the nearer reading is taken; above, steps are no
-#: longer
+#: encoder steps between two rows up to which readings stay whole steps; above, steps are no longer
 #: seen one by one, and the rounding of a reading is smaller than the motion between two
 STEPS = 2.5
 #: pairs of rows that must say the same before that counts, part of those between the same two
@@ -149,7 +148,7 @@ def _held(values: Array, at: Array, grid: Array) -> Array:
 
 
 def _position(values: Array, at: Array, grid: Array, step: float) -> Array:
-    """Local cubic through four readings; where steps are single ones, the nearer reading."""
+    """Local cubic through four readings; where they are few steps apart, the line in such steps."""
     right = np.clip(np.searchsorted(at, grid), 1, len(at) - 1)
     left = right - 1
     part = np.clip((grid - at[left]) / (at[right] - at[left]), 0.0, 1.0)
@@ -158,7 +157,17 @@ def _position(values: Array, at: Array, grid: Array, step: float) -> Array:
     # beyond the ends the end's reading stays
     smooth = np.where((grid < at[0]) | (grid > at[-1]), nearer, smooth)
     slow = np.abs(values[right] - values[left]) <= STEPS * step * (at[right] - at[left])
-    return np.where(slow, nearer, smooth)
+    return np.where(slow, _in_steps(values[left], values[right], part, step), smooth)
+
+
+def _in_steps(left: Array, right: Array, part: Array | float, step: float) -> Array:
+    """What an encoder reads on the line between two readings;  part: of the way, 0 to 1.
+
+    step: 0 for none, where the nearer reading is taken
+    """
+    if step == 0.0:
+        return np.where(np.asarray(part) <= 0.5, left, right)
+    return left + step * np.rint(part * (right - left) / step)
 
 
 def _cubic(values: Array, at: Array, grid: Array, left: NDArray[np.intp]) -> Array:
@@ -187,7 +196,7 @@ def filling_error(values: Array, clock: RecordClock, rule: Rule, *, step: float)
         if rule == "position":
             cubic = (-x[inner - 2] + 4 * x[inner - 1] + 4 * x[inner + 1] - x[inner + 2]) / 6.0
             slow = np.abs(x[inner + 1] - x[inner - 1]) <= 2.0 * STEPS * step
-            made = np.where(slow, x[inner - 1], cubic)
+            made = np.where(slow, _in_steps(x[inner - 1], x[inner + 1], 0.5, step), cubic)
         else:
             made = 0.5 * (x[inner - 1] + x[inner + 1])
         error.append(made - x[inner])

@@ -45,6 +45,26 @@ def test_lost_rows_are_filled_where_they_were(seed, part):
     assert np.array_equal(record.signals["device.actuator_force"][keep], command(t[keep]))
 
 
+@given(seed=st.integers(0, 2**32 - 1), steps=st.floats(0.1, 6.0))
+@settings(max_examples=20)
+def test_a_lost_row_of_an_encoder_is_filled_within_a_step(seed, steps):
+    """At 1 to 2.5 steps a row the older reading was held: a jump of two steps, or five."""
+    generator = np.random.default_rng(seed)
+    t = np.arange(500) / RATE
+    truth = steps * RATE * t + generator.random() + 3.0 * np.sin(2 * np.pi * 2.0 * t)
+    step = 1e-4
+    q = step * np.round(truth)
+    keep = np.ones(500, dtype=bool)
+    keep[generator.choice(np.arange(10, 490, 3), 20, replace=False)] = False
+    position = {"column": "q", "unit": "rad", "resolution": step}
+    record = record_of(t[keep], q[keep], command(t[keep]), position=position)
+    filled = record.signals["device.position"][~keep]
+    assert np.abs(filled - q[~keep]).max() <= (1.0 + 1e-6) * step
+    # no row lies outside of its neighbours, which never turn round here
+    if steps > 0.2:
+        assert np.diff(record.signals["device.position"]).min() >= -1e-6 * step
+
+
 def test_stamps_that_are_true_move_the_readings():
     generator = np.random.default_rng(3)
     t = np.arange(3000) / RATE
