@@ -27,6 +27,7 @@ def test_every_public_name_has_one_group_and_the_docstring_shows_the_groups():
     assert words == [w for group, names in td.GROUPS.items() for w in (group, *names)]
 
 
+@pytest.mark.slow
 def test_a_folder_is_there_without_an_import_of_its_own():
     """In a package that nothing has used before: one process that forgets it in between.
 
@@ -45,6 +46,7 @@ def test_a_folder_is_there_without_an_import_of_its_own():
     assert run.stdout.split() == [f"teleopdesign.{folder}" for folder in folders]
 
 
+@pytest.mark.slow
 def test_functions_and_folders_keep_apart_in_any_order():
     code = (
         "import teleopdesign as td\n"

@@ -162,6 +162,7 @@ def test_an_answer_that_was_changed_is_refused_in_one_line(
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.slow
 def test_folders_of_arms_are_diagnosed_into_one_table(folder, tmp_path, capsys):
     second = shutil.copytree(folder, tmp_path / "second")
     out = tmp_path / "out"

@@ -30,6 +30,7 @@ def poor(tmp_path_factory):
     return diagnosis, folder
 
 
+@pytest.mark.slow
 def test_paths_tell_more_than_one_sine_a_joint_within_its_limits(poor):
     diagnosis, _ = poor
     paths = propose_paths(diagnosis, duration=20.0)
@@ -56,6 +57,7 @@ def test_the_same_records_give_the_same_paths(poor):
     assert one == two
 
 
+@pytest.mark.slow
 def test_a_force_limit_below_gravity_is_one_line(poor):
     diagnosis, _ = poor
     limits = shown_limits(diagnosis.prepared.joints["joint2"])["joint2"]
@@ -64,6 +66,7 @@ def test_a_force_limit_below_gravity_is_one_line(poor):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.slow
 def test_the_command_writes_a_reference_with_the_columns_of_the_records(poor, tmp_path, capsys):
     diagnosis, _ = poor
     answer, reference = tmp_path / "answer.json", tmp_path / "next.csv"

@@ -43,6 +43,7 @@ def test_a_folder_that_fails_is_recorded_and_does_not_stop_the_rest(runs, few, t
     assert "1 of 2 folders diagnosed" in out and "failed: broken/fit.csv.gz" in out
 
 
+@pytest.mark.slow
 def test_the_next_call_does_what_is_missing_alone(runs, few, tmp_path, monkeypatch):
     from teleopdesign import diagnose as package
 
@@ -67,6 +68,7 @@ def test_the_next_call_does_what_is_missing_alone(runs, few, tmp_path, monkeypat
     assert diagnose(runs, output) == 0 and calls[2:] == ["rod"]
 
 
+@pytest.mark.slow
 def test_a_record_that_has_changed_is_diagnosed_again(rod, few, tmp_path):
     output = tmp_path / "answers"
     assert diagnose([rod], output) == 0

@@ -59,6 +59,7 @@ def test_an_answer_alone_is_described(answer, capsys):
     assert "Your model, re-estimated:" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_the_page_of_a_folder_is_that_of_a_diagnosis_made_now(rod, few, tmp_path):
     page = tmp_path / "page.html"
     assert main(["report", str(rod), "--only", "stribeck", "--output", str(page)]) == 0

@@ -41,6 +41,7 @@ def test_an_excluded_effect_is_not_tried(rod, few, tmp_path):
     assert tried(answer) == {"stribeck", "bias"}
 
 
+@pytest.mark.slow
 def test_quick_says_what_it_leaves_out_in_text_answer_and_report(rod, few, tmp_path, capsys):
     answer, page = tmp_path / "answer.json", tmp_path / "report.html"
     command = ["diagnose", str(rod), "--quick", "--json", str(answer), "--report", str(page)]

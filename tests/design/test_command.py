@@ -24,6 +24,7 @@ def designs(path):
     return json.loads(path.read_text())["bodies"]
 
 
+@pytest.mark.slow
 def test_an_answer_leads_to_a_design_and_its_files(rod_answer, tmp_path, capsys):
     out = tmp_path / "out"
     arguments = ["design", str(td.example("rod")), "--answer", str(rod_answer)]

@@ -83,6 +83,7 @@ def test_the_quasi_static_error_is_p13_for_coulomb_friction():
     assert np.abs(found) == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_presliding_allows_a_dahl_cancellation_only_and_softer(rod):
     found = with_effect(rod, "presliding", {"stiffness": 4000.0})
     made = design(found, assumptions=Assumptions(delay=1e-4))
@@ -160,6 +161,7 @@ def test_an_assumption_without_sense_is_refused(name, value):
         Assumptions(**{name: value})
 
 
+@pytest.mark.slow
 def test_an_answer_gives_the_model_that_the_diagnosis_ended_with(experiment, tmp_path):
     from teleopdesign.diagnose.answer import write_answer
     from teleopdesign.effects import EFFECTS

@@ -130,6 +130,7 @@ def test_the_ladder_is_a_table_with_parameters_floor_and_verdict(diagnosis):
     assert max(map(len, text.splitlines())) < 120
 
 
+@pytest.mark.slow
 def test_a_diagnosis_without_check_record_says_so(experiment):
     only = replace(experiment, records=experiment.fit_records)
     few = {n: FEW[n] for n in ("coulomb", "viscous", "stribeck")}

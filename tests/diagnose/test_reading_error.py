@@ -144,6 +144,7 @@ def test_a_model_that_leaves_more_keeps_its_values_with_wider_errors(rod):
         assert before.stderr < after.stderr < 20 * before.stderr
 
 
+@pytest.mark.slow
 def test_a_correction_is_the_same_each_time_and_costs_next_to_no_fit(rod):
     found, prepared = rod
     first, second = (

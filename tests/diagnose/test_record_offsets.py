@@ -83,6 +83,7 @@ def test_what_is_the_record_s_own_is_no_evidence_for_an_effect(rod, model):
     assert sizes[0] < 0.05 and sizes[1] < 0.05 and sizes[2] > 0.3
 
 
+@pytest.mark.slow
 def test_the_file_says_it_and_the_answer_gives_it_back(rod, tmp_path):
     made = changed(rod, {"bias"}, bias=BIAS)
     known = {n: td.EFFECTS[n] for n in ("coulomb", "viscous", "stribeck")}

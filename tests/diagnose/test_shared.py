@@ -18,6 +18,7 @@ def one_body_cases():
     return [(cases / t["case"], t) for t in truths if t["kind"] == "device"]
 
 
+@pytest.mark.slow
 def test_the_models_re_estimated_error_is_that_of_the_reference():
     """Within 5 %: the reference knows the true motion, the diagnosis an encoder's.
 

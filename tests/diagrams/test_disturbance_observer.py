@@ -50,6 +50,7 @@ def observed(made, *, inertia, damping=0.0):
 sizes = st.floats(0.05, 5.0).map(lambda x: round(x, 3))
 
 
+@pytest.mark.slow
 @settings(max_examples=4)
 @given(mass=sizes, viscous=sizes, inertia=sizes, damping=sizes)
 def test_to_its_port_it_is_a_damper_and_a_spring(mass, viscous, inertia, damping):

@@ -118,6 +118,7 @@ def test_beyond_an_actuators_reach_there_is_no_number(coulomb, tmp_path):
     assert written["cases"]["haptic interface"]["size"][1][2] is None
 
 
+@pytest.mark.slow
 def test_a_linear_loop_simulated_agrees_with_its_symbolic_response():
     """Analog force feedback on a hand: 0.1 % at every frequency."""
     feedback = controller("low_pass", {"bandwidth": 20.0})

@@ -95,6 +95,7 @@ def test_the_joint_that_moves_is_found_with_its_measured_position_and_effort(pat
     assert entry["actuator_force"]["unit"] == "N"
 
 
+@pytest.mark.slow
 def test_the_bag_becomes_an_experiment(path, tmp_path, monkeypatch):
     from teleopdesign.cli import main
 

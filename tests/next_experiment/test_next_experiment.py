@@ -217,6 +217,7 @@ def test_the_figure_draws_motion_residual_and_separations(one_speed):
 # what the user says
 
 
+@pytest.mark.slow
 def test_limits_of_the_users_own_are_kept_and_wrong_ones_refused(one_speed):
     _, _, proposal = one_speed
     shown = shown_limits(proposal.diagnosis.prepared)["device"]

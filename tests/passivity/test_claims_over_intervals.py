@@ -261,6 +261,7 @@ def test_nothing_is_proved_over_a_box_in_which_a_hidden_mode_grows(within):
     assert claim_over_intervals(diagram, box, claim="stable").status == "refuted"
 
 
+@pytest.mark.slow
 def test_a_damper_along_another_motion_is_judged_at_every_point_by_itself():
     """Its spring reads a filtered position, its damper the velocity now: two forms of one value."""
     damper = td.controller("spring_damper", {"stiffness": 0.0, "damping": 1.0})

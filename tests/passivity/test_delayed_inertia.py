@@ -43,6 +43,7 @@ def test_damping_pays_for_no_less_than_the_bound_of_any_delay(delay, time_consta
     assert limit * g.max() <= 1 + 1e-9
 
 
+@pytest.mark.slow
 @settings(max_examples=30)
 @given(delay=times, time_constant=times, order=orders)
 def test_a_proof_within_the_bound_and_a_wave_beyond_the_limit(delay, time_constant, order):

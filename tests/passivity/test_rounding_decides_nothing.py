@@ -67,6 +67,7 @@ def test_matrices_rounded_by_python_control_refute_nothing(bandwidth):
     assert all(claim.status != "refuted" for claim in claims(diagram))
 
 
+@pytest.mark.slow
 @settings(max_examples=12)  # each a proof of its own; `attacks/test_one_ports.py` has hundreds
 @given(
     poles=st.lists(st.floats(0.01, 1e4), min_size=1, max_size=4),

@@ -213,6 +213,7 @@ def test_transfer_functions_join_by_the_names_of_signals():
         assert direct * complex(loop(point)) == pytest.approx(complex(whole(point)), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_parameters_of_the_system_are_its_params():
     """Other values at the call give what a diagram with these values gives."""
     diagram = one_rod(LEAD)

@@ -211,6 +211,7 @@ def test_all_linear_forms_see_the_hand_at_the_tip():
     assert left_out == found.left_out == ()
 
 
+@pytest.mark.slow
 def test_simulated_and_symbolic_impedance_of_a_compliant_device_agree():
     """Around its resonance (13 Hz at the tip held, 34 Hz free), within 0.1 %."""
     f = [2.0, 13.0, 30.0]

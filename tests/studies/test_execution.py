@@ -45,12 +45,14 @@ def test_two_processes_give_the_data_set_of_one(tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_functions_without_a_name_go_to_other_processes_too():
     offset = 3.0
     found = td.study(lambda x: x + offset, {"x": [1.0, 2.0]}, measures=lambda r: r, workers=2)
     assert list(found["measure"].values) == [4.0, 5.0]
 
 
+@pytest.mark.slow
 def test_ctrl_c_while_a_process_still_starts_costs_no_point_and_prints_nothing(monkeypatch, capfd):
     start = subprocess.Popen
 
@@ -179,6 +181,7 @@ def test_a_broken_end_of_the_kept_points_is_cut_off_and_computed_again(tmp_path,
     )
 
 
+@pytest.mark.slow
 def test_points_of_another_study_are_not_taken_up(tmp_path):
     out = tmp_path / "s.nc"
     out.with_name("s.nc.part").write_text("")
@@ -199,6 +202,7 @@ def wait_for_points(out, count, limit=300.0):
     raise AssertionError(f"no point within {limit:.0f} s")
 
 
+@pytest.mark.slow
 def test_two_processes_do_not_write_into_one_file(tmp_path):
     out = tmp_path / "s.nc"
     with in_a_process(study_code(out, points=100_000), stderr=subprocess.DEVNULL) as process:
@@ -211,6 +215,7 @@ def test_two_processes_do_not_write_into_one_file(tmp_path):
             process.kill()
 
 
+@pytest.mark.slow
 def test_a_full_disk_ends_in_one_line_and_keeps_every_finished_point(tmp_path):
     """The system refuses files over 4 kB, as a full disk refuses more: in the middle of a line."""
     out = tmp_path / "s.nc"

@@ -102,6 +102,7 @@ seed = 7
     assert set(np.round(found["computer.delay"].values / 5e-4)) <= {0, 1, 2}
 
 
+@pytest.mark.slow
 def test_a_python_file_is_run_and_gives_the_arguments(folder, capsys):
     (folder / "s.py").write_text(
         "import math\nSCALE = 2.0\n"

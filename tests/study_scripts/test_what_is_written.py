@@ -2,7 +2,10 @@
 
 from runpy import run_module
 
+import pytest
 
+
+@pytest.mark.slow
 def test_a_study_writes_its_figure_and_its_numbers(tmp_path, monkeypatch, capsys):
     """By one of the quickest; the others end in the same call of `write_study`."""
     name = "forward_euler_against_exact"

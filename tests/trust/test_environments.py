@@ -134,6 +134,7 @@ def test_laws_are_compiled_wherever_nothing_can_be_written(place, run_kernel, tm
     assert (out.split()[:2], said) == (["42", "1.0"], "")
 
 
+@pytest.mark.slow
 @posix
 def test_a_process_starts_where_nothing_can_be_written():
     """From its very start, imports included."""
@@ -154,6 +155,7 @@ def test_laws_are_compiled_from_a_package_that_cannot_be_written(tmp_path):
     assert (done.stdout, done.stderr) == ("42 1.0 0\n", "")
 
 
+@pytest.mark.slow
 @posix
 def test_machine_code_is_kept_for_the_user_alone_and_used_again(tmp_path):
     place = {"XDG_CACHE_HOME": str(tmp_path)}  # two processes from their very start
@@ -202,6 +204,7 @@ def test_a_cache_folder_that_others_may_write_to_is_not_used(whose, run_kernel, 
     assert list(folder.iterdir()) == []
 
 
+@pytest.mark.slow
 @posix
 def test_processes_share_a_cold_cache(tmp_path):
     env = environment(XDG_CACHE_HOME=str(tmp_path))

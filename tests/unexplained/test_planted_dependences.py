@@ -102,6 +102,7 @@ def test_a_hum_is_found_at_its_frequency(rows, floor_squares, frequency):
     assert "goes up and down at" in text
 
 
+@pytest.mark.slow
 def test_cogging_of_many_periods_is_found_at_its_period(rows, floor_squares):
     here = planted(rows, lambda a: a.push * 0.1 * np.sin(2 * np.pi * position(a) / 1.2e-3))
     found, _ = dependences(here, floor_squares)
@@ -110,6 +111,7 @@ def test_cogging_of_many_periods_is_found_at_its_period(rows, floor_squares):
     assert "every 1.2 mm of travel" in said(here, found[0])[0]
 
 
+@pytest.mark.slow
 def test_only_one_direction_is_said(rows, floor_squares):
     here = planted(
         rows, lambda a: a.push * np.where(a.signals["velocity"] > 0, a.signals["velocity"], 0.0)

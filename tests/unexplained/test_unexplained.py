@@ -92,12 +92,14 @@ def test_a_record_with_its_own_zero_is_not_asked_about_position(rod, adequate):
     assert len(knots_of(POSITION, rows)) == 0
 
 
+@pytest.mark.slow
 def test_without_check_records_blocks_are_held_out(rod, lacking):
     seen = replace(rod, stretches=rod.of("fit"))
     found = describe_residual(lacking, seen)
     assert found.largest[1].dependence.shape.name == "friction over speed"
 
 
+@pytest.mark.slow
 def test_looking_is_fast(rod, lacking, failure):
     """`failure` has compiled what is needed."""
     # 0.5 s on one core for 20 s at 1 kHz; threads of a busy machine count several times

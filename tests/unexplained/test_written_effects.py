@@ -61,6 +61,7 @@ def test_every_dependence_is_an_effect_file_that_loads_or_says_why_not(
     assert effect.is_absent({s: 0.0 for s in effect.symbols().values()})
 
 
+@pytest.mark.slow
 def test_the_command_says_where_it_fails_and_writes_what_is_asked(tmp_path, capsys):
     wanted = {n: tmp_path / n for n in ("f.png", "f.json", "low_speed.py")}
     asked = ["--figure", "f.png", "--json", "f.json", "--effect-file", "low_speed.py"]
