@@ -13,6 +13,7 @@ coupling is the rigid body.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
@@ -28,6 +29,9 @@ from ._effect import SIGNALS, Effect, Energy, Parameter, State
 from ._facts import RecordFacts
 
 Coupling = Callable[[Any, Any], Any]
+#: Hz of the mains, the part by which a hum that is fitted as a resonance lies beside it, and the
+#: damping ratio below which a resonance is a tone. More of either: true transmissions are doubted
+MAINS, BESIDE, TONE = (50.0, 60.0), 0.05, 0.1
 
 
 @checked
@@ -40,6 +44,7 @@ def make_structure(
     linear: bool = False,
     source: str = "",
     plausible: Callable[[Any, RecordFacts], str | None] | None = None,
+    untold: Callable[[Any, RecordFacts], str | None] | None = None,
 ) -> Effect:
     """The effect of a coupling between the actuator's side and a tip; absent: a tip of no inertia.
 
@@ -49,6 +54,7 @@ def make_structure(
         in contact and its part of the body's inertia: a lighter tip, whose force shows less, is led
         by less. What it takes to lead it, m_t rate / K dr/dt, is left unexplained too. 0: runs free
     plausible: as `Effect` has it; default: the tip's inertia is a part of the body's
+    untold: as `Effect` has it
     raises ModelError: a parameter is missing
     """
     for name in ("tip_inertia", "stiffness") if following else ("tip_inertia",):
@@ -77,7 +83,22 @@ def make_structure(
         energy=energy,
         linear=linear,
         plausible=plausible or _tip_is_part,
+        untold=untold,
         source=source,
+    )
+
+
+def rings_like_a_hum(p: Any, facts: RecordFacts) -> str | None:
+    """What is said of a tip that rings, the actuator's side held, beside the mains' frequency."""
+    natural = math.sqrt(p.stiffness / p.tip_inertia)
+    frequency = natural / (2.0 * math.pi)
+    mains = min(MAINS, key=lambda f: abs(f - frequency))
+    rings = p.damping < 2.0 * TONE * p.tip_inertia * natural
+    if abs(frequency - mains) > BESIDE * mains or not rings:
+        return None
+    return (
+        f"its tip rings at {frequency:.3g} Hz, beside the {mains:g} Hz of the mains: a hum looks "
+        "much the same. A record at rest with the drive on tells them"
     )
 
 

@@ -12,7 +12,7 @@ is led back to its course (`_structure.py`).
 """
 
 from ._effect import FitSearch, Parameter
-from ._structure import make_structure
+from ._structure import make_structure, rings_like_a_hum
 
 
 def coupling(now, p):
@@ -41,5 +41,6 @@ EFFECT = make_structure(
             search=FitSearch(starts=(0.01,), scale="resonance_damping"),
         ),
     },
+    untold=rings_like_a_hum,
     source="two masses on a spring; Mahvash, Okamura, IEEE CDC 2006",
 )

@@ -110,7 +110,24 @@ UNTOLD = {
         {"amplitude": 2.0, "phase": 0.1},
         "a spring and a constant force give this torque within",
     ),
+    "transmission_compliance": (
+        {"tip_inertia": 0.02, "stiffness": 1000.0, "damping": 0.5},
+        {"tip_inertia": 0.02, "stiffness": 2850.0, "damping": 0.5},
+        "its tip rings at 60.1 Hz, beside the 60 Hz of the mains",
+    ),
 }
+
+
+@pytest.mark.parametrize(
+    ("hertz", "ratio", "is_said"),
+    [(59.0, 0.02, True), (59.0, 0.2, False), (40.0, 0.02, False), (51.0, 0.05, True)],
+)
+def test_a_ringing_tip_beside_the_mains_may_be_a_hum(hertz, ratio, is_said):
+    natural, inertia = 2 * np.pi * hertz, 0.05
+    tip = SimpleNamespace(
+        tip_inertia=inertia, stiffness=inertia * natural**2, damping=2 * ratio * inertia * natural
+    )
+    assert bool(EFFECTS["transmission_compliance"].untold(tip, FACTS)) == is_said
 
 
 @pytest.mark.parametrize("name", sorted(UNTOLD))
