@@ -54,30 +54,13 @@ class SimulatedCase(ByValue):
         """The simulation; raises ModelError where the case has no duration, and as `simulate`."""
         if not self.duration:
             raise ModelError("study: found no duration, expected the time to simulate, s")
-        return simulate(
-            self.diagram,
-            duration=self.duration,
-            inputs=self.inputs,
-            motion=self.motion,
-            initial=self.initial,
-            computer=self.computer,
-            step=self.step,
-            give=self.give,
-            every_step=self.every_step,
-        )
+        return simulate(self.diagram, **self.settings())
 
     def setup(self) -> Setup:
         """The simulation ready to run; raises ModelError as `simulate`."""
-        return prepare(
-            self.diagram,
-            duration=self.duration,
-            inputs=self.inputs,
-            motion=self.motion,
-            initial=self.initial,
-            computer=self.computer,
-            step=self.step,
-            give=self.give,
-        )
+        settings = self.settings()
+        del settings["every_step"]  # which rows are kept is no matter of the setup
+        return prepare(self.diagram, **settings)
 
     def names(self) -> tuple[str, ...]:
         """Every parameter that can be varied; states at the start by those given."""
