@@ -24,7 +24,7 @@ from ._controller import (
     Stage,
     parameter_symbol,
 )
-from ._declarations import broken_declarations, is_linear
+from ._declarations import broken_declarations
 from ._exact import as_written, in_exact_numbers, resolvent
 from ._from_control import from_control, inverted
 from ._from_file import load_controller
@@ -47,7 +47,6 @@ __all__ = [
     "in_exact_numbers",
     "inverted",
     "is_call",
-    "is_linear",
     "laws_that_declare",
     "load_controller",
     "parameter_symbol",

@@ -6,12 +6,12 @@ low-pass. How large its force can be (`bound`) is a matter of intervals and no p
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
 
 import sympy as sp
 
-from ..effects import delayed
+from ..effects import delayed, is_linear
 from ._controller import Controller, ControllerEquation, parameter_symbol
 from ._law import SIGNALS, ControlLaw, Stage
 
@@ -49,19 +49,6 @@ def broken_declarations(law: ControlLaw) -> tuple[str, ...]:
         ),
     }
     return tuple(words for words, is_broken in checks.items() if is_broken)
-
-
-def is_linear(laws: Iterable[sp.Expr], signals: Iterable[sp.Symbol]) -> bool:
-    """Whether laws are linear in these, and zero where these are; all else is constant."""
-    signals = list(signals)
-    for law in laws:
-        plain = law.replace(delayed, lambda signal, _: signal)  # late is linear, too
-        slopes = [_simple(sp.diff(plain, x)) for x in signals]
-        if any(slope.has(*signals) for slope in slopes if signals):
-            return False
-        if not _is_zero(plain - sp.Add(*(a * x for a, x in zip(slopes, signals, strict=True)))):
-            return False
-    return True
 
 
 def _late(law: ControlLaw, symbols: Mapping[str, sp.Symbol]) -> sp.Expr:
@@ -112,8 +99,4 @@ def _keeps_bandwidth(
 
 
 def _is_zero(expression: sp.Expr) -> bool:
-    return bool(expression == 0 or _simple(expression) == 0)
-
-
-def _simple(expression: sp.Expr) -> sp.Expr:
-    return expression if not expression.args else sp.simplify(expression)
+    return bool(expression == 0 or sp.simplify(expression) == 0)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import TypeGuard
 
 import sympy as sp
 
@@ -183,17 +184,19 @@ class Diagram:
             replace(j, terms={s: g for s, g in j.terms.items() if s not in gone})
             for j in self.junctions
         )
-        kept = (
+        kept = tuple(
             replace(b, loads={s: g for s, g in b.loads.items() if s not in gone})
             if isinstance(b, Moving)
             else b
             for b in self.blocks
             if b.name not in names
         )
+        wanted = [b.command if isinstance(b, Moving) else b.input for b in kept if _is_driven(b)]
+        nothing = tuple(Junction(s, {}) for s in dict.fromkeys(wanted) if s in gone)
         return replace(
             self,
-            blocks=tuple(kept),
-            junctions=junctions,
+            blocks=kept,
+            junctions=(*junctions, *nothing),
             measured=tuple(s for s in self.measured if s not in gone),
         )
 
@@ -261,6 +264,11 @@ class Diagram:
             lines.append(f"  {_line(part)}")
         lines.append(f"  from outside: {', '.join(self.outside)}")
         return "\n".join(lines)
+
+
+def _is_driven(part: Block) -> TypeGuard[Moving | Control]:
+    """Whether it takes one signal that may be zero for good: a command, or a controller's input."""
+    return isinstance(part, Moving | Control)
 
 
 def _sum(terms: Iterable[tuple[str, Weight]]) -> str:

@@ -40,6 +40,7 @@ from ._effect import (
     parameter_symbol,
 )
 from ._facts import RecordFacts, repeats_within_travel
+from ._linear import acts_linearly, is_linear
 from ._position import depends_on_position, depends_on_time, period
 from ._structure import make_structure, rubbing, touching
 
@@ -57,11 +58,13 @@ __all__ = [
     "RecordFacts",
     "Role",
     "State",
+    "acts_linearly",
     "catalogue",
     "delayed",
     "depends_on_position",
     "depends_on_time",
     "find_effect",
+    "is_linear",
     "load_effect",
     "make_structure",
     "ordered",
@@ -78,7 +81,8 @@ def load_effect(path: str | Path) -> Effect:
     """Read one effect file; the name of the file becomes the name of the effect.
 
     A file that has not changed since gives the same effect again.
-    raises ModelError: the file cannot be read or run, defines no EFFECT, or an unsound one
+    raises ModelError: the file cannot be read or run, defines no EFFECT, or an unsound one, such as
+        one that is declared linear and is not
     """
     path = checked_path(path, "effect", "my_effect.py")
     return _of_file(path.resolve(), path)
@@ -91,7 +95,13 @@ def _of_file(path: Path, written: Path, expected: str = "") -> Effect:
     """The effect of a file;  written: its path in messages;  expected: digest that it must have."""
 
     def read(content: bytes) -> Effect:
-        return _checked(_run(content, written), written)
+        effect = _checked(_run(content, written), written)
+        if effect.linear and not acts_linearly(effect):
+            raise ModelError(
+                f"{written}: declares linear = True, but its law is not linear in motion, command "
+                "and its own states: write linear=False, and its linear form leaves it out"
+            )
+        return effect
 
     return load_once(_LOADED, _of_file, read, path, written, expected)
 

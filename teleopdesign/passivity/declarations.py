@@ -19,19 +19,16 @@ from ..controllers import (
     Controller,
     Stage,
     broken_declarations,
-    is_linear,
     parameter_symbol,
 )
 from ..diagrams import Control, Diagram
-from ..effects import BLOCK_EFFECTS, EFFECTS, Effect
+from ..effects import BLOCK_EFFECTS, EFFECTS, Effect, acts_linearly
 from ..effects import SIGNALS as BODY_SIGNALS
 from ..errors import ModelError
 from ..realise.damping_interval import least_damping
 from ..realise.extremes import least_value
 from ..realise.reach import Reach
 
-#: of a body, driven by which a linear effect may act; a structure sees the force on its tip, too
-_DRIVING = ("position", "velocity", "acceleration", "command")
 _ANY = (-math.inf, math.inf)
 
 
@@ -76,21 +73,10 @@ def falsely_linear(diagram: Diagram) -> list[str]:
         body = getattr(part, "body", None)
         if isinstance(body, Body):
             declaring = (e for e in body.effects if e.linear and not is_shipped(e))
-            names += [f"{part.name}.{e.name}" for e in declaring if not _acts_linearly(e)]
+            names += [f"{part.name}.{e.name}" for e in declaring if not acts_linearly(e)]
         if isinstance(part, Control) and isinstance(part.controller, Controller):
             names += [part.name] * any(not is_kept(stage) for stage in part.controller.stages)
     return names
-
-
-def _acts_linearly(effect: Effect) -> bool:
-    driving = [BODY_SIGNALS[n] for n in _DRIVING]
-    driving += [BODY_SIGNALS["interaction_force"]] * (effect.role == "structure")
-    laws = (effect.expression(), *effect.rates().values())
-    states = effect.state_symbols().values()
-    known = {*driving, *states, *effect.symbols().values()}
-    if any(law.free_symbols - known for law in laws):
-        return False
-    return is_linear(laws, [*driving, *states])
 
 
 def is_kept(stage: Stage) -> bool:

@@ -11,6 +11,7 @@ from ..errors import ModelError
 from .claims.claim import Claim, Unknown
 from .declarations import keeps_its_bound
 from .identified import IdentifiedDevice, about_device, identified
+from .shares import drives_alone
 from .theorems import Question, TopicClaim, settle
 
 
@@ -56,8 +57,9 @@ class FrictionPair:
 def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
     """One for each body with friction whose cancellation, if any, is a law with a known bound.
 
-    A cancellation takes the body's own motion and adds to its command alone. A level that reaches
-    down to nothing leaves nothing to cancel.
+    A cancellation takes the body's own motion, and its force acts on this body just as it is, and
+    on nothing else, through whichever sums. A level that reaches down to nothing leaves nothing to
+    cancel.
     """
     pairs = []
     for part in diagram.blocks:
@@ -80,12 +82,8 @@ def _is_bounded(control: Control, part: Moving, diagram: Diagram) -> bool:
     law = control.controller
     if not isinstance(law, Controller) or len(law.stages) != 1:
         return False
-    made = {j.output: j.terms for j in diagram.junctions}
-    adds = control.output == part.command or made.get(part.command, {}).get(control.output) == 1
-    users = [p.name for p in diagram.parts if control.output in p.inputs]
-    known = keeps_its_bound(law.stages[0])
     acts = not any(e.role == "actuation" for e in getattr(part.body, "effects", ()))
-    return known and adds and len(users) == 1 and acts
+    return acts and keeps_its_bound(law.stages[0]) and drives_alone(diagram, control.output, part)
 
 
 def _exact(body: Body) -> Body:

@@ -22,6 +22,7 @@ from .search.growing_wave import GrowingWave, wave_of
 from .theorems import TopicClaim
 from .two_port.claims import absolutely_stable, is_shown_unstable, passive
 from .two_port.late_one_port import late_one_port
+from .two_port.several_ports import passive_together
 from .two_port.two_port import two_port
 
 #: topics that settle all ports at once
@@ -69,6 +70,8 @@ def _fails(one: TopicClaim, z: sp.Matrix) -> bool:
             return True
         if z.rows == 2:
             return passive(two_port(z.tolist())).status == "refuted"
+    if z.rows > 2:
+        return passive_together(z).status == "refuted"
     if z.rows == 1:
         judge = late_one_port if z.has(sp.exp) else positive_real
         return judge(z[0, 0]).status == "refuted"
@@ -119,10 +122,6 @@ def _on_rounding(one: TopicClaim) -> TopicClaim:
 
 
 def _linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
-    if len(all_ports) > 2:
-        statement = f"{diagram.name}: its {len(all_ports)} ports are passive together"
-        why = "the exact tests are for one port or two"
-        return [TopicClaim(WHOLE[0], Claim(statement, Unknown(why)))]
     try:
         z = impedance_matrix(diagram, all_ports)
         if len(all_ports) == 1:
@@ -132,8 +131,10 @@ def _linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicCla
     except ModelError as problem:
         claim = Claim(f"{diagram.name}: its ports are passive", Unknown(str(problem)))
         return [TopicClaim(WHOLE[0], claim)]
-    system = two_port(z.tolist())
     axis = _axis(diagram, all_ports)
+    if len(all_ports) > 2:
+        return [TopicClaim(WHOLE[0], in_units_of(axis, passive_together(z)))]
+    system = two_port(z.tolist())
     return [
         TopicClaim(WHOLE[2], in_units_of(axis, passive(system))),
         TopicClaim(

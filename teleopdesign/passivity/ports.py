@@ -12,10 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
+from sympy.polys.matrices.exceptions import DMNonInvertibleMatrixError
 
 from ..blocks import Body
-from ..controllers import Controller
+from ..controllers import Controller, in_exact_numbers
 from ..derive import symbol_values, transfer
+from ..derive.elimination import rows
 from ..derive.printing import dead_time_symbol
 from ..diagrams import Diagram, Moving
 from ..errors import ModelError
@@ -24,6 +26,7 @@ from ..realise.simulated import without_absent
 from ..realise.tips import with_tips
 from .declarations import falsely_linear
 from .linear.impedance import exact
+from .shares import shares_of, total_share
 
 #: blocks that hold a port, by the names that the package gives them: not part of what is judged
 HOLDING = ("Z_H", "Z_E")
@@ -80,29 +83,17 @@ def ports(diagram: Diagram) -> tuple[Port, ...]:
     moving = [b for b in diagram.blocks if isinstance(b, Moving)]
     at_forces = []
     for force in dict.fromkeys(b.driver for b in moving if b.driver in diagram.outside):
-        loads = {b.motion: _weight(diagram, force, b.loads) for b in moving}
-        if weights := {m: w for m, w in loads.items() if w}:
+        shares = shares_of(diagram, force)
+        loads = {b.motion: total_share(b.loads, shares) for b in moving}
+        if weights := {m: _plain(w) for m, w in loads.items() if w != 0}:
             at_forces.append(Port(force, weights))
     if not at_forces:
         raise ModelError(f"{diagram.name}: no force from outside drives a body: it has no port")
     return tuple(at_forces)
 
 
-def _weight(diagram: Diagram, force: str, terms: Mapping[str, object]) -> float | sp.Expr:
-    """How much of an outside force is in a sum, through junctions alone."""
-    made = {j.output: j.terms for j in diagram.junctions}
-
-    def share(terms: Mapping[str, object], visited: tuple[str, ...]) -> sp.Expr:
-        total = sp.S(0)
-        for signal, weight in terms.items():
-            if signal == force:
-                total += sp.sympify(weight)
-            elif signal in made and signal not in visited:
-                total += sp.sympify(weight) * share(made[signal], (*visited, signal))
-        return sp.sympify(total)
-
-    weight_of_force = share(terms, ())
-    return weight_of_force if weight_of_force.free_symbols else float(weight_of_force)
+def _plain(weight: sp.Expr) -> float | sp.Expr:
+    return weight if weight.free_symbols else float(weight)
 
 
 def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
@@ -138,6 +129,11 @@ def impedance_matrix(
     within = {power: mark for mark, power in times.items()}
     values = {n: sp.sympify(e).xreplace(within) for n, e in values.items()}
     forces = tuple(p.force for p in at)
+    if len(at) > 2 and not times:  # transfer functions in the blocks would grow with each port
+        impedance = _inverse(_mobility(diagram, at, values))
+        if impedance is None:
+            raise ModelError(f"{diagram.name}: its ports do not move apart: they have no impedance")
+        return impedance
     motions = {m: transfer(diagram, m, forces) for p in at for m in p.weights}
     mobility = sp.Matrix(
         [
@@ -159,6 +155,33 @@ def impedance_matrix(
     if impedance is None:
         raise ModelError(f"{diagram.name}: its ports do not move apart: they have no impedance")
     return impedance.xreplace(times)
+
+
+def _mobility(
+    diagram: Diagram, at: Sequence[Port], values: Mapping[sp.Symbol, sp.Expr]
+) -> sp.Matrix:
+    """Velocities of the ports for their forces, from all equations with their values at once."""
+    unknown = [s for s in diagram.signals if s not in diagram.outside]
+    equations = [{n: e.xreplace(values) for n, e in row.items()} for row in rows(diagram)]
+    if not all(e.free_symbols <= {S} for row in equations for e in row.values()):
+        raise ModelError(f"{diagram.name}: values are needed")
+    system, right = (placed(equations, n) for n in (unknown, [p.force for p in at]))
+    try:
+        answers = system.lu_solve(-right).to_Matrix()
+    except DMNonInvertibleMatrixError:
+        raise ModelError(f"{diagram.name}: the wiring does not determine its motions") from None
+    weights = sp.Matrix([[exact(port.weights.get(n, 0)) for n in unknown] for port in at])
+    return weights * answers * S
+
+
+def placed(equations: Sequence[Mapping[str, sp.Expr]], names: Sequence[str]) -> DomainMatrix:
+    """Coefficients of these signals in each equation, exact rational functions of S."""
+    field = sp.QQ.frac_field(S)
+    entries = [
+        [field.from_sympy(in_exact_numbers(row.get(n, sp.S(0)))) for n in names]
+        for row in equations
+    ]
+    return DomainMatrix(entries, (len(equations), len(names)), field)
 
 
 def _inverse(matrix: sp.Matrix) -> sp.Matrix | None:

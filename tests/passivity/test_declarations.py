@@ -1,5 +1,7 @@
 """What a file of one's own declares and does not do proves nothing: adversaries write the files."""
 
+from dataclasses import replace
+
 import pytest
 from devices import body
 
@@ -136,9 +138,13 @@ NOT_LINEAR = {
 
 
 @pytest.mark.parametrize("law", NOT_LINEAR.values(), ids=NOT_LINEAR)
-def test_an_effect_that_is_called_linear_and_is_not_has_no_linear_form_in_claims(tmp_path, law):
+def test_an_effect_that_is_called_linear_and_is_not_has_no_linear_form(tmp_path, law):
+    """A file is refused, so that no Bode plot has it; one made in Python counts in no claim."""
+    with pytest.raises(ModelError, match=r"mine.py: declares linear = True, but its law is not"):
+        effect(tmp_path, law, "linear=True")
     device = body(0.1, viscous__damping=1.0)
-    device = device.with_effect(effect(tmp_path, law, "linear=True"), {"size": 5.0})
+    false = replace(effect(tmp_path, law, ""), linear=True)
+    device = device.with_effect(false, {"size": 5.0})
     assert falsely_linear(haptic_interface(device)) == ["Z_M.mine"]
 
 

@@ -1,16 +1,19 @@
 """Certificates of kind "positive real": a matrix of rational functions of s, decided from Z alone.
 
-S = (Z - 1)/(Z + 1) has a common denominator with all zeros in Re s < 0 (Routh), and 1 - S(-s)^T
-S(s) has principal minors >= 0 on the axis (Sturm): there, and by the maximum principle for Re s >
-0, |S| <= 1. So Z is analytic for Re s > 0 with Z + Z^H >= 0.
+Z = N/q. (Z + 1)^-1 has a common denominator with all zeros in Re s < 0 (Routh), so S = (Z - 1)/(Z +
+1) = 1 - 2 (Z + 1)^-1 is analytic there. The principal minors of H = N conj(q) + N^H q = abs(q)^2 (Z
++ Z^H) are >= 0 on the axis (Sturm), so H is positive semidefinite there, and with it 1 - S^H S = 2
+(Z + 1)^-H (Z + Z^H) (Z + 1)^-1: by the maximum principle |S| <= 1 for Re s > 0. So Z is analytic
+for Re s > 0 with Z + Z^H >= 0.
 """
 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from typing import Any
 
-from .algebra import Poly, Quotient
+from .algebra import Quotient
 from .effort import bounded, need
 from .fields import expect_fields, read_matrix
 from .polynomials import (
@@ -23,54 +26,88 @@ from .polynomials import (
     is_non_negative,
     listed,
     multiply,
+    polynomial,
+    real_part,
 )
+
+#: rows of a matrix: the work for its principal minors doubles with each
+SIZES = (1, 2, 3, 4, 5, 6)
+Matrix = list[list[Polynomial]]
 
 
 def state_positive_real(c: dict[str, Any]) -> str:
     """The statement of a certificate of this kind; refused where it is not true."""
     expect_fields(c, "kind", "title", "digest", "impedance")
-    algebra, z, text = read_matrix(c["impedance"], (1, 2))
-    plus, times, size = algebra.plus, algebra.times, len(z)
+    algebra, z, text = read_matrix(c["impedance"], SIZES)
     below = {n: max(e.below.get(n, 0) for row in z for e in row) for n in algebra.bases}
-    q = algebra.over(Quotient(algebra.number(1), {}), below, {})
-    above = [[algebra.over(e, below, e.below) for e in row] for row in z]
-    m, w = [[list(row) for row in above] for _ in "mw"]  # Z + 1 and Z - 1, times q
-    for i in range(size):
-        m[i][i], w[i][i] = plus(above[i][i], q), plus(above[i][i], q, -1)
-
-    def cross(a: list[list[Poly]]) -> Poly:
-        return plus(times(a[0][0], a[1][1]), times(a[0][1], a[1][0]), -1)
-
-    d = m[0][0] if size == 1 else cross(m)
-    need(d, "Z + 1 is singular")
-    if size == 2:  # times the adjoint matrix
-        adjoint = [[m[1][1], plus({}, m[0][1], -1)], [plus({}, m[1][0], -1), m[0][0]]]
-        w = [[plus(times(w[i][0], adjoint[0][j]), times(w[i][1], adjoint[1][j])) for j in (0, 1)]
-             for i in (0, 1)]  # fmt: skip
+    q = listed(algebra.over(Quotient(algebra.number(1), {}), below, {}))
+    above = [[listed(algebra.over(e, below, e.below)) for e in row] for row in z]
     with bounded(algebra.left):
-        _check_bounded_real(listed(d), [[listed(e) for e in row] for row in w])
+        _check_stable(above, q)
+        _check_resistive(above, q)
     return f"Z(s) = [{text}] is positive real: analytic with Z + Z^H >= 0 for Re s > 0"
 
 
-def _check_bounded_real(d: Polynomial, w: list[list[Polynomial]]) -> None:
-    """Refuse unless S = w/d is stable with 1 - S(-s)^T S(s) >= 0 on the axis."""
-    common = d
-    for e in itertools.chain(*w):
-        common = greatest_common_divisor(common, e)
-    d, w = divide(d, common)[0], [[divide(e, common)[0] for e in row] for row in w]
-    need(is_hurwitz(d), "not positive real: (Z - 1)/(Z + 1) is not stable")
-    size = len(w)
+def _check_stable(above: Matrix, q: Polynomial) -> None:
+    """Refuse unless (Z + 1)^-1 = q adj(N + q)/det(N + q) is stable; Z = above/q."""
+    size = len(above)
+    m = [[add(e, q) if i == j else e for j, e in enumerate(row)] for i, row in enumerate(above)]
+    every = range(size)
+    common = d = minor(m, every, every)
+    need(d, "Z + 1 is singular")
+    for i, j in itertools.product(every, repeat=2):
+        if len(common) < 2:
+            break
+        cofactor = minor(m, [k for k in every if k != i], [k for k in every if k != j])
+        common = greatest_common_divisor(common, multiply(q, cofactor))
+    need(is_hurwitz(divide(d, common)[0]), "not positive real: (Z - 1)/(Z + 1) is not stable")
 
-    def paired(a: Polynomial, b: Polynomial) -> Polynomial:
-        return multiply([(-1) ** k * x for k, x in enumerate(a)], b)
 
-    gap = [[paired(d, d) if i == j else [] for j in range(size)] for i in range(size)]
-    for i, j, k in itertools.product(range(size), repeat=3):
-        gap[i][j] = add(gap[i][j], paired(w[k][i], w[k][j]), -1)
-    minors = [gap[i][i] for i in range(size)]
-    if size == 2:
-        minors.append(add(multiply(*minors), multiply(gap[0][1], gap[1][0]), -1))
-    for minor in minors:
-        real, odd = halves(minor)
-        need(not odd, "not positive real: odd on the axis")
-        need(is_non_negative(real), "not positive real: Re Z < 0 on the axis")
+def _check_resistive(above: Matrix, q: Polynomial) -> None:
+    """Refuse unless all principal minors of Z + Z^H are >= 0 on the axis; Z = above/q."""
+    size, q_late = len(above), _mirrored(q)
+    h = [
+        [
+            add(multiply(above[i][j], q_late), multiply(_mirrored(above[j][i]), q))
+            for j in range(size)
+        ]
+        for i in range(size)
+    ]
+    weight = real_part(q, q)
+    for number in range(1, size + 1):
+        for chosen in itertools.combinations(range(size), number):
+            real, odd = halves(minor(h, chosen, chosen))
+            need(not odd, "not positive real: odd on the axis")
+            real = _divided(real, weight)
+            need(is_non_negative(real), "not positive real: Re Z < 0 on the axis")
+
+
+def _mirrored(p: Polynomial) -> Polynomial:
+    """p(-s), which is its conjugate on the axis."""
+    return [(-1) ** k * c for k, c in enumerate(p)]
+
+
+def _divided(p: Polynomial, weight: Polynomial) -> Polynomial:
+    """p by a polynomial that is >= 0 on the axis, as often as that goes: the same signs."""
+    while p and len(weight) > 1:
+        quotient, rest = divide(p, weight)
+        if rest:
+            break
+        p = quotient
+    return p
+
+
+def minor(matrix: Matrix, rows: Sequence[int], columns: Sequence[int]) -> Polynomial:
+    """Determinant of these rows and columns, by the first row; 1 of none."""
+    known: dict[tuple[int, ...], Polynomial] = {(): polynomial([1])}
+    for number in range(1, len(rows) + 1):
+        row, smaller = matrix[rows[len(rows) - number]], known
+        known = {}
+        for chosen in itertools.combinations(columns, number):
+            total: Polynomial = []
+            for k, j in enumerate(chosen):
+                rest = smaller[chosen[:k] + chosen[k + 1 :]]
+                if row[j] and rest:
+                    total = add(total, multiply(row[j], rest), (-1) ** k)
+            known[chosen] = total
+    return known[tuple(columns)]

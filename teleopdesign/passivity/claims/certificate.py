@@ -68,7 +68,7 @@ def read_certificate(path: str | Path) -> Certificate:
 
 
 def positive_real_certificate(title: str, impedance: Sequence[Sequence[sp.Expr]]) -> Certificate:
-    """That a matrix of rational functions of s (1x1 or 2x2) is positive real."""
+    """That a matrix of rational functions of s (6x6 at most) is positive real."""
     rows = [[_written(e) for e in row] for row in impedance]
     return _sealed({"kind": "positive real", "title": title, "impedance": rows})
 

@@ -18,21 +18,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import reduce
-from itertools import combinations
 from typing import Any
 
 import numpy as np
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from ...controllers import Controller, controller, in_exact_numbers
+from ...controllers import Controller, controller
 from ...derive import symbol_values
 from ...derive.elimination import rows
 from ...diagrams import Block, Control, Diagram, Moving
 from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.tips import with_tips
 from ..checker.polynomials import is_free_of_growth, polynomial
-from ..ports import Port, ports
+from ..ports import Port, placed, ports
 from .impedance import exact, impedance
 from .in_full import (
     Equation,
@@ -128,24 +127,15 @@ def _whole(
     """det of all equations, with what blocks cancel; and motions of the ports for their forces."""
     unknown = [n for n in diagram.signals if n not in diagram.outside]
     forces = [port.force for port in at]
-    field = sp.QQ.frac_field(S)
-
-    def placed(names: Sequence[str]) -> DomainMatrix:
-        entries = [
-            [field.from_sympy(in_exact_numbers(row.get(n, sp.S(0)))) for n in names]
-            for row in forms
-        ]
-        return DomainMatrix(entries, (len(forms), len(names)), field)
-
     if len(forms) != len(unknown):
         return sp.Poly(0, S, domain="QQ"), sp.zeros(0)
-    matrix = placed(unknown)
-    above, below = ratio(field.to_sympy(matrix.det()))
+    matrix = placed(forms, unknown)
+    above, below = ratio(matrix.domain.to_sympy(matrix.det()))
     if above.is_zero:
         return above, sp.zeros(0)
     whole, rest = (above * denominators(diagram)).div(below)
     assert rest.is_zero
-    answers = matrix.lu_solve(placed(forces)).to_Matrix()
+    answers = matrix.lu_solve(placed(forms, forces)).to_Matrix()
     weights = sp.Matrix([[exact(port.weights.get(n, 0)) for n in unknown] for port in at])
     return whole, weights * answers
 
@@ -162,19 +152,34 @@ def _drives_itself(whole: sp.Poly, shown: sp.Matrix, equations: list[Equation]) 
 
 
 def _shown(forms: sp.Matrix, factor: sp.Poly) -> tuple[int, int]:
-    """Sum of the exponents of its poles there, and how many divisors they are (Smith, McMillan)."""
-    orders = [0]
-    for size in range(1, min(forms.shape) + 1):
-        minors = (
-            forms.extract(list(i), list(j)).det()
-            for i in combinations(range(forms.rows), size)
-            for j in combinations(range(forms.cols), size)
+    """Sum of the exponents of its poles there, and how many divisors they are (Smith, McMillan).
+
+    Elimination by the entry of the highest pole: what it divides keeps no higher one.
+    """
+    field = sp.QQ.frac_field(S)
+    prime = field.field.ring.from_expr(factor.as_expr())
+    left = [[field.from_sympy(sp.sympify(e)) for e in row] for row in forms.tolist()]
+    orders = []
+    while left and left[0]:
+        order, i, j = max(
+            (_order(e, prime), i, j) for i, row in enumerate(left) for j, e in enumerate(row)
         )
-        largest = max(_multiplicity(ratio(minor)[1], factor) for minor in minors)
-        if largest <= orders[-1]:
+        if order <= 0:
             break
-        orders.append(largest)
-    return orders[-1], len(orders) - 1
+        orders.append(order)
+        pivot = left.pop(i)
+        left = [
+            [e - row[j] * pivot[k] / pivot[j] for k, e in enumerate(row) if k != j] for row in left
+        ]
+    return sum(orders), len(orders)
+
+
+def _order(entry: Any, prime: Any) -> int:
+    """Of the pole of a rational function where an irreducible polynomial is zero."""
+    order, below = 0, entry.denom
+    while not below.rem(prime):
+        below, order = below.quo(prime), order + 1
+    return order
 
 
 def _multiplicity(p: sp.Poly, factor: sp.Poly) -> int:

@@ -1,0 +1,43 @@
+"""Whether laws are linear, as an effect or a control law may declare: linear forms rest on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import sympy as sp
+
+from ._effect import Effect
+from ._signals import SIGNALS, delayed
+
+#: of a body, driven by which a linear effect may act; a structure sees the force on its tip, too
+_DRIVING = ("position", "velocity", "acceleration", "command")
+
+
+def is_linear(laws: Iterable[sp.Expr], signals: Iterable[sp.Symbol]) -> bool:
+    """Whether laws are linear in these, and zero where these are; all else is constant."""
+    signals = list(signals)
+    for law in laws:
+        plain = law.replace(delayed, lambda signal, _: signal)  # late is linear, too
+        slopes = [_simple(sp.diff(plain, x)) for x in signals]
+        if any(slope.has(*signals) for slope in slopes if signals):
+            return False
+        rest = plain - sp.Add(*(a * x for a, x in zip(slopes, signals, strict=True)))
+        if _simple(rest) != 0:
+            return False
+    return True
+
+
+def acts_linearly(effect: Effect) -> bool:
+    """Whether laws and rates are linear in the body's motion, its command and the states."""
+    driving = [SIGNALS[n] for n in _DRIVING]
+    driving += [SIGNALS["interaction_force"]] * (effect.role == "structure")
+    laws = (effect.expression(), *effect.rates().values())
+    states = effect.state_symbols().values()
+    known = {*driving, *states, *effect.symbols().values()}
+    if any(law.free_symbols - known for law in laws):
+        return False
+    return is_linear(laws, [*driving, *states])
+
+
+def _simple(expression: sp.Expr) -> sp.Expr:
+    return expression if not expression.args else sp.simplify(expression)

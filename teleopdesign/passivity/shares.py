@@ -1,0 +1,83 @@
+"""How much of one signal is in others: through junctions alone, exactly, loops of sums solved."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from graphlib import CycleError, TopologicalSorter
+
+import sympy as sp
+from sympy.polys.matrices import DomainMatrix
+from sympy.polys.matrices.exceptions import DMNonInvertibleMatrixError
+
+from ..diagrams import Diagram, Moving, Part
+from ..errors import ModelError
+from .linear.impedance import exact
+
+Shares = Mapping[str, sp.Expr]
+
+
+def shares_of(diagram: Diagram, signal: str) -> Shares:
+    """Signal -> how much of `signal` is in it; those that hold nothing of it are left out.
+
+    A share is an expression of positions where a lever arm is on the way.
+    raises ModelError: a loop of sums without a solution
+    """
+    sums = {
+        j.output: {n: _weight(w) for n, w in j.terms.items()}
+        for j in diagram.junctions
+        if j.output != signal
+    }
+    try:
+        order = TopologicalSorter({n: terms.keys() for n, terms in sums.items()}).static_order()
+        shares = {signal: sp.S(1)}
+        for name in order:
+            if name in sums:
+                shares[name] = total_share(sums[name], shares)
+    except CycleError:
+        shares = _solved(diagram, sums, signal)
+    return {name: share for name, share in shares.items() if share != 0}
+
+
+def total_share(terms: Mapping[str, sp.Expr | float], shares: Shares) -> sp.Expr:
+    """How much of the signal whose shares these are is in a sum of weight * signal."""
+    return sp.expand(sp.Add(*(_weight(w) * shares.get(n, sp.S(0)) for n, w in terms.items())))
+
+
+def drives_alone(diagram: Diagram, signal: str, body: Moving) -> bool:
+    """Whether a force acts on that body, just as it is, and reaches nothing else.
+
+    Its actuator counts as one that does nothing: see that none is there.
+    """
+    shares = shares_of(diagram, signal)
+    forces = {name: sp.S(0) for name in (body.command, *body.loads)}
+    forces |= {name: _weight(w) for name, w in body.loads.items()}
+    forces[body.command] += 1
+    return total_share(forces, shares) == 1 and not any(
+        part is not body and _takes(part, shares) for part in (*diagram.blocks, *diagram.kinematics)
+    )
+
+
+def _takes(part: Part, shares: Shares) -> bool:
+    return any(name in shares for name in part.inputs)
+
+
+def _weight(weight: sp.Expr | float) -> sp.Expr:
+    expression = sp.sympify(weight, strict=True)
+    return expression if expression.free_symbols else exact(weight)
+
+
+def _solved(
+    diagram: Diagram, sums: Mapping[str, Mapping[str, sp.Expr]], signal: str
+) -> dict[str, sp.Expr]:
+    names = list(sums)
+    system = sp.Matrix(
+        [[int(row == n) - sums[row].get(n, sp.S(0)) for n in names] for row in names]
+    )
+    right = sp.Matrix([sums[row].get(signal, sp.S(0)) for row in names])
+    whole = DomainMatrix.from_Matrix(system.row_join(right)).to_field()
+    size = len(names)
+    try:
+        answers = whole[:, :size].lu_solve(whole[:, size:]).to_Matrix()
+    except DMNonInvertibleMatrixError:
+        raise ModelError(f"{diagram.name}: a loop of sums has no solution") from None
+    return {signal: sp.S(1), **dict(zip(names, answers, strict=True))}

@@ -1,0 +1,101 @@
+"""Passivity of more than two ports together: the positive-real test of the matrix, or a wave."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+import numpy as np
+import sympy as sp
+
+from ...errors import ModelError
+from ...realise.lti import S
+from ..checker.absolute_stability import Ratio, coprime
+from ..checker.positive_real import SIZES
+from ..claims.certificate import positive_real_certificate
+from ..claims.claim import Claim, Proof, Refutation, Unknown
+from ..linear.impedance import readable
+from ..search.growing_wave import GrowingWave, wave_of
+from .exact_complex import ZERO, Gaussian, add, multiply, rounded, value_at
+from .growing_mode import rising
+from .growth_points import over, points_near_poles, roots_of
+
+#: of points of the right half plane, those whose waves are looked at exactly, the best first
+_TRIED = 30
+
+
+def passive_together(z: sp.Matrix) -> Claim:
+    """Does no motion of the ports take energy out, all of them moved at once?
+
+    z: forces over velocities (N s/m), n by n, rational in S with exact numbers
+    returns: proved by the positive-real test of the matrix, refuted by a growing wave, or unknown:
+        with dead times nothing is known here, nor of more ports than a certificate has
+    """
+    matrix = sp.ImmutableMatrix(z)
+    text = "; ".join(", ".join(map(readable, row)) for row in matrix.tolist())
+    statement = f"the {matrix.rows} ports of [{text}] are passive together"
+    if matrix.has(sp.exp):
+        return Claim(statement, Unknown("with dead times the tests are for one port or two"))
+    if matrix.rows not in SIZES:
+        why = f"the exact test is for {max(SIZES)} ports at most, found {matrix.rows}"
+        return Claim(statement, Unknown(why))
+    why = "no certificate is accepted"
+    try:
+        certificate = positive_real_certificate(statement, matrix.tolist())
+        certificate.check()
+    except ModelError as problem:
+        why = str(problem)
+    else:
+        return Claim(statement, Proof("the positive-real test of the matrix", (certificate,)))
+    wave = _wave_out_of(matrix)
+    if wave is not None:
+        f = float(wave.frequency) / (2 * np.pi)
+        return Claim(statement, Refutation(f"a growing wave at {f:.6g} Hz", wave))
+    return Claim(statement, Unknown(f"{why}; no wave that takes energy out was found"))
+
+
+def _wave_out_of(z: sp.ImmutableMatrix) -> GrowingWave | None:
+    ratios = [_ratio(entry) for entry in z]
+    points = np.array([*_beside_the_axis(ratios), *points_near_poles(ratios)])
+    values = np.moveaxis(np.array([over(r, points) for r in ratios]), 0, 1)
+    values = values.reshape(-1, *z.shape)
+    finite = np.isfinite(values).all(axis=(1, 2))
+    points, values = points[finite], values[finite]
+    lowest = np.linalg.eigvalsh((values + values.conj().transpose(0, 2, 1)) / 2)[:, 0]
+    share = lowest / np.abs(values).max(axis=(1, 2)) * points.real / np.abs(points)
+    for k in np.argsort(share)[:_TRIED]:
+        if share[k] >= 0:
+            return None
+        at = rounded(complex(points[k]))
+        wave = wave_of(z, *at)
+        if wave is not None and wave.energy > 0 and _takes_out(ratios, at, wave):
+            return wave
+    return None
+
+
+def _ratio(entry: sp.Expr) -> Ratio:
+    above, below = sp.fraction(sp.together(entry))
+    p, q = (sp.Poly(part, S, domain="QQ") for part in (above, below))
+    return coprime(rising(p), rising(q))
+
+
+def _beside_the_axis(ratios: list[Ratio]) -> Iterator[complex]:
+    """Over all frequencies from below the slowest root to above the fastest, ever nearer."""
+    sizes = np.abs([r for p, q in ratios for r in (*roots_of(p), *roots_of(q)) if r != 0] or [1.0])
+    w = np.unique(np.r_[np.geomspace(sizes.min() / 1e3, sizes.max() * 1e3, 400), sizes])
+    for closer in (1, 4, 8, 16, 32):
+        yield from w * (2.0**-closer + 1j)
+
+
+def _takes_out(ratios: list[Ratio], at: Gaussian, wave: GrowingWave) -> bool:
+    """Whether V^H (Z + Z^H) V < 0 at the wave, exactly, V its velocities as they are written."""
+    v = [(Fraction(x.real), Fraction(x.imag)) for x in wave.velocity]
+    total = ZERO
+    for k, ratio in enumerate(ratios):
+        value = value_at(ratio, at)
+        if value is None:
+            return False
+        row, column = divmod(k, len(v))
+        conjugate = v[row][0], -v[row][1]
+        total = add(total, multiply(multiply(conjugate, value), v[column]))
+    return total[0] < 0
