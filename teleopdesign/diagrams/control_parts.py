@@ -31,7 +31,8 @@ def controller_parts(
 ) -> tuple[tuple[Control, ...], tuple[Junction, ...]]:
     """A linear system of several inputs and outputs as controllers, one for each entry, and sums.
 
-    system: transfer function or state space, continuous or discrete, as `from_control` takes them
+    system: transfer function or state space, continuous or discrete, or a measured response, as
+        `from_control` takes them
     inputs, outputs: signals, in the order of the system's;  motion, analog: as of `Control`
     Entries that are zero are left out. Blocks are called "name_1_2", row first; signals between
     them "name_1_2_out". Each entry has states of its own: modes that entries of a state space
@@ -65,8 +66,12 @@ def entry_of(system: control.InputOutputSystem, row: int, column: int, name: str
 
     if isinstance(system, control.TransferFunction):
         return control.tf(system.num[row][column], system.den[row][column], system.dt)
+    if isinstance(system, control.FrequencyResponseData):
+        return control.frd(system.frdata[row, column], system.frequency)
     if not isinstance(system, control.StateSpace):
-        raise ModelError(f"{name}: expected a transfer function or a state space")
+        raise ModelError(
+            f"{name}: expected a transfer function, a state space or a measured frequency response"
+        )
     b, c, d = system.B[:, [column]], system.C[[row]], system.D[[row]][:, [column]]
     return control.ss(system.A, b, c, d, system.dt)
 
@@ -86,12 +91,20 @@ def plant_parts(
     analog block "name_rest" beside the command, their sum "name_command". Exact in the numbers as
     they came, with the states of P.
     driver: outside force on it, as of `Moving`;  loads: other forces on it, signal -> sign
-    raises ModelError: discrete time, several axes, not two more poles than zeros, m <= 0 or b < 0
+    raises ModelError: discrete time, several axes, a measured response, not two more poles than
+        zeros, m <= 0 or b < 0
     """
     import control
 
-    if system.isdtime(strict=True) or (system.ninputs, system.noutputs) != (1, 1):
-        raise ModelError(f"{name}: expected a plant of one input and output in continuous time")
+    if (system.ninputs, system.noutputs) != (1, 1) or system.isdtime(strict=True):
+        raise ModelError(
+            f"{name}: expected a plant of one input and output in continuous time: see "
+            "`coupled_plant_parts` for others"
+        )
+    if not isinstance(system, control.TransferFunction | control.StateSpace):
+        raise ModelError(
+            f"{name}: expected a transfer function or a state space: fit one to what was measured"
+        )
     s = sp.Symbol("s")
     # exact: python-control's own conversion of matrices leaves zeros far out
     form = from_control(system, name="plant").linear_form(name, s, sp.S(0))

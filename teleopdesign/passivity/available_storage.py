@@ -28,6 +28,9 @@ from .rate_independent import Coulomb, Dahl, Element, compliance
 Array = NDArray[np.float64]
 #: gain, as a share of the compensator's level, below which the storage counts as settled
 _BLUR = 1e-3
+#: share of the storage that may still be gained over the second half of the moves: as much as
+#: interpolation blurs on a grid of 25 points. Less asks for more moves where a limit is near
+_STILL_GROWING = 2e-3
 #: moves, and nodes times moves, at 50 us a move and 50 ns a node: some 20 s
 _MOST_MOVES, _MOST_WORK = 400_000, 500_000_000
 
@@ -39,6 +42,8 @@ class AvailableStorage(ByValue):
     storage: J, an axis for each force with a state, compensator first, from -level to level
     gain: energy given out per travel once everything has settled, N; 0 where it is finite
     travel: m, of one move;  moves: how many were made
+    growth: what the storage still gained over the second half of the moves, J, where it gained most
+    coarse: largest storage on a grid of half the points, J: how far the grid's own may be off
     """
 
     storage: Array
@@ -46,16 +51,27 @@ class AvailableStorage(ByValue):
     travel: float
     moves: int
     tolerance: float
+    growth: float
+    coarse: float
 
     @property
     def is_finite(self) -> bool:
-        """Whether the storage is finite, within the tolerance of the grid."""
-        return self.gain <= self.tolerance
+        """Whether the storage is finite, within the tolerance of the grid: it has stopped to grow.
+
+        What still grows is less than the most that some motion takes out.
+        """
+        still = _STILL_GROWING * float(self.storage.max()) + self.tolerance * self.travel
+        return self.gain <= self.tolerance and self.growth <= still
 
     def evidence(self) -> Evidence:
         """As the verdict of a claim."""
         axes = " x ".join(map(str, self.storage.shape))
-        searched = f"available storage iterated over {self.moves} moves on a grid of {axes} forces"
+        searched = (
+            f"available storage iterated over {self.moves} moves on a grid of {axes} forces, to "
+            f"{self.storage.max():.3g} J ({self.coarse:.3g} J on half the points)"
+        )
+        if self.gain <= self.tolerance and not self.is_finite:
+            searched += f" and still growing, by {self.growth:.2g} J over the second half of them"
         return Evidence(self.is_finite, searched, self.tolerance - self.gain, "N")
 
 
@@ -88,9 +104,25 @@ def available_storage(
     travel = 4 * min(lengths) / (points - 1)
     moves = moves or int(24 * max(lengths) / travel) + 10 * points
     _check_work(moves, points, len(stateful), ratio=max(lengths) / min(lengths))
-    step = [
-        _move(stateful, friction, s * travel, points=points, load=load_coefficient) for s in (1, -1)
-    ]
+    fine, growth = _iterated(stateful, friction, points, travel, moves, load_coefficient)
+    half = points // 2 + 1
+    longer = travel * (points - 1) / (half - 1)
+    coarse, _ = _iterated(stateful, friction, half, longer, -(-moves // 2), load_coefficient)
+    gain = growth / (travel * (moves - moves // 2))
+    tolerance = _BLUR * compensator.level
+    return AvailableStorage(fine, gain, travel, moves, tolerance, growth, float(coarse.max()))
+
+
+def _iterated(
+    stateful: Sequence[Element],
+    friction: Sequence[Element],
+    points: int,
+    travel: float,
+    moves: int,
+    load: float,
+) -> tuple[Array, float]:
+    """Storage after so many moves, and the most that it gained over the second half of them, J."""
+    step = [_move(stateful, friction, s * travel, points=points, load=load) for s in (1, -1)]
     # iterated is V less what springs hold, which interpolation would blur most
     held = _held(stateful, points)
     v = half = -held
@@ -98,8 +130,7 @@ def available_storage(
         if n == moves // 2:
             half = v
         v = np.maximum(-held, np.maximum(step[0](v), step[1](v)))
-    gain = float((v - half).max()) / (travel * (moves - moves // 2))
-    return AvailableStorage(v + held, gain, travel, moves, _BLUR * compensator.level)
+    return v + held, float((v - half).max())
 
 
 def _check_work(moves: int, points: int, forces: int, *, ratio: float) -> None:

@@ -17,7 +17,7 @@ from .claims.axis_units import in_units_of
 from .claims.claim import Claim, Unknown
 from .linear.hidden_modes import controllers_grow, growth_within
 from .linear.positive_real import NEARBY, positive_real
-from .ports import Port, impedance_matrix
+from .ports import Port, impedance_matrix, nonlinear_parts
 from .search.growing_wave import GrowingWave, wave_of
 from .theorems import TopicClaim
 from .two_port.claims import absolutely_stable, is_shown_unstable, passive
@@ -33,8 +33,12 @@ def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClai
     """Passivity of a linear diagram at its ports, and absolute stability where there are two.
 
     What is refuted is so for all values nearby, too: none rests on the rounding of a number. What
-    is proved has no mode inside that grows by itself, though no port shows it from rest.
+    is proved has no mode inside that grows by itself, though no port shows it from rest. Nothing is
+    claimed of a diagram that is not linear.
     """
+    if bent := nonlinear_parts(diagram):
+        statement = f"{diagram.name}: its ports are passive"
+        return [TopicClaim(WHOLE[0], Claim(statement, Unknown(f"not linear: {', '.join(bent)}")))]
     claims = _linear_claims(diagram, all_ports)
     if any(one.claim.holds for one in claims):
         claims = _beside_what_grows(claims, growth_within(diagram))

@@ -19,7 +19,7 @@ from ..controllers import Controller, in_exact_numbers
 from ..derive import symbol_values, transfer
 from ..derive.elimination import rows
 from ..derive.printing import dead_time_symbol
-from ..diagrams import Diagram, Moving
+from ..diagrams import Control, Diagram, Moving
 from ..errors import ModelError
 from ..realise.lti import LinearBlocks, S, linear_blocks
 from ..realise.simulated import without_absent
@@ -207,12 +207,14 @@ def _marked(form: sp.Expr, late: Mapping[sp.Symbol, sp.Symbol]) -> sp.Expr:
 def without_holding(diagram: Diagram, motion: str = "") -> Diagram:
     """The diagram without hands and environments, or without those that hold that motion.
 
-    One on several axes holds them all.
+    One on several axes holds them all. A controller of such a name is no hand: it is judged.
     """
     names = [
         b.name
         for b in diagram.blocks
-        if b.name in HOLDING and (not motion or getattr(b, "motion", motion) == motion)
+        if b.name in HOLDING
+        and not isinstance(b, Control)
+        and (not motion or getattr(b, "motion", motion) == motion)
     ]
     return diagram.without(*names)
 

@@ -8,7 +8,7 @@ import pytest
 from devices import body
 
 from teleopdesign.controllers import controller, from_control
-from teleopdesign.diagrams import haptic_interface
+from teleopdesign.diagrams import controller_parts, haptic_interface, plant_parts
 from teleopdesign.errors import ModelError
 from teleopdesign.frequency import bode, delay_margin, loop_gain, matrix_response
 from teleopdesign.passivity import diagram_claims
@@ -66,3 +66,13 @@ def test_what_it_cannot_be_is_said_in_one_line():
         with pytest.raises(ModelError) as caught:
             make()
         assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_matrix_of_responses_is_a_block_for_each_entry_and_a_plant_is_none():
+    both = control.append(FILTER, 2 * FILTER)
+    parts, _ = controller_parts(
+        control.frd(both, W), name="K", inputs=("a", "b"), outputs=("c", "d"), motion="x"
+    )
+    assert [part.name for part in parts][0] == "K_1_1"
+    with pytest.raises(ModelError, match="fit one to what was measured"):
+        plant_parts(control.frd(FILTER, W), name="P", motion="x", command="u", driver="f")

@@ -1,5 +1,7 @@
 """The most energy that any motion can take out of friction beside a compensator."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -103,3 +105,14 @@ def test_a_round_that_springs_still_feed_counts_for_no_more_than_all_rounds():
                 total += sign * work
             here = point
         assert cycle.energy <= max(total, 0.0) + 1e-15
+
+
+def test_a_storage_that_still_grows_is_no_evidence_for_a_limit():
+    """After few moves the gain is below its tolerance, for what comes out comes out slowly."""
+    found = available_storage(Dahl(1.27, 3e4), CABLE, points=31, moves=200)
+    settled = replace(found, growth=0.0)
+    slow = replace(found, gain=found.tolerance / 2, growth=float(found.storage.max()) / 10)
+    assert replace(settled, gain=found.tolerance / 2).is_finite
+    assert not slow.is_finite
+    assert "still growing, by" in slow.evidence().searched
+    assert not slow.evidence().holds

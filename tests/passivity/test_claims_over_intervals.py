@@ -291,3 +291,29 @@ def test_what_a_varied_block_cancels_inside_counts_as_a_mode():
 def test_a_port_that_nothing_resists_has_the_impedance_zero():
     diagram = haptic_interface(body(0.0))
     assert impedance_matrix(diagram, ports(diagram)) == sp.zeros(1)
+
+
+BENT = {
+    "cogging": ("amplitude", {"period": 0.01, "phase": 0.0}),
+    "torque_ripple": ("amplitude", {"period": 0.01, "phase": 0.0}),
+    "viscous_asymmetry": ("half_difference", {}),
+    "bias": ("force", {}),
+}
+
+
+@pytest.mark.parametrize("name", BENT)
+def test_an_effect_that_is_absent_in_the_middle_alone_is_not_left_out(name):
+    """Evidence for -0.5 to 0.5 was that of 0, where there is no such effect."""
+    value, others = BENT[name]
+    values = {n: others.get(n, 0.0) for n in td.EFFECTS[name].parameters}
+    device = body(0.3, viscous__damping=2.0).with_effect(td.EFFECTS[name], values)
+    box = {f"Z_M.{name}.{value}": (-0.5, 0.5)}
+    assert claim_over_intervals(haptic_interface(device), box).status == "unknown"
+    with pytest.raises(ModelError, match=f"Z_M.{name} has no linear form"):
+        claim_over_intervals(haptic_interface(device), box, claim="stable")
+
+
+def test_an_interval_may_be_of_fractions():
+    box = {"Z_M.inertia": (Fraction(1, 3), Fraction(1, 2))}
+    claim = claim_over_intervals(haptic_interface(body(0.3, viscous__damping=2.0)), box)
+    assert claim.status == "proved" and "0.333333 to 0.5" in claim.statement

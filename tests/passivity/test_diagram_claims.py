@@ -267,3 +267,28 @@ def test_a_coupling_with_a_delay_in_series_is_derived_with_its_exponential():
 def test_a_law_with_an_infinite_number_is_refused():
     with pytest.raises(ModelError, match="numerator_0 is infinite, expected a number"):
         from_control(ct.tf([float("inf")], [1, 1]))
+
+
+@pytest.mark.parametrize("name", ["Z_H", "Z_E"])
+def test_a_controller_is_judged_though_it_is_called_as_a_hand(name):
+    """Left out by its name, a law that drives the motion was "proved" passive."""
+    device = td.Body("prismatic", {"inertia": 0.3}).with_effect(
+        td.EFFECTS["viscous"], {"damping": 2.0}
+    )
+    drives = controller("spring_damper", {"stiffness": 0.0, "damping": 50.0})
+    blocks = (
+        Moving("Z", device, "x", "u", {"f": 1.0}, "f"),
+        Control(name, drives, "x", "F", "x"),
+    )
+    diagram = Diagram("named", blocks, (Junction("u", {"F": 1.0}),), {"f": "force"}, ())
+    (one,) = diagram_claims(diagram, rng=np.random.default_rng(0)).claims
+    assert one.claim.status == "refuted"
+
+
+def test_a_diagram_that_is_not_linear_has_no_linear_claim():
+    device = td.Body("prismatic", {"inertia": 0.3}).with_effect(
+        td.EFFECTS["coulomb"], {"level": 0.4}
+    )
+    diagram = haptic_interface(device)
+    (one,) = linear_claims(diagram, ports(diagram))
+    assert one.claim.status == "unknown" and "not linear: Z_M.coulomb" in str(one.claim)

@@ -253,3 +253,11 @@ def test_a_wave_impedance_or_way_that_cannot_be_is_said_in_one_line():
         with pytest.raises(ModelError) as caught:
             wave_variables(**arguments)
         assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_slaves_controller_that_is_not_linear_is_another_theorem():
+    law = controller("dahl", {"level": 0.3, "stiffness": 1e4})
+    side = body(0.3, **SIDE)
+    diagram = wave_variables(side, side, wave_impedance=10.0, coupling=law, delay=0.05)
+    with pytest.raises(ModelError, match="P has no linear form"):
+        wave_claim(diagram)

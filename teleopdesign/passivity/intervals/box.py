@@ -14,6 +14,7 @@ from ...controllers import as_written
 from ...diagrams import Diagram
 from ...errors import ModelError, did_you_mean
 from ...expectations import described
+from ..ports import judged, nonlinear_parts
 
 #: vertices that are looked at: 2^8, eight intervals
 MOST_VERTICES = 256
@@ -81,7 +82,8 @@ def box_of(
         if not isinstance(ends, tuple | list) or len(ends) != 2:
             raise ModelError(f"{name}: found {described(ends)}, expected (low, high)")
         if not all(math.isfinite(x) for x in ends) or ends[0] > ends[1]:
-            raise ModelError(f"{name}: found {ends[0]:g} to {ends[1]:g}, expected low <= high")
+            low, high = map(float, ends)
+            raise ModelError(f"{name}: found {low:g} to {high:g}, expected low <= high")
     wide = {n: (float(a), float(b)) for n, (a, b) in intervals.items() if a < b}
     fixed = {n: float(a) for n, (a, b) in intervals.items() if a == b}
     box = ValueBox(
@@ -90,3 +92,13 @@ def box_of(
     for vertex in box.vertices():  # values that a block refuses are refused here
         diagram.with_values({**fixed, **box.named(vertex)})
     return diagram.with_values({**fixed, **box.named(box.centre)}), box
+
+
+def nonlinear_within(diagram: Diagram, box: ValueBox) -> tuple[str, ...]:
+    """Names of what keeps the diagram from being linear somewhere in the box.
+
+    An effect may be absent at one value, such as the middle: at one end of its interval it is not.
+    """
+    points = (box.centre, np.array(box.low), np.array(box.high))
+    parts = (nonlinear_parts(judged(diagram.with_values(box.named(x)))) for x in points)
+    return tuple(dict.fromkeys(name for names in parts for name in names))

@@ -16,9 +16,9 @@ from ...realise.lti import S
 from ..claims.claim import Claim, Unknown
 from ..linear.polynomials import is_hurwitz
 from ..linear_diagrams import linear_claims
-from ..ports import judged, nonlinear_parts, ports
+from ..ports import judged, ports
 from .at_points import judge_at_points
-from .box import ValueBox
+from .box import ValueBox, nonlinear_within
 from .conditions import Conditions, one_port_is_passive, two_port_is_passive, two_port_is_stable
 from .family import Family, family_of
 from .interval_claim import Parts, Status, parts_of
@@ -33,7 +33,7 @@ _SHARES = (0.999, 0.9, 0.5)
 def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> Parts:
     """Whether every pole of the whole diagram lies left of the axis."""
     statement = "every pole has a negative real part"
-    if bent := nonlinear_parts(judged(middle)):
+    if bent := nonlinear_within(middle, box):
         raise ModelError(f"{middle.name}: stable: {', '.join(bent)} has no linear form")
     family = family_of(middle, box)
     if family is None or not family.is_rational:

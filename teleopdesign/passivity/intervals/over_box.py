@@ -11,9 +11,9 @@ from ...diagrams.units import first_axis, unit_of_value
 from ...errors import ModelError
 from ...expectations import described
 from ..claims.axis_units import in_rotary_units
-from ..ports import judged, nonlinear_parts, ports, without_holding
+from ..ports import judged, ports, without_holding
 from .at_points import judge_at_points
-from .box import box_of
+from .box import box_of, nonlinear_within
 from .friction import judge_friction
 from .interval_claim import IntervalClaim, Parts
 from .linear import CLAIMS, judge_linear, judge_stability
@@ -55,7 +55,7 @@ def claim_over_intervals(
     at = ports(alone)
     if len(at) > 2 or (claim == "absolutely stable" and len(at) != 2):
         raise ModelError(f'{diagram.name}: "{claim}" is for two ports at most, found {len(at)}')
-    if nonlinear_parts(alone):
+    if nonlinear_within(without_holding(middle), box):
         return _finish(diagram, intervals, judge_friction(without_holding(middle), box, claim))
     return _finish(
         diagram, intervals, judge_linear(without_holding(middle), box, claim, points, seed)
@@ -68,7 +68,7 @@ def _finish(
     """With every value that was given, in units of the axis."""
     given_values = {n: float(a) for n, (a, _) in intervals.items()}
     worst = {n: made["worst"].get(n, v) for n, v in given_values.items()}
-    within = ", ".join(f"{n} {a:g} to {b:g}" for n, (a, b) in intervals.items())
+    within = ", ".join(f"{n} {float(a):g} to {float(b):g}" for n, (a, b) in intervals.items())
     axis = first_axis(diagram)
     turned = in_rotary_units if axis == "revolute" else str
     unit = turned(f"1 {made['unit']}")[2:]

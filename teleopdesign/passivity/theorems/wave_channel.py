@@ -112,11 +112,14 @@ def wave_claim(diagram: Diagram) -> Claim:
 
     Hand and environment are no part of what is judged. Coulomb friction may be there beside the
     impedances: its force is against the velocity, so that it takes energy.
-    raises ModelError: another wiring, a block without values, two wave impedances that differ
+    raises ModelError: another wiring, a block without values, two wave impedances that differ, a
+        slave's controller that is not linear
     """
     alone = without_holding(judged(diagram))
     wave_impedance = _wave_impedance(alone)
     linear = linear_blocks(alone)
+    if "P" in linear.left_out:
+        raise ModelError(f"{diagram.name}: P has no linear form")
     claim = wave_teleoperator(
         master=linear.blocks["Z_m"] / S,
         slave=linear.blocks["Z_s"] / S,
