@@ -6,6 +6,7 @@ of several bodies' where it acts on several through fixed lever arms.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -65,11 +66,14 @@ def _said(weight: float | sp.Expr) -> str:
 def judged(diagram: Diagram) -> Diagram:
     """The diagram with effects left out that are absent at their values.
 
-    raises ModelError: a block is known by its name only
+    raises ModelError: a block is known by its name only, or a value that is left is infinite
     """
     for part in diagram.bodies:
         if isinstance(part.body, Body):
             diagram = diagram.with_block(part.name, without_absent(part.body))
+    for name, value in diagram.values.items():
+        if not math.isfinite(value):
+            raise ModelError(f"{diagram.name}: {name} is {value}: a claim needs finite numbers")
     linear_blocks(diagram)
     return diagram
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from devices import body
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
@@ -94,3 +95,13 @@ def test_a_sampled_compensator_within_the_level_is_passive_too():
 def test_a_stroke_that_makes_no_sense_is_refused():
     with pytest.raises(ModelError, match="stroke and speed > 0"):
         searched(joint(0.5, None), stroke=0.0)
+
+
+def test_evidence_says_what_a_motion_that_does_not_return_would_keep():
+    """A spring that pushes away from its middle gives 1/2 K x^2 and takes it back: 0.2 J at 2 cm."""
+    pushes = controller("spring_damper", {"stiffness": 1000.0, "damping": 0.0})
+    diagram = haptic_interface(body(0.3, viscous__damping=2.0), cancellation=pushes)
+    rng = np.random.default_rng(1)
+    claim = search_counterexample(diagram, stroke=0.02, speed=0.1, rng=rng, tries=3)
+    assert claim.status == "evidence" and "that returns" in claim.statement
+    assert "on the way back to its start one gives out 0." in claim.verdict.searched

@@ -292,3 +292,9 @@ def test_a_diagram_that_is_not_linear_has_no_linear_claim():
     diagram = haptic_interface(device)
     (one,) = linear_claims(diagram, ports(diagram))
     assert one.claim.status == "unknown" and "not linear: Z_M.coulomb" in str(one.claim)
+
+
+def test_an_infinite_value_is_refused_in_one_line():
+    device = td.Body("prismatic", {"inertia": np.inf})
+    with pytest.raises(ModelError, match="Z_M.inertia is inf: a claim needs finite numbers"):
+        diagram_claims(haptic_interface(device), rng=np.random.default_rng(0))
