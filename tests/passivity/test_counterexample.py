@@ -98,7 +98,7 @@ def test_a_stroke_that_makes_no_sense_is_refused():
 
 
 def test_evidence_says_what_a_motion_that_does_not_return_would_keep():
-    """A spring that pushes away from its middle gives 1/2 K x^2 and takes it back: 0.2 J at 2 cm."""
+    """A spring that pushes away gives 1/2 K x^2, 0.2 J at 2 cm, and takes it back."""
     pushes = controller("spring_damper", {"stiffness": 1000.0, "damping": 0.0})
     diagram = haptic_interface(body(0.3, viscous__damping=2.0), cancellation=pushes)
     rng = np.random.default_rng(1)
