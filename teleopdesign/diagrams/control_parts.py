@@ -96,15 +96,7 @@ def plant_parts(
     """
     import control
 
-    if (system.ninputs, system.noutputs) != (1, 1) or system.isdtime(strict=True):
-        raise ModelError(
-            f"{name}: expected a plant of one input and output in continuous time: see "
-            "`coupled_plant_parts` for others"
-        )
-    if not isinstance(system, control.TransferFunction | control.StateSpace):
-        raise ModelError(
-            f"{name}: expected a transfer function or a state space: fit one to what was measured"
-        )
+    _check_plant(system, name)
     s = sp.Symbol("s")
     # exact: python-control's own conversion of matrices leaves zeros far out
     form = from_control(system, name="plant").linear_form(name, s, sp.S(0))
@@ -142,3 +134,18 @@ def plant_parts(
     return (Moving(name, body, motion, whole_command.output, forces, driver), block), (
         whole_command,
     )
+
+
+def _check_plant(system: control.LTI, name: str) -> None:
+    """ModelError unless it is a rational system of one axis in continuous time."""
+    import control
+
+    if (system.ninputs, system.noutputs) != (1, 1) or system.isdtime(strict=True):
+        raise ModelError(
+            f"{name}: expected a plant of one input and output in continuous time: see "
+            "`coupled_plant_parts` for others"
+        )
+    if not isinstance(system, control.TransferFunction | control.StateSpace):
+        raise ModelError(
+            f"{name}: expected a transfer function or a state space: fit one to what was measured"
+        )
