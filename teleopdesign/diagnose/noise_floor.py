@@ -4,8 +4,7 @@ The readings are made anew: the smoothed motion is read off by an encoder of the
 random zero, and the stated noise is drawn. By how much that changes the residual is the floor; the
 directions of motion stay those that the record's own readings told.
 Where no resolution is stated, steps and noise of all channels are estimated from the readings, from
-their content near the Nyquist frequency, and the answer says so; so is the noise of a measured
-force of whose sensor nothing is stated.
+their content near the Nyquist frequency, and the answer says so.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from .error import error_of
 from .error_at_command import at_command
 from .prepare import Prepared, Stretch
 from .residual import residuals
-from .sensors import is_seen, sensor_of
+from .sensors import sensor_of
 
 #: records drawn anew per floor; its spread from draw to draw is a few percent
 DRAWS = 3
@@ -77,8 +76,6 @@ def noise_floor(
         again = zip(at_command(model, drawn).residual, command_before, strict=True)
         command_errors.append(error_of(drawn, [r - r0 for r, r0 in again]))
     source = "stated resolution and noise" if stated else "step and noise seen in the readings"
-    if stated and any(is_seen(c) for c in channels.values()):
-        source += ", of forces as seen in the readings"
     left = float(np.sqrt(np.mean(np.square(errors))))
     back = float(np.sqrt(np.mean(np.square(command_errors)))) / left if left else 1.0
     # a law that weakens what it passes makes more of sensor noise, one that amplifies it less; what

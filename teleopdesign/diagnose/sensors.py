@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..measurement.channel import Channel
 from ..measurement.encoder import reading_noise, reading_step
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
@@ -28,25 +27,13 @@ class Sensor:
         return self.step * np.round(read / self.step + generator.uniform(-0.5, 0.5))
 
 
-def is_seen(channel: Channel) -> bool:
-    """Whether a force was measured by a sensor of which nothing is stated.
-
-    A command is known as it was given; what a position's encoder does says nothing of a force.
-    """
-    force = channel.quantity == "interaction_force" or channel.measured
-    return force and channel.noise is None and channel.resolution is None
-
-
 def sensor_of(experiment: Experiment, name: str, readings: Array) -> Sensor:
     """The sensor of a channel ("device.position"), as stated.
 
-    Where no resolution of its body's position is stated: as seen in these readings (n,). So is the
-    noise of a force that was measured, where nothing is stated of its sensor.
+    Where no resolution of its body's position is stated: as seen in these readings (n,).
     """
     channel = experiment.channels[name]
     step, noise = channel.resolution or 0.0, channel.noise or 0.0
-    if is_seen(channel):
-        noise = reading_noise(readings)
     if experiment.channels[f"{channel.body}.position"].resolution is None:
         noise = noise or reading_noise(readings)
         # levels of a force may be commanded ones; those of a position are its encoder's

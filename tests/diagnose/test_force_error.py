@@ -136,32 +136,6 @@ def test_the_floor_is_what_step_and_noise_leave_on_the_true_motion(effect, seed,
     assert 0.65 < floor.value / truth["noise_floor"] < 1.3
 
 
-def test_the_noise_of_a_measured_force_is_seen_where_nothing_is_stated_of_its_sensor(experiment):
-    (name,) = (n for n in experiment.channels if n.endswith("actuator_force"))
-    rng = np.random.default_rng(2)
-    size = 0.1 * float(np.std(experiment.records[0].signals[name]))
-
-    def noisy(record):
-        force = record.signals[name]
-        signals = {**record.signals, name: force + size * rng.standard_normal(len(force))}
-        return replace(record, signals=signals)
-
-    def logged(**of_channel):
-        channels = {**experiment.channels}
-        channels[name] = replace(channels[name], **of_channel)
-        return replace(experiment, records=tuple(map(noisy, experiment.records)), channels=channels)
-
-    def floor_of(records):
-        fit = estimate_from_starts(Model.from_experiment(records), prepare(records))
-        return noise_floor(fit.model, prepare(records), np.random.default_rng(0))
-
-    seen, stated = floor_of(logged(measured=True)), floor_of(logged(measured=True, noise=size))
-    commanded = floor_of(logged())
-    assert seen.value == pytest.approx(stated.value, rel=0.1)
-    assert commanded.value < 0.7 * seen.value
-    assert "as seen" in seen.source and "as seen" not in stated.source + commanded.source
-
-
 @pytest.mark.parametrize("seed", [1, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3))])
 def test_a_right_model_lies_at_its_floor(seed, tmp_path):
     folder = write_own(tmp_path / "case", None, seed=seed)
