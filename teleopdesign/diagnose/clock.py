@@ -2,24 +2,69 @@
 
 Estimated on the fit records beside a model that lacks much, a shift may take up a part of what is
 missing, as a wrong effect would. Like an effect it must not raise the error on the check records.
+
+A shift that ends at its bound describes a part of a dead time that is longer than a logger's. Where
+a dead time in its place surely leaves less on the check records, all of it is physics, and the
+shift is held at none: the candidates are held against the model without it. Otherwise what a shift
+at its bound leaves may be too little for a search, and a late actuator passes for an adequate one.
 """
 
 from __future__ import annotations
 
 from ..blocks import Value
+from ..model import Model
+from .candidates import measured_at
+from .criteria import CRITERIA
+from .evidence import check_score
 from .fit import Fit, estimate
 from .prepare import Prepared
+from .record_shift import shifts_of
+from .simulated_course import dead_times
+
+#: what holds a shift at none
+HELD = Value(0.0, fixed=True)
 
 
 def with_paying_shift(fit: Fit, prepared: Prepared) -> Fit:
     """The fit with each body's shift estimated, or held at none, whichever leaves less unseen.
 
+    One at its bound is held at none too where it stands for a dead time.
     fit: with shifts of either kind;  returns: the fit itself where the other kind leaves no less
     """
     for place, late in fit.model.record_shift.items():
-        other = Value(0.0) if late.fixed else Value(0.0, fixed=True)
-        shifts = {**fit.model.record_shift, place: other}
-        again = estimate(fit.model.with_record_shift(shifts), prepared)
+        again = _with_shift(fit, place, Value(0.0) if late.fixed else HELD, prepared)
         if again.check_error < fit.check_error:
             fit = again
+    for shift in shifts_of(fit.model, prepared.stretches):
+        if shift.at_bound and shift.late < 0.0 and _stands_for_a_delay(fit, shift.at, prepared):
+            fit = _with_shift(fit, shift.at, HELD, prepared)
     return fit
+
+
+def _with_shift(fit: Fit, place: str, shift: Value, prepared: Prepared) -> Fit:
+    """The fit of the same model with another kind of shift of one body's records."""
+    shifts = {**fit.model.record_shift, place: shift}
+    return estimate(fit.model.with_record_shift(shifts), prepared)
+
+
+def _stands_for_a_delay(fit: Fit, place: str, prepared: Prepared) -> bool:
+    """Whether a dead time in the place of a shift at its bound surely leaves less unseen."""
+    late = _with_dead_time(fit.model, place, prepared)
+    return late is not None and check_score(fit, estimate(late, prepared)) > CRITERIA.sure
+
+
+def _with_dead_time(model: Model, place: str, prepared: Prepared) -> Model | None:
+    """The model with the shift as a dead time of the actuator; None where none could be missing."""
+    body = model.body(place)
+    if dead_times(body) or place in measured_at(prepared.experiment):
+        return None
+    for effect in model.known.values():
+        if effect.role != "actuation" or body.lacks(effect) or body.axis in effect.elsewhere:
+            continue
+        late = model.with_effect(effect, at=place)
+        names = dead_times(late.body(place))
+        if len(names) == 1:
+            shifts = {**model.record_shift, place: Value(0.0)}
+            dead_time = {f"{place}.{names[0]}": -model.command_late(place)}
+            return late.with_values(dead_time).with_record_shift(shifts)
+    return None

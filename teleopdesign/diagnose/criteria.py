@@ -60,6 +60,13 @@ class Criteria:
     hidden: float = 0.1
     #: part of the squares of velocity near a tone above which the motion itself may have brought it
     tone_in_motion: float = 0.01
+    #: the same at a frequency of the mains: a hum moves the machine by itself (0.03 to 0.12 of the
+    #: squares on drawn cases). A quarter: above, the motion was driven at it. Lower: a hum is named
+    #: a tip that rings; higher: what was driven at the mains' frequency passes for a hum
+    hum_in_motion: float = 0.25
+    #: part by which a tone may lie beside the mains: frequencies of networks and clocks of loggers
+    #: are off by less. Higher: a resonance near by passes for a hum
+    mains_within: float = 0.004
     #: part of the check squares that a tone must take to be tried as a force: as `relevant`
     tone_heard: float = 0.03
     #: probability of an effect that was accepted with nothing but noise left: of 74 on simulated

@@ -286,7 +286,7 @@ def solve(
     p, lasts = len(free), sum(s.weight * len(s.keep) * s.row for s in stretches)
     shifts = record_shifts(stretches, round(lasts / BLOCK), model)
     lower = np.append(space.lower, np.full(len(shifts.bodies), -LARGEST))
-    upper = np.append(space.upper, np.full(len(shifts.bodies), LARGEST))
+    upper = np.append(space.upper, shifts.latest)
     start = np.append(space.start, shifts.start(model))
     names = (*free, *shifts.names)
     evaluated = body_by_body(model, names, stretches, tolerance=effort.tolerance)

@@ -16,6 +16,7 @@ from .moves import add, remove
 from .pairs import add_pair, replace_by_pair
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan
+from .straight import straighten
 
 
 def find_missing(
@@ -79,14 +80,16 @@ def climb(
 def next_move(search: LadderSearch, state: LadderState) -> LadderState | None:
     """The state after the next move; None: the ladder ends here.
 
-    Where no effect is supported alone and more than a tone is left, a pair is sought, then an
-    exchange, then a pair in place of all rungs.
+    Where no effect is supported alone, a straight line is tried in place of bends; then, where more
+    than a tone is left, a pair is sought, then an exchange, then a pair in place of all rungs.
     """
     if state.step > search.plan.most_effects:
-        return None
+        return straighten(search, state)
     added = add(search, state)
     if added is not None:
         return remove(search, added) or added
+    if (straight := straighten(search, state)) is not None:
+        return straight
     if is_a_tone(state.fit, state.tone, state.floor, criteria=search.criteria):
         return None
     if state.set_aside:  # pairs and exchanges were sought before, beside what was set aside

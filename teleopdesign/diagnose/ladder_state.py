@@ -86,6 +86,7 @@ class LadderState:
     ranking: all candidates beside the last rung;  tone: the best tone from outside there
     supported: candidates that the records support, in the order of the ranking
     exchanges: how many were made;  replaced: whether a pair took the place of all rungs once
+    straightened: whether a straight line took the place of forces of the place once
     came_back: effects (name, place) that were given up for another once, or came back beside it:
         none of them gives way again, so that two effects cannot take turns
     set_aside: effects that were accepted and are not there by the errors that the answer would
@@ -100,6 +101,7 @@ class LadderState:
     supported: tuple[Ranked, ...]
     exchanges: int = 0
     replaced: bool = False
+    straightened: bool = False
     came_back: frozenset[tuple[str, str]] = frozenset()
     set_aside: tuple[SetAside, ...] = ()
 

@@ -5,6 +5,9 @@ there moves so without any force, and effects that are not there can stand in fo
 effect counts only if it leaves surely less than a plain tone does, where motion holds next to
 nothing at the tone's frequency that could have brought it about, nor its direction or its size.
 
+Hum of the mains moves the machine itself, so that its motion holds the tone all the same. Its
+frequency gives it away: there the tone is held against effects unless the motion is mostly that.
+
 A body that sticks shows nothing of the tone, for its friction balances it: so the tone is taken
 both off the residual and as a force on the body, whichever leaves less.
 """
@@ -18,6 +21,7 @@ import numpy as np
 from scipy import fft
 from scipy.optimize import minimize_scalar
 
+from ..effects import MAINS
 from ..measurement.filtering import Array
 from ..model import Model
 from .criteria import CRITERIA
@@ -65,9 +69,8 @@ def best_tone(fitted: Fit, prepared: Prepared) -> Tone:
         fit_parts = [(s, r) for s, r in zip(fit, before, strict=True) if s.motion.body == body]
         check_parts = [(s, r) for s, r in zip(check, after, strict=True) if s.motion.body == body]
         frequency = _frequency(fit_parts)
-        if frequency > 0 and all(
-            _share(s, frequency) < CRITERIA.tone_in_motion for s, _ in fit_parts + check_parts
-        ):
+        most = CRITERIA.hum_in_motion if is_of_mains(frequency) else CRITERIA.tone_in_motion
+        if frequency > 0 and all(_share(s, frequency) < most for s, _ in fit_parts + check_parts):
             left = [
                 _without(s, r, frequency) if s.motion.body == body else r
                 for s, r in zip(check, after, strict=True)
@@ -77,6 +80,12 @@ def best_tone(fitted: Fit, prepared: Prepared) -> Tone:
                 tones.append(Tone(_beside_a_force(fitted, prepared, body, frequency)))
             least = min(tones, key=lambda tone: tone.squares)
     return least
+
+
+def is_of_mains(frequency: float) -> bool:
+    """Whether a frequency (Hz) is the mains' or twice it, as rectifiers and magnets have it."""
+    tones = [n * mains for mains in MAINS for n in (1, 2)]
+    return any(abs(frequency - tone) <= CRITERIA.mains_within * tone for tone in tones)
 
 
 def _beside_a_force(fit: Fit, prepared: Prepared, body: str, frequency: float) -> Array:

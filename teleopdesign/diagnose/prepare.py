@@ -45,6 +45,7 @@ class Stretch(ByValue):
     measured: sum of squares of the low-passed measured force over the rows that count
     offset_names: in which the record may differ from the others
     shared: of an arm's joint, what takes the freedom of the links out of residuals; None: nothing
+    force_is_sensed: whether the actuator's force was measured, not commanded
     """
 
     motion: Motion
@@ -54,6 +55,7 @@ class Stretch(ByValue):
     measured: float
     offset_names: frozenset[str] = frozenset()
     shared: Shared | None = None
+    force_is_sensed: bool = False
 
     @property
     def row(self) -> float:
@@ -120,8 +122,10 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
             )
         for body in experiment.bodies:
             channel = experiment.channels[f"{body}.position"]
+            sensed = experiment.channels[f"{body}.actuator_force"].measured
             for motion in motions(record, body, bandwidth=chosen, resolution=channel.resolution):
-                stretches.append(stretch_of(motion, record.use, chosen, record.offset_names))
+                stretch = stretch_of(motion, record.use, chosen, record.offset_names)
+                stretches.append(replace(stretch, force_is_sensed=sensed))
     if not any(s.use == "fit" for s in stretches):
         raise ExperimentError(f"{experiment.folder.name}: fit records: no stretch of 0.6 s or more")
     return Prepared(experiment, chosen, tuple(stretches))

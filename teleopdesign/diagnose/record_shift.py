@@ -16,6 +16,9 @@ by much more than a row. Normally distributed, the shift adds a row to the resid
 
 for that makes the least squares the most probable values, r having an unknown size: -2 log p =
 n log |r|^2 + (d / s)^2. Standard errors of all else hold what is left open of the shift.
+
+A force that was measured may be late by more: its sensor, or what fed it back, may filter. No
+physics acts before its own force, so that is no missing effect, but structures would imitate it.
 """
 
 from __future__ import annotations
@@ -42,6 +45,10 @@ SPREAD = 0.5
 #: samples by which a record may be off: one row, and a tenth for the errors of an estimate there.
 #: What is late by more is a delay
 LARGEST = 1.1
+#: s, the same two of a force that was measured, and not commanded, where they are more than those:
+#: its sensor may filter, and what a low-pass of 15 Hz passes is 11 ms late. Lower: the filter of a
+#: sensor is called a compliance; higher: a compliance with large damping is called a filter
+SENSOR_SPREAD, SENSOR_LATEST = 0.005, 0.05
 
 
 @dataclass(frozen=True)
@@ -50,11 +57,14 @@ class RecordShifts:
 
     bodies: those with a command that changes;  row: s between samples, of each;  count: n above
     held: (k,) whether the shift is held at none; what is left open of it stays in standard errors
+    spread: (k,) samples, standard deviation of what is known beforehand;  latest: (k,) samples
     """
 
     bodies: tuple[str, ...]
     row: Array
     count: int
+    spread: Array
+    latest: Array
     held: NDArray[np.bool_]
 
     @property
@@ -66,7 +76,7 @@ class RecordShifts:
         """The model's shifts, in samples (k,); none where one is held."""
         late = np.array([model.command_late(body) for body in self.bodies])
         late = np.where(self.held, 0.0, late)
-        return np.clip(late / self.row, -LARGEST, LARGEST)
+        return np.clip(late / self.row, -LARGEST, self.latest)
 
     def beside(self, model: Model, samples: Array, errors: Array | None = None) -> Model:
         """The model with these shifts, in samples, and their standard errors."""
@@ -85,9 +95,9 @@ class RecordShifts:
         jacobian: (n, p + k) of the residual (n,), the shifts (in samples) last
         """
         size = max(float(np.linalg.norm(residual)), 1e-300)
-        part = 1.0 / (SPREAD * np.sqrt(self.count))
+        part = 1.0 / (self.spread * np.sqrt(self.count))
         slope = np.outer(samples * part, residual @ jacobian / size)
-        slope[:, jacobian.shape[1] - len(samples) :] += size * part * np.eye(len(samples))
+        slope[:, jacobian.shape[1] - len(samples) :] += size * np.diag(part)
         return size * part * samples, slope
 
     def observed(
@@ -100,7 +110,7 @@ class RecordShifts:
         k = len(self.bodies)
         size = float(np.linalg.norm(residual)) / np.sqrt(self.count)
         rows = np.zeros((k, jacobian.shape[1]))
-        rows[:, jacobian.shape[1] - k :] = size / SPREAD * np.eye(k)
+        rows[:, jacobian.shape[1] - k :] = np.diag(size / self.spread)
         first = int(blocks.max(initial=-1)) + 1
         return (
             np.vstack([jacobian, rows]),
@@ -117,12 +127,22 @@ def record_shifts(
     model: whose shifts that are fixed are held at none
     """
     row: dict[str, float] = {}
+    sensed: dict[str, bool] = {}
     for s in stretches:
         if np.ptp(s.motion.command) > 0.0:
             row[s.motion.body] = min(s.row, row.get(s.motion.body, np.inf))
+            sensed[s.motion.body] = s.force_is_sensed
     late = {} if model is None else model.record_shift
     held = np.array([body in late and late[body].fixed for body in row], dtype=bool)
-    return RecordShifts(tuple(row), np.array(list(row.values())), max(count, 1), held)
+    rows, by_sensor = np.array(list(row.values())), np.array(list(sensed.values()), dtype=float)
+    return RecordShifts(
+        tuple(row),
+        rows,
+        max(count, 1),
+        np.maximum(SPREAD, by_sensor * SENSOR_SPREAD / rows),
+        np.maximum(LARGEST, by_sensor * SENSOR_LATEST / rows),
+        held,
+    )
 
 
 #: rows and standard errors from which a command that acts late is said to be like a delay
@@ -134,6 +154,7 @@ class RecordShift:
     """By how much the log of a body's command is late, as a fitted model has it.
 
     late, stderr: s;  row: s between samples;  may_delay: whether the model has a dead time there
+    latest: s by which the log of the force may be late
     """
 
     at: str
@@ -141,11 +162,13 @@ class RecordShift:
     stderr: float
     row: float
     may_delay: bool
+    latest: float
 
     @property
     def at_bound(self) -> bool:
         """Whether the command is off by as much as a logger may be, or more."""
-        return abs(self.late) >= 0.999 * LARGEST * self.row
+        most = self.latest if self.late > 0.0 else LARGEST * self.row
+        return abs(self.late) >= 0.999 * most
 
     @property
     def is_like_a_delay(self) -> bool:
@@ -161,6 +184,8 @@ class RecordShift:
         text += f" ({1e3 * self.late:.3g} ms)"
         if self.at_bound:
             return f"{text}, at its bound: what is beyond a row counts as physics"
+        if self.late > LARGEST * self.row:
+            return f"{text}; the force was measured, and a filter of its sensor does so"
         if self.is_like_a_delay:
             return f"{text}; a delay of less than a row looks the same"
         return text
@@ -176,8 +201,9 @@ def shifts_of(model: Model, stretches: Sequence[Stretch]) -> tuple[RecordShift, 
             stderr=model.record_shift[body].stderr,
             row=float(row),
             may_delay=bool(dead_times(model.body(body))),
+            latest=float(row * latest),
         )
-        for body, row in zip(bodies.bodies, bodies.row, strict=True)
+        for body, row, latest in zip(bodies.bodies, bodies.row, bodies.latest, strict=True)
         if body in model.record_shift and not model.record_shift[body].fixed
     )
 

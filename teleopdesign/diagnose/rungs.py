@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from ..errors import ModelError
 from ..model import Model
+from .candidates import Candidate
 from .fit import Fit, estimate
 from .prepare import Prepared
 from .rank import ranked
@@ -56,23 +57,29 @@ def falling(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, ...] | Non
         first = Rung(
             masking.added,
             alone,
-            _ranked_alone(before, masking, alone, prepared),
+            ranking_alone(before, masking.added, alone, prepared, instead_of=masking.instead_of),
             replaced=masking.replaced,
         )
         second = Rung(
             masked.added,
             masking.fit,
-            _ranked_alone(alone, masked, masking.fit, prepared),
+            ranking_alone(alone, masked.added, masking.fit, prepared, instead_of=masked.instead_of),
             replaced=masked.replaced,
         )
         order = (*order[:rise], first, second, *order[rise + 2 :])
     return None
 
 
-def _ranked_alone(base: Fit, rung: Rung, fit: Fit, prepared: Prepared) -> Ranking:
+def ranking_alone(
+    base: Fit,
+    candidate: Candidate,
+    fit: Fit,
+    prepared: Prepared,
+    *,
+    instead_of: Candidate | None = None,
+) -> Ranking:
     """The ranking of one candidate that was fitted already."""
-    assert rung.added is not None
-    alone = ranked(base, rung.added, fit, prepared=prepared, instead_of=rung.instead_of)
+    alone = ranked(base, candidate, fit, prepared=prepared, instead_of=instead_of)
     return Ranking(base, (alone,))
 
 

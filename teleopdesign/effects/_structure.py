@@ -82,7 +82,7 @@ def make_structure(
         absent={"tip_inertia": 0.0},
         energy=energy,
         linear=linear,
-        plausible=plausible or _tip_is_part,
+        plausible=plausible or tip_is_part,
         untold=untold,
         source=source,
     )
@@ -102,7 +102,7 @@ def rings_like_a_hum(p: Any, facts: RecordFacts) -> str | None:
     )
 
 
-def _tip_is_part(p: Any, facts: RecordFacts) -> str | None:
+def tip_is_part(p: Any, facts: RecordFacts) -> str | None:
     """Whether the tip is a part of the body, whose inertia counts both sides."""
     whole = facts.body["inertia"]
     if p.tip_inertia < whole:

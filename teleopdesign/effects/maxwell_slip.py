@@ -12,6 +12,10 @@ from ._effect import Effect, FitSearch, Parameter, State
 from ._elements import MORE, softest_first
 from ._facts import slip_is_seen
 
+#: part of the level from which an element is held against the travel: one that carries less is of
+#: no consequence, wherever a fit leaves its stiffness
+CARRIES = 0.05
+
 
 def law(now, p):
     return sum(getattr(now, f"force_{i}") for i in (1, *MORE))
@@ -32,9 +36,17 @@ def of_element(i, quantity, meaning, *starts):
 
 def plausible(p, facts):
     slips = {i: getattr(p, f"level_{i}") for i in MORE}
-    slips[1] = facts.body["coulomb.level"] - sum(slips.values())
-    ways = [slips[i] / getattr(p, f"stiffness_{i}") for i in slips if slips[i] > 0.0]
-    return slip_is_seen("its softest element", ways, facts)
+    slips[1] = (level := facts.body["coulomb.level"]) - sum(slips.values())
+    ways = {i: slips[i] / getattr(p, f"stiffness_{i}") for i in slips if slips[i] > 0.0}
+    softest = max((i for i in ways if slips[i] > CARRIES * level), key=ways.__getitem__, default=0)
+    if softest and 2.0 * ways[softest] > facts.travel > max(ways.values()):
+        stiffness = facts.text(getattr(p, f"stiffness_{softest}"), "stiffness")
+        return (
+            f"its softest element, {stiffness} up to {facts.text(slips[softest], 'force')}, slips "
+            f"one way only within the travel of {facts.text(facts.travel, 'position')}: no loop "
+            "is seen, and it stands for a spring"
+        )
+    return slip_is_seen("its softest element", list(ways.values()), facts)
 
 
 EFFECT = Effect(

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from diagnose.made_records import write_made
+from diagnose.own_cases import write_own
 
 import teleopdesign as td
 from teleopdesign.diagnose import ladder, ladder_state
@@ -12,7 +13,7 @@ from teleopdesign.diagnose.decision import is_a_tone
 from teleopdesign.diagnose.evidence import check_squares
 from teleopdesign.diagnose.fit import estimate, weighted
 from teleopdesign.diagnose.noise_floor import NoiseFloor
-from teleopdesign.diagnose.outside_tone import Tone, _tone_squares, best_tone
+from teleopdesign.diagnose.outside_tone import Tone, _tone_squares, best_tone, is_of_mains
 from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.search import estimate_from_starts
@@ -126,6 +127,19 @@ def test_a_tone_above_the_band_is_as_strong_as_what_the_band_shows_of_it_says(ro
     hummed = replace(prepared, stretches=tuple(driven(s) for s in prepared.stretches))
     before = estimate(found.model, hummed)
     assert best_tone(before, hummed).squares == pytest.approx(check_squares(found), rel=0.05)
+
+
+def test_frequencies_of_the_mains_are_told_from_those_beside_them():
+    assert all(is_of_mains(f) for f in (49.95, 50.0, 60.1, 100.0, 120.2))
+    assert not any(is_of_mains(f) for f in (0.0, 25.0, 47.9, 51.0, 58.8, 150.0))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [2, 6])
+def test_a_hum_that_moves_the_machine_is_no_tip_that_rings(tmp_path, seed):
+    folder = write_own(tmp_path / "case", "outside_hum", seed=seed, level="outside")
+    among = ["transmission_compliance", "backlash"]
+    assert not td.find_missing(td.load_experiment(folder), among=among).missing
 
 
 def test_what_leaves_as_much_as_a_tone_does_not_beat_it(rod):

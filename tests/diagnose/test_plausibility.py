@@ -34,6 +34,7 @@ FACTS = RecordFacts(
         "coulomb.level": 0.5,
         "viscous.damping": 0.2,
         "transmission_compliance.stiffness": 10.0,
+        "gravity.phase": 0.3,
     },
     # three turns of one sine about zero
     places=0.5 * np.sin(2 * np.pi * TIME),
@@ -49,7 +50,11 @@ SAID = {
     "viscous_asymmetry": ({"half_difference": -0.1}, {"half_difference": 0.3}, "another force"),
     "coulomb_asymmetry": ({"half_difference": -0.1}, {"half_difference": -0.6}, "a constant force"),
     "transmission_compliance": ({"tip_inertia": 0.05}, {"tip_inertia": 0.2}, "late"),
-    "backlash": ({"tip_inertia": 0.05}, {"tip_inertia": 0.2}, "late"),
+    "backlash": (
+        {"tip_inertia": 0.05, "stiffness": 10.0, "gap": 0.1},
+        {"tip_inertia": 0.2, "stiffness": 10.0, "gap": 0.1},
+        "late",
+    ),
     "maxwell_slip": (
         {**ELEMENTS, "stiffness_1": 50.0, "stiffness_2": 9.0},
         {**ELEMENTS, "stiffness_1": 3e6, "stiffness_2": 3e6},
@@ -110,6 +115,11 @@ UNTOLD = {
         {"amplitude": 2.0, "phase": 0.1},
         "a spring and a constant force give this torque within",
     ),
+    "position_dependent_friction": (
+        {"amplitude": 0.5, "period": 1.0, "phase": 0.0},
+        {"amplitude": 0.5, "period": 2.0, "phase": -0.2 * np.pi},
+        "Another load",
+    ),
     "transmission_compliance": (
         {"tip_inertia": 0.02, "stiffness": 1000.0, "damping": 0.5},
         {"tip_inertia": 0.02, "stiffness": 2850.0, "damping": 0.5},
@@ -154,6 +164,24 @@ def test_a_slip_element_that_is_rigid_beside_one_that_gives_is_no_fault():
     assert plausible(SimpleNamespace(**one_gives), FACTS) is None
     none_slips = {**ELEMENTS, "stiffness_1": 0.01, "stiffness_2": 0.01}
     assert "a spring" in plausible(SimpleNamespace(**none_slips), FACTS)
+
+
+def test_an_element_that_slips_one_way_only_is_a_spring():
+    plausible = EFFECTS["maxwell_slip"].plausible
+    # gives by 0.6 rad before it slips, of a travel of 1 rad: a loop would take 1.2 rad
+    soft = {**ELEMENTS, "level_2": 0.3, "stiffness_2": 0.5, "stiffness_1": 50.0}
+    assert "a spring" in plausible(SimpleNamespace(**soft), FACTS)
+    assert plausible(SimpleNamespace(**{**soft, "stiffness_2": 0.7}), FACTS) is None
+    # what carries nothing is of no consequence
+    idle = {**soft, "level_2": 0.01, "stiffness_2": 0.016}
+    assert plausible(SimpleNamespace(**idle), FACTS) is None
+
+
+def test_a_gap_that_changes_next_to_no_force_is_none():
+    said = EFFECTS["backlash"].plausible(
+        SimpleNamespace(tip_inertia=0.05, stiffness=10.0, gap=1e-4), FACTS
+    )
+    assert "no plain spring" in said
 
 
 def test_tip_friction_that_never_lets_the_tip_go_is_a_spring():

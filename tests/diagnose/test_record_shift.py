@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from diagnose.own_cases import FEW, truth_of, write_own
+from scipy.signal import lfilter
 
 import teleopdesign as td
 from teleopdesign.check import check_experiment
@@ -15,6 +16,7 @@ from teleopdesign.diagnose.clock import with_paying_shift
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.record_shift import shifts_of
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
@@ -210,6 +212,34 @@ def test_a_shift_that_raises_the_error_on_unseen_records_is_held_at_none(adequat
     assert back.record_shift[place] == held.model.record_shift[place]
 
 
+@pytest.mark.parametrize("rows", [-1.36, -1.8])
+def test_a_shift_at_its_bound_that_a_dead_time_explains_better_is_no_clock(adequate, rows):
+    """Part of it would leave little more than noise, and nothing would be looked for."""
+    experiment = shifted(adequate, rows)
+    free = fitted(experiment)
+    assert rows_late(free, experiment)[0] == pytest.approx(-1.1, abs=1e-3)
+    held = with_paying_shift(free, prepare(experiment))
+    assert rows_late(held, experiment)[0] == 0.0
+    assert held.check_error > free.check_error
+
+
+def test_a_shift_of_a_row_stays_a_clock_where_a_dead_time_would_do_as_well(adequate):
+    experiment = shifted(adequate, -1.0)
+    kept = with_paying_shift(fitted(experiment), prepare(experiment))
+    assert rows_late(kept, experiment)[0] == pytest.approx(-1.0, abs=0.1)
+
+
+@pytest.mark.slow
+def test_a_delay_of_little_more_than_a_row_is_named(adequate):
+    late = shifted(adequate, -1.36)
+    diagnosis = td.find_missing(late, td.Model.from_experiment(late, FEW))
+    assert [c.effect.name for c in diagnosis.missing] == ["actuation_delay"]
+    (place,) = diagnosis.model.bodies
+    delay = diagnosis.model.parameters[f"{place}.actuation_delay.delay"]
+    whole = delay.value - diagnosis.model.command_late(place)
+    assert whole == pytest.approx(1.36 * late.records[0].sample_time, rel=0.02)
+
+
 def test_a_shift_that_was_held_is_estimated_again_where_it_pays(adequate):
     experiment = shifted(adequate, 1.0)
     free = fitted(experiment)
@@ -220,6 +250,41 @@ def test_a_shift_that_was_held_is_estimated_again_where_it_pays(adequate):
     again = with_paying_shift(held, prepare(experiment))
     assert again.check_error == pytest.approx(free.check_error, rel=1e-3)
     assert rows_late(again, experiment)[0] == pytest.approx(1.0, abs=0.1)
+
+
+def sensed(experiment, seconds, *, measured=True):
+    """The experiment with forces that a sensor filtered, by a first-order low-pass."""
+
+    def logged(record):
+        late = 1.0 - np.exp(-record.sample_time / seconds)
+        signals = {
+            n: lfilter([late], [1.0, late - 1.0], y) if n.endswith("_force") else y
+            for n, y in record.signals.items()
+        }
+        return replace(record, signals=signals)
+
+    channels = {
+        n: replace(c, measured=measured) if n.endswith("actuator_force") else c
+        for n, c in experiment.channels.items()
+    }
+    records = tuple(logged(r) for r in experiment.records)
+    return replace(experiment, records=records, channels=channels)
+
+
+@pytest.mark.parametrize("rows", [2.5, 6.0])
+def test_the_filter_of_a_force_sensor_is_no_physics(adequate, plain, rows):
+    experiment = sensed(adequate, rows * adequate.records[0].sample_time)
+    fit = fitted(experiment)
+    found, _ = rows_late(fit, experiment)
+    # what a low-pass does to slow signals is a delay by its time constant
+    assert found == pytest.approx(rows, rel=0.25)
+    commanded = fitted(sensed(adequate, rows * adequate.records[0].sample_time, measured=False))
+    assert fit.check_error < 0.7 * commanded.check_error
+    (shift,) = shifts_of(fit.model, prepare(experiment).stretches)
+    assert "filter of its sensor" in str(shift) and not shift.at_bound
+    (place,) = fit.model.bodies
+    inertia = plain.model.parameters[f"{place}.inertia"].value
+    assert fit.model.parameters[f"{place}.inertia"].value == pytest.approx(inertia, rel=0.05)
 
 
 def test_a_model_with_a_shift_is_written_and_read(plain):

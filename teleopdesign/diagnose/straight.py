@@ -1,0 +1,137 @@
+"""A straight line in place of bends that cancel.
+
+A cable, a bushing and a constant load together pull by a straight line of the place: `spring` and
+`bias`. A ladder adds one effect at a time, and a bend of two parameters, such as `gravity` over a
+part of a turn, does more than either of the two alone; the next effect then takes the bend away
+again. Where a ladder ends, the forces of the place that it added are held against the line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from itertools import combinations
+
+import sympy as sp
+
+from ..effects import SIGNALS, Effect, period
+from ..errors import ModelError
+from ..model import Model
+from .candidates import Candidate
+from .decision import is_better
+from .fit import Fit, estimate
+from .ladder_state import LadderSearch, LadderState
+from .moves import remove
+from .rung import Rung
+from .rungs import ranking_alone, refitted
+
+
+def straighten(search: LadderSearch, state: LadderState) -> LadderState | None:
+    """The ladder with a straight line for forces of the place that do no better; None: they do.
+
+    The line takes the place of effects with more parameters where these are not surely better, and
+    of effects with as many where the line is. Once in a ladder, so that the two cannot take turns.
+    """
+    if state.straightened:
+        return None
+    for bent in _bent_rungs(state):
+        moved = _with_line(search, state, bent)
+        if moved is not None:
+            return remove(search, moved) or moved
+    return None
+
+
+def _bent_rungs(state: LadderState) -> Iterator[tuple[Rung, ...]]:
+    """Accepted forces of one body's place, all together first."""
+    bent = [r for r in state.rungs if r.added is not None and is_bent(r.added.effect)]
+    for count in range(len(bent), 0, -1):
+        for some in combinations(bent, count):
+            if len({r.added.at for r in some if r.added is not None}) == 1:
+                yield some
+
+
+def _with_line(
+    search: LadderSearch, state: LadderState, bent: Sequence[Rung]
+) -> LadderState | None:
+    """The ladder with a line in the place of these rungs, where that is the simpler account."""
+    (at,) = {r.added.at for r in bent if r.added is not None}
+    body = state.fit.model.body(at)
+    straight = (e for e in state.fit.model.known.values() if is_straight(e))
+    gone = {one.candidate.key for one in state.set_aside}
+    line = [Candidate(e, at) for e in straight if not (body.has(e.name) or body.lacks(e))]
+    line = [c for c in line if c.key not in gone]
+    saved = sum(_required(r.added.effect) for r in bent if r.added is not None) - len(line)
+    if not line or saved < 0:
+        return None
+    fit = _exchanged(state.fit.model, bent, line, search)
+    if fit is None:
+        return None
+    floor, criteria = state.floor, search.criteria
+    if saved > 0:
+        as_good = not is_better(fit, state.fit, floor, criteria=criteria)
+    else:
+        as_good = is_better(state.fit, fit, floor, criteria=criteria)
+    if not as_good:
+        return None
+    first = next(i for i, r in enumerate(state.rungs) if r is bent[0])
+    before, after = state.rungs[:first], state.rungs[first:]
+    rungs = (*before, *_line_rungs(before[-1].fit, line, search))
+    rungs = (*rungs, *(r for r in after if all(r is not b for b in bent)))
+    order = refitted(rungs, fit, search.prepared)
+    if order is None:
+        return None
+    return replace(state.with_rungs(order), straightened=True)
+
+
+def _exchanged(
+    model: Model, bent: Sequence[Rung], line: Sequence[Candidate], search: LadderSearch
+) -> Fit | None:
+    """The fit with the line and without the bends; None: another effect needs one of these."""
+    try:
+        for rung in bent:
+            model = rung.taken_from(model)
+    except ModelError:
+        return None
+    for candidate in line:
+        model = model.with_effect(candidate.effect, at=candidate.at)
+    return estimate(model, search.prepared)
+
+
+def _line_rungs(base: Fit, line: Sequence[Candidate], search: LadderSearch) -> list[Rung]:
+    """A rung for each part of the line, the one that leaves less first."""
+    rungs: list[Rung] = []
+    left = list(line)
+    while left:
+        fits = [estimate(base.model.with_effect(c.effect, at=c.at), search.prepared) for c in left]
+        best = min(range(len(left)), key=lambda i: fits[i].check_error)
+        ranking = ranking_alone(base, left[best], fits[best], search.prepared)
+        rungs.append(Rung(left.pop(best), fits[best], ranking))
+        base = fits[best]
+    return rungs
+
+
+@lru_cache(maxsize=256)
+def _is_of_place(effect: Effect) -> bool:
+    """Whether an effect is a force that the place alone decides, at most."""
+    signals = effect.expression().free_symbols & set(SIGNALS.values())
+    return effect.role == "force" and not effect.states and signals <= {SIGNALS["position"]}
+
+
+def is_straight(effect: Effect) -> bool:
+    """Whether a force of one parameter is a straight line of the place, a constant among them."""
+    if not _is_of_place(effect) or len(effect.parameters) != 1 or effect.strength is None:
+        return False
+    return bool(sp.diff(effect.expression(), SIGNALS["position"], 2) == 0)
+
+
+def is_bent(effect: Effect) -> bool:
+    """Whether a force of the place is no straight line, nor seen to repeat with a period found."""
+    if not _is_of_place(effect) or isinstance(period(effect), str):
+        return False
+    return bool(sp.diff(effect.expression(), SIGNALS["position"], 2) != 0)
+
+
+def _required(effect: Effect) -> int:
+    """Parameters that must be estimated."""
+    return sum(not p.optional for p in effect.parameters.values())

@@ -1,0 +1,52 @@
+"""A spring with a neutral place of its own is no pendulum whose bend another effect undoes."""
+
+import numpy as np
+import pytest
+from diagnose.made_records import write_made
+
+import teleopdesign as td
+from teleopdesign.diagnose.straight import is_bent, is_straight
+from teleopdesign.effects import EFFECTS
+
+AMONG = ("gravity", "hardening_spring", "spring", "bias")
+USER = "coulomb = {}\nviscous = {}"
+
+
+def swings(amplitude, slow, fast):
+    return lambda t: amplitude * (np.sin(2 * np.pi * slow * t) + 0.1 * np.sin(2 * np.pi * fast * t))
+
+
+def diagnosed(folder, place_force):
+    """What is missing where this force of the place acts beside friction."""
+    records = {
+        "fit": [(20.0, swings(0.7, 0.21, 0.9)), (20.0, swings(0.35, 0.13, 0.7))],
+        "check": [(20.0, swings(0.6, 0.17, 0.8))],
+    }
+
+    def force(t, x, v):
+        return place_force(x) + 0.1 * np.tanh(v / 1e-3) + 0.02 * v
+
+    write_made(folder, records, force, effects=USER, step=1e-5, noise=0.004)
+    return td.find_missing(td.load_experiment(folder), among=AMONG)
+
+
+def test_bends_and_lines_are_told_by_their_laws():
+    assert {n for n, e in EFFECTS.items() if is_straight(e)} == {"bias", "spring"}
+    assert {n for n, e in EFFECTS.items() if is_bent(e)} == {"gravity", "hardening_spring"}
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "neutral"), [(0.6, 0.35), pytest.param(1.4, -0.5, marks=pytest.mark.slow)]
+)
+def test_a_spring_about_its_own_place_is_a_spring_and_a_constant(tmp_path, stiffness, neutral):
+    diagnosis = diagnosed(tmp_path / "line", lambda x: stiffness * (x - neutral))
+    assert {c.effect.name for c in diagnosis.missing} == {"bias", "spring"}
+    errors = [r.fit.check_error for r in diagnosis.rungs]
+    assert errors == sorted(errors, reverse=True)
+    value = diagnosis.model.parameters["device.spring.stiffness"].value
+    assert value == pytest.approx(stiffness, rel=0.02)
+
+
+def test_a_pendulum_whose_bend_is_seen_stays_one(tmp_path):
+    diagnosis = diagnosed(tmp_path / "pendulum", lambda x: 0.8 * np.sin(x + 0.4))
+    assert [c.effect.name for c in diagnosis.missing] == ["gravity"]
