@@ -8,7 +8,8 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from teleopdesign.plot.design import CASES, STYLE, TWO_COLUMNS
+from teleopdesign.plot.design import CASES, TWO_COLUMNS
+from teleopdesign.plot.letters import house_style
 
 BLACK, GREY, BLUE, ORANGE, GREEN = "#000000", "#999999", "#0072B2", "#D55E00", "#009E73"
 BANDS = {"no compensation": BLACK, "force feedback": ORANGE}
@@ -21,7 +22,7 @@ COMPENSATIONS = {
 
 def draw(data: xarray.Dataset, felt: dict[str, tuple[float, float]]) -> matplotlib.figure.Figure:
     """Three panels; felt: smallest and largest friction in any direction, N."""
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, (left, middle, right) = plt.subplots(
             1, 3, figsize=(TWO_COLUMNS, 3.0), width_ratios=(1.15, 1.15, 1)
         )

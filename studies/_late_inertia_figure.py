@@ -9,7 +9,8 @@ from _late_inertia import DAMPING
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from teleopdesign.plot.design import STYLE, TWO_COLUMNS
+from teleopdesign.plot.design import TWO_COLUMNS
+from teleopdesign.plot.letters import house_style
 
 BLACK, GREY = "#000000", "#999999"
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", BLACK)
@@ -17,7 +18,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", BLACK)
 
 def draw(data: xarray.Dataset) -> matplotlib.figure.Figure:
     """Four panels."""
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = plt.subplots(2, 2, figsize=(TWO_COLUMNS, 5.4))
         panels = (_given_out, _felt, _passive, _stable)
         for letter, axis, panel in zip("abcd", axes.flat, panels, strict=True):

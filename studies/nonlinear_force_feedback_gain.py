@@ -32,8 +32,9 @@ from _study import write_study
 
 from teleopdesign.diagrams import Diagram, four_cases, reading, world_haptics_2005
 from teleopdesign.frequency import delay_margin, loop_gain, measured_impedance
-from teleopdesign.plot.design import STYLE, TWO_COLUMNS
+from teleopdesign.plot.design import TWO_COLUMNS
 from teleopdesign.plot.frequency_axes import logarithmic
+from teleopdesign.plot.letters import house_style
 from teleopdesign.simulate import Trajectory, simulate
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ class TradeOff:
         """Delay margin against gain, residual friction and amplitude spread against b."""
         import matplotlib.pyplot as plt
 
-        with plt.style.context(STYLE):
+        with plt.style.context(house_style()):
             figure, axes = plt.subplots(1, 3, figsize=(TWO_COLUMNS, 2.5))
             self._margin(axes[0])
             self._residual(axes[1])

@@ -34,11 +34,13 @@ The names that a user types:
     passivity     diagram_claims, positive_real, Claim, Certificate
     errors        TeleopDesignError, ExperimentError, ModelError
 
-Every folder is there as well: `td.passivity`, `td.diagrams`, `td.frequency` ... A function is never
-named as a folder: the folder is `td.simulate`, the function `td.simulate_diagram`.
+Every folder is there as well: `td.passivity`, `td.diagrams`, `td.frequency` ... A folder named by a
+verb can be called: `td.diagnose` does what `td.find_missing` does, and so do `td.check`,
+`td.derive`, `td.design` and `td.simulate`.
 
 The folders, each importing only from those before it:
 
+    folder_calls  a folder named by a verb can be called
     arguments     what is given, held against the types declared (`expectations` beside it)
     frozen        mappings that nobody changes (by_value, recipes, users_files, notebook: see there)
     quantity      force, velocity ... -> unit on a prismatic or a revolute axis
@@ -73,6 +75,8 @@ from __future__ import annotations
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from .folder_calls import let_folders_be_called
 
 if TYPE_CHECKING:
     from . import app as app
@@ -347,6 +351,7 @@ _FOLDERS = (
     "unexplained",
 )
 __version__ = "0.1.0"
+let_folders_be_called(__name__)
 
 
 def __getattr__(name: str) -> Any:

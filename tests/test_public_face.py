@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import teleopdesign as td
+from teleopdesign.folder_calls import INSTEAD, VERBS
 
 ROOT = Path(td.__file__).parent
 TOP = {p.stem for p in ROOT.glob("*.py")} | {p.parent.name for p in ROOT.glob("*/__init__.py")}
@@ -17,6 +18,39 @@ TOP = {p.stem for p in ROOT.glob("*.py")} | {p.parent.name for p in ROOT.glob("*
 def test_no_public_name_is_that_of_a_folder():
     """Python gives `td.NAME` to the folder once it is imported: a function there would be lost."""
     assert not set(td.__all__) & TOP
+
+
+@pytest.mark.parametrize(("folder", "function"), VERBS.items())
+def test_a_folder_named_by_a_verb_runs_the_function_that_is_meant(folder, function):
+    with pytest.raises(td.TeleopDesignError, match=getattr(td, function).__name__) as problem:
+        getattr(td, folder)(3.7)
+    with pytest.raises(td.TeleopDesignError) as same:
+        getattr(td, function)(3.7)
+    assert str(problem.value) == str(same.value)
+
+
+@pytest.mark.parametrize("folder", sorted({n for n in dir(td) if n in TOP} - set(VERBS)))
+def test_a_folder_that_is_no_verb_says_what_to_type(folder):
+    with pytest.raises(TypeError, match=rf"td\.{folder} is a folder.*; .*(td\.\w|write|type|plot)"):
+        getattr(td, folder)(1)
+
+
+def test_every_folder_with_functions_has_a_rule_for_a_call():
+    """A new folder named by a verb must run something: nobody knows `find_missing` by heart."""
+    assert set(VERBS.values()) <= set(td.__all__)
+    assert {*VERBS, *INSTEAD} <= set(dir(td))
+
+
+def test_a_folder_can_be_called_whichever_way_it_was_imported():
+    code = (
+        "from teleopdesign.simulate import sine\nimport teleopdesign as td\n"
+        "import teleopdesign.diagnose\n"
+        "for folder in (td.simulate, teleopdesign.diagnose):\n"
+        "    try: folder(1)\n"
+        "    except td.TeleopDesignError as problem: print('refused')\n"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == ["refused", "refused"]
 
 
 def test_every_public_name_has_one_group_and_the_docstring_shows_the_groups():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, zip_longest
 
 import numpy as np
 
@@ -28,6 +28,8 @@ LARGE = 0.1
 #: cosine of two marks from which the effects look alike: only at seven times the least size is the
 #: difference as large as what shows
 ALIKE = 0.99
+#: letters of a row of effects: a terminal of 100 columns, less the margin of a finding
+ROW = 88
 
 
 def check_excitation(
@@ -75,7 +77,7 @@ def _summary(
     floor: float,
     place: str,
 ) -> Finding:
-    """The one sentence for each kind: shown, shown if large, not shown and why."""
+    """A line for each kind: shown, shown if large, not shown and why; rows of what can be shown."""
     shown = sorted((v for v in visible_effects if v.size <= LARGE), key=lambda v: v.size)
     large = sorted((v for v in visible_effects if LARGE < v.size <= 1.0), key=lambda v: v.size)
     hidden = [v for v in visible_effects if v.size > 1.0]
@@ -90,26 +92,40 @@ def _summary(
         )
     parts = []
     if shown:
-        parts.append("can show " + ", ".join(_least(v, base.model) for v in shown))
+        parts.append("can show\n" + _rows([_least(v, base.model) for v in shown]))
     if large:
-        parts.append("only if large: " + ", ".join(_least(v, base.model, v.size) for v in large))
+        parts.append("only if large\n" + _rows([_least(v, base.model, v.size) for v in large]))
     if reasons:
         text = "; ".join(f"{', '.join(names)} ({why})" for why, names in reasons.items())
-        parts.append(f"cannot show {text}")
+        parts.append(f"cannot show {text}.")
     if waiting := _waiting(base.model, place):
-        parts.append("not judged, for the model lacks what they act on: " + ", ".join(waiting))
+        parts.append(
+            "not judged, for the model lacks what they act on: " + ", ".join(waiting) + "."
+        )
     if base.fit_error > CRITERIA.adequate * floor:
         parts.append(
             f"all this above the noise floor, {100 * floor:.2g} % of the force; while the model "
-            f"leaves {100 * base.fit_error:.2g} % unexplained, small effects hide in that"
+            f"leaves {100 * base.fit_error:.2g} % unexplained, small effects hide in that."
         )
     return Finding(
         "what the record can show",
         "note" if hidden or never or large else "fine",
-        ". ".join(p[0].upper() + p[1:] for p in parts) + ".",
+        "\n".join(p[0].upper() + p[1:] for p in parts),
         numbers,
         place,
     )
+
+
+def _rows(items: Sequence[str]) -> str:
+    """Items in two columns, down first, or in one if they are long; a row begins with spaces."""
+    ended = [f"{item}," for item in items[:-1]] + [f"{item}." for item in items[-1:]]
+    half = (len(ended) + 1) // 2
+    left, right = ended[:half], ended[half:]
+    width = max(map(len, left)) + 2
+    if width + max(map(len, right), default=0) > ROW:
+        return "\n".join(f"  {item}" for item in ended)
+    pairs = zip_longest(left, right, fillvalue="")
+    return "\n".join(f"  {a:<{width}}{b}".rstrip() for a, b in pairs)
 
 
 def _waiting(model: Model, place: str) -> list[str]:

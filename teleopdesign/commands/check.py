@@ -112,12 +112,30 @@ def text_of(findings: Sequence[Finding]) -> str:
     order = ("warning", "note", "fine")
     terminal = shutil.get_terminal_size((WIDTH, 24)).columns  # of a pipe: WIDTH
     width = min(WIDTH, max(NARROWEST, terminal))
-    lines = [
-        textwrap.fill(str(f), width, subsequent_indent=" " * INDENT, break_on_hyphens=False)
-        for f in sorted(findings, key=lambda f: order.index(f.concern))
-    ]
+    lines = [_wrapped(f, width) for f in sorted(findings, key=lambda f: order.index(f.concern))]
     count = sum(f.concern == "warning" for f in findings)
     lines.append(f"\n{count or 'no'} warning{'s' if count != 1 else ''}.")
+    return "\n".join(lines)
+
+
+def _wrapped(finding: Finding, width: int) -> str:
+    """Every line of a finding wrapped by itself; rows keep their columns where these fit."""
+    first, *more = str(finding).split("\n")
+    indent = " " * INDENT
+    lines = [textwrap.fill(first, width, subsequent_indent=indent, break_on_hyphens=False)]
+    for line in more:
+        fits = len(indent) + len(line) <= width
+        lines.append(
+            indent + line
+            if fits
+            else textwrap.fill(
+                " ".join(line.split()),
+                width,
+                initial_indent=indent + "  " * line.startswith(" "),
+                subsequent_indent=indent + "  " * line.startswith(" "),
+                break_on_hyphens=False,
+            )
+        )
     return "\n".join(lines)
 
 

@@ -106,12 +106,15 @@ def run(options: argparse.Namespace) -> int:
     experiment = load_experiment(folder)
     print()
     print(experiment)
-    from ..plot.log import draw_survey
+    from ..plot.letters import about_boxes
+    from ..plot.log import draw_survey, save_survey
 
     picture = folder / "understood.png"
     with replacing(picture) as part:
-        draw_survey(survey, experiment).savefig(part, format="png")
+        save_survey(draw_survey(survey, experiment), part)
     print(f"\nwritten: {folder / 'experiment.toml'}, {picture}")
+    if boxes := about_boxes(survey.columns):
+        print(boxes)
     print(f"next: teleopdesign check {shell_word(folder)}")
     print(f"      teleopdesign diagnose {shell_word(folder)} --report report.html")
     return 0

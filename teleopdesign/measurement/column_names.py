@@ -18,6 +18,8 @@ ALIASES = {
     "nm": "Nm", "ncm": "N*cm", "meter": "m", "meters": "m", "millimeter": "mm", "millimeters": "mm",
     "revs": "rev", "revolutions": "turns", "ticks": "counts", "cnt": "counts", "count": "counts",
     "inc": "counts", "volt": "V", "volts": "V", "v": "V", "rads": "rad/s", "degs": "deg/s",
+    "с": "s", "мс": "ms", "град": "deg", "рад": "rad", "м": "m", "мм": "mm", "н": "N",
+    "нм": "Nm", "н·м": "Nm", "н*м": "Nm", "а": "A", "°": "deg", "度": "deg", "秒": "s", "초": "s",
     "u/min": "rpm", "1/min": "rpm", "min-1": "rpm",
 }  # fmt: skip
 _BRACKETS = re.compile(r"[(\[{]\s*([^()\[\]{}]+?)\s*[)\]}]\s*$")
@@ -30,23 +32,26 @@ _TAIL = re.compile(r"(?:_|\s|/)([A-Za-zµ°%][A-Za-z0-9µ°%^*/·]*)$")
 #: quantity -> words that a name of it may hold, the surest first
 WORDS: dict[str, tuple[str, ...]] = {
     "time": ("time", "timestamp", "zeit", "stamp", "temps", "t", "seconds", "tiempo", "tempo",
-             "時間", "时间", "時刻"),
+             "時間", "时间", "時刻", "시간", "время"),
     "position": (
         "position", "pos", "angle", "winkel", "weg", "theta", "enc", "encoder", "phi", "q", "x",
         "actualq", "posicion", "posizione", "angulo", "angolo", "位置", "角度", "位移",
+        "위치", "각도", "положение", "угол",
     ),
     "velocity": (
         "velocity", "vel", "speed", "geschwindigkeit", "drehzahl", "omega", "qd", "dq", "xd", "v",
         "vitesse", "velocidad", "velocita", "速度",
+        "속도", "скорость",
     ),
     "interaction_force": (
         "interaction", "hand", "contact", "external", "ext", "sensor", "wrench", "fh", "ft", "load",
-        "mano", "操作力", "外力", "手",
+        "mano", "操作力", "外力", "手", "손", "рука", "руки",
     ),
     "actuator_force": (
         "torque", "current", "strom", "moment", "drehmoment", "effort", "motor", "command", "cmd",
         "tau", "force", "kraft", "u", "i", "f", "control", "couple", "courant", "corriente",
         "corrente", "coppia", "par", "fuerza", "forza", "トルク", "電流", "电流", "力矩", "指令",
+        "扭矩", "토크", "전류", "момент", "ток", "сила",
     ),
     "segment": ("segment", "run", "trial"),
 }  # fmt: skip

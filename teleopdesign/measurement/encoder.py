@@ -7,6 +7,15 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+#: steps between neighbouring readings up to which their number is sure from the smallest gap,
+#: which may be 1 % off where few digits were written
+STEPS_APART = 20
+#: values lie on a grid where the mean of their phases in it is at least this long: 1 on the grid
+#: itself, 0.04 for 600 values anywhere
+ON_GRID = 0.9
+#: values that are looked at
+ENOUGH = 20_000
+
 
 def reading_noise(position: Array) -> float:
     """Rms noise of one position reading, from its content near the Nyquist frequency."""
@@ -19,7 +28,8 @@ def reading_step(position: Array) -> float:
     """Smallest step between neighbouring values that the readings take: the encoder's, if any.
 
     In a motion that never comes back to a place, values lie apart by the travel of a sample: then
-    the step is the one whose rounding looks like the noise that is seen.
+    the step is the one whose rounding looks like the noise that is seen. Values on a grid are an
+    encoder's, though: where a body rests or moves evenly for half the time, no noise is seen.
     """
     values = np.unique(position)
     if len(values) < 2:
@@ -30,4 +40,39 @@ def reading_step(position: Array) -> float:
     moving = float(np.mean(np.diff(position) != 0)) > 0.5
     # readings that are all alike in their fourth difference show no noise at all
     is_noisy = rounding > 1e-9 * float(np.ptp(position))
-    return min(step, rounding) if is_noisy and moving and step > 3.0 * rounding else step
+    if not (is_noisy and moving and step > 3.0 * rounding) or grid_of(position[:ENOUGH], step):
+        return step
+    return min(step, rounding)
+
+
+def grid_of(position: Array, step: float) -> float:
+    """The step of a grid on which the readings lie, near `step`; 0 where there is no such grid."""
+    if step <= 0.0 or np.ptp(position) <= 20.0 * step:
+        return 0.0
+    mean = _fitted_step(position, step)
+    places = (position - position[0]) / mean
+    return mean if np.abs(np.exp(2j * np.pi * places).mean()) > ON_GRID else 0.0
+
+
+def _fitted_step(position: Array, step: float) -> float:
+    """A step from values farther and farther apart: digits that were cut off average out.
+
+    Neighbouring values tell a first mean, this counts the steps to values twice as far, and so on
+    to the ends of the travel.
+    """
+    values = np.unique(position)
+    gaps = np.diff(values)
+    counts = np.round(gaps / step)
+    near = (counts > 0) & (counts < STEPS_APART)
+    if near.any():
+        step = float(gaps[near].sum() / counts[near].sum())
+    away = values - values[len(values) // 2]
+    reach, end = STEPS_APART * step, float(np.abs(away).max())
+    while True:
+        inside = away[np.abs(away) <= reach]
+        places = np.round(inside / step)
+        if (squares := float(places @ places)) > 0.0:
+            step = float(inside @ places) / squares
+        if reach >= end:
+            return step
+        reach *= 2.0

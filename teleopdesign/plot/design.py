@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..plain_data import replacing
+from .letters import house_style
 
 if TYPE_CHECKING:
     import matplotlib.figure
 
     from ..simulate import ForceVelocity, Simulation
 
-STYLE = Path(__file__).with_name("teleopdesign.mplstyle")
 ONE_COLUMN, TWO_COLUMNS = 3.5, 7.16  # inches
 
 #: the four cases in the same colours (Okabe and Ito) and lines in every figure
@@ -73,7 +73,7 @@ def save_figure(
     files = [Path(path).with_suffix(suffix) for suffix in suffixes]
     # fonts and resolution are taken when it is drawn; what has no layout of its own keeps none
     layout = {"figure.constrained_layout.use": figure.get_layout_engine() is not None}
-    with plt.style.context([STYLE, layout]):
+    with plt.style.context([*house_style(), layout]):
         for file in files:
             with replacing(file) as part:
                 figure.savefig(part)
@@ -91,7 +91,7 @@ def plot_force_velocity(result: ForceVelocity) -> matplotlib.figure.Figure:
     speed = unit_text(data["velocity"].attrs["units"])
     largest = float(abs(data["force"]).max())
     limit = 1.0 if 0.4 < largest <= 1.0 else 1.15 * largest
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = plt.subplots(
             len(cases), 1, sharex=True, sharey=True, squeeze=False, figsize=(ONE_COLUMN, 5.4)
         )
@@ -120,7 +120,7 @@ def plot_simulation(
     import matplotlib.pyplot as plt
 
     shown = names or tuple(n for n in ("L", "R_A", "R_M") if n in simulation.data)
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         height = 0.6 + 1.05 * len(shown)
         figure, axes = plt.subplots(
             len(shown), 1, sharex=True, squeeze=False, figsize=(ONE_COLUMN, height)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..quantity import unit_of
-from .design import CASES, STYLE, TWO_COLUMNS, unit_text
+from .design import CASES, TWO_COLUMNS, unit_text
+from .letters import house_style
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -18,7 +19,7 @@ def plot_design(design: Design) -> matplotlib.figure.Figure:
     """Before and after: three panels, a line a case."""
     import matplotlib.pyplot as plt
 
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = plt.subplots(1, 3, figsize=(TWO_COLUMNS, 2.7))
         _force_error(axes[0], design)
         _residual(axes[1], design)

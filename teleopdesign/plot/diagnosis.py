@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..diagnose.comparison import Comparison, residual_data
 from .design import unit_text
+from .letters import house_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     from ..diagnose.diagnosis import Diagnosis
 
-STYLE = Path(__file__).with_name("teleopdesign.mplstyle")
 MEASURED, BEFORE, AFTER = "0.55", "#D55E00", "#0072B2"
 FORWARD, BACKWARD, UNTOLD = "#009E73", "#CC79A7", "0.6"
 #: most points drawn per panel; more are not seen and make files large
@@ -79,7 +78,7 @@ def plot_comparison(comparison: Comparison) -> Figure:
     import matplotlib.pyplot as plt
 
     data = _check_rows(comparison.data)
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = plt.subplots(2, 2, figsize=(7.16, 4.6))
         _over_time(axes[0, 0], data, "measured", MEASURED, "measured", 1.4)
         _over_time(axes[0, 0], data, "model", AFTER, "model", 0.7)
@@ -122,7 +121,7 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
     before = _check_rows(residual_data(diagnosis.before.model, diagnosis.prepared))
     after = _check_rows(residual_data(diagnosis.model, diagnosis.prepared))
     changed = len(diagnosis.rungs) > 1
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = plt.subplot_mosaic(
             [
                 ["force", "force"],

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .design import STYLE, TWO_COLUMNS
+from .design import TWO_COLUMNS
+from .letters import house_style
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -24,7 +25,7 @@ def plot_force_displacement(result: ForceDisplacement) -> matplotlib.figure.Figu
     cases = [str(c) for c in data["case"].values]
     time = data["time"].values - data["time"].values[0]
     touched = float(abs(data["environment_force"]).max()) > 0
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, (left, middle, right) = plt.subplots(1, 3, figsize=(TWO_COLUMNS, 2.3))
         last = data.sel(case=cases[-1])
         if touched:

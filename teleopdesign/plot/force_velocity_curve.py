@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..quantity import unit_of
-from .design import ONE_COLUMN, STYLE, unit_text
+from .design import ONE_COLUMN, unit_text
+from .letters import house_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,7 +20,7 @@ def plot_force_velocity_curve(level: CoulombLevel) -> Figure:
     """Mean force of each run, friction at each speed, and the line through it."""
     import matplotlib.pyplot as plt
 
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.6))
         axis.axhline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
         axis.axvline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .design import ONE_COLUMN, STYLE, TWO_COLUMNS, unit_text
+from .design import ONE_COLUMN, TWO_COLUMNS, unit_text
 from .frequency_axes import (
     Columns,
     legend_below,
@@ -18,6 +18,7 @@ from .frequency_axes import (
     points,
     share_abscissa,
 )
+from .letters import house_style
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -41,7 +42,7 @@ def plot_bode(
     import matplotlib.pyplot as plt
     import numpy as np
 
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, (upper, lower) = panels(columns)
         for one in (response, measured):
             if one is None:
@@ -81,7 +82,7 @@ def plot_nyquist(
 
     unit = response.data["magnitude"].attrs["units"]
     width = TWO_COLUMNS if columns == 2 else ONE_COLUMN
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axis = plt.subplots(figsize=(width, 0.9 * ONE_COLUMN))
         axis.axhline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
         axis.axvline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)

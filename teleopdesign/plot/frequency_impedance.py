@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from .design import STYLE, unit_text
+from .design import unit_text
 from .frequency_axes import (
     Columns,
     legend_below,
@@ -14,6 +14,7 @@ from .frequency_axes import (
     points,
     share_abscissa,
 )
+from .letters import house_style
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -39,7 +40,7 @@ def plot_impedance(
     """
     import matplotlib.pyplot as plt
 
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, (upper, lower) = panels(columns)
         for one in (result, model):
             if one is not None:
@@ -90,7 +91,7 @@ def plot_spread(
     """
     import matplotlib.pyplot as plt
 
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = panels(columns)
         for one in (result, model):
             if one is None:

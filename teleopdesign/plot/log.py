@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -12,6 +15,7 @@ from ..measurement.experiment import Experiment
 from ..measurement.first_guess import motion_columns
 from ..measurement.survey import Survey
 from ..quantity import unit_of
+from .letters import further_fonts
 
 #: points of a line: more are not seen
 _POINTS = 4000
@@ -23,11 +27,23 @@ _LINE = 0.16
 _KINDS = {"actuator_force": "force", "interaction_force": "force"}
 
 
+def save_survey(figure: Figure, path: Path) -> None:
+    """Write the picture; `about_boxes` says which letters of names no font has."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing from font")
+        figure.savefig(path, format="png")
+
+
 def draw_survey(survey: Survey, experiment: Experiment) -> Figure:
     """The channels as they will be used, fit and check records in shades; SI units.
 
     Below stand the columns that are in no channel, with the reason of each.
     """
+    with rc_context({"font.family": ["DejaVu Sans", *further_fonts()]}):
+        return _draw_survey(survey, experiment)
+
+
+def _draw_survey(survey: Survey, experiment: Experiment) -> Figure:
     keys = [k for k in experiment.channels if experiment.channels[k].body is not None]
     unused = unused_lines(survey.unused)
     height = 1.7 * len(keys) + 2.6 + _LINE * len(unused)

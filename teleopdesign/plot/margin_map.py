@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .design import ONE_COLUMN, STYLE, unit_text
+from .design import ONE_COLUMN, unit_text
+from .letters import house_style
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -24,7 +25,7 @@ def plot_margin_map(margins: MarginMap) -> matplotlib.figure.Figure:
     first, second = map(str, margin.dims)
     x, y = (margins.data[n].values for n in (second, first))
     shown = np.clip(margin.values, -_LARGEST, _LARGEST)
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = plt.subplots(figsize=(ONE_COLUMN, 0.8 * ONE_COLUMN), layout="constrained")
         colours = axes.pcolormesh(x, y, shown, cmap="RdBu", vmin=-_LARGEST, vmax=_LARGEST)
         if shown.min() < 0 < shown.max():

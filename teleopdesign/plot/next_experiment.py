@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..finding import Graph, Series
-from .diagnosis import STYLE
+from .letters import house_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +23,7 @@ def plot_proposal(proposal: Proposal) -> Figure:
     """
     import matplotlib.pyplot as plt
 
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         if proposal.reference is None:
             figure, ax = plt.subplots(figsize=(7.16, 1.2))
             ax.text(0.0, 0.5, proposal.sentence, wrap=True, va="center")

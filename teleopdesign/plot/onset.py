@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .design import STYLE, TWO_COLUMNS
+from .design import TWO_COLUMNS
+from .letters import house_style
 from .passivity import GREY, PROVED, REFUTED, THEORY
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ def plot_teleoperator_onset(data: xarray.Dataset) -> matplotlib.figure.Figure:
     import matplotlib.pyplot as plt
 
     y = data["share"].values
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = plt.subplots(1, 2, sharey=True, figsize=(TWO_COLUMNS, 3.3))
         for axis, name, label, title in (
             (
@@ -98,7 +99,7 @@ def plot_delay_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
     import matplotlib.pyplot as plt
 
     stiffness = data["stiffness"].values
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = plt.subplots(1, 2, sharey=True, figsize=(TWO_COLUMNS, 3.5))
         for axis, name, label, title in (
             (axes[0], "delay", "delay each way, $T_d$ (s)", r"(a) $b_mb_s\geq(PT_d)^2$"),
@@ -135,7 +136,7 @@ def plot_period_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
     import matplotlib.pyplot as plt
 
     x, stiffness = data["period"].values, data["stiffness"].values
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = plt.subplots(1, 2, sharey=True, figsize=(TWO_COLUMNS, 3.5))
         for axis, letter, late in zip(axes, "ab", data["late"].values, strict=True):
             here = data.sel(late=late)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .design import ONE_COLUMN, STYLE, unit_text
+from .design import ONE_COLUMN, unit_text
+from .letters import house_style
 from .study_data import words
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ def plot_pareto(front: ParetoFront) -> matplotlib.figure.Figure:
     import numpy as np
 
     x, y = front.objectives.T
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = plt.subplots(figsize=(ONE_COLUMN, 0.8 * ONE_COLUMN), layout="constrained")
         axes.plot(*front.evaluated.T, ".", color=GREY, markersize=2.5, label="keeps the limits")
         axes.step(*front.tried_best.T, where="post", color=BEST, label="best found")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .design import ONE_COLUMN, STYLE, TWO_COLUMNS
+from .design import ONE_COLUMN, TWO_COLUMNS
+from .letters import house_style
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -21,7 +22,7 @@ def plot_largest_compensation(data: xarray.Dataset) -> matplotlib.figure.Figure:
     from matplotlib.ticker import FixedLocator, NullLocator
 
     u = data["u_curve"].values
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.7))
         low, high = 0.95, 8.0
         axis.fill_between(
@@ -67,7 +68,7 @@ def plot_passive_region(data: xarray.Dataset) -> matplotlib.figure.Figure:
     x, y = np.meshgrid(data["softness"].values, data["share"].values)
     proved, has_motion = data["status"].values == "proved", data["found"].values == 1
     size = 5.0 if x.size > 500 else 16.0
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axis = plt.subplots(figsize=(ONE_COLUMN, 3.5))
         edge = np.linspace(0.0, 1.0, 200)
         axis.fill_between(
@@ -111,7 +112,7 @@ def plot_forward_euler(data: xarray.Dataset) -> matplotlib.figure.Figure:
     import matplotlib.pyplot as plt
 
     cases = data["q"].values
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure = plt.figure(figsize=(TWO_COLUMNS, 4.0))
         grid = figure.add_gridspec(2, len(cases), height_ratios=(1.0, 0.9))
         for k, q in enumerate(cases):
@@ -180,7 +181,7 @@ def plot_cable_limits(data: xarray.Dataset) -> matplotlib.figure.Figure:
     import matplotlib.pyplot as plt
     from matplotlib.colors import ListedColormap
 
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, (left, right) = plt.subplots(
             1, 2, sharex=True, sharey=True, figsize=(TWO_COLUMNS, 3.7)
         )
@@ -248,7 +249,7 @@ def plot_passive_walls(data: xarray.Dataset) -> matplotlib.figure.Figure:
 
     k = data["stiffness"].values
     colours = ("#CFE3F1", "#8FCDB8")
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = plt.subplots(1, 2, sharey=True, figsize=(TWO_COLUMNS, 3.1))
         for axis, name, limit, label in (
             (axes[0], "over_period", "limit_over_period", "sample period $T$ (s)"),

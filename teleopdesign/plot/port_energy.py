@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..blocks import NINETY_FIVE
-from .design import ONE_COLUMN, STYLE
+from .design import ONE_COLUMN
+from .letters import house_style
 from .passivity import GREY, THEORY
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ def plot_port_energy(observed: PortEnergy) -> matplotlib.figure.Figure:
 
     data = observed.data
     t, e, error = (data[n].values for n in ("time", "energy", "stderr"))
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.2))
         axis.axhline(0.0, color=GREY, linewidth=0.6)
         for k, (begin, end, _) in enumerate(observed.given_out()):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .design import ONE_COLUMN, STYLE, symbol, unit_text
+from .design import ONE_COLUMN, symbol, unit_text
+from .letters import house_style
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -20,7 +21,7 @@ def plot_simulation_fit(fitted: SimulationFit) -> matplotlib.figure.Figure:
 
     names = tuple(fitted.rms)
     time = fitted.data["time"].values
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = plt.subplots(
             2 * len(names),
             1,

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import ModelError
-from .design import ONE_COLUMN, STYLE, TWO_COLUMNS
+from .design import ONE_COLUMN, TWO_COLUMNS
+from .letters import house_style
 from .study_data import StudyData, label, listed, number, spread
 from .study_maps import MOST_PANELS, Overlay, draw_map, draw_panels
 
@@ -58,7 +59,7 @@ class StudyPlots:
         each = [d for d in dims if d != across]
         if len(each) > 1:
             raise ModelError(f"study: curves: give values of all but two of {listed(dims)}: at=...")
-        with plt.style.context(STYLE):
+        with plt.style.context(house_style()):
             figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.5 + 0.5 * bool(each)))
             lines = self.data[each[0]].values if each else [None]
             shown = spread(len(lines), _MOST_LINES)
@@ -127,7 +128,7 @@ class StudyPlots:
         names = self._study.axes[:MOST_PANELS]
         columns = min(len(names), 4)
         rows = -(-len(names) // columns)
-        with plt.style.context(STYLE):
+        with plt.style.context(house_style()):
             figure, axes = plt.subplots(
                 rows,
                 columns,
@@ -156,7 +157,7 @@ class StudyPlots:
         ]
         indices = [sensitivity(study, m) for m in chosen]
         columns = len(chosen)
-        with plt.style.context(STYLE):
+        with plt.style.context(house_style()):
             figure, axes = plt.subplots(
                 1,
                 columns,

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .design import ONE_COLUMN, STYLE, TWO_COLUMNS, unit_text
+from .design import ONE_COLUMN, TWO_COLUMNS, unit_text
+from .letters import house_style
 from .onset import hatch_region
 from .study_data import StudyData, label, number, spread
 
@@ -47,7 +48,7 @@ def draw_map(
 
     values = study.at(study.measure(measure), at)
     across, up = study.pair(values, *along)
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.9))
         mesh = _draw_mesh(study, axis, values, across, up, _limits(values, over.onset))
         _draw_marks(study, axis, values, (across, up), over, at)
@@ -75,7 +76,7 @@ def draw_panels(
     across, up = study.pair(values.isel({third: 0}), *plane)
     columns = min(len(shown), 3)
     rows = -(-len(shown) // columns)
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = plt.subplots(
             rows,
             columns,

@@ -7,7 +7,8 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 from ..unexplained import BodyResidual, ResidualDescription
-from .diagnosis import AFTER, BACKWARD, FORWARD, MEASURED, STYLE
+from .diagnosis import AFTER, BACKWARD, FORWARD, MEASURED
+from .letters import house_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,7 +45,7 @@ def plot_unexplained(failure: ResidualDescription) -> Figure:
     ]
     rows = math.ceil(len(panels) / COLUMNS)
     title = 0.14 * (len(lines) + 1)
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         figure, axes = plt.subplots(
             rows, COLUMNS, figsize=(7.16, HEIGHT * rows + title), squeeze=False
         )

@@ -7,6 +7,7 @@ the same bytes. On a dark page the style sheet inverts the picture's lightness.
 
 from __future__ import annotations
 
+import warnings
 from base64 import b64encode
 from collections.abc import Callable
 from io import BytesIO
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
-from ..plot.diagnosis import STYLE
+from ..plot.letters import STYLE, further_fonts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,8 +27,6 @@ SETTINGS: Any = {
     "text.parse_math": False,  # a name from a file may hold a dollar sign
     "axes.formatter.use_mathtext": False,
     "axes.formatter.limits": (-4, 5),
-    "font.family": "sans-serif",
-    "font.sans-serif": "DejaVu Sans",  # comes with matplotlib, and is wider than most
     "font.size": 7.5,
     "axes.labelsize": 7.5,
     "axes.titlesize": 7.5,
@@ -50,7 +49,10 @@ def picture(draw: Callable[[Figure], None], *, size: tuple[float, float], alt: s
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
 
-    with matplotlib.style.context(STYLE), rc_context(SETTINGS):
+    fonts = {"font.family": ["DejaVu Sans", *further_fonts()]}  # the first comes with matplotlib
+    with matplotlib.style.context(STYLE), rc_context(SETTINGS | fonts), warnings.catch_warnings():
+        # the text stays text: the reader's browser has the letters that no font here has
+        warnings.filterwarnings("ignore", "Glyph .* missing from font")
         figure = Figure(figsize=size, layout="constrained")
         FigureCanvasSVG(figure)
         draw(figure)

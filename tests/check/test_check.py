@@ -163,6 +163,21 @@ def test_a_rich_record_shows_what_is_tried_and_says_from_which_size(rod, few):
     assert found["motion"].concern == "fine"
 
 
+def test_effects_that_can_be_shown_stand_in_rows_that_fit_the_terminal(rod, few, monkeypatch):
+    from teleopdesign.commands.check import text_of
+
+    finding = shows(rod, few)["what the record can show"]
+    count = len(finding.sentence.split("Can show\n")[1].split("\n")[0].split("), "))
+    for columns in ("100", "60", "40"):
+        monkeypatch.setenv("COLUMNS", columns)
+        lines = text_of([finding]).split("\n")
+        assert max(map(len, lines)) <= int(columns)
+        assert sum(f"{n} (" in " ".join(lines) for n in finding.numbers if n in few) > count
+    monkeypatch.setenv("COLUMNS", "100")
+    rows = [line for line in text_of([finding]).split("\n") if line.startswith(" " * 11)]
+    assert len(rows) > 1 and all(row.rstrip().endswith((",", ".")) for row in rows)
+
+
 def test_the_least_size_that_shows_is_where_the_error_reaches_the_bound(rod, few):
     """Planted at that size, an effect raises a fitted model's error to 1.8 noise floors."""
     from teleopdesign.check.visibility import visibilities

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import butter, sosfiltfilt
 
+from teleopdesign.measurement.encoder import grid_of
 from teleopdesign.measurement.filtering import spectrum
 from teleopdesign.measurement.motion import (
     SMOOTHING,
@@ -155,6 +156,25 @@ def test_noise_and_step_of_readings_are_seen_in_them():
     assert reading_noise(noisy) == pytest.approx(2e-5, rel=0.1)  # 4000 samples: 2 %
     assert reading_step(read(smooth)) == pytest.approx(STEP, rel=1e-6)
     assert reading_step(np.full(10, 1.0)) == 0.0
+
+
+@pytest.mark.parametrize("digits", [6, 9, 15])
+@pytest.mark.parametrize("turns", [0.3, 1.1])
+def test_the_step_of_an_encoder_is_seen_though_the_body_rests_half_the_time(turns, digits):
+    """Most fourth differences are then those of printed digits: no noise is seen, but a grid."""
+    step, t = 2 * np.pi / 32768, np.arange(10_000) / 1000
+    stop_and_go = np.clip(2.5 * np.sin(2 * np.pi * 0.4 * t), -1, 1) + 0.02 * t
+    written = np.round(step * np.round(2 * np.pi * turns * stop_and_go / step), digits)
+    assert grid_of(written, reading_step(written)) == pytest.approx(step, rel=1e-6)
+    assert reading_step(written) == pytest.approx(step, abs=2.1 * 10.0**-digits)
+
+
+@pytest.mark.parametrize("digits", [9, 15])
+def test_a_motion_without_an_encoder_has_no_grid(digits):
+    t = np.arange(10_000) / 1000
+    smooth = np.round(3 * np.sin(2 * np.pi * 0.4 * t) + np.sin(2 * np.pi * 1.3 * t), digits)
+    assert grid_of(smooth, float(np.quantile(np.diff(np.unique(smooth)), 0.002))) == 0.0
+    assert grid_of(smooth, reading_step(smooth)) == 0.0
 
 
 # motion

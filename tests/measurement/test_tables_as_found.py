@@ -135,3 +135,38 @@ def test_what_was_wanted_is_no_reading_in_any_language(name):
 )  # fmt: skip
 def test_units_of_two_parts_are_read_at_the_end_of_a_name(name, unit):
     assert unit_in_name(name) == unit
+
+
+@pytest.mark.parametrize(
+    ("encoding", "names"),
+    [
+        ("shift_jis", ("時間 (s)", "位置 (deg)", "トルク (Nm)", "手の力 (Nm)")),
+        ("euc_jp", ("時間 (s)", "関節角度 (deg)", "トルク指令 (Nm)", "操作力 (Nm)")),
+        ("gb18030", ("时间 (s)", "位置 (deg)", "力矩 (Nm)", "手力 (Nm)")),
+        ("big5", ("時間 (s)", "位置 (deg)", "扭矩 (Nm)", "手力 (Nm)")),
+        ("euc_kr", ("시간 (s)", "위치 (deg)", "토크 (Nm)", "손힘 (Nm)")),
+        ("cp1251", ("время (с)", "угол (град)", "момент (Нм)", "рука (Нм)")),
+        ("cp1252", ("Zeit (s)", "Winkel (°)", "Moment (Nm)", "Händkraft (Nm)")),
+        ("mac_roman", ("Zeit (s)", "Winkel (°)", "Moment (Nm)", "Händkraft (Nm)")),
+        ("utf-16", ("時間 (s)", "угол (град)", "토크 (Nm)", "Kraft der Hand (Nm)")),
+    ],
+)
+def test_names_are_read_in_the_encoding_that_they_were_written_in(tmp_path, encoding, names):
+    rows = np.column_stack([T, np.sin(T), np.cos(T), np.sin(2 * T)])
+    text = ",".join(names) + "\n" + "".join(",".join(f"{x:.6f}" for x in r) + "\n" for r in rows)
+    path = tmp_path / "log.csv"
+    path.write_bytes(text.encode(encoding))
+    log = open_log(path, path.name)
+    assert tuple(log.names) == names
+    assert any(note.startswith("text in ") for note in log.notes)
+    quantities = ("time", "position", "actuator_force", "interaction_force")
+    found = [max(quantities, key=lambda q: likeness(name, q)) for name in names]
+    assert found == list(quantities)
+
+
+@pytest.mark.parametrize("more", [0, 1, 2])
+def test_a_letter_cut_where_the_first_look_ends_leaves_the_text_in_utf_8(tmp_path, more):
+    path = tmp_path / "log.csv"
+    header = "時間 (s),位置 (deg),状態" + "x" * more + "\n"
+    path.write_text(header + "".join(f"{k / 1000:.4f},{k},力\n" for k in range(9000)), "utf-8")
+    assert open_log(path, path.name).names[0] == "時間 (s)"

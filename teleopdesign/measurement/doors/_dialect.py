@@ -12,6 +12,7 @@ from typing import IO, cast
 from ...errors import ExperimentError, quoted
 from ...quantity import is_unit
 from ._cells import is_number, seconds_of
+from ._encoding import encoding_of
 from ._log import number_names
 
 COMMENTS = ("#", "%", "//")
@@ -38,7 +39,7 @@ def dialect_of(path: Path, file: str) -> Dialect:
     with open_bytes(path) as stream:
         raw = stream.read(LOOKED_AT)
         whole = len(raw) < LOOKED_AT
-    encoding = _encoding(raw, file)
+    encoding = encoding_of(raw, file, whole=whole)
     text = raw.decode(encoding, errors="ignore").replace("\r\n", "\n").replace("\r", "\n")
     lines = text.split("\n")
     if not whole:
@@ -77,20 +78,6 @@ def _refuse_without_rows(lines: Sequence[str], separator: str, file: str) -> Non
     raise ExperimentError(
         f"{file}: not a table of numbers: row 1: found {quoted(cell)}, expected a number"
     )
-
-
-def _encoding(raw: bytes, file: str) -> str:
-    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return "utf-16"
-    if raw[:3] == b"\xef\xbb\xbf":
-        return "utf-8-sig"
-    if b"\x00" in raw:
-        raise ExperimentError(f"{file}: not a text (byte {raw.index(0)} is 0)")
-    try:
-        raw[: -4 if len(raw) > 4 else None].decode("utf-8")
-        return "utf-8"
-    except UnicodeDecodeError:
-        return "cp1252" if not set(raw) & {0x81, 0x8D, 0x8F, 0x90, 0x9D} else "latin-1"
 
 
 def _separator(lines: Sequence[str]) -> tuple[str, bool]:

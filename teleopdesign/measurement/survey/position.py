@@ -11,7 +11,7 @@ from ...errors import ExperimentError
 from ...quantity import measures, si_factor
 from ..column_names import is_wanted, likeness, words_of
 from ..doors._log import listed
-from ..encoder import reading_step
+from ..encoder import ENOUGH, grid_of, reading_step
 from .content import (
     SURE_NAME,
     Array,
@@ -27,9 +27,6 @@ from .content import (
     sample_time_of,
 )
 
-#: steps between neighbouring readings up to which their number is sure from the smallest gap,
-#: which may be 1 % off where few digits were written
-STEPS_APART = 20
 #: correlation from which one column is the derivative of another
 DERIVATIVE = 0.9
 
@@ -192,24 +189,9 @@ def describe_position(
 
 def _seen_step(values: Array) -> float:
     """Step of an encoder that the readings show; 0 where they are too fine to show one."""
-    raw = values[:20_000]
-    some = raw[np.r_[True, np.diff(raw) != 0]]
-    step = reading_step(raw)
-    if step <= 0 or len(some) < 10:
-        return 0.0
-    step = _mean_step(raw, step)
-    places = (raw - raw[0]) / step
-    on = np.abs(np.exp(2j * np.pi * places).mean())
-    return step if on > 0.9 and np.ptp(raw) > 20 * step else 0.0
-
-
-def _mean_step(raw: Array, step: float) -> float:
-    """A step from all gaps between neighbouring values: digits that were cut off average out."""
-    gaps = np.diff(np.unique(raw))
-    counts = np.round(gaps / step)
-    near = (counts > 0) & (counts < STEPS_APART)
-    total = float(counts[near].sum())
-    return float(gaps[near].sum()) / total if total > 0 else step
+    raw = values[:ENOUGH]
+    changes = int(np.count_nonzero(np.diff(raw)))
+    return grid_of(raw, reading_step(raw)) if changes >= 9 else 0.0
 
 
 def _position_unit(

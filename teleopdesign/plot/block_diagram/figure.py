@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..design import STYLE
+from ..letters import house_style
 from .shapes import SIZES, SMALLER, Box, Circle, Dot, Run, Shape, Text, Wire
 from .svg import BASELINE, RAISED, arrow_head, shaft
 
@@ -23,7 +23,7 @@ def figure(shapes: Sequence[Shape], *, width: float, height: float) -> Figure:
     """The shapes on a sheet of that size (points)."""
     import matplotlib.pyplot as plt
 
-    with plt.style.context(STYLE):
+    with plt.style.context(house_style()):
         size = width / POINTS_PER_INCH, height / POINTS_PER_INCH
         page = plt.figure(figsize=size, layout="none")
         axes = page.add_axes((0.0, 0.0, 1.0, 1.0))

@@ -1,0 +1,61 @@
+"""Folders that can be called: `td.diagnose(experiment)` is `td.find_missing(experiment)`.
+
+`td.NAME` is a folder once anything below it is imported, so no function can have its name. The one
+function that a user expects under a verb runs instead; a noun says which functions there are.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+__all__ = ["VERBS", "let_folders_be_called"]
+
+#: folder named by a verb -> the public function that runs when the folder is called
+VERBS = {
+    "check": "check_experiment",
+    "derive": "derive_transfers",
+    "design": "design_compensation",
+    "diagnose": "find_missing",
+    "simulate": "simulate_diagram",
+}
+#: what to type instead, where no one function stands for the folder
+INSTEAD = {
+    "app": "type `teleopdesign app` in a terminal",
+    "plot": "every result draws itself: diagnosis.plot(), simulation.plot(), study.plot",
+    "realise": "write td.to_iosystem(diagram)",
+    "report": "write a page by td.report.write_report",
+    "studies": "write td.study(diagram, axes, measures=...)",
+    "unexplained": "write td.describe(model, experiment)",
+    "next_experiment": "write td.propose_experiment(diagnosis)",
+}
+
+
+class _Folder(ModuleType):
+    """A folder that runs its function. `__call__` is looked up when the folder is called."""
+
+    @property
+    def __call__(self) -> Any:
+        package, _, folder = self.__name__.rpartition(".")
+        if folder in VERBS:
+            return getattr(import_module(package), VERBS[folder])
+        known = ", ".join(f"td.{folder}.{n}" for n in getattr(self, "__all__", ())[:4])
+        hint = INSTEAD.get(folder) or f"its functions: {known}, ..."
+        raise TypeError(f"td.{folder} is a folder and not callable; {hint}")
+
+
+class _Package(ModuleType):
+    """The package: what the import system binds to it as a folder becomes a `_Folder`."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if type(value) is ModuleType and value.__name__ == f"{self.__name__}.{name}":
+            if hasattr(value, "__path__"):
+                value.__class__ = _Folder
+        super().__setattr__(name, value)
+
+
+def let_folders_be_called(package: str) -> None:
+    """From here on the folders of the package can be called, whichever way they are imported."""
+    sys.modules[package].__class__ = _Package

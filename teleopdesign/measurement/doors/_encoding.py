@@ -1,0 +1,89 @@
+"""Which encoding a table of text is written in, from the bytes alone.
+
+Marks at the beginning and UTF-8 say themselves what they are. Of the others, many decode the same
+bytes: the one is taken in which most letters are those that tables of measurements are written
+with. A table says little but "time", "position", "torque" and units, so that few letters tell.
+"""
+
+from __future__ import annotations
+
+import codecs
+import unicodedata
+
+from ...errors import ExperimentError
+
+_LATIN = "ÄÖÜäöüßéèêëàâçîïôûùœñáíóúãõåøæÅØÆÉ°µ²³±·×–"
+_JAPANESE = (
+    "時間刻位置角度変速加関節電流圧力指令値実測操作手外目標軸回転数左右上下単番号試験日付荷重"
+)
+_SIMPLIFIED = (
+    "时间刻位置角度移速加关节电流压力矩指令值实测操作手外目标轴回转数左右上下单编号试验日期扭"
+)
+_TRADITIONAL = (
+    "時間刻位置角度移速加關節電流壓力矩指令值實測操作手外目標軸回轉數左右上下單編號試驗日期扭"
+)
+_KOREAN = "시간위치각도변속가관절전류압력토크힘지령값실측조작손외목표축회수좌우상하번호험일자명모터"
+#: encoding -> letters of tables in it. What loggers, spreadsheets and their drives still write
+#: where it is no UTF-8; of equal ones the first is taken
+ALPHABETS = {
+    "cp1252": _LATIN,
+    "cp932": _JAPANESE,
+    "gb18030": _SIMPLIFIED,
+    "big5": _TRADITIONAL,
+    "cp949": _KOREAN,
+    "euc_jp": _JAPANESE,
+    "cp1251": "",
+    "mac_roman": _LATIN,
+}
+#: share of letters beyond ASCII that must be known, or the usual one of the West is taken
+KNOWN = 0.5
+
+
+def encoding_of(raw: bytes, file: str, *, whole: bool) -> str:
+    """Name of the encoding of a text that begins so; `whole`: no byte follows.
+
+    raises ExperimentError: a byte that no text holds
+    """
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return "utf-16"
+    if raw[:3] == b"\xef\xbb\xbf":
+        return "utf-8-sig"
+    if b"\x00" in raw:
+        raise ExperimentError(f"{file}: not a text (byte {raw.index(0)} is 0)")
+    if _decoded(raw, "utf-8", whole) is not None:
+        return "utf-8"
+    shares = {e: _known_share(_decoded(raw, e, whole), e) for e in ALPHABETS}
+    best = max(shares, key=lambda e: shares[e])
+    if shares[best] >= KNOWN:
+        return best
+    return "cp1252" if _decoded(raw, "cp1252", whole) is not None else "latin-1"
+
+
+def _decoded(raw: bytes, encoding: str, whole: bool) -> str | None:
+    """The text, without a last letter that was cut; None: no text of this encoding."""
+    try:
+        return codecs.getincrementaldecoder(encoding)().decode(raw, final=whole)
+    except UnicodeDecodeError:
+        return None
+
+
+def _known_share(text: str | None, encoding: str) -> float:
+    """Share of the letters beyond ASCII that tables in this encoding are written with."""
+    if text is None:
+        return 0.0
+    beyond = [k for k, letter in enumerate(text) if ord(letter) > 127]
+    known = sum(_is_known(text, k, encoding) for k in beyond)
+    return known / max(len(beyond), 1)
+
+
+def _is_known(text: str, k: int, encoding: str) -> bool:
+    letter = text[k]
+    if letter in ALPHABETS[encoding]:
+        return True
+    name = unicodedata.name(letter, "")
+    if encoding in ("cp932", "euc_jp"):
+        return name.startswith(("HIRAGANA", "KATAKANA"))
+    if encoding == "cp1251":  # a word of these letters; one among Latin ones is an accent misread
+        beside = text[max(0, k - 1) : k] + text[k + 1 : k + 2]
+        return letter == "°" or name.startswith("CYRILLIC SMALL") and not beside.isascii()
+    return False
