@@ -20,7 +20,7 @@ from ...errors import ModelError
 from ...realise.lti import S
 from .polynomials import fraction
 
-Motion = Literal["velocity", "position"]
+MotionKind = Literal["velocity", "position"]
 _LONGEST = 9  # characters of a fraction that is printed as such
 #: in s; there exact tests of numbers of 16 digits take some 10 s, and grow with its fourth power
 _HIGHEST = 40
@@ -74,7 +74,7 @@ def gaussian(poly: sp.Poly, rate: Fraction, frequency: Fraction) -> tuple[Fracti
     return re, im
 
 
-def impedance(system: Any, *, motion: Motion = "velocity") -> Impedance:
+def impedance(system: Any, *, motion: MotionKind = "velocity") -> Impedance:
     """A one-port as an exact rational function.
 
     system: sympy expression in s, number, python-control TransferFunction or StateSpace
