@@ -54,6 +54,14 @@ class Impedance:
     def __str__(self) -> str:
         return readable(self.expression)
 
+    def __reduce__(self) -> Any:
+        # sympy pickles a polynomial without the domain of its coefficients
+        return _of_domains, tuple((poly.as_expr(), str(poly.domain)) for poly in (self.p, self.q))
+
+
+def _of_domains(p: tuple[sp.Expr, str], q: tuple[sp.Expr, str]) -> Impedance:
+    return Impedance(*(sp.Poly(e, S, domain=domain) for e, domain in (p, q)))
+
 
 def decimal(number: sp.Expr) -> str:
     """A number as text for people: up to twelve digits."""
