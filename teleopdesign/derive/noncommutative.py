@@ -204,7 +204,10 @@ def _scalar(late: sp.Expr, blocks: dict[sp.Symbol, sp.Matrix]) -> sp.Expr:
 def counterexample(
     left: sp.Expr, right: sp.Expr, *, size: int = 2, tries: int = 3, seed: int = 1
 ) -> dict[sp.Symbol, sp.Matrix] | None:
-    """Rational matrices on which left and right differ, exactly; None where none was found."""
+    """Matrices on which two expressions differ, in exact numbers; None where they agree.
+
+    size: rows of the matrices;  tries: draws before None;  seed: of the draws
+    """
     random = Random(seed)
     symbols = sorted(left.free_symbols | right.free_symbols, key=str)
     for _ in range(tries):

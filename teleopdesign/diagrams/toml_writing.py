@@ -25,8 +25,9 @@ from .wiring import Diagram
 def write_diagram(
     diagram: Diagram, path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS
 ) -> None:
-    """Write a diagram, in SI; with its blocks only where the wiring is one of the package's own.
+    """Write a diagram as a TOML file, in SI units.
 
+    A diagram of a kind that the package wires is written in short, by its blocks alone.
     effects: those that a reader of the file will know, as in `read_diagram`
     raises ModelError: an effect of a body is another than the one known by that name, a law is none
         of the package's, an expression holds other functions than a file may

@@ -145,7 +145,7 @@ def damping_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
 
 
 def mobility_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
-    """The same of the mobility 1/Z (m/(N s)): index of output passivity; +inf where Z = 0."""
+    """Excess of the mobility 1/Z, m/(N s): index of output passivity; +inf where Z = 0."""
     z = impedance(system, motion=motion)
     if z.p.is_zero:
         return Excess(float("inf"), float("inf"), 0.0)
