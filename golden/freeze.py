@@ -9,6 +9,7 @@ import argparse
 import contextlib
 import io
 import json
+import re
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
@@ -167,6 +168,10 @@ def _claim(claim: Any) -> dict[str, Any]:
     }
 
 
+#: what the load of the machine decides: lines of progress, which come after some time, and times
+TIMED = re.compile(r"^(step \d+: .* left of step \d+|what could be learned)\n| in \d+ s(?=:)", re.M)
+
+
 def pages() -> dict[str, Any]:
     """What commands print for the example that ships with the package."""
     from teleopdesign.cli import main
@@ -186,7 +191,7 @@ def pages() -> dict[str, Any]:
         said = io.StringIO()
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             status = main(words)
-        text = said.getvalue().replace(rod, "rod").replace(str(ROOT), "")
+        text = TIMED.sub("", said.getvalue().replace(rod, "rod").replace(str(ROOT), ""))
         name = " ".join("rod" if word == rod else word for word in words)
         found[name] = {"status": status, "text": text.splitlines()}
     return found

@@ -19,20 +19,17 @@ The names that a user types:
     experiments   Experiment, Record, experiment, load_experiment, check_experiment, example,
                   fetch
     models        Model, Body, Value
-    effects       EFFECTS, Effect, Parameter, FitSearch, State, load_effect
+    effects       EFFECTS, Effect, Parameter, load_effect
     diagnosis     fit, compare, rank, find_missing, find_missing_in_arm, describe,
-                  propose_experiment, Comparison, Ranking, Diagnosis, ArmDiagnosis
-    diagrams      Diagram, ANY, haptic_interface, teleoperator, hand, read_diagram,
-                  write_diagram
+                  propose_experiment
+    diagrams      Diagram, ANY, haptic_interface, teleoperator, hand, read_diagram, write_diagram
     controllers   CONTROLLERS, Controller, controller, load_controller, from_control
     responses     derive_transfers, transfer_functions, bode, measured_impedance,
-                  simulate_diagram, simulate_many, Simulation, Sampling, sine, to_iosystem
-    design        design_compensation, Design, Assumptions
-    studies       study, Study, read_study, measure, MEASURES, latin_hypercube, sobol,
-                  random_samples, sensitivity_samples, tune, limit, trade_off,
-                  fit_simulation, sensitivities
-    passivity     diagram_claims, positive_real, Claim, Certificate
-    errors        TeleopDesignError, ExperimentError, ModelError
+                  simulate_diagram, simulate_many, Sampling, sine
+    design        design_compensation
+    studies       study, measure, tune, fit_simulation
+    passivity     diagram_claims, positive_real
+    errors        ExperimentError, ModelError
 
 Every folder is there as well: `td.passivity`, `td.diagrams`, `td.frequency` ... A folder named by a
 verb can be called: `td.diagnose` does what `td.find_missing` does, and so do `td.check`,
@@ -105,22 +102,20 @@ if TYPE_CHECKING:
     from .controllers import CONTROLLERS, Controller, controller, from_control, load_controller
     from .derive import all_transfers as derive_transfers
     from .derive import transfer_functions
-    from .design import Assumptions, Design
+    from .design import Assumptions as Assumptions
+    from .design import Design as Design
     from .design import design as design_compensation
-    from .diagnose import (
-        ArmDiagnosis,
-        Comparison,
-        Diagnosis,
-        Ranking,
-        compare,
-        find_missing,
-        find_missing_in_arm,
-        fit,
-        rank,
-    )
+    from .diagnose import ArmDiagnosis as ArmDiagnosis
+    from .diagnose import Comparison as Comparison
+    from .diagnose import Diagnosis as Diagnosis
+    from .diagnose import Ranking as Ranking
+    from .diagnose import compare, find_missing, find_missing_in_arm, fit, rank
     from .diagrams import ANY, Diagram, haptic_interface, read_diagram, teleoperator, write_diagram
-    from .effects import EFFECTS, Effect, FitSearch, Parameter, State, load_effect
-    from .errors import ExperimentError, ModelError, TeleopDesignError
+    from .effects import EFFECTS, Effect, Parameter, load_effect
+    from .effects import FitSearch as FitSearch
+    from .effects import State as State
+    from .errors import ExperimentError, ModelError
+    from .errors import TeleopDesignError as TeleopDesignError
     from .examples import example
     from .frequency import bode, measured_impedance
     from .measurement import Experiment, Record, load_experiment
@@ -128,57 +123,41 @@ if TYPE_CHECKING:
     from .measurement.recordings import fetch
     from .model import Model
     from .next_experiment import propose as propose_experiment
-    from .passivity import Certificate, Claim, diagram_claims, positive_real
-    from .realise.iosystem import to_iosystem
-    from .simulate import Sampling, Simulation, simulate_many, sine
+    from .passivity import Certificate as Certificate
+    from .passivity import Claim as Claim
+    from .passivity import diagram_claims, positive_real
+    from .realise.iosystem import to_iosystem as to_iosystem
+    from .simulate import Sampling, simulate_many, sine
+    from .simulate import Simulation as Simulation
     from .simulate import simulate as simulate_diagram
-    from .studies import (
-        MEASURES,
-        Study,
-        fit_simulation,
-        latin_hypercube,
-        limit,
-        measure,
-        random_samples,
-        read_study,
-        sensitivities,
-        sensitivity_samples,
-        sobol,
-        study,
-        trade_off,
-        tune,
-    )
+    from .studies import MEASURES as MEASURES
+    from .studies import Study as Study
+    from .studies import fit_simulation, measure, study, tune
+    from .studies import latin_hypercube as latin_hypercube
+    from .studies import limit as limit
+    from .studies import random_samples as random_samples
+    from .studies import read_study as read_study
+    from .studies import sensitivities as sensitivities
+    from .studies import sensitivity_samples as sensitivity_samples
+    from .studies import sobol as sobol
+    from .studies import trade_off as trade_off
     from .unexplained import describe
 
 __all__ = [
     "ANY",
-    "ArmDiagnosis",
-    "Assumptions",
     "Body",
     "CONTROLLERS",
-    "Certificate",
-    "Claim",
-    "Comparison",
     "Controller",
-    "Design",
-    "Diagnosis",
     "Diagram",
     "EFFECTS",
     "Effect",
     "Experiment",
     "ExperimentError",
-    "FitSearch",
-    "MEASURES",
     "Model",
     "ModelError",
     "Parameter",
-    "Ranking",
     "Record",
     "Sampling",
-    "Simulation",
-    "State",
-    "Study",
-    "TeleopDesignError",
     "Value",
     "bode",
     "check_experiment",
@@ -198,8 +177,6 @@ __all__ = [
     "from_control",
     "hand",
     "haptic_interface",
-    "latin_hypercube",
-    "limit",
     "load_controller",
     "load_effect",
     "load_experiment",
@@ -207,20 +184,13 @@ __all__ = [
     "measured_impedance",
     "positive_real",
     "propose_experiment",
-    "random_samples",
     "rank",
     "read_diagram",
-    "read_study",
-    "sensitivities",
-    "sensitivity_samples",
     "simulate_diagram",
     "simulate_many",
     "sine",
-    "sobol",
     "study",
     "teleoperator",
-    "to_iosystem",
-    "trade_off",
     "transfer_functions",
     "tune",
     "write_diagram",
@@ -247,8 +217,6 @@ GROUPS: dict[str, dict[str, str]] = {
         "EFFECTS": "effects",
         "Effect": "effects",
         "Parameter": "effects",
-        "FitSearch": "effects",
-        "State": "effects",
         "load_effect": "effects",
     },
     "diagnosis": {
@@ -259,10 +227,6 @@ GROUPS: dict[str, dict[str, str]] = {
         "find_missing_in_arm": "diagnose",
         "describe": "unexplained",
         "propose_experiment": "next_experiment:propose",
-        "Comparison": "diagnose",
-        "Ranking": "diagnose",
-        "Diagnosis": "diagnose",
-        "ArmDiagnosis": "diagnose",
     },
     "diagrams": {
         "Diagram": "diagrams",
@@ -287,45 +251,63 @@ GROUPS: dict[str, dict[str, str]] = {
         "measured_impedance": "frequency",
         "simulate_diagram": "simulate:simulate",
         "simulate_many": "simulate",
-        "Simulation": "simulate",
         "Sampling": "simulate",
         "sine": "simulate",
-        "to_iosystem": "realise.iosystem",
     },
     "design": {
         "design_compensation": "design:design",
-        "Design": "design",
-        "Assumptions": "design",
     },
     "studies": {
         "study": "studies",
-        "Study": "studies",
-        "read_study": "studies",
         "measure": "studies",
+        "tune": "studies",
+        "fit_simulation": "studies",
+    },
+    "passivity": {
+        "diagram_claims": "passivity",
+        "positive_real": "passivity",
+    },
+    "errors": {
+        "ExperimentError": "errors",
+        "ModelError": "errors",
+    },
+}
+#: the same for names that `dir` leaves to their folders: classes of results, and what definitions
+#: and studies are made of
+FURTHER: dict[str, dict[str, str]] = {
+    "results": {
+        "Comparison": "diagnose",
+        "Ranking": "diagnose",
+        "Diagnosis": "diagnose",
+        "ArmDiagnosis": "diagnose",
+        "Simulation": "simulate",
+        "Design": "design",
+        "Study": "studies",
+        "Claim": "passivity",
+        "Certificate": "passivity",
+    },
+    "parts of definitions": {
+        "FitSearch": "effects",
+        "State": "effects",
+        "Assumptions": "design",
+        "TeleopDesignError": "errors",
+    },
+    "parts of studies": {
+        "read_study": "studies",
         "MEASURES": "studies",
         "latin_hypercube": "studies",
         "sobol": "studies",
         "random_samples": "studies",
         "sensitivity_samples": "studies",
-        "tune": "studies",
         "limit": "studies",
         "trade_off": "studies",
-        "fit_simulation": "studies",
         "sensitivities": "studies",
     },
-    "passivity": {
-        "diagram_claims": "passivity",
-        "positive_real": "passivity",
-        "Claim": "passivity",
-        "Certificate": "passivity",
-    },
-    "errors": {
-        "TeleopDesignError": "errors",
-        "ExperimentError": "errors",
-        "ModelError": "errors",
+    "exchange": {
+        "to_iosystem": "realise.iosystem",
     },
 }
-_HOMES = {name: home for group in GROUPS.values() for name, home in group.items()}
+_HOMES = {n: home for names in (*GROUPS.values(), *FURTHER.values()) for n, home in names.items()}
 #: folders that are there as `td.NAME`, imported when first used
 _FOLDERS = (
     "app",

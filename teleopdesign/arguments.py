@@ -21,7 +21,7 @@ from itertools import repeat
 from typing import Any, TypeVar
 
 from .errors import ExperimentError, ModelError
-from .expectations import Check, WrongValue, check_of, described, number_check, with_article
+from .expectations import TypeCheck, WrongValue, check_of, described, number_check, with_article
 
 __all__ = [
     "check_arguments",
@@ -52,7 +52,7 @@ def checked(target: Target) -> Target:
         name = qualified.rpartition("<locals>.")[2]
 
     @cache  # at the first call: what annotations name may be defined later than the function
-    def declared() -> tuple[tuple[str, ...], str, dict[str, Check]]:
+    def declared() -> tuple[tuple[str, ...], str, dict[str, TypeCheck]]:
         """Names by position, the name of what follows them, and the checks by name."""
         names = vars(sys.modules[target.__module__])
         parameters = inspect.signature(function).parameters.values()
@@ -182,7 +182,7 @@ class _Outside:
         return type(name, (), {"__module__": package, "_is_outside": True})
 
 
-def _or_default(check: Check, default: Any) -> Check:
+def _or_default(check: TypeCheck, default: Any) -> TypeCheck:
     """A default is right, whatever its type."""
     if default is inspect.Parameter.empty:
         return check

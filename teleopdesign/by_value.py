@@ -1,4 +1,4 @@
-"""Results compare by value, also where they hold arrays, labelled data or numbers that are NaN."""
+"""Results compare by value and print in a few lines, also where they hold arrays or NaN."""
 
 from __future__ import annotations
 
@@ -8,7 +8,15 @@ from typing import Any
 
 
 class ByValue:
-    """Base of frozen dataclasses (with eq=False) whose fields `same` compares."""
+    """Base of frozen dataclasses (with eq=False): `same` compares their fields, arrays print short.
+
+    A class that writes its own `__repr__` keeps it.
+    """
+
+    def __init_subclass__(cls) -> None:
+        # a dataclass writes a `__repr__` with every number of an array where the class has none
+        if cls.__repr__ is object.__repr__:
+            cls.__repr__ = _by_fields  # type: ignore[method-assign]
 
     def __eq__(self, other: object) -> bool:
         return same(self, other) if type(self) is type(other) else NotImplemented
@@ -17,6 +25,24 @@ class ByValue:
         # of fields that are names and counts: arrays and NaN have no hash that equality keeps
         plain = (getattr(self, f.name) for f in fields(self))  # type: ignore[arg-type]
         return hash((type(self), *(v for v in plain if isinstance(v, str | int))))
+
+
+def _by_fields(self: Any) -> str:
+    shown = (f"{f.name}={_short(getattr(self, f.name))}" for f in fields(self) if f.repr)
+    return f"{type(self).__qualname__}({', '.join(shown)})"
+
+
+def _short(value: Any) -> str:
+    """The `repr` of a value, with shape and range in place of an array's numbers."""
+    if type(value) in (list, tuple) and any(hasattr(v, "dtype") for v in value):
+        return f"[{', '.join(map(_short, value))}]"
+    if not hasattr(value, "dtype") or hasattr(value, "identical") or not value.shape:
+        return repr(value)
+    entries = " x ".join(map(str, value.shape))
+    if value.dtype.kind not in "if" or not value.size:
+        return f"<{entries} entries>"
+    low, high = (float(end) for end in (value.min(), value.max()))
+    return f"<{entries} numbers, {low:.4g} to {high:.4g}>"
 
 
 def same(one: Any, other: Any) -> bool:

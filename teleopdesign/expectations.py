@@ -27,7 +27,7 @@ class WrongValue:
 
 
 #: a value -> what is wrong with it, None if nothing
-Check = Callable[[Any], WrongValue | None]
+TypeCheck = Callable[[Any], WrongValue | None]
 
 
 def described(value: Any) -> str:
@@ -55,7 +55,7 @@ def with_article(name: str) -> str:
     return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"
 
 
-def check_of(annotation: Any) -> Check | None:
+def check_of(annotation: Any) -> TypeCheck | None:
     """The check of a resolved annotation; None where every value is right."""
     origin, inner = get_origin(annotation), get_args(annotation)
     if annotation is Any or annotation is object or isinstance(annotation, TypeVar | str):
@@ -82,7 +82,7 @@ def check_of(annotation: Any) -> Check | None:
     return _of_class(kind)
 
 
-def _plain(expected: str, accepts: Callable[[Any], bool]) -> Check:
+def _plain(expected: str, accepts: Callable[[Any], bool]) -> TypeCheck:
     return lambda value: None if accepts(value) else WrongValue("", value, expected)
 
 
@@ -125,7 +125,7 @@ def _complex(value: Any) -> WrongValue | None:
     return None if is_complex or _isnumber_check(value) else WrongValue("", value, "a number")
 
 
-_SIMPLE: dict[Any, Check] = {
+_SIMPLE: dict[Any, TypeCheck] = {
     float: number_check,
     int: _whole,
     bool: _truth,
@@ -134,7 +134,7 @@ _SIMPLE: dict[Any, Check] = {
 }
 
 
-def _one_of(values: tuple[Any, ...]) -> Check:
+def _one_of(values: tuple[Any, ...]) -> TypeCheck:
     names = [v for v in values if isinstance(v, str)]
     words = [f'"{v}"' if isinstance(v, str) else str(v) for v in values]
     listed = " or ".join(words) if len(words) < 4 else f"one of {', '.join(words)}"
@@ -148,7 +148,7 @@ def _one_of(values: tuple[Any, ...]) -> Check:
     return check
 
 
-def _any_of(parts: tuple[Any, ...]) -> Check | None:
+def _any_of(parts: tuple[Any, ...]) -> TypeCheck | None:
     checks = [check_of(part) for part in parts]
     if any(c is None for c in checks):
         return None
@@ -175,7 +175,7 @@ def _any_of(parts: tuple[Any, ...]) -> Check | None:
     return check
 
 
-def _mapping(key: Any, content: Any) -> Check:
+def _mapping(key: Any, content: Any) -> TypeCheck:
     of_key, of_content = check_of(key), check_of(content)
 
     def check(value: Any) -> WrongValue | None:
@@ -192,7 +192,7 @@ def _mapping(key: Any, content: Any) -> Check:
     return check
 
 
-def _several(kind: Any, content: Any) -> Check:
+def _several(kind: Any, content: Any) -> TypeCheck:
     of_content = check_of(content)
     container: Any = tuple if kind is tuple else kind
     words = {tuple: "a tuple", list: "a list", frozenset: "a frozenset", set: "a set"}
@@ -217,7 +217,7 @@ def _is_container(value: Any, kind: Any) -> bool:
     return isinstance(value, kind)
 
 
-def _fixed(parts: tuple[Any, ...]) -> Check:
+def _fixed(parts: tuple[Any, ...]) -> TypeCheck:
     checks = [check_of(part) for part in parts]
 
     def check(value: Any) -> WrongValue | None:
@@ -231,7 +231,7 @@ def _fixed(parts: tuple[Any, ...]) -> Check:
     return check
 
 
-def _of_class(kind: type[Any]) -> Check:
+def _of_class(kind: type[Any]) -> TypeCheck:
     name = kind.__name__
     if name == "ndarray":
         return _plain("an array of numbers", _is_array)

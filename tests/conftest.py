@@ -36,6 +36,7 @@ TOGETHER = {
     "design": "a diagnosis of the rod",
     "report": "a diagnosis of the rod",
     "unexplained": "a fit of the rod",
+    "test_dependencies": "syntax trees",
     "test_import_circles": "syntax trees",
     "test_imports": "syntax trees",
     "test_words_and_sizes": "syntax trees",

@@ -8,9 +8,20 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
+from study_models import product, value
 
 import teleopdesign as td
-from teleopdesign import blocks, derive, diagrams, frequency, passivity, simulate
+from teleopdesign import (
+    arms,
+    blocks,
+    derive,
+    diagrams,
+    frequency,
+    next_experiment,
+    passivity,
+    simulate,
+    studies,
+)
 
 BODY = td.Body(
     "prismatic",
@@ -98,6 +109,47 @@ QUICK: Mapping[str, Callable[[], Any]] = {
         np.linspace(0, 1, 50), np.linspace(0, 1, 50), np.ones(50)
     ),
     "drawing": lambda: _drawing(),
+    "matrix response": lambda: frequency.matrix_response(
+        diagram(), ["L"], ["R_V"], np.array([1.0, 10.0])
+    ),
+    "loop gain": lambda: frequency.loop_gain(diagram(), controller="H"),
+    "impedance over amplitude": lambda: frequency.quasi_linear_impedance(
+        diagram(), amplitude=[1e-3, 1e-2], frequency=[1.0, 2.0]
+    ),
+    "impedance": lambda: passivity.impedance(0.15 * sp.Symbol("s") + 4),
+    "excess of damping": lambda: passivity.damping_excess(0.15 * sp.Symbol("s") + 4),
+    "storage": lambda: passivity.kyp((sp.Symbol("s") + 3) / (sp.Symbol("s") + 4)),
+    "claim over intervals": lambda: passivity.claim_over_intervals(
+        diagrams.haptic_interface(td.Body("prismatic", {"inertia": 0.1})),
+        {"Z_M.inertia": (0.1, 0.2)},
+    ),
+    "claims on a diagram": lambda: passivity.diagram_claims(
+        diagrams.haptic_interface(HAND), rng=np.random.default_rng(0)
+    ),
+    "Z-width": lambda: passivity.z_width(damping=2, sample_time=0.001),
+    "available storage": lambda: passivity.available_storage(
+        passivity.Dahl(0.5, 1e4), [passivity.Spring(1.0, 1e4)], points=5
+    ),
+    "trembling": lambda: passivity.Trembling(
+        passivity.Dahl(0.5, 1e4), passivity.Dahl(1.0, 1e4), 1.0, 1e-3, 1e-5, -1e-6, 10
+    ),
+    "steady strokes": lambda: passivity.SteadyStrokes(
+        0.5, 1e-3, passivity.Coulomb(0.4), 1.0, 0.01, 0.02
+    ),
+    "case of a study": lambda: studies.SimulatedCase(diagram(), duration=0.1),
+    "measure": lambda: td.measure("rms", signal="R_M"),
+    "samples": lambda: td.latin_hypercube({"Z_M.inertia": (0.1, 0.2)}, 4),
+    "limit of a search": lambda: td.limit(td.measure("rms", signal="R_M"), most=1.0),
+    "study": lambda: _study(),
+    "assumptions": lambda: td.Assumptions(delay=1e-3),
+    "limits of a motion": lambda: next_experiment.Limits(-0.1, 0.1, 1.0, 10.0, 1e3, 5.0),
+    "spring of a contact": lambda: passivity.Spring(1.0, 1e4),
+    "any block": lambda: td.ANY,
+    "kinematics": lambda: diagrams.Kinematics("y", 2 * diagrams.position_symbol("x")),
+    "search for a motion": lambda: passivity.Search(tries=3),
+    "arm": lambda: arms.Chain((_link(),)),
+    "base parameters": lambda: arms.base_parameters(arms.Chain((_link(), _link()))),
+    "felt friction": lambda: diagrams.felt_friction(np.eye(2), [0.4, 0.5]),
 }
 SLOW: Mapping[str, Callable[[], Any]] = {
     "model": model,
@@ -109,6 +161,16 @@ SLOW: Mapping[str, Callable[[], Any]] = {
     "description": lambda: td.describe(model(), experiment()),
     "design": lambda: _design(),
 }
+
+
+def _study() -> td.Study:
+    return td.study(product, {"x": [1.0, 2.0], "y": [0.5, 0.7]}, measures=value, workers=1)
+
+
+def _link() -> arms.Link:
+    inertial = arms.inertia_about(2.0, np.array([0.0, 0.0, 0.1]), np.diag([0.02, 0.02, 0.01]))
+    axis, origin = np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 0.3])
+    return arms.Link("link", "joint", "revolute", axis, np.eye(3), origin, inertial)
 
 
 def _drawing() -> Any:

@@ -199,7 +199,15 @@ AS_LOGGED = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("flaw", AS_LOGGED)
+@pytest.mark.parametrize(
+    "flaw",
+    [
+        "gap",
+        "not uniform",
+        pytest.param("nan", marks=pytest.mark.slow),
+        pytest.param("samples left out", marks=pytest.mark.slow),
+    ],
+)
 def test_what_a_logger_did_to_a_record_is_read_and_told(flaw, rod, capsys):
     change, expected = AS_LOGGED[flaw]
     main(["check", str(with_plain_record(rod, change))])

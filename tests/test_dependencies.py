@@ -4,9 +4,11 @@ import ast
 import re
 import sys
 import tomllib
+from functools import cache
 from pathlib import Path
 
 import pytest
+from syntax_trees import parsed, syntax_trees
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -24,39 +26,48 @@ def names(requirements):
     return {n for n in found if n != PROJECT["name"]}
 
 
-def imported(*folders):
-    """Top-level modules that Python files of these folders import, by name or by import_module."""
+def imported(trees):
+    """Top-level modules that these syntax trees import, by name or by import_module."""
     found = set()
-    for folder in folders:
-        for path in (ROOT / folder).rglob("*.py"):
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-                if isinstance(node, ast.Import):
-                    found |= {a.name for a in node.names}
-                elif isinstance(node, ast.ImportFrom) and node.level == 0:
-                    found.add(node.module)
-                elif isinstance(node, ast.Call) and node.args:
-                    first = node.args[0]
-                    if isinstance(first, ast.Constant) and isinstance(first.value, str):
-                        name = getattr(node.func, "attr", getattr(node.func, "id", ""))
-                        if name in ("import_module", "find_spec", "importorskip"):
-                            found.add(first.value)
+    for tree in trees:
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Import):
+                found |= {a.name for a in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.level == 0:
+                found.add(node.module)
+            elif isinstance(node, ast.Call) and node.args:
+                first = node.args[0]
+                if isinstance(first, ast.Constant) and isinstance(first.value, str):
+                    name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+                    if name in ("import_module", "find_spec", "importorskip"):
+                        found.add(first.value)
     return {name.partition(".")[0] for name in found}
+
+
+# read when a test asks, not when tests are collected: every process of a run collects
+@cache
+def imported_by_the_package():
+    return imported(syntax_trees().values())
+
+
+@cache
+def imported_anywhere():
+    beside = (parsed(ROOT / folder) for folder in ("studies", "tests", "docs", "benchmarks"))
+    return imported_by_the_package().union(*(imported(trees.values()) for trees in beside))
 
 
 CORE = names(PROJECT["dependencies"])
 EXTRAS = {extra: names(wanted) for extra, wanted in PROJECT["optional-dependencies"].items()}
-PACKAGE = imported("teleopdesign")
-EVERYWHERE = PACKAGE | imported("studies", "tests", "docs", "benchmarks")
 
 
 @pytest.mark.parametrize("name", sorted(CORE))
 def test_a_core_dependency_is_imported_by_the_package(name):
-    assert MODULES.get(name, name) in PACKAGE
+    assert MODULES.get(name, name) in imported_by_the_package()
 
 
 @pytest.mark.parametrize("name", sorted(set().union(*EXTRAS.values()) - TOOLS - NAMED))
 def test_a_dependency_of_an_extra_is_imported_somewhere(name):
-    assert MODULES.get(name, name) in EVERYWHERE
+    assert MODULES.get(name, name) in imported_anywhere()
 
 
 def test_the_package_imports_only_what_it_asks_for():
@@ -64,4 +75,4 @@ def test_the_package_imports_only_what_it_asks_for():
     # markupsafe comes with jinja2, whose documentation says to import it from there; llvmlite with
     # numba, in the one version that it works with
     known = {*asked, *sys.stdlib_module_names, "teleopdesign", "markupsafe", "llvmlite"}
-    assert known >= PACKAGE
+    assert known >= imported_by_the_package()

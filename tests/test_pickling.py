@@ -1,9 +1,12 @@
 """What a user holds pickles, copies, compares by value, and prints in a few lines."""
 
 import copy
+import dataclasses
+import inspect
 import pickle
 import subprocess
 import sys
+from collections.abc import Mapping
 
 import pytest
 from example_objects import BODY, LAW, QUICK, SLOW
@@ -199,3 +202,61 @@ def test_names_are_escaped_in_notebooks():
     ]
     for thing in shown:
         assert "<script>" not in thing._repr_html_() and "&lt;script&gt;" in thing._repr_html_()
+
+
+#: made by a diagnosis, a design, a proposal or a search that takes seconds, or a part of its result
+DEAR = set(
+    """
+    ArmDiagnosis HorizonError RecordedLoop SimulationComparison ArmPaths DeterminedParameter
+    Proposal Workbench Reference Remedy Rival Separation SimulatedDiagnosis ArmPage Page
+    ForceDisplacement Loop
+    CoulombLevel LargestStiffness LevelAtSpeed Line SteadyRun MarginMap FrequencyMargins
+    PassivityControlled Region SecondOpinion SimulatedMotion Given SimulationFit Tuned CheckedLimit
+    ParetoFront Point PointOutcome Progress TunedControllers Setup BodyEquation ControllerEquation
+    RecordFacts EnvironmentDescription ExperimentError ModelError TeleopDesignError
+    Arm DahlBehindSpring Linked Reading Unknown Amount
+    BodyResidual CasePrediction Comparison DescribedDependence Design DiagnosedModel Diagnosis
+    FeedbackLoop Fit Prediction ProposedController Ranked Ranking Reason ResidualDescription
+    ResidualFriction Rung
+""".split()
+)
+
+
+def reached(things):
+    """Every dataclass among these and what they hold, one of each class."""
+    classes, kept, ahead = {}, {}, list(things)
+    while ahead:
+        thing = ahead.pop()
+        if isinstance(thing, Mapping):
+            ahead += thing.values()
+        elif isinstance(thing, list | tuple):
+            ahead += thing[:50]
+        elif dataclasses.is_dataclass(thing) and not isinstance(thing, type):
+            classes.setdefault(type(thing), thing)
+            if id(thing) not in kept:
+                kept[id(thing)] = thing  # kept: no other object then has this number
+                ahead += [getattr(thing, f.name) for f in dataclasses.fields(thing)]
+    return classes
+
+
+def public_classes():
+    for folder in sorted(n for n in dir(td) if inspect.ismodule(getattr(td, n))):
+        module = getattr(td, folder)
+        for name in getattr(module, "__all__", ()):
+            if inspect.isclass(getattr(module, name)):
+                yield getattr(module, name)
+
+
+def test_every_public_class_pickles_copies_and_prints():
+    """Those of the examples, and what they hold; a new class needs an example, or a reason."""
+    classes = reached(make() for make in QUICK.values())
+    public = {c for c in public_classes() if dataclasses.is_dataclass(c)}
+    for kind in public & classes.keys():
+        thing = classes[kind]
+        # a state holds code: the effect or the law that it belongs to pickles, by its name
+        if kind not in (td.State, td.controllers.ControllerState):
+            for again in (pickle.loads(pickle.dumps(thing)), copy.deepcopy(thing)):
+                assert same(again, thing) and again == thing, type(thing).__name__
+            text = repr(thing)
+            assert len(text) < 2500 and "array(" not in text and " object at 0x" not in text
+    assert {c.__name__ for c in public - classes.keys()} - DEAR == set()

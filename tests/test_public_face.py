@@ -4,6 +4,7 @@ import inspect
 import pickle
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -99,6 +100,13 @@ def test_both_halves_are_there():
     both |= {"haptic_interface", "controller", "bode", "simulate_diagram", "positive_real"}
     assert both <= set(dir(td))
     assert not {"import_module", "TYPE_CHECKING", "annotations"} & set(dir(td))
+
+
+def test_few_names_are_shown_and_every_other_public_name_stays_within_reach():
+    further = [name for names in td.FURTHER.values() for name in names]
+    assert len(td.__all__) <= 50 and not set(further) & set(td.__all__)
+    for name, home in {n: h for names in td.FURTHER.values() for n, h in names.items()}.items():
+        assert getattr(td, name) is getattr(import_module(f"teleopdesign.{home}"), name)
 
 
 def test_a_misspelt_name_is_told_the_nearest():

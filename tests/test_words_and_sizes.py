@@ -125,13 +125,40 @@ def test_a_name_that_says_what_it_holds_is_not_judged():
     assert not misnamed("module", ast.parse("def f(roots, *, given_out=0): x.found(roots, own=1)"))
 
 
-def test_no_two_public_classes_have_the_same_name():
-    homes = defaultdict(list)
+def type_of(node: ast.stmt, module: str) -> tuple[str, str] | None:
+    """Name and meaning of a public type that a statement defines: a class, or a name for a type."""
+    if isinstance(node, ast.ClassDef):
+        name, meaning = node.name, module
+    elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+        name, meaning = node.targets[0].id, ast.unparse(node.value)
+    else:
+        return None
+    is_type = name[0].isupper() and not name.isupper() and not meaning.startswith("TypeVar")
+    return (name, meaning) if is_type else None
+
+
+def test_no_two_public_types_have_the_same_name():
+    """Classes and names for types alike; one name for one type may be written in many modules."""
+    meanings = defaultdict(set)
     for module, tree in modules().items():
         for node in tree.body:
-            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
-                homes[node.name].append(module)
-    assert {name: found for name, found in homes.items() if len(found) > 1} == {}
+            if defined := type_of(node, module):
+                meanings[defined[0]].add(defined[1])
+    assert {name: found for name, found in meanings.items() if len(found) > 1} == {}
+
+
+@pytest.mark.parametrize(
+    ("code", "defined"),
+    [
+        ("class Rows: ...", ("Rows", "module")),
+        ("Rows = list[int]", ("Rows", "list[int]")),
+        ("ROWS = 3", None),
+        ("_Rows = list[int]", None),
+        ("Key = TypeVar('Key')", None),
+    ],
+)
+def test_a_type_is_seen_as_a_class_and_as_a_name(code, defined):
+    assert type_of(ast.parse(code).body[0], "module") == defined
 
 
 def test_one_function_is_called_teleoperator():

@@ -80,7 +80,7 @@ METHODS = [
 
 def functions():
     """Every public function, its folder in front."""
-    for name in td.__all__:
+    for name in (n for names in (*td.GROUPS.values(), *td.FURTHER.values()) for n in names):
         thing = getattr(td, name)
         if inspect.isfunction(thing) and name not in LEFT_OUT:
             yield pytest.param(thing, id=name)

@@ -283,8 +283,10 @@ def api(module: str) -> str:
     full = "teleopdesign" if module == "." else f"teleopdesign.{module}"
     root, found = import_module("teleopdesign"), import_module(full)
     lines = []
-    top = {} if module == "." else {id(getattr(root, n)): n for n in root.__all__}
-    groups = root.GROUPS if module == "." else {"": sorted(found.__all__, key=str.lower)}
+    public = root.GROUPS | root.FURTHER
+    names = [name for group in public.values() for name in group]
+    top = {} if module == "." else {id(getattr(root, n)): n for n in names}
+    groups = public if module == "." else {"": sorted(found.__all__, key=str.lower)}
     begins = {next(iter(names)): group for group, names in groups.items() if group}
     for name in (n for names in groups.values() for n in names):
         thing = getattr(found, name)

@@ -37,11 +37,6 @@ class BackgroundTask(Generic[T]):
         """Whether it is over, one way or another."""
         return not self._thread.is_alive()
 
-    @property
-    def is_cancelled(self) -> bool:
-        """Whether `cancel` was called."""
-        return self._stop.is_set()
-
     def cancel(self) -> None:
         """Stop at the next line of progress."""
         self._stop.set()

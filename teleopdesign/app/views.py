@@ -16,16 +16,16 @@ from . import charts, export, logs, pages
 from .workbench import Workbench
 
 #: what marimo shows: an element of the page
-Element = Any
+PageElement = Any
 Spans = Sequence[tuple[float, float]]
 
 
-def beside(*elements: Element) -> Element:
+def beside(*elements: PageElement) -> PageElement:
     """Elements in a row, on a narrow page in several."""
     return mo.hstack(list(elements), justify="start", wrap=True)
 
 
-def span_sliders(duration: float, proposed: Spans) -> tuple[Element, Element]:
+def span_sliders(duration: float, proposed: Spans) -> tuple[PageElement, PageElement]:
     """Two sliders: what is fitted, and what is checked, s from the first row."""
     fit, check = (
         mo.ui.range_slider(
@@ -43,7 +43,7 @@ def span_sliders(duration: float, proposed: Spans) -> tuple[Element, Element]:
     return fit, check
 
 
-def column_form(columns: Sequence[str]) -> Element:
+def column_form(columns: Sequence[str]) -> PageElement:
     """What a person can say of a log: axis, columns, constants."""
     return mo.ui.dictionary(
         {
@@ -58,10 +58,10 @@ def column_form(columns: Sequence[str]) -> Element:
 def log_parts(
     folder: Path,
     name: str,
-    form: Element,
-    sliders: tuple[Element, Element],
+    form: PageElement,
+    sliders: tuple[PageElement, PageElement],
     make: Callable[[logs.Preview, Any], object],
-) -> list[Element]:
+) -> list[PageElement]:
     """A log as it is understood, and the button that makes an experiment of it.
 
     make: what the button does with the log and its spans
@@ -86,7 +86,9 @@ def log_parts(
     ]
 
 
-def residual_view(bench: Workbench, body: Element, use: Element, rung: Element) -> Element:
+def residual_view(
+    bench: Workbench, body: PageElement, use: PageElement, rung: PageElement
+) -> PageElement:
     """The residual of one model, with what chooses it."""
     data = pages.residuals(bench, rung.value)
     return mo.vstack(
@@ -99,8 +101,8 @@ def residual_view(bench: Workbench, body: Element, use: Element, rung: Element) 
 
 
 def compare_view(
-    bench: Workbench, models: tuple[Element, Element], body: Element, use: Element
-) -> Element:
+    bench: Workbench, models: tuple[PageElement, PageElement], body: PageElement, use: PageElement
+) -> PageElement:
     """Two models beside each other."""
     one, other = models
     parts = [beside(one, other)]
@@ -120,7 +122,9 @@ def compare_view(
     return mo.vstack(parts)
 
 
-def ladder_view(bench: Workbench, candidate: Element, buttons: Mapping[str, Element]) -> Element:
+def ladder_view(
+    bench: Workbench, candidate: PageElement, buttons: Mapping[str, PageElement]
+) -> PageElement:
     """The ladder and the candidates; buttons: "add", "back", "rank", "all"."""
     return mo.vstack(
         [
@@ -134,14 +138,14 @@ def ladder_view(bench: Workbench, candidate: Element, buttons: Mapping[str, Elem
     )
 
 
-def slider_view(bench: Workbench, which: Element, factor: Element) -> Element:
+def slider_view(bench: Workbench, which: PageElement, factor: PageElement) -> PageElement:
     """One parameter moved, and the errors that the model then has."""
     if not which.value:
         return mo.md("This model has no free parameter.")
     return mo.vstack([beside(which, factor), mo.md(pages.moved(bench, which.value, factor.value))])
 
 
-def export_view(bench: Workbench, write: Element) -> Element:
+def export_view(bench: Workbench, write: PageElement) -> PageElement:
     """The button that writes, and the script that repeats what was clicked."""
     said = "Report (html), answer (json), figure (svg), and a script that repeats these steps."
     script = mo.md(f"```python\n{export.script(bench)}\n```")

@@ -9,7 +9,6 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ..diagnose.candidates import Candidate
 from ..diagnose.conclusion import conclude
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.error import force_error
@@ -142,8 +141,3 @@ class Workbench:
         names = [f"{r.candidate}" for r in self.candidates]
         wanted = f"{effect} at {at}"
         raise ModelError(f'add: no candidate "{wanted}"{did_you_mean(wanted, names)}')
-
-
-def added_names(bench: Workbench) -> tuple[Candidate, ...]:
-    """The effects that were added, in their order."""
-    return tuple(rung.added for rung in bench.rungs if rung.added is not None)

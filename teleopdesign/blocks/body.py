@@ -105,7 +105,7 @@ class Body:
 
     @checked
     def unit(self, name: str) -> str:
-        """Unit of the parameter of that name on this axis."""
+        """Unit of a parameter on the axis of this body."""
         return unit_of(self.parameter(name).quantity, self.axis)
 
     def has(self, effect: str) -> bool:

@@ -14,7 +14,7 @@ from .environment import CONTACT
 
 
 def free_space(body: Body) -> Body:
-    """Nothing to touch."""
+    """The body without what it touches: free motion, no contact force."""
     for effect in reversed(body.effects):
         if effect.role in CONTACT_ROLES:
             body = body.without_effect(effect.name)

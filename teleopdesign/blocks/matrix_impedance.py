@@ -15,7 +15,7 @@ import sympy as sp
 from ..arguments import checked, described
 from ..errors import ModelError, did_you_mean
 
-Rows = tuple[tuple[float, ...], ...]
+MatrixRows = tuple[tuple[float, ...], ...]
 
 
 @checked
@@ -26,9 +26,9 @@ class MatrixImpedance:
     Entry (i, j) is the force i for motion j; entries that are zero are no parameters.
     """
 
-    mass: Rows
-    damping: Rows
-    stiffness: Rows
+    mass: MatrixRows
+    damping: MatrixRows
+    stiffness: MatrixRows
 
     def __post_init__(self) -> None:
         for name in _PARTS:
@@ -134,5 +134,5 @@ def _refuse_other(matrix: Any, name: str) -> None:
         )
 
 
-def _rows(matrix: np.ndarray) -> Rows:
+def _rows(matrix: np.ndarray) -> MatrixRows:
     return tuple(tuple(float(x) for x in row) for row in matrix)

@@ -85,7 +85,10 @@ def controller(name: str | ControlLaw, values: Mapping[str, float]) -> Controlle
 
 
 def laws_that_declare(ability: Ability) -> tuple[ControlLaw, ...]:
-    """The laws of the catalogue that declare this ability, in the order of their names."""
+    """Control laws of the catalogue that declare an ability, in the order of their names.
+
+    ability: such as "bound": the law states the largest force that it makes
+    """
     return tuple(law for law in CONTROLLERS.values() if getattr(law, ability))
 
 

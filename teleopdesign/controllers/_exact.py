@@ -13,12 +13,12 @@ import sympy as sp
 
 
 def as_written(value: float) -> sp.Rational:
-    """The decimal number that a finite float is written as."""
+    """The decimal number that Python prints for a finite float: 0.1 gives 1/10."""
     return sp.Rational(repr(float(value)))
 
 
 def in_exact_numbers(expression: sp.Expr) -> sp.Expr:
-    """The expression with every number rational: pi and roots to the digits of a float."""
+    """The expression with every number as a fraction; pi and roots keep the digits of a float."""
 
     def is_inexact(part: sp.Basic) -> bool:
         return bool(part.is_number) and not part.is_rational and bool(part.is_extended_real)

@@ -77,13 +77,13 @@ def opaque(name: str, system: control.InputOutputSystem) -> Controller:
 
 
 def calls_in(expressions: list[sp.Expr]) -> dict[str, Callable[..., float]]:
-    """Functions that these expressions call, by their names in generated source."""
+    """Name in generated source -> function, of every function that the expressions call."""
     every = set().union(*(e.atoms(sp.core.function.AppliedUndef) for e in expressions))
     return {str(f.func): f.func._imp_ for f in every if is_call(f)}
 
 
 def is_call(expression: sp.Expr) -> bool:
-    """Whether it calls a function of a system that is known as code only."""
+    """Whether an expression calls a function that is known as code only, not as an equation."""
     return str(expression.func).startswith(_CALLED) and hasattr(expression.func, "_imp_")
 
 

@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
 from ..effects import Parameter
 from ..errors import ModelError
@@ -21,7 +22,7 @@ from ..recipes import remember
 from ._controller import ControlLaw, ControllerState, Stage, only_sampled
 from ._exact import as_written, resolvent
 
-Array = np.ndarray
+Array = NDArray[np.float64]
 #: whether a system came as matrices or as numerator and denominator
 Form = Literal["matrices", "coefficients"]
 _Law = Callable[[Any, Any], sp.Expr]

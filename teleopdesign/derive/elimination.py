@@ -103,7 +103,7 @@ def _row(terms: list[tuple[str, sp.Expr]]) -> Row:
 
 
 def has_actuation(part: Moving) -> bool:
-    """Whether effects stand between the command and the force that acts on this body."""
+    """Whether the body has actuation effects: the force that acts is then not the command."""
     return any(e.role == "actuation" for e in getattr(part.body, "effects", ()))
 
 

@@ -24,7 +24,7 @@ from ..errors import ModelError
 from ..realise.lti import S
 
 Word = tuple[str, ...]
-Polynomial = dict[Word, Fraction]
+WordPolynomial = dict[Word, Fraction]
 _DEEPEST = 4  # denominators multiplied out, one inside the other
 
 
@@ -32,10 +32,10 @@ _DEEPEST = 4  # denominators multiplied out, one inside the other
 class _Algebra:
     """Letters for inverses of sums and the rules they obey, collected while reading expressions."""
 
-    denominators: dict[str, Polynomial] = field(default_factory=dict)
+    denominators: dict[str, WordPolynomial] = field(default_factory=dict)
     names: dict[sp.Expr, str] = field(default_factory=dict)
 
-    def read(self, expression: sp.Expr) -> Polynomial:
+    def read(self, expression: sp.Expr) -> WordPolynomial:
         """The sympy expression as a polynomial in words."""
         if expression.is_Rational:
             return {(): Fraction(int(expression.p), int(expression.q))} if expression else {}
@@ -44,7 +44,7 @@ class _Algebra:
         if expression.is_Add:
             return self.reduced(_sum([self.read(a) for a in expression.args]))
         if expression.is_Mul:
-            product: Polynomial = {(): Fraction(1)}
+            product: WordPolynomial = {(): Fraction(1)}
             for factor in expression.args:
                 product = self.times(product, self.read(factor))
             return product
@@ -57,7 +57,7 @@ class _Algebra:
             return product
         raise TypeError(f"no rational expression of blocks: {expression}")
 
-    def inverse(self, base: sp.Expr) -> Polynomial:
+    def inverse(self, base: sp.Expr) -> WordPolynomial:
         polynomial = self.read(base)
         if len(polynomial) == 1:
             ((word, factor),) = polynomial.items()
@@ -68,16 +68,16 @@ class _Algebra:
             self.denominators[letter] = polynomial
         return {(self.names[base],): Fraction(1)}
 
-    def times(self, left: Polynomial, right: Polynomial) -> Polynomial:
-        out: Polynomial = {}
+    def times(self, left: WordPolynomial, right: WordPolynomial) -> WordPolynomial:
+        out: WordPolynomial = {}
         for a, x in left.items():
             for b, y in right.items():
                 out[a + b] = out.get(a + b, Fraction(0)) + x * y
         return self.reduced(out)
 
-    def reduced(self, polynomial: Polynomial) -> Polynomial:
+    def reduced(self, polynomial: WordPolynomial) -> WordPolynomial:
         """Apply the rules until none applies."""
-        done: Polynomial = {}
+        done: WordPolynomial = {}
         todo = dict(polynomial)
         while todo:
             word, factor = todo.popitem()
@@ -91,7 +91,7 @@ class _Algebra:
                     todo[other] = todo.get(other, Fraction(0)) + factor * c
         return {w: c for w, c in done.items() if c}
 
-    def _step(self, word: Word) -> Polynomial | None:
+    def _step(self, word: Word) -> WordPolynomial | None:
         for i in range(len(word) - 1):
             if word[i + 1] == _inverse_letter(word[i]):
                 return {word[:i] + word[i + 2 :]: Fraction(1)}
@@ -112,7 +112,7 @@ class _Algebra:
                     return _sum([out, {head + tail: 1 / c}])
         return None
 
-    def vanishes(self, polynomial: Polynomial, depth: int = _DEEPEST) -> bool:
+    def vanishes(self, polynomial: WordPolynomial, depth: int = _DEEPEST) -> bool:
         """Whether the polynomial is 0, denominators multiplied out from both sides."""
         polynomial = self.reduced(polynomial)
         if not polynomial:
@@ -143,8 +143,8 @@ def _order(word: Word) -> tuple[int, bool, Word]:
     return len(word), not any(x.endswith("^-1") for x in word), word
 
 
-def _sum(parts: Sequence[Polynomial]) -> Polynomial:
-    out: Polynomial = {}
+def _sum(parts: Sequence[WordPolynomial]) -> WordPolynomial:
+    out: WordPolynomial = {}
     for part in parts:
         for word, factor in part.items():
             out[word] = out.get(word, Fraction(0)) + factor
@@ -204,7 +204,10 @@ def _scalar(late: sp.Expr, blocks: dict[sp.Symbol, sp.Matrix]) -> sp.Expr:
 def counterexample(
     left: sp.Expr, right: sp.Expr, *, size: int = 2, tries: int = 3, seed: int = 1
 ) -> dict[sp.Symbol, sp.Matrix] | None:
-    """Rational matrices on which left and right differ, exactly; None where none was found."""
+    """Matrices on which two expressions differ, in exact numbers; None where they agree.
+
+    size: rows of the matrices;  tries: draws before None;  seed: of the draws
+    """
     random = Random(seed)
     symbols = sorted(left.free_symbols | right.free_symbols, key=str)
     for _ in range(tries):

@@ -14,7 +14,7 @@ from ..realise.lti import S
 
 
 def block_symbol(name: str) -> sp.Symbol:
-    """The block of that name, as a symbol that commutes with no other block."""
+    """A symbol for the named block; the symbol commutes with no other block, as matrices do."""
     return sp.Symbol(name, commutative=False)
 
 
@@ -91,12 +91,12 @@ class _Latex(LatexPrinter):
 
 
 def as_text(expression: sp.Expr) -> str:
-    """Plain text: Z_H (Z_M + Gamma Z_H - C)^-1 Gamma."""
+    """The expression as plain text, such as "Z_H (Z_M + Gamma Z_H - C)^-1 Gamma"."""
     return str(_Text().doprint(expression))
 
 
 def as_latex(expression: sp.Expr) -> str:
-    """LaTeX."""
+    """The expression as LaTeX, blocks in the order in which they stand."""
     return str(_Latex().doprint(expression))
 
 

@@ -40,7 +40,7 @@ def with_values(
 
 
 def symbol_values(linear: LinearBlocks) -> dict[sp.Symbol, sp.Expr]:
-    """What each symbol of a derived expression is: a block, a stage of an actuator, a dead time."""
+    """Symbol of a derived expression -> transfer function of the block, stage or dead time."""
     values = {block_symbol(n): e for n, e in linear.blocks.items()}
     values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
     values |= {along_symbol(n): e for n, e in linear.along.items()}

@@ -53,7 +53,11 @@ def fit(model: Model, experiment: Experiment, *, seed: int = 0) -> Model:
 
 
 def rank(model: Model, experiment: Experiment) -> Ranking:
-    """Effects that may be missing, best first; each is added and everything is re-estimated."""
+    """Effects that the model may lack, best first.
+
+    Each candidate is added to the model and all free parameters are estimated again.
+    returns: candidates with their fits and errors on fit and check records
+    """
     prepared = prepare(experiment)
     return rank_candidates(estimate_from_starts(model, prepared), prepared)
 

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 from ..by_value import ByValue
 from ..measurement.experiment import Experiment
 from ..model import Model
-from ..notebook import html_table
 from .candidates import Candidate
 from .decision import floors_left, is_adequate, verdict
 from .fit import Fit
-from .ladder_text import ladder_text, sentence
+from .ladder_text import ladder_html, ladder_text, sentence
 from .learnable import Learnable, NearReversals
 from .noise_floor import NoiseFloor
 from .one_moment import Moment
@@ -154,17 +153,7 @@ class Diagnosis(ByValue):
         return plot_diagnosis(self)
 
     def _repr_html_(self) -> str:
-        rows = [
-            (
-                "(your model, re-estimated)" if r.added is None else f"+ {r.said}",
-                f"{100 * r.fit.fit_error:.2f} %",
-                f"{100 * r.fit.check_error:.2f} %",
-            )
-            for r in self.rungs
-        ]
-        rows.append(("noise floor", "", f"{100 * self.floor.value:.2f} %"))
-        head = ("added", "fit error", "check error")
-        return html_table("Diagnosis", head, rows, note=sentence(self))
+        return ladder_html(self.rungs, floor=self.floor.value, note=sentence(self))
 
     def __repr__(self) -> str:
         return ladder_text(self)

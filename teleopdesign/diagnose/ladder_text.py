@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from ..blocks import Value
+from ..notebook import html_table
 from ..quantity import after_number, unit_of
 from ..standard_error import with_standard_error
 from .criteria import CRITERIA
@@ -15,8 +17,23 @@ from .record_offsets import offset_groups
 from .record_shift import shifts_of
 
 if TYPE_CHECKING:
+    from .arms.diagnosis import ArmRung
     from .diagnosis import Diagnosis
     from .rung import Rung
+
+
+def ladder_html(rungs: Iterable[Rung | ArmRung], *, floor: float, note: str) -> str:
+    """The ladder as a table of a notebook;  floor: relative noise floor;  note: below the table."""
+    rows = [
+        (
+            "(your model, re-estimated)" if r.added is None else f"+ {r.said}",
+            f"{100 * r.fit.fit_error:.2f} %",
+            f"{100 * r.fit.check_error:.2f} %",
+        )
+        for r in rungs
+    ]
+    rows.append(("noise floor", "", f"{100 * floor:.2f} %"))
+    return html_table("Diagnosis", ("added", "fit error", "check error"), rows, note=note)
 
 
 def offset_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:

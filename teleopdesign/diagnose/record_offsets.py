@@ -31,7 +31,7 @@ LEAST = 0.05
 _LEVEL = "coulomb.level"
 
 #: (body, motion, its place among the motions) -> low-passed residual on the rows that count
-Residual = Callable[[Body, Motion, int], Array]
+ResidualFunction = Callable[[Body, Motion, int], Array]
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class RecordOffsets:
 
 
 def find_offsets(
-    body: Body, motions: Sequence[Motion], names: Collection[str], residual: Residual
+    body: Body, motions: Sequence[Motion], names: Collection[str], residual: ResidualFunction
 ) -> RecordOffsets:
     """Find the offsets of one record.
 

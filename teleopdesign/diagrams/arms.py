@@ -42,7 +42,7 @@ def joint(number: int) -> sp.Symbol:
 @checked
 @dataclass(frozen=True)
 class Arm:
-    """Joints and where they bring the tip.
+    """The joints of an arm, and the position of the tip that they lead to.
 
     joints: a body each;  coordinates: of the tip, expressions on `joint(1)`, ..., as many as are
     coupled;  cancellations: of each joint (None: none), () for none at all

@@ -30,7 +30,7 @@ Weight: TypeAlias = float | sp.Expr
 
 
 def position_symbol(name: str) -> sp.Symbol:
-    """Symbol of a position in weights and kinematics."""
+    """Symbol of a position (m or rad), for weights of forces and for kinematics."""
     return sp.Symbol(name, real=True)
 
 
@@ -92,7 +92,7 @@ class Moving:
 @checked
 @dataclass(frozen=True)
 class Attached:
-    """A body that follows a motion and resists it:  force = sign Z motion."""
+    """A body on a motion, which the body resists:  force = sign Z motion."""
 
     name: str
     body: Body | AnyBlock

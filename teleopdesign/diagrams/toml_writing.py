@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import math
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -15,6 +13,7 @@ from ..blocks import Body, Value, with_block_effects
 from ..controllers import CONTROLLERS, Controller
 from ..effects import EFFECTS, Effect
 from ..errors import ModelError
+from ..measurement.toml_text import inline_text, key_text, string_text
 from ..plain_data import write_text
 from .expressions import expression_text
 from .parts import AnyBlock, Attached, Block, Control, Junction, Kinematics, Linked, Moving
@@ -26,8 +25,9 @@ from .wiring import Diagram
 def write_diagram(
     diagram: Diagram, path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS
 ) -> None:
-    """Write a diagram, in SI; with its blocks only where the wiring is one of the package's own.
+    """Write a diagram as a TOML file, in SI units.
 
+    A diagram of a kind that the package wires is written in short, by its blocks alone.
     effects: those that a reader of the file will know, as in `read_diagram`
     raises ModelError: an effect of a body is another than the one known by that name, a law is none
         of the package's, an expression holds other functions than a file may
@@ -41,13 +41,13 @@ def diagram_text(diagram: Diagram, *, effects: Mapping[str, Effect] = EFFECTS) -
     kind, known = kind_of(diagram), with_block_effects(effects)
     lines = ["[diagram]"]
     if kind is not None:
-        lines += [f"kind = {_text(kind)}"]
+        lines += [f"kind = {string_text(kind)}"]
     else:
-        lines += [f"name = {_text(diagram.name)}"]
+        lines += [f"name = {string_text(diagram.name)}"]
         lines += [f"measured = {_list(diagram.measured)}"]
         lines += _table("outside", diagram.outside)
     for block in diagram.blocks:
-        lines += ["", f"[blocks.{_key(block.name)}]"]
+        lines += ["", f"[blocks.{key_text(block.name)}]"]
         lines += [] if kind is not None else _wiring(block)
         if isinstance(block, Control):
             lines += ["analog = true"] if block.analog else []
@@ -82,7 +82,7 @@ def _where(kinematics: Kinematics) -> Any:
 def _table(name: str, content: Mapping[str, Any]) -> list[str]:
     if not content:
         return []
-    return ["", f"[{name}]", *(f"{_key(k)} = {_value(v)}" for k, v in content.items())]
+    return ["", f"[{name}]", *(f"{key_text(k)} = {_value(v)}" for k, v in content.items())]
 
 
 def _wiring(block: Block) -> list[str]:
@@ -110,14 +110,14 @@ def _body(name: str, body: Body | AnyBlock, known: Mapping[str, Effect]) -> list
     for effect in body.effects:
         if known.get(effect.name) is not effect:
             raise ModelError(f'{name}: effect "{effect.name}" is not the one known by that name')
-    return body_lines(f"blocks.{_key(name)}", body)
+    return body_lines(f"blocks.{key_text(name)}", body)
 
 
 def body_lines(table: str, body: Body) -> list[str]:
     """What stands under [table] for a body, in SI: `model.device`, or `blocks.M` of a diagram."""
-    lines = [f"axis = {_text(body.axis)}", f"inertia = {_value(body.parameters['inertia'])}"]
+    lines = [f"axis = {string_text(body.axis)}", f"inertia = {_value(body.parameters['inertia'])}"]
     for effect in body.effects:
-        lines += [f"[{table}.effects.{_key(effect.name)}]"]
+        lines += [f"[{table}.effects.{key_text(effect.name)}]"]
         values = ((p, body.parameters[f"{effect.name}.{p}"]) for p in effect.parameters)
         lines += [f"{p} = {_value(value)}" for p, value in values]
     return lines
@@ -134,16 +134,16 @@ def _laws(block: Control) -> Iterator[str]:
                 "python-control: it has no form in a file"
             )
         if len(stages) > 1:
-            yield f"[[blocks.{_key(block.name)}.series]]"
-        yield f"law = {_text(stage.law.name)}"
+            yield f"[[blocks.{key_text(block.name)}.series]]"
+        yield f"law = {string_text(stage.law.name)}"
         yield f"parameters = {_value(stage.values)}"
 
 
 def _value(value: object) -> str:
     if isinstance(value, str):
-        return _text(value)
+        return string_text(value)
     if isinstance(value, Mapping):
-        return _inline((_key(k), _value(v)) for k, v in value.items())
+        return inline_text({key_text(k): _value(v) for k, v in value.items()})
     if isinstance(value, Value):
         return _number_with_marks(value)
     if isinstance(value, tuple):
@@ -158,21 +158,7 @@ def _list(values: Iterable[object]) -> str:
 def _number_with_marks(value: Value) -> str:
     if not value.fixed and math.isnan(value.stderr):
         return _value(value.value)
-    parts = [("value", _value(value.value))]
-    parts += [("fixed", "true")] if value.fixed else []
-    parts += [] if math.isnan(value.stderr) else [("stderr", _value(value.stderr))]
-    return _inline(parts)
-
-
-def _inline(parts: Iterable[tuple[str, str]]) -> str:
-    inside = ", ".join(f"{k} = {v}" for k, v in parts)
-    return f"{{ {inside} }}" if inside else "{}"
-
-
-def _key(name: str) -> str:
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _text(name)
-
-
-def _text(text: str) -> str:
-    # JSON's quotes are TOML's, but for one control character
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+    parts = {"value": _value(value.value)}
+    parts |= {"fixed": "true"} if value.fixed else {}
+    parts |= {} if math.isnan(value.stderr) else {"stderr": _value(value.stderr)}
+    return inline_text(parts)

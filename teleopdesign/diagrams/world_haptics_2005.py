@@ -21,7 +21,7 @@ from .wiring import Diagram
 
 @dataclass(frozen=True)
 class Reading:
-    """A number (SI): the value used, all readings that fit, how sure (0 to 1), and why this one."""
+    """A number (SI) that a paper leaves open: the value used, other readings, and the reason."""
 
     value: float
     unit: str

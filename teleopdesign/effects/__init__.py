@@ -188,7 +188,10 @@ BLOCK_EFFECTS: Mapping[str, Effect] = Catalogue(
 
 
 def with_block_effects(effects: Mapping[str, Effect] = EFFECTS) -> Mapping[str, Effect]:
-    """These effects and those that belong to blocks, by name; of one name, these win."""
+    """The given effects and those of blocks such as "environment", by name.
+
+    Of two effects with one name the given effect is taken.
+    """
     return Catalogue({**BLOCK_EFFECTS, **effects}, "effect")
 
 
@@ -231,7 +234,10 @@ OTHER_NAMES: Mapping[str, str] = {
 
 
 def find_effect(name: str, known: Mapping[str, Effect] = EFFECTS, where: str = "effect") -> Effect:
-    """The effect of that name; raises ModelError with the nearest known name."""
+    """An effect by its name, among the known ones.
+
+    where: place in a message;  raises ModelError: no such effect; the message names the nearest
+    """
     if name not in known:
         meant = OTHER_NAMES.get(name.lower().replace(" ", "_"))
         hint = f'; did you mean "{meant}"?' if meant in known else did_you_mean(name, known)

@@ -289,7 +289,7 @@ def _of_states(effect: Effect, what: str) -> dict[str, sp.Expr]:
 
 
 def ordered(effects: tuple[Effect, ...], role: Role) -> list[Effect]:
-    """The effects of one role in the order in which they act."""
+    """Effects of one role, in the order in which they act on the signal."""
     chosen = [e for e in effects if e.role == role]
     rank = {name: i for i, name in enumerate(ACTUATION_ORDER)}
     if role != "actuation":

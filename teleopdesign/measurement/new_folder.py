@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -16,6 +15,7 @@ from .first_guess import FirstGuess, guess_from
 from .record import read_record
 from .survey import Survey, spans_of
 from .toml_table import Table
+from .toml_text import inline_text, string_text
 
 #: (begin, end) of the fit record and of the check record, s from the first row of a log
 FitAndCheck = tuple[tuple[float, float], tuple[float, float]]
@@ -149,8 +149,10 @@ def experiment_text(
     mass = "kg" if axis == "prismatic" else "kg*m^2"
     lines = ["# Written by `teleopdesign new`. What it guessed stands under [guessed] at the end:"]
     lines += ["# correct it there where it is used, and take its line out.", ""]
-    lines += [f"title = {_text(title)}", "", "[model.device]"]
-    lines += [f"axis = {_text(axis)}".ljust(60) + f"# forces in {force}, positions in {length}"]
+    lines += [f"title = {string_text(title)}", "", "[model.device]"]
+    lines += [
+        f"axis = {string_text(axis)}".ljust(60) + f"# forces in {force}, positions in {length}"
+    ]
     if inertia is not None:
         lines.append(f'inertia = {{ value = {inertia!r}, unit = "{mass}", fixed = true }}')
     elif first is not None:
@@ -166,18 +168,18 @@ def experiment_text(
     lines += ["", "[channels]"]
     for key, entry in survey.channels.items():
         comments = [w for k, w in survey.guesses.items() if k.startswith(f"channels.{key}.")]
-        line = f"{key} = {_inline(entry)}"
+        line = f"{key} = {_table(entry)}"
         lines += [f"# guessed: {c}" for c in comments] + [line]
     if survey.unused:
         lines += ["", "# columns of the log that are in no channel:"]
-        lines += [f"#   {_text(name)}: {why}" for name, why in survey.unused.items()]
+        lines += [f"#   {string_text(name)}: {why}" for name, why in survey.unused.items()]
     lines.append("")
     for record in records:
         lines.append("[[records]]")
         lines += [f"{k} = {_plain(v)}" for k, v in record.items()]
     if survey.guesses:
         lines += ["", "[guessed]"]
-        lines += [f"{_text(key)} = {_text(why)}" for key, why in survey.guesses.items()]
+        lines += [f"{string_text(key)} = {string_text(why)}" for key, why in survey.guesses.items()]
     return "\n".join(lines) + "\n"
 
 
@@ -196,22 +198,17 @@ def _rounded(value: float) -> float:
     return float(f"{value:.{_DIGITS}g}")
 
 
-def _inline(entry: Mapping[str, Any]) -> str:
-    return "{ " + ", ".join(f"{k} = {_plain(v)}" for k, v in entry.items()) + " }"
+def _table(entries: Mapping[str, Any]) -> str:
+    return inline_text({name: _plain(value) for name, value in entries.items()})
 
 
 def _plain(value: Any) -> str:
     if isinstance(value, Mapping):
-        return _inline(value)
+        return _table(value)
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return _text(value)
+        return string_text(value)
     if isinstance(value, list | tuple):
         return "[" + ", ".join(map(_plain, value)) + "]"
     return repr(value)
-
-
-def _text(text: str) -> str:
-    """A basic string of TOML: that of JSON, which escapes the same characters."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

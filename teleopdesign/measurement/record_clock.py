@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..errors import ExperimentError
 
 Array = NDArray[np.float64]
-Rows = NDArray[np.intp]
+RowNumbers = NDArray[np.intp]
 _SHORTEST = 1.0  # s, all segments of a record together
 _FEWEST = 64  # samples
 
@@ -28,9 +28,9 @@ class RecordClock:
     lost: rows that are filled;  gaps: stretches begun at a pause
     """
 
-    rows: Rows
+    rows: RowNumbers
     stamps: Array
-    places: Rows
+    places: RowNumbers
     time: Array
     sample_time: float
     segments: tuple[slice, ...]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gzip
 import io
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +15,7 @@ from ..quantity import unit_of
 from .channel import BODY_QUANTITIES
 from .description import BodyDescription, ModelValue
 from .reading import reading_table
+from .toml_text import inline_text, string_text
 
 if TYPE_CHECKING:
     from .experiment import Experiment
@@ -64,7 +64,7 @@ def _file_names(experiment: Experiment) -> list[str]:
 
 def experiment_text(experiment: Experiment, names: list[str]) -> str:
     """experiment.toml of records that are written in SI."""
-    lines = [f"title = {_text(experiment.title)}", ""]
+    lines = [f"title = {string_text(experiment.title)}", ""]
     for body in experiment.bodies.values():
         lines += body_lines(body)
     if experiment.environment is not None:
@@ -73,7 +73,7 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
         lines += [f"{n} = {_value(values[n])}" for n in _ENVIRONMENT if n in values]
         lines += ["[model.environment.effects]"]
         for name, parameters in experiment.environment.effects.items():
-            lines.append(f"{name} = {_inline({k: _value(v) for k, v in parameters.items()})}")
+            lines.append(f"{name} = {inline_text({k: _value(v) for k, v in parameters.items()})}")
         lines.append("")
     lines += [f"# {line}".rstrip() for line in reading_table(experiment.reading)]
     lines += ["[channels]", 'time = { column = "t", unit = "s" }']
@@ -84,7 +84,7 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
         if channel.body is None or channel.quantity not in BODY_QUANTITIES:
             continue
         unit = unit_of(BODY_QUANTITIES[channel.quantity], experiment.axis(channel.body))
-        entry = {"column": _text(key), "unit": _text(unit)}
+        entry = {"column": string_text(key), "unit": string_text(unit)}
         if channel.resolution is not None:
             entry["resolution"] = repr(channel.resolution)
         if channel.noise is not None:
@@ -92,7 +92,7 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
         if channel.measured:
             entry["measured"] = "true"
         name = key.removeprefix("device.") if one else f'"{key}"'
-        lines.append(f"{name} = {_inline(entry)}")
+        lines.append(f"{name} = {inline_text(entry)}")
     if any(len(r.segments) > 1 for r in experiment.records):
         lines.append('segment = { column = "segment" }')
     if experiment.bandwidth is not None:
@@ -100,39 +100,30 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
         lines += [f'bandwidth = {{ value = {experiment.bandwidth!r}, unit = "Hz" }}']
     lines.append("")
     for record, name in zip(experiment.records, names, strict=True):
-        lines += ["[[records]]", f"file = {_text(name)}", f"use = {_text(record.use)}"]
+        lines += ["[[records]]", f"file = {string_text(name)}", f"use = {string_text(record.use)}"]
         lines += [f'{offset} = "own"' for offset in sorted(record.offset_names)]
     return "\n".join(lines) + "\n"
 
 
 def body_lines(body: BodyDescription) -> list[str]:
     """[model.BODY] with its effects."""
-    lines = [f"[model.{body.name}]", f"axis = {_text(body.axis)}"]
+    lines = [f"[model.{body.name}]", f"axis = {string_text(body.axis)}"]
     if body.inertia is not None:
         lines.append(f"inertia = {_value(body.inertia)}")
     lines.append(f"[model.{body.name}.effects]")
     for name, values in body.effects.items():
-        lines.append(f"{name} = {_inline({k: _value(v) for k, v in values.items()})}")
+        lines.append(f"{name} = {inline_text({k: _value(v) for k, v in values.items()})}")
     return [*lines, ""]
-
-
-def _inline(entries: dict[str, str]) -> str:
-    return "{ " + ", ".join(f"{k} = {v}" for k, v in entries.items()) + " }" if entries else "{}"
 
 
 def _value(value: ModelValue) -> str:
     entries = {"value": repr(float(value.value))}
     if value.unit is not None:
-        entries["unit"] = _text(value.unit)
+        entries["unit"] = string_text(value.unit)
     if value.fixed:
         entries["fixed"] = "true"
     if value.stderr is not None:
         entries["stderr"] = repr(float(value.stderr))
     if value.unit is None and not value.fixed and value.stderr is None:
         return entries["value"]
-    return _inline(entries)
-
-
-def _text(text: str) -> str:
-    """A basic string of TOML: that of JSON, which escapes the same characters."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return inline_text(entries)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .record_clock import Array, RecordClock, Rows, check_duration, check_size
+from .record_clock import Array, RecordClock, RowNumbers, check_duration, check_size
 
 #: lost rows in a row that are filled; more of them part the record. At 1 kHz six sample times are a
 #: tenth of a period at 16 Hz: what moves in the band of a comparison is still known between them
@@ -24,14 +24,14 @@ TOO_COARSE = 0.02
 
 def rows_in_order(
     stamps: Array, segments: Sequence[slice], same_as_before: NDArray[np.bool_]
-) -> tuple[list[Rows], int, int, int]:
+) -> tuple[list[RowNumbers], int, int, int]:
     """Rows of each stretch in the order of their stamps, each stamp once.
 
     returns: the stretches, and how many rows were dropped, moved, and began a new clock
     """
     forward = np.diff(stamps)
     usual = float(np.median(forward[forward > 0]))
-    parts: list[Rows] = []
+    parts: list[RowNumbers] = []
     dropped = moved = restarts = 0
     for segment in segments:
         rows = np.arange(segment.start, segment.stop)
@@ -50,7 +50,7 @@ def rows_in_order(
 
 
 def sparse_clock(
-    stamps: Array, parts: list[Rows], changes: tuple[int, int, int], where: str
+    stamps: Array, parts: list[RowNumbers], changes: tuple[int, int, int], where: str
 ) -> RecordClock:
     """The clock of stamps with steps of any length, ascending in each part."""
     dropped, moved, restarts = changes
@@ -59,7 +59,7 @@ def sparse_clock(
         # stamps that many rows share cannot place them: rows are counted at the mean rate
         return _counted_clock(stamps, where)
     period = _usual_step([stamps[part] for part in parts])
-    pieces: list[Rows] = []
+    pieces: list[RowNumbers] = []
     longest = 0.0
     for part in parts:
         steps = np.diff(stamps[part])
@@ -107,20 +107,20 @@ def sparse_clock(
 
 def _grid_of(
     stamps: Array,
-    pieces: Sequence[Rows],
-    places: Sequence[Rows],
+    pieces: Sequence[RowNumbers],
+    places: Sequence[RowNumbers],
     period: float,
     *,
     on_clock: bool,
     goes_on: bool,
-) -> tuple[list[Array], list[Rows], list[slice], list[slice]]:
+) -> tuple[list[Array], list[RowNumbers], list[slice], list[slice]]:
     """Even time and places of each piece, and where it lies among samples and rows.
 
     on_clock: the stamps follow an even clock, whose phase is their mean
     goes_on: a clock that was set back goes on where the stretch before it ended
     """
     time: list[Array] = []
-    index: list[Rows] = []
+    index: list[RowNumbers] = []
     segments: list[slice] = []
     of_rows: list[slice] = []
     first = row = 0
@@ -163,7 +163,7 @@ def _usual_step(pieces: Sequence[Array]) -> float:
     return float(near.mean()) if len(near) else usual
 
 
-def _places(pieces: Sequence[Array], period: float) -> tuple[float, list[Rows]] | None:
+def _places(pieces: Sequence[Array], period: float) -> tuple[float, list[RowNumbers]] | None:
     """An even clock through stretches of stamps with rows missing: its step, s, and the places.
 
     None: the stamps follow no even clock (rms distance above `NO_CLOCK`, or two rows on one place)
@@ -173,7 +173,7 @@ def _places(pieces: Sequence[Array], period: float) -> tuple[float, list[Rows]] 
     if fit is None:
         return None
     period = fit
-    places: list[Rows] = []
+    places: list[RowNumbers] = []
     for stamps in pieces:
         steps = np.diff(stamps) / period
         # the phase of a stretch: the circular mean of its stamps

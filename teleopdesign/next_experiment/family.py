@@ -29,7 +29,7 @@ BRISK = 0.5
 
 
 @dataclass(frozen=True)
-class Part:
+class PathPart:
     """A part of a motion: what the body does, and the path (n,) about the middle, SI."""
 
     sentence: str
@@ -52,7 +52,7 @@ class Setting:
     repeated: float = 0.0
 
 
-def family(setting: Setting) -> tuple[Part, ...]:
+def family(setting: Setting) -> tuple[PathPart, ...]:
     """Every part that is tried."""
     makers = (
         _sums_of_sines,
@@ -68,11 +68,11 @@ def family(setting: Setting) -> tuple[Part, ...]:
     return tuple(part for maker in makers for part in maker(setting))
 
 
-def _part(setting: Setting, sentence: str, legs: list[Move | Hold]) -> Part:
-    return Part(sentence, travel(legs, setting.limits, sample_time=setting.sample_time))
+def _part(setting: Setting, sentence: str, legs: list[Move | Hold]) -> PathPart:
+    return PathPart(sentence, travel(legs, setting.limits, sample_time=setting.sample_time))
 
 
-def _sums_of_sines(s: Setting) -> Iterator[Part]:
+def _sums_of_sines(s: Setting) -> Iterator[PathPart]:
     top = s.bandwidth  # nothing above it is compared
     for low, high in (
         (0.3, 3.0),
@@ -96,14 +96,14 @@ def _sums_of_sines(s: Setting) -> Iterator[Part]:
                     f"move in a sum of sines from {s.show(low, 'frequency')} to "
                     f"{s.show(high, 'frequency')}, up to {s.show(size, 'position')}"
                 )
-                yield Part(text, path)
+                yield PathPart(text, path)
 
 
 def _reach(s: Setting, speed: float, time: float) -> float:
     return min(s.limits.high, speed * time)
 
 
-def _runs(s: Setting) -> Iterator[Part]:
+def _runs(s: Setting) -> Iterator[PathPart]:
     for ratio in SPEEDS:
         speed = ratio * s.limits.speed
         reach = _reach(s, speed, 0.25 * ABOUT)
@@ -121,7 +121,7 @@ def _back_and_forth(s: Setting, reach: float, speed: float) -> str:
     return f"run back and forth over {s.show(2 * reach, 'position')} at {s.show(speed, 'velocity')}"
 
 
-def _sweeps(s: Setting) -> Iterator[Part]:
+def _sweeps(s: Setting) -> Iterator[PathPart]:
     brisk, whole = BRISK * s.limits.speed, 2 * s.limits.high
     for time in (0.5 * LONGEST, LONGEST):
         speed = min(whole / time, s.limits.speed)
@@ -135,7 +135,7 @@ def _sweeps(s: Setting) -> Iterator[Part]:
             yield _part(s, text, [*legs, Move(0.0, brisk)])
 
 
-def _two_speeds(s: Setting) -> Iterator[Part]:
+def _two_speeds(s: Setting) -> Iterator[PathPart]:
     for reach in (s.limits.high, 0.3 * s.limits.high):
         fast, slow = s.limits.speed, max(2 * reach / LONGEST, 0.1 * s.limits.speed)
         if reach < SEEN * s.step or slow >= fast:
@@ -150,7 +150,7 @@ def _two_speeds(s: Setting) -> Iterator[Part]:
         yield _part(s, text, legs)
 
 
-def _starts_after_rest(s: Setting) -> Iterator[Part]:
+def _starts_after_rest(s: Setting) -> Iterator[PathPart]:
     for ratio in (0.5, 0.05):
         speed = ratio * s.limits.speed
         reach = _reach(s, speed, 0.5)
@@ -168,7 +168,7 @@ def _starts_after_rest(s: Setting) -> Iterator[Part]:
         yield _part(s, text, legs)
 
 
-def _steps(s: Setting) -> Iterator[Part]:
+def _steps(s: Setting) -> Iterator[PathPart]:
     for share in (1.0, 0.2):
         size = share * s.limits.high
         if size < SEEN * s.step:
@@ -179,7 +179,7 @@ def _steps(s: Setting) -> Iterator[Part]:
         yield _part(s, f"step between places up to {s.show(2 * size, 'position')} apart", legs)
 
 
-def _places(s: Setting) -> Iterator[Part]:
+def _places(s: Setting) -> Iterator[PathPart]:
     brisk, small = BRISK * s.limits.speed, 0.15 * s.limits.high
     if small < SEEN * s.step:
         return
@@ -197,7 +197,7 @@ def _places(s: Setting) -> Iterator[Part]:
         yield _part(s, text, [*legs, Move(0.0, brisk)])
 
 
-def _growing(s: Setting) -> Iterator[Part]:
+def _growing(s: Setting) -> Iterator[PathPart]:
     t = np.arange(0.0, 1.5 * ABOUT, s.sample_time)
     for largest in (0.3 * s.limits.high, 100 * s.step):
         smallest = 0.5 * SEEN * s.step
@@ -210,10 +210,10 @@ def _growing(s: Setting) -> Iterator[Part]:
             f"swing at 1.5 Hz with an amplitude that grows from {s.show(smallest, 'position')} to "
             f"{s.show(float(np.abs(y).max()), 'position')}"
         )
-        yield Part(text, y)
+        yield PathPart(text, y)
 
 
-def _repeated(s: Setting) -> Iterator[Part]:
+def _repeated(s: Setting) -> Iterator[PathPart]:
     if s.repeated <= 0.0:
         return
     speed = BRISK * s.limits.speed

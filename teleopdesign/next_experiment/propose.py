@@ -12,7 +12,7 @@ from ..diagnose.sensors import sensors_of
 from ..errors import ModelError, did_you_mean
 from ..measurement.experiment import Experiment
 from ..quantity import si_factor
-from .family import Part, Setting, Show, family
+from .family import PathPart, Setting, Show, family
 from .following import servo_of
 from .limits import Limits, course_of, shown_limits
 from .prediction import least_determined, predict
@@ -149,7 +149,7 @@ def shows(experiment: Experiment) -> Show:
     return show
 
 
-def _reference(parts: Sequence[Part], bench: Bench) -> tuple[Reference, list[Part]]:
+def _reference(parts: Sequence[PathPart], bench: Bench) -> tuple[Reference, list[PathPart]]:
     """The motion of these parts, repeated until it is long enough."""
     once = sum(len(p.path) for p in parts) * bench.sample_time
     repeats = max(1, int(np.ceil(SHORTEST / once)))

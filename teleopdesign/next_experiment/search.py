@@ -10,7 +10,7 @@ import numpy as np
 from ..diagnose.prepare import Prepared, prepare
 from ..diagnose.residual import relative_residuals
 from ..measurement.filtering import Array
-from .family import Part
+from .family import PathPart
 from .limits import Limits
 from .rivals import Rival, pairs
 from .separation import Sums, normal_matrix, sums_of
@@ -27,7 +27,7 @@ class SafeParts:
     sums: (truth, other) -> sums over the parts
     """
 
-    parts: tuple[Part, ...]
+    parts: tuple[PathPart, ...]
     sums: Mapping[tuple[int, int], Sums]
 
     def worth(self, chosen: Sequence[int]) -> float:
@@ -49,7 +49,7 @@ class SafeParts:
 
 
 def try_parts(
-    parts: Sequence[Part],
+    parts: Sequence[PathPart],
     rivals: Sequence[Rival],
     prepared: Prepared,
     bench: Bench,
@@ -130,6 +130,6 @@ def compose(candidates: SafeParts, duration: float, sample_time: float) -> tuple
         reached = max(reached, worth)
 
 
-def join_paths(parts: Sequence[Part]) -> Array:
+def join_paths(parts: Sequence[PathPart]) -> Array:
     """The path of the parts one after the other."""
     return np.concatenate([p.path for p in parts])

@@ -48,7 +48,10 @@ STATEMENTS: Mapping[str, Statement] = _statements()
 
 
 def find_statement(name: str) -> Statement:
-    """The statement of that name; raises ModelError with the nearest one."""
+    """A statement of the papers by its name.
+
+    raises ModelError: no such statement; the message names the nearest one
+    """
     if name not in STATEMENTS:
         known = list(STATEMENTS)
         raise ModelError(

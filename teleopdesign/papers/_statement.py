@@ -77,7 +77,7 @@ class Numbers:
         return min(self.figures, key=lambda f: f.margin)
 
 
-Evidence = ProofSteps | Correction | Numbers
+StatementEvidence = ProofSteps | Correction | Numbers
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ class Statement:
     words: str
     formula: str
     how: How
-    shown_by: Callable[[], Evidence] | None
+    shown_by: Callable[[], StatementEvidence] | None
     printed: str = ""
     assumes: str = ""
     numbers: Callable[[], Numbers] | None = None
@@ -148,10 +148,10 @@ def shows(
     printed: str = "",
     assumes: str = "",
     numbers: Callable[[], Numbers] | None = None,
-) -> Callable[[Callable[[], Evidence]], Statement]:
+) -> Callable[[Callable[[], StatementEvidence]], Statement]:
     """The function below it shows this statement; its docstring is the statement's words."""
 
-    def made(function: Callable[[], Evidence]) -> Statement:
+    def made(function: Callable[[], StatementEvidence]) -> Statement:
         words = " ".join((inspect.getdoc(function) or "").split())
         return Statement(
             number, paper, place, words, formula, how, function, printed, assumes, numbers

@@ -37,7 +37,7 @@ _MOST_MOVES, _MOST_WORK = 400_000, 500_000_000
 
 @dataclass(frozen=True, eq=False)
 class AvailableStorage(ByValue):
-    """The result of the iteration: available storage on a grid of forces.
+    """Available storage (J): the most energy that friction can give out, on a grid of forces.
 
     storage: J, an axis for each force with a state, compensator first, from -level to level
     gain: energy given out per travel once everything has settled, N; 0 where it is finite

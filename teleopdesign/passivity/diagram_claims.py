@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arguments import checked
+from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError
 from ..notebook import html_table
@@ -49,8 +50,8 @@ class Search:
     computer: Computer = "continuous"
 
 
-@dataclass(frozen=True)
-class DiagramClaims:
+@dataclass(frozen=True, eq=False)
+class DiagramClaims(ByValue):
     """Ports of a diagram, its nonlinear parts, and the claims with their verdicts."""
 
     diagram: Diagram

@@ -41,7 +41,7 @@ def _check(element: Element) -> None:
 @checked
 @dataclass(frozen=True)
 class Coulomb:
-    """level sgn(v)."""
+    """Coulomb friction: force = level * sign(velocity);  level: N or N m."""
 
     level: float
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from .design import ONE_COLUMN, TWO_COLUMNS, unit_text
 from .frequency_axes import (
-    Columns,
+    PageColumns,
     legend_below,
     look,
     mark_degrees,
@@ -33,7 +33,7 @@ def plot_bode(
     response: FrequencyResponse,
     *,
     measured: FrequencyResponse | None = None,
-    columns: Columns = 1,
+    columns: PageColumns = 1,
 ) -> matplotlib.figure.Figure:
     """Magnitude in dB and phase against frequency; measured: drawn as points beside it.
 
@@ -75,7 +75,7 @@ def plot_nyquist(
     response: FrequencyResponse,
     *,
     measured: FrequencyResponse | None = None,
-    columns: Columns = 1,
+    columns: PageColumns = 1,
 ) -> matplotlib.figure.Figure:
     """Imaginary against real part; a dot at each decade of frequency."""
     import matplotlib.pyplot as plt

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     import matplotlib.axes
     import matplotlib.figure
 
-Columns = Literal[1, 2]
+PageColumns = Literal[1, 2]
 MEASURED = "#7F7F7F"
 #: inches that the longest entry of a legend takes
 ENTRY = 1.7
@@ -35,7 +35,7 @@ def points(case: str, *, alone: bool) -> dict[str, Any]:
     }
 
 
-def panels(columns: Columns) -> tuple[matplotlib.figure.Figure, Any]:
+def panels(columns: PageColumns) -> tuple[matplotlib.figure.Figure, Any]:
     """Two panels that share their abscissa: above each other, or side by side in two columns."""
     import matplotlib.pyplot as plt
 
@@ -49,7 +49,7 @@ def share_abscissa(
     lower: matplotlib.axes.Axes,
     label: str,
     ends: tuple[float, float],
-    columns: Columns,
+    columns: PageColumns,
 ) -> None:
     """Logarithmic abscissa of both panels, named below the lower one, or below both of a row."""
     logarithmic(lower, *ends)

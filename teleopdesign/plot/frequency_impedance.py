@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 from .design import unit_text
 from .frequency_axes import (
-    Columns,
+    PageColumns,
     legend_below,
     look,
     mark_degrees,
@@ -31,7 +31,7 @@ def plot_impedance(
     *,
     against: Literal["frequency", "amplitude"] = "frequency",
     model: ImpedanceMap | None = None,
-    columns: Columns = 1,
+    columns: PageColumns = 1,
 ) -> matplotlib.figure.Figure:
     """Size in dB and phase in 0 to 360 degrees, as figures 6 and 7 of Bernstein, Lawrence, Pao.
 
@@ -83,7 +83,7 @@ def _impedance_lines(
 
 
 def plot_spread(
-    result: ImpedanceMap, *, model: ImpedanceMap | None = None, columns: Columns = 1
+    result: ImpedanceMap, *, model: ImpedanceMap | None = None, columns: PageColumns = 1
 ) -> matplotlib.figure.Figure:
     """How far from linear: spread of size and phase over amplitude, against frequency.
 

@@ -94,6 +94,27 @@ def hatch_region(
     )
 
 
+def _mark_onsets(axis: Axes, x: np.ndarray, onsets: xarray.DataArray) -> None:
+    """Stiffnesses (N/m) from which a simulated swing grows, one marker for each kind of ends."""
+    for ends, marker in zip(onsets["ends"].values, "^o", strict=True):
+        axis.plot(
+            x,
+            onsets.sel(ends=ends).values,
+            marker,
+            color="black",
+            markersize=4,
+            markerfacecolor="white",
+            zorder=3,
+            label=f"onset of growth, simulated, {ends}",
+        )
+
+
+def _set_decades(axis: Axes, x: np.ndarray, stiffness: np.ndarray) -> None:
+    """Logarithmic axes around the points of a map."""
+    axis.set(xscale="log", yscale="log", xlim=(0.9 * x[0], 1.1 * x[-1]))
+    axis.set_ylim(0.8 * stiffness[0], 1.25 * stiffness[-1])
+
+
 def plot_delay_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
     """Settled couplings over delay and over sample period, and where simulation starts to grow."""
     import matplotlib.pyplot as plt
@@ -105,25 +126,12 @@ def plot_delay_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
             (axes[0], "delay", "delay each way, $T_d$ (s)", r"(a) $b_mb_s\geq(PT_d)^2$"),
             (axes[1], "period", "sample period, $T$ (s)", r"(b) $b_mb_s/(b_m+b_s)\geq PT/2$"),
         ):
-            x = data[name].values
-            limit = data[f"limit_over_{name}"].values
+            x, limit = data[name].values, data[f"limit_over_{name}"].values
             hatch_region(axis, x, 0.8 * stiffness[0], limit, "the condition holds")
             axis.plot(x, limit, color=THEORY, label="limit of the theorem")
             _mark_status(axis, x, stiffness, data[f"status_over_{name}"].values)
-            times = data[f"{name}_simulated"].values
-            for ends, marker in zip(data["ends"].values, "^o", strict=True):
-                axis.plot(
-                    times,
-                    data[f"onset_over_{name}"].sel(ends=ends).values,
-                    marker,
-                    color="black",
-                    markersize=4,
-                    markerfacecolor="white",
-                    zorder=3,
-                    label=f"onset of growth, simulated, {ends}",
-                )
-            axis.set(xscale="log", yscale="log", xlim=(0.9 * x[0], 1.1 * x[-1]))
-            axis.set_ylim(0.8 * stiffness[0], 1.25 * stiffness[-1])
+            _mark_onsets(axis, data[f"{name}_simulated"].values, data[f"onset_over_{name}"])
+            _set_decades(axis, x, stiffness)
             axis.set_xlabel(label)
             axis.set_title(title, loc="left", pad=3)
         axes[0].set_ylabel("stiffness of the coupling, $P$ (N/m)")
@@ -144,19 +152,8 @@ def plot_period_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
             hatch_region(axis, x, 0.8 * stiffness[0], limit, "both conditions hold")
             axis.plot(x, limit, color=THEORY, label="limit of the two conditions")
             _mark_status(axis, x, stiffness, here["status"].values)
-            for ends, marker in zip(data["ends"].values, "^o", strict=True):
-                axis.plot(
-                    data["period_simulated"].values,
-                    here["onset"].sel(ends=ends).values,
-                    marker,
-                    color="black",
-                    markersize=4,
-                    markerfacecolor="white",
-                    zorder=3,
-                    label=f"onset of growth, simulated, {ends}",
-                )
-            axis.set(xscale="log", yscale="log", xlim=(0.9 * x[0], 1.1 * x[-1]))
-            axis.set_ylim(0.8 * stiffness[0], 1.25 * stiffness[-1])
+            _mark_onsets(axis, data["period_simulated"].values, here["onset"])
+            _set_decades(axis, x, stiffness)
             axis.set_xlabel("sample period, $T$ (s)")
             samples = f"{late} sample{'s' if late > 1 else ''} late"
             axis.set_title(f"({letter}) {samples}", loc="left", pad=3)

@@ -12,7 +12,7 @@ from ..errors import ModelError
 
 
 @dataclass(frozen=True)
-class Computer:
+class ComputerEquations:
     """The sampled part: states before and after their step over one sample, and the signals.
 
     rates: continuous rates, inputs held over a sample;  before: states stepped ahead of the output

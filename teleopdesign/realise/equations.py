@@ -20,7 +20,7 @@ from ..diagrams.second_input import without_motion
 from ..effects import SIGNALS, Effect
 from ..errors import ModelError, did_you_mean
 from ._linear import Steps, solve_linear
-from .computer import Computer, computer_signals, held_signals, sensor_signals
+from .computer import ComputerEquations, computer_signals, held_signals, sensor_signals
 from .late_signals import LateSignals, undelayed, without_delays
 from .signal_symbols import (
     PERIOD,
@@ -61,7 +61,7 @@ class Equations:
     inputs: tuple[sp.Symbol, ...]
     commands: Mapping[str, sp.Symbol]
     late: Mapping[sp.Symbol, tuple[sp.Expr, sp.Expr]]
-    computer: Computer
+    computer: ComputerEquations
     sampled_inputs: tuple[str, ...]
     motions: tuple[str, ...]
     prescribed: tuple[str, ...]
@@ -110,7 +110,7 @@ class _Builder:
 
     def build(self) -> Equations:
         rows, unknown = self._analog_rows()
-        computer = Computer({}, {}, frozenset(), {})
+        computer = ComputerEquations({}, {}, frozenset(), {})
         commands: dict[str, sp.Symbol] = {}
         inputs = [s for s in self.outside if s not in self.sampled_inputs or self._feeds_analog(s)]
         if self.sampled:
@@ -278,7 +278,7 @@ class _Builder:
             names += part.outputs
         return (rows, rates, steps, before), names
 
-    def _computer(self) -> Computer:
+    def _computer(self) -> ComputerEquations:
         sensors = sensor_signals(self.diagram)
 
         def of(name: str) -> sp.Symbol:
@@ -288,7 +288,7 @@ class _Builder:
         listed, names = self._computer_rows(of, travel_rate, estimate, late, PERIOD)
         rows, rates, steps, before = listed
         solved, _ = solve_linear(rows, [signal(s) for s in names], self.diagram.name)
-        return Computer(
+        return ComputerEquations(
             {x: r.xreplace(solved) for x, r in rates.items()},
             {x: r.xreplace(solved) for x, r in steps.items()},
             frozenset(before),

@@ -39,7 +39,10 @@ def prepare(
     give: float = 1e-5,
     jit: bool = True,
 ) -> Setup:
-    """Everything that `simulate` does before it runs; arguments as there."""
+    """Check the arguments of `simulate` and compile the diagram; the simulation does not run yet.
+
+    The arguments are those of `simulate`.
+    """
     motion, inputs, initial = dict(motion or {}), dict(inputs or {}), dict(initial or {})
     for name in inputs:
         if name not in diagram.outside:
@@ -107,7 +110,7 @@ def simulated_form(
 
 @dataclass(frozen=True)
 class Setup:
-    """A simulation ready to run, also with other steps."""
+    """A simulation that is ready to run, with its own step or a shorter one."""
 
     diagram: Diagram
     program: Program

@@ -15,7 +15,7 @@ from ..errors import ModelError
 
 _FEWEST = 6  # samples that a quintic spline needs
 
-Function = Callable[[np.ndarray], np.ndarray]
+TimeFunction = Callable[[np.ndarray], np.ndarray]
 
 
 @checked
@@ -23,12 +23,12 @@ Function = Callable[[np.ndarray], np.ndarray]
 class Trajectory:
     """A motion as functions of time (s): position (m or rad) and its two derivatives."""
 
-    position: Function
-    velocity: Function
-    acceleration: Function
+    position: TimeFunction
+    velocity: TimeFunction
+    acceleration: TimeFunction
 
     @property
-    def all(self) -> tuple[Function, Function, Function]:
+    def all(self) -> tuple[TimeFunction, TimeFunction, TimeFunction]:
         return self.position, self.velocity, self.acceleration
 
 
@@ -61,11 +61,11 @@ class _Sampled(ByValue):
     order: int
 
     @cached_property
-    def _spline(self) -> Function:
+    def _spline(self) -> TimeFunction:
         from scipy.interpolate import make_interp_spline
 
         spline = make_interp_spline(self.time, self.position, k=5)
-        function: Function = spline.derivative(self.order) if self.order else spline
+        function: TimeFunction = spline.derivative(self.order) if self.order else spline
         return function
 
     def __call__(self, t: np.ndarray) -> np.ndarray:

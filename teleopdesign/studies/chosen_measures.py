@@ -21,7 +21,7 @@ from ..by_value import ByValue
 from ..errors import ModelError, did_you_mean
 from ..expectations import described
 from .measures import MEASURES
-from .point import Amount, Function, Point
+from .point import Amount, Point, PointFunction
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,7 @@ class Measure(ByValue):
     """
 
     name: str
-    function: Function
+    function: PointFunction
     options: Mapping[str, Any] = field(default_factory=dict)
     of_package: bool = False
     signals: tuple[str, ...] = ()

@@ -88,7 +88,7 @@ class Point:
         return np.random.default_rng(self.seed)
 
 
-Function = Callable[..., Any]
+PointFunction = Callable[..., Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +100,7 @@ class Kind(ByValue):
     """
 
     name: str
-    function: Function
+    function: PointFunction
     options: Mapping[str, Any] = field(default_factory=dict)
     signals: tuple[str, ...] = ()
 

@@ -119,7 +119,10 @@ class Study(ByValue):
 
 @checked
 def read_study(path: str | Path) -> Study:
-    """The study that a file holds; raises ExperimentError where it holds none."""
+    """Read a study from a file.
+
+    raises ExperimentError: the file cannot be read, or holds no study
+    """
     import xarray
 
     check_netcdf()

@@ -12,7 +12,7 @@ from ..measurement.filtering import Array
 from ..quantity import unit_of
 from .dependence import Dependence
 from .formula import Formula
-from .library import Term
+from .library import FormulaTerm
 from .sentences import formula_text
 
 #: sizes of f, relative to its largest, that the written line may be off
@@ -66,14 +66,19 @@ def _reach(quantity: str, unit: Mapping[str, float]) -> float:
     return 1.0 if quantity == "time" else float(f"{unit[quantity]:.1g}")
 
 
-def _meaning(term: Term, reach: float, quantity: str, axis: str) -> str:
+def _meaning(term: FormulaTerm, reach: float, quantity: str, axis: str) -> str:
     at = f"{reach:g} {unit_of(quantity, axis)}"
     words = {"power": f"size at u = {at}", "wave": "amplitude", "bell": "size at u = 0"}
     return words.get(term.kind, "size at u = 0" if term.kind == "decay" else f"size {at} further")
 
 
 def _term(
-    term: Term, value: Array, strength: str, mark: str, quantity: str, unit: Mapping[str, float]
+    term: FormulaTerm,
+    value: Array,
+    strength: str,
+    mark: str,
+    quantity: str,
+    unit: Mapping[str, float],
 ) -> tuple[str, float, list[str]]:
     """Text of a term, its coefficient as the parameter counts it, lines of its numbers."""
     n = term.number
@@ -111,7 +116,7 @@ def _term(
 
 
 def _power(
-    term: Term, value: float, strength: str, quantity: str, unit: Mapping[str, float]
+    term: FormulaTerm, value: float, strength: str, quantity: str, unit: Mapping[str, float]
 ) -> tuple[str, float, list[str]]:
     reach = _reach(quantity, unit)
     power = "" if term.number == 1 else f" ** {term.number:g}"

@@ -12,7 +12,7 @@ from ..diagnose.evidence import gain_score
 from ..diagnose.fit import standard_errors
 from ..measurement.filtering import Array
 from .dependence import Columns, Dependence, held_out
-from .library import Term, terms_of
+from .library import FormulaTerm, terms_of
 from .rows import Rows, StretchSignals
 from .shapes import POSITION_WAVE, TIME_WAVE, Shape, columns_from
 from .waves import wave_number
@@ -34,7 +34,7 @@ class Formula:
     """
 
     shape: Shape
-    terms: tuple[Term, ...]
+    terms: tuple[FormulaTerm, ...]
     coefficients: Array
     errors: Array
     share: float
@@ -43,7 +43,7 @@ class Formula:
         """f at values of the variable."""
         return np.asarray(self.coefficients @ np.vstack([t.values(u) for t in self.terms]))
 
-    def split(self) -> list[tuple[Term, Array]]:
+    def split(self) -> list[tuple[FormulaTerm, Array]]:
         """Each term with its coefficients."""
         return list(zip(self.terms, self._parts(self.coefficients), strict=True))
 
@@ -66,7 +66,7 @@ def formula_for(rows: Rows, beside: Columns, dependence: Dependence) -> Formula 
         return None
     terms = _terms(rows, beside, dependence)
     every = _columns(rows, dependence.shape, tuple(terms)).values[rows.learnt]
-    chosen: tuple[Term, ...] = ()
+    chosen: tuple[FormulaTerm, ...] = ()
     for _ in range(MOST):
         explained = beside.beside(_columns(rows, dependence.shape, chosen)) if chosen else beside
         search = _Search.beside(rows, explained)
@@ -82,11 +82,11 @@ def formula_for(rows: Rows, beside: Columns, dependence: Dependence) -> Formula 
     return None
 
 
-def _terms(rows: Rows, beside: Columns, dependence: Dependence) -> list[Term]:
+def _terms(rows: Rows, beside: Columns, dependence: Dependence) -> list[FormulaTerm]:
     variable = dependence.shape.variable
     assert variable is not None
     if variable.wave:
-        return [Term("wave", float(dependence.knots[0]))]
+        return [FormulaTerm("wave", float(dependence.knots[0]))]
     waving = {"position": POSITION_WAVE, "time": TIME_WAVE}.get(variable.name)
     if waving is None:
         return terms_of(variable, dependence.knots, 0.0)
@@ -119,7 +119,7 @@ class _Search:
         kept = size > 1e-8 * np.sum(columns**2, axis=0)
         return np.where(kept, (beyond_span.T @ self.left) ** 2 / np.where(kept, size, 1.0), 0.0)
 
-    def ranked(self, terms: list[Term], columns: Array) -> list[Term]:
+    def ranked(self, terms: list[FormulaTerm], columns: Array) -> list[FormulaTerm]:
         """Those first whose columns take most away; a sinusoid's two are nearly orthogonal."""
         gains, at, each = self.gains(columns), 0, []
         for term in terms:
@@ -128,7 +128,7 @@ class _Search:
         return [terms[i] for i in np.argsort(-np.array(each), kind="stable")]
 
 
-def _columns(rows: Rows, shape: Shape, terms: tuple[Term, ...]) -> Columns:
+def _columns(rows: Rows, shape: Shape, terms: tuple[FormulaTerm, ...]) -> Columns:
     variable = shape.variable
     assert variable is not None
 
@@ -141,23 +141,23 @@ def _columns(rows: Rows, shape: Shape, terms: tuple[Term, ...]) -> Columns:
     return Columns(values, np.zeros((values.shape[1],) * 2))
 
 
-def _refine_number(rows: Rows, search: _Search, shape: Shape, term: Term) -> Term:
+def _refine_number(rows: Rows, search: _Search, shape: Shape, term: FormulaTerm) -> FormulaTerm:
     """The term with its number searched between its neighbours on the grid."""
     if not term.is_searched or term.kind == "wave":  # a wave number is searched already
         return term
 
     def lost(n: float) -> float:
-        columns = _columns(rows, shape, (Term(term.kind, n),)).values[rows.learnt]
+        columns = _columns(rows, shape, (FormulaTerm(term.kind, n),)).values[rows.learnt]
         return -float(search.gains(columns)[0])
 
     wide = 0.25 * abs(term.number)
     bounds = (term.number - wide, term.number + wide)
     minimum = minimize_scalar(lost, bounds=bounds, method="bounded", options={"maxiter": 12})
-    return Term(term.kind, float(minimum.x))
+    return FormulaTerm(term.kind, float(minimum.x))
 
 
 def _checked_formula(
-    rows: Rows, beside: Columns, dependence: Dependence, terms: tuple[Term, ...]
+    rows: Rows, beside: Columns, dependence: Dependence, terms: tuple[FormulaTerm, ...]
 ) -> Formula | None:
     """The formula of these terms, if each is sure and they hold on the checked rows."""
     columns = _columns(rows, dependence.shape, terms)

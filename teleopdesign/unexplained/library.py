@@ -17,7 +17,7 @@ TRIED = 24
 
 
 @dataclass(frozen=True)
-class Term:
+class FormulaTerm:
     """One term.
 
     kind: "power" (u^n), "decay" (exp(-u/n)), "bell" (exp(-(u/n)^2)), "above" and "below" (how far u
@@ -56,23 +56,23 @@ class Term:
         return self.kind != "power"
 
 
-def terms_of(variable: Variable, knots: Array, wave: float) -> list[Term]:
+def terms_of(variable: Variable, knots: Array, wave: float) -> list[FormulaTerm]:
     """The terms that are tried over a variable whose f has these knots.
 
     wave: number of cycles per unit to try, 0 for none
     """
     low, high = float(knots[0]), float(knots[-1])
-    terms = [Term("power", p) for p in (1.0, 2.0, 3.0)]
+    terms = [FormulaTerm("power", p) for p in (1.0, 2.0, 3.0)]
     if low >= 0.0 or variable is TIME:
         first = max(float(knots[1]), 1e-3 * high)
         for n in np.geomspace(first, high, TRIED).tolist():
-            terms += [Term("bell", n), Term("decay", n)]
+            terms += [FormulaTerm("bell", n), FormulaTerm("decay", n)]
     if variable in (COMMAND, INTERACTION, ACCELERATION):
         top = max(abs(low), abs(high))
-        terms += [Term("beyond", n) for n in (top * np.arange(1, TRIED) / TRIED).tolist()]
+        terms += [FormulaTerm("beyond", n) for n in (top * np.arange(1, TRIED) / TRIED).tolist()]
     if variable is POSITION:
         for n in np.linspace(low, high, TRIED + 2)[1:-1].tolist():
-            terms += [Term("above", n), Term("below", n)]
+            terms += [FormulaTerm("above", n), FormulaTerm("below", n)]
     if wave > 0.0:
-        terms.append(Term("wave", wave))
+        terms.append(FormulaTerm("wave", wave))
     return terms

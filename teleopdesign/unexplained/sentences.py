@@ -11,7 +11,7 @@ from ..quantity import unit_of
 from .amounts import amount, between, number
 from .curve import Curve
 from .formula import Formula
-from .library import Term
+from .library import FormulaTerm
 from .qualifiers import Contrast
 from .regions import SignRegion, goes_up_and_down, largest_regions, regions_of
 from .shapes import DAMPING, FORCE, FRICTION, LATENESS, LOST, MASS, Shape, Variable
@@ -234,7 +234,7 @@ def formula_text(formula: Formula, axis: str) -> str:
     return f"F = {text}{FACTORS.get(shape.carrier.name, '')} ({said})"
 
 
-def _term(term: Term, c: Array, u: str) -> str:
+def _term(term: FormulaTerm, c: Array, u: str) -> str:
     n = f"{abs(term.number):.3g}"
     if term.kind == "power":
         return f"{c[0]:.3g} {u}" + ("" if term.number == 1 else f"^{term.number:g}")

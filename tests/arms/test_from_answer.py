@@ -6,6 +6,7 @@ import csv
 import gzip
 import json
 import shutil
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import numpy as np
@@ -83,6 +84,10 @@ def test_the_diagnosis_reads_back_as_it_was(folder, answer):
         assert again["joints"][joint]["left_over_noise_floors"] == pytest.approx(
             said["joints"][joint]["left_over_noise_floors"], rel=1e-6
         )
+    # a notebook shows the ladder and what is said of each joint
+    shown = restored._repr_html_()
+    ElementTree.fromstring(shown)
+    assert "+ spring at joint2" in shown and "joint1: " in shown
 
 
 def test_the_page_has_a_part_for_each_joint(answer, tmp_path):

@@ -89,8 +89,15 @@ def behind(front, law, motion="x"):
     )
 
 
-@pytest.mark.parametrize("front", FRONTS)
-@pytest.mark.parametrize("name", LAWS)
+#: every law behind one front, the fronts in turn; behind the others in the slow run
+BEHIND = [
+    pytest.param(name, front, marks=[] if i % len(FRONTS) == k else pytest.mark.slow)
+    for i, name in enumerate(LAWS)
+    for k, front in enumerate(FRONTS)
+]
+
+
+@pytest.mark.parametrize(("name", "front"), BEHIND)
 def test_the_derived_response_is_that_of_a_simulated_sine(name, front):
     """1e-5: order four at 1 ms and 3 Hz. The rod is led, so little that abs(v) freezes no gain.
 

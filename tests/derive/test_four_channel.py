@@ -57,7 +57,7 @@ def number(expression, at, late):
     return sp.nsimplify(expression.replace(sp.exp, product).subs(at))
 
 
-@pytest.mark.parametrize("scaled", [False, True])
+@pytest.mark.parametrize("scaled", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_the_hybrid_matrix_is_that_of_an_independent_derivation(scaled):
     """Compared at random rational numbers in exact arithmetic, each e^(-s T) one."""
     scales = {"position_scale": 0.5, "force_scale": 2.0} if scaled else {}

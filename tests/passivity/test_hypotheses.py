@@ -88,11 +88,12 @@ def test_outside_of_its_hypotheses_a_theorem_proves_nothing(theorem, function):
     assert tried >= 3 * sum(bool(h.outside) for h in hypotheses_of(function).values())
 
 
+@pytest.mark.parametrize("rounds", [1, pytest.param(3, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("theorem", "function"), FUNCTIONS, ids=NAMES)
-def test_a_theorem_answers_or_refuses_numbers_of_any_size(theorem, function):
+def test_a_theorem_answers_or_refuses_numbers_of_any_size(theorem, function, rounds):
     """Over sixty decades, each its own, and beyond: no traceback, no warning, no file refused."""
     rng = random.Random(11)
-    for k in range(4 if function is free_motion else 12):
+    for k in range(4 if function is free_motion else 4 * rounds):
         spread = (29, 12, 6, 320)[k % 4]
         numbers = {
             name: 10.0 ** rng.uniform(-spread, min(spread, 300))

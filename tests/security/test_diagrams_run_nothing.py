@@ -52,6 +52,13 @@ def test_a_diagrams_title_and_texts_stay_texts(guard, tmp_path, capsys, text):
     assert (diagram.name, diagram.texts["x"]) == (text, text)
     file.write_text(diagram_text(diagram), encoding="utf-8")
     assert read_diagram(file) == diagram
+
+
+# the titles alone differ: a few go all the way through a command
+@pytest.mark.parametrize("text", CODE[::6], ids=range(len(CODE[::6])))
+def test_a_command_takes_a_diagrams_title_for_a_text(guard, tmp_path, capsys, text):
+    file = tmp_path / "loop.toml"
+    file.write_text(diagram_file(title=text), encoding="utf-8")
     with in_time():
         assert main(["derive", str(file), "--json", str(tmp_path / "d.json")]) == 0
     assert json.loads((tmp_path / "d.json").read_text())["diagram"] == text

@@ -127,7 +127,11 @@ UNWRITABLE = {
 
 
 @posix
-@pytest.mark.parametrize("place", UNWRITABLE)
+@pytest.mark.parametrize(
+    "place",
+    [p if p in ("no cache folder", "nothing") else pytest.param(p, marks=pytest.mark.slow)
+     for p in UNWRITABLE],
+)  # fmt: skip
 def test_laws_are_compiled_wherever_nothing_can_be_written(place, run_kernel, tmp_path):
     changed = UNWRITABLE[place] | ({"XDG_CACHE_HOME": str(tmp_path)} if place == "no home" else {})
     out, said = run_kernel(**changed)
@@ -165,7 +169,15 @@ def test_machine_code_is_kept_for_the_user_alone_and_used_again(tmp_path):
 
 
 @posix
-@pytest.mark.parametrize("damage", ["another source", "a short index", "short code", "a folder"])
+@pytest.mark.parametrize(
+    "damage",
+    [
+        "another source",
+        "short code",
+        pytest.param("a short index", marks=pytest.mark.slow),
+        pytest.param("a folder", marks=pytest.mark.slow),
+    ],
+)
 def test_what_is_kept_is_not_run_where_it_is_not_what_was_kept(damage, run_kernel, tmp_path):
     run_kernel(XDG_CACHE_HOME=str(tmp_path))
     folder = tmp_path / "teleopdesign" / "machine_code"

@@ -59,7 +59,7 @@ def test_a_planted_dependence_is_said_with_variable_range_and_size(rows, floor_s
 @pytest.mark.parametrize(
     ("name", "missing", "size"),
     [
-        ("force", lambda a: a.push * -0.06, -0.06),
+        pytest.param("force", lambda a: a.push * -0.06, -0.06, marks=pytest.mark.slow),
         pytest.param(
             "friction over time",
             lambda a: a.grip * 0.2 * np.exp(-a.signals["time"] / 3.0),

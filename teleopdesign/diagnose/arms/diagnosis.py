@@ -9,7 +9,7 @@ from ...by_value import ByValue
 from ...measurement.experiment import Experiment
 from ..candidates import Candidate
 from ..diagnosis import Diagnosis
-from ..ladder_text import sentence
+from ..ladder_text import ladder_html, sentence
 from ..ranking import named_instead
 from .fit import ArmFit, mean_error
 from .prepared import PreparedArm
@@ -88,6 +88,10 @@ class ArmDiagnosis(ByValue):
             return {}
         numbers = zip(self.after.links, self.link_errors, base.units, strict=True)
         return dict(zip(base.names, numbers, strict=True))
+
+    def _repr_html_(self) -> str:
+        said = "; ".join(f"{joint}: {sentence(one)}" for joint, one in self.joints.items())
+        return ladder_html(self.rungs, floor=self.floor, note=said)
 
     def __repr__(self) -> str:
         head = f"{'added':<42}{'fit error':>10}{'check error':>13}"

@@ -25,5 +25,8 @@ SHIPPED: Mapping[str, Callable[[], Diagram]] = _shipped()
 
 
 def shipped(name: str) -> Diagram:
-    """The shipped diagram of that name; ModelError with the nearest one."""
+    """A diagram that ships with the package, by its name.
+
+    raises ModelError: no such diagram; the message names the nearest one
+    """
     return SHIPPED[name]()

@@ -16,7 +16,6 @@ from ...errors import ExperimentError, quoted
 
 _NUMBER = re.compile(r" #\d+$")
 Array = NDArray[np.float64]
-Columns = Mapping[str, Any]
 
 #: rows above which a file is refused before it is read: fourteen hours at 1 kHz, 0.4 GB a column
 MOST_ROWS = 50_000_000
@@ -36,7 +35,7 @@ class Log:
     """
 
     names: tuple[str, ...]
-    read: Callable[[Mapping[str, str]], Columns]
+    read: Callable[[Mapping[str, str]], Mapping[str, Any]]
     units: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     clocks: Mapping[str, str] = field(default_factory=dict)

@@ -125,7 +125,7 @@ def accepted(
 
 @dataclass(frozen=True)
 class Unknown:
-    """The claim is open, and why."""
+    """A verdict: the claim is neither proved nor refuted; `why` says what stands in the way."""
 
     why: str
 

@@ -35,7 +35,7 @@ MOST_STROKES = 1_000_000
 
 
 def write_record(record: Counterexample, path: str | Path) -> None:
-    """Write a refuting motion as JSON."""
+    """Write a motion that refutes a claim as a JSON file; `read_record` reads the file."""
     write_json(path, record.as_dict())
 
 

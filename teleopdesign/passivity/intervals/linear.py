@@ -22,7 +22,7 @@ from .box import ValueBox, nonlinear_within
 from .conditions import Conditions, one_port_is_passive, two_port_is_passive, two_port_is_stable
 from .family import Family, family_of
 from .interval_claim import Parts, Status, parts_of
-from .worst import Margin, pole_margin, port_margin, search_worst
+from .worst import MarginFunction, pole_margin, port_margin, search_worst
 
 #: claims that the package knows, and the unit of their margins
 CLAIMS = {"passive": "N s/m", "absolutely stable": "1", "stable": "1/s"}
@@ -104,7 +104,7 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
     return parts_of(statement, status, worst, box, unit, how, at_worst=exact)
 
 
-def margin_over(family: Family, box: ValueBox, claim: str) -> Margin:
+def margin_over(family: Family, box: ValueBox, claim: str) -> MarginFunction:
     """The margin of a claim as a function of the box's values; numerical, compiled once."""
     if claim == "stable":
         ask = Conditions.over(box, family.symbols)
@@ -112,7 +112,7 @@ def margin_over(family: Family, box: ValueBox, claim: str) -> Margin:
     return _margin(family, family.impedance(), box, claim)
 
 
-def _margin(family: Family, z: sp.Matrix, box: ValueBox, claim: str) -> Margin:
+def _margin(family: Family, z: sp.Matrix, box: ValueBox, claim: str) -> MarginFunction:
     ask, poles = Conditions.over(box, family.symbols), []
     if family.is_rational:
         poles = [ask.poly(sp.fraction(sp.cancel(e))[1]) for e in z]

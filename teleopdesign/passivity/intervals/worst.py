@@ -14,7 +14,7 @@ from .box import ValueBox
 from .family import Family
 
 #: a margin of a point of the box; -inf where the claim fails by more than a number can say
-Margin = Callable[[np.ndarray], float]
+MarginFunction = Callable[[np.ndarray], float]
 #: frequencies of a point's grid: some 40 a decade, then refined beside the lowest
 _FREQUENCIES = 501
 #: of the lowest points, the search goes down from so many, with so many evaluations a value
@@ -31,7 +31,7 @@ class Worst:
 
 
 def search_worst(
-    margin: Margin, box: ValueBox, *, points: int, seed: int, downhill: bool = True
+    margin: MarginFunction, box: ValueBox, *, points: int, seed: int, downhill: bool = True
 ) -> Worst:
     """Vertices, the middle, Sobol points, then downhill from the lowest of them; deterministic."""
     from scipy.optimize import minimize
@@ -62,7 +62,7 @@ def search_worst(
     return Worst(np.array(key), values[key], len(values))
 
 
-def pole_margin(polynomial: sp.Poly, symbols: Sequence[sp.Symbol]) -> Margin:
+def pole_margin(polynomial: sp.Poly, symbols: Sequence[sp.Symbol]) -> MarginFunction:
     """How far the rightmost root lies left of the axis, 1/s."""
     coefficients = _coefficients(polynomial, symbols)
 
@@ -75,7 +75,7 @@ def pole_margin(polynomial: sp.Poly, symbols: Sequence[sp.Symbol]) -> Margin:
 
 def port_margin(
     family: Family, z: sp.Matrix, *, stable: bool, poles: Sequence[sp.Poly], box: ValueBox
-) -> Margin:
+) -> MarginFunction:
     """Least margin over frequency at one port or two, and -inf where a pole grows.
 
     stable: Llewellyn's margin (1), else that of passivity (N s/m)

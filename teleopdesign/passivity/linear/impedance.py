@@ -20,7 +20,7 @@ from ...errors import ModelError
 from ...realise.lti import S
 from .polynomials import fraction
 
-Motion = Literal["velocity", "position"]
+MotionKind = Literal["velocity", "position"]
 _LONGEST = 9  # characters of a fraction that is printed as such
 #: in s; there exact tests of numbers of 16 digits take some 10 s, and grow with its fourth power
 _HIGHEST = 40
@@ -54,6 +54,14 @@ class Impedance:
     def __str__(self) -> str:
         return readable(self.expression)
 
+    def __reduce__(self) -> Any:
+        # sympy pickles a polynomial without the domain of its coefficients
+        return _of_domains, tuple((poly.as_expr(), str(poly.domain)) for poly in (self.p, self.q))
+
+
+def _of_domains(p: tuple[sp.Expr, str], q: tuple[sp.Expr, str]) -> Impedance:
+    return Impedance(*(sp.Poly(e, S, domain=domain) for e, domain in (p, q)))
+
 
 def decimal(number: sp.Expr) -> str:
     """A number as text for people: up to twelve digits."""
@@ -74,7 +82,7 @@ def gaussian(poly: sp.Poly, rate: Fraction, frequency: Fraction) -> tuple[Fracti
     return re, im
 
 
-def impedance(system: Any, *, motion: Motion = "velocity") -> Impedance:
+def impedance(system: Any, *, motion: MotionKind = "velocity") -> Impedance:
     """A one-port as an exact rational function.
 
     system: sympy expression in s, number, python-control TransferFunction or StateSpace

@@ -23,11 +23,11 @@ from ...errors import ModelError
 from ..claims.certificate import Term, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
 from .hidden_modes import UNSEEN, grows_unseen
-from .impedance import Impedance, Motion, impedance
+from .impedance import Impedance, MotionKind, impedance
 from .polynomials import fraction
 from .squares import sum_of_squares
 
-Rows = list[list[Fraction]]
+FractionRows = list[list[Fraction]]
 #: a double pole on the axis is infeasible by so little that the solver goes on for ever; a shortage
 #: of this many times the size of Z is taken for it
 _LARGEST_SHORTAGE = 1e4
@@ -38,7 +38,7 @@ class Realisation:
     """m, A, B, C, D of an impedance in exact numbers, in time scaled by `scale` (1/s)."""
 
     mass: Fraction
-    a: Rows
+    a: FractionRows
     c: list[Fraction]
     d: Fraction
     scale: Fraction
@@ -93,7 +93,7 @@ def _scale(q: sp.Poly) -> Fraction:
     return Fraction(2) ** round(size)
 
 
-def kyp(system: Any, *, motion: Motion = "velocity") -> Kyp:
+def kyp(system: Any, *, motion: MotionKind = "velocity") -> Kyp:
     """Solve the inequality for the largest c with which Z - c has a storage function.
 
     system, motion: see `impedance`
@@ -144,7 +144,7 @@ def _solve(made: Realisation, size: float, *, slack: bool) -> tuple[float, np.nd
     return float(value.value), np.asarray(p.value), str(problem.status)
 
 
-def storage_function(system: Any, *, motion: Motion = "velocity") -> Claim:
+def storage_function(system: Any, *, motion: MotionKind = "velocity") -> Claim:
     """Prove passivity by a quadratic storage function in exact numbers.
 
     returns: proved, with V in the certificate; unknown where no rounding of the numerical
@@ -165,7 +165,7 @@ def storage_function(system: Any, *, motion: Motion = "velocity") -> Claim:
     return Claim(statement, Unknown("no rounding of the solution of the inequality is valid"))
 
 
-def _candidates(made: Realisation) -> list[Rows]:
+def _candidates(made: Realisation) -> list[FractionRows]:
     """P rounded to fractions, coarse first; where D = 0 its last column is C, exactly."""
     n = made.order
     if n == 0:
@@ -192,7 +192,7 @@ def _rounded(x: float, digits: int) -> Fraction:
     return Fraction(float(x)).limit_denominator(10**digits)
 
 
-def _matrices(made: Realisation, p: Rows) -> tuple[Rows, Rows]:
+def _matrices(made: Realisation, p: FractionRows) -> tuple[FractionRows, FractionRows]:
     """P, and the matrix of twice the power that is lost, in (x, v)."""
     n = made.order
     pa = [[sum((p[i][k] * made.a[k][j] for k in range(n)), Fraction(0)) for j in range(n)]
@@ -205,7 +205,7 @@ def _matrices(made: Realisation, p: Rows) -> tuple[Rows, Rows]:
 def _proof(
     statement: str,
     made: Realisation,
-    storage: Rows,
+    storage: FractionRows,
     stored: list[tuple[Fraction, list[Fraction]]],
     lost: list[tuple[Fraction, list[Fraction]]],
 ) -> Proof:

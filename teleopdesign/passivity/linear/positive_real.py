@@ -18,7 +18,7 @@ from ..claims.certificate import positive_real_certificate
 from ..claims.claim import Claim, Refutation, Unknown, accepted
 from ..search.growing_wave import GrowingWave, growing_wave
 from .hidden_modes import UNSEEN, grows_unseen
-from .impedance import Impedance, Motion, exact, gaussian, impedance
+from .impedance import Impedance, MotionKind, exact, gaussian, impedance
 from .polynomials import (
     X,
     even_part,
@@ -45,7 +45,7 @@ def is_positive_real(z: Impedance) -> bool:
     return is_non_negative(even_part(z.p, z.q))
 
 
-def positive_real(system: Any, *, motion: Motion = "velocity") -> Claim:
+def positive_real(system: Any, *, motion: MotionKind = "velocity") -> Claim:
     """Is this impedance passive: does it never give out more energy than it took in?
 
     system, motion: see `impedance`
@@ -132,7 +132,7 @@ class Excess:
         return float(self.lower)
 
 
-def damping_excess(system: Any, *, motion: Motion = "velocity") -> Excess:
+def damping_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
     """Excess of damping of a passive impedance, N s/m; < 0: damping that it lacks.
 
     This is the infimum of Re Z over frequency (the index of input passivity, velocity being the
@@ -144,8 +144,8 @@ def damping_excess(system: Any, *, motion: Motion = "velocity") -> Excess:
     return Excess(lower, upper, float(np.sqrt(at)))
 
 
-def mobility_excess(system: Any, *, motion: Motion = "velocity") -> Excess:
-    """The same of the mobility 1/Z (m/(N s)): index of output passivity; +inf where Z = 0."""
+def mobility_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
+    """Excess of the mobility 1/Z, m/(N s): index of output passivity; +inf where Z = 0."""
     z = impedance(system, motion=motion)
     if z.p.is_zero:
         return Excess(float("inf"), float("inf"), 0.0)

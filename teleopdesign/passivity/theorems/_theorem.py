@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from ...by_value import ByValue
 from ...controllers import Stage
 from ...simulate import Sampling
 from ..claims.claim import Claim, Counterexample
@@ -70,8 +71,8 @@ class Question:
 Time = Literal["continuous", "sampled", "any"]
 
 
-@dataclass(frozen=True)
-class TopicClaim:
+@dataclass(frozen=True, eq=False)
+class TopicClaim(ByValue):
     """A claim in its topic; replayed: energy (J) that its motion gave out in simulation, NaN where
     none was replayed; motion: that simulated motion.
     time: of the controllers in it: "sampled", "continuous", or "any" where it holds in both

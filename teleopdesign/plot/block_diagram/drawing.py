@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...plain_data import write_text
 from .figure import figure
-from .shapes import Shape
+from .shapes import SheetShape
 from .svg import svg
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class Drawing:
     """Shapes on a sheet of that size (points);  title: alternative text."""
 
-    shapes: tuple[Shape, ...]
+    shapes: tuple[SheetShape, ...]
     width: float
     height: float
     title: str

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..letters import house_style
-from .shapes import SIZES, SMALLER, Box, Circle, Dot, Run, Shape, Text, Wire
+from .shapes import SIZES, SMALLER, Box, Circle, Dot, Run, SheetShape, Text, Wire
 from .svg import BASELINE, RAISED, arrow_head, shaft
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ LINE = 0.8
 FONT = ["STIXGeneral", "DejaVu Sans"]
 
 
-def figure(shapes: Sequence[Shape], *, width: float, height: float) -> Figure:
+def figure(shapes: Sequence[SheetShape], *, width: float, height: float) -> Figure:
     """The shapes on a sheet of that size (points)."""
     import matplotlib.pyplot as plt
 

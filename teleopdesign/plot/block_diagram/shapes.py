@@ -9,10 +9,10 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
-Point = tuple[float, float]
+SheetPoint = tuple[float, float]
 #: "block": name of a block, "signal": name of a signal, "sign": at a junction, "law": in a box
-Role = Literal["block", "signal", "sign", "law"]
-SIZES: dict[Role, float] = {"block": 11.0, "signal": 10.0, "sign": 10.0, "law": 7.0}
+TextRole = Literal["block", "signal", "sign", "law"]
+SIZES: dict[TextRole, float] = {"block": 11.0, "signal": 10.0, "sign": 10.0, "law": 7.0}
 SMALLER = 0.72  # size of an index against that of its letter
 
 
@@ -43,7 +43,7 @@ class Wire:
     signal: unlike that of every other signal, also for wires without a name
     """
 
-    points: tuple[Point, ...]
+    points: tuple[SheetPoint, ...]
     signal: str
     arrow: bool = True
 
@@ -72,7 +72,7 @@ class Text:
     x: float
     y: float
     runs: tuple[Run, ...]
-    role: Role
+    role: TextRole
     anchor: Literal["start", "middle", "end"] = "middle"
 
     @property
@@ -93,7 +93,7 @@ class Text:
         return self.x + start, self.y - half, self.x + start + self.width, self.y + half
 
 
-Shape = Box | Circle | Wire | Dot | Text
+SheetShape = Box | Circle | Wire | Dot | Text
 
 
 def symbol(name: str) -> tuple[Run, ...]:
@@ -114,7 +114,7 @@ def _is_letter(text: str) -> bool:
     return re.fullmatch(r"[^\W\d_]\d?", text) is not None
 
 
-def width(runs: tuple[Run, ...], role: Role) -> float:
+def width(runs: tuple[Run, ...], role: TextRole) -> float:
     """Estimated width of a text: the house font is a Times, its letters about half as wide."""
     return sum(
         SIZES[role] * (SMALLER if run.level else 1.0) * sum(map(_em, run.text)) for run in runs

@@ -11,7 +11,7 @@ from .cells import LEFT, RIGHT, Cells
 from .drawing import Drawing
 from .network import MINUS, RADIUS, Network, Node, label
 from .routes import Route, RoutingGrid
-from .shapes import SIZES, Box, Circle, Dot, Point, Run, Shape, Text, Wire, width
+from .shapes import SIZES, Box, Circle, Dot, Run, SheetPoint, SheetShape, Text, Wire, width
 
 MARGIN, PITCH = 8.0, 11.0
 APPROACH = 15.0  # arrow head and sign before a node
@@ -30,7 +30,7 @@ def sheet(
     x = _across(network, cells, grid, routes)
     y = _down(network, cells, grid, routes)
     middle = {n: (x[grid.vertex(n)[0]], y[grid.vertex(n)[1]]) for n in cells.at}
-    shapes: list[Shape] = []
+    shapes: list[SheetShape] = []
     texts: list[Text] = []
     for one in routes:
         wire = _wire(network, grid, one, x, y)
@@ -147,7 +147,7 @@ def _wire(
     return Wire(tuple(points), one.net)
 
 
-def _edge(at: Point, towards: Point, node: Node) -> Point:
+def _edge(at: SheetPoint, towards: SheetPoint, node: Node) -> SheetPoint:
     """Where the line from the middle of a node leaves its outline."""
     half_width, half_height = node.size[0] / 2, node.size[1] / 2
     if towards[1] == at[1]:
@@ -155,7 +155,7 @@ def _edge(at: Point, towards: Point, node: Node) -> Point:
     return at[0], at[1] + (half_height if towards[1] > at[1] else -half_height)
 
 
-def _node(node: Node, at: Point) -> list[Shape]:
+def _node(node: Node, at: SheetPoint) -> list[SheetShape]:
     x, y = at
     if node.kind == "sum":
         return [Circle(x, y, RADIUS)]
@@ -168,7 +168,7 @@ def _node(node: Node, at: Point) -> list[Shape]:
         return [Box(x, y, wide, high, "")]
     lines = len(node.notes)
     top = y - 4.25 * lines
-    shapes: list[Shape] = [
+    shapes: list[SheetShape] = [
         Box(x, y, wide, high, node.name.partition(" ")[2]),
         Text(x, top, node.title, "block"),
     ]
@@ -203,7 +203,7 @@ def _sign(wire: Wire, weight: float, heading: int) -> Text:
     return Text(tip[0] + 3.5 * side, tip[1] + away, runs, "sign", anchor)
 
 
-def _cropped(shapes: Sequence[Shape], title: str) -> Drawing:
+def _cropped(shapes: Sequence[SheetShape], title: str) -> Drawing:
     """The shapes moved to the corner of a sheet that is as large as they need."""
     edges = [_bounds(s) for s in shapes] or [(0.0, 0.0, 0.0, 0.0)]
     left, top = min(e[0] for e in edges) - MARGIN, min(e[1] for e in edges) - MARGIN
@@ -212,7 +212,7 @@ def _cropped(shapes: Sequence[Shape], title: str) -> Drawing:
     return Drawing(moved, round(right - left, 2), round(bottom - top, 2), title)
 
 
-def _bounds(shape: Shape) -> tuple[float, float, float, float]:
+def _bounds(shape: SheetShape) -> tuple[float, float, float, float]:
     if isinstance(shape, Text):
         return shape.bounds
     if isinstance(shape, Wire):
@@ -222,7 +222,7 @@ def _bounds(shape: Shape) -> tuple[float, float, float, float]:
     return shape.x - wide / 2, shape.y - high / 2, shape.x + wide / 2, shape.y + high / 2
 
 
-def _moved(shape: Shape, dx: float, dy: float) -> Shape:
+def _moved(shape: SheetShape, dx: float, dy: float) -> SheetShape:
     if isinstance(shape, Wire):
         points = tuple((round(x + dx, 2), round(y + dy, 2)) for x, y in shape.points)
         return replace(shape, points=points)

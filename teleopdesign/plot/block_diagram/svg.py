@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from xml.sax.saxutils import escape, quoteattr
 
-from .shapes import SIZES, SMALLER, Box, Circle, Dot, Point, Shape, Text, Wire, readable
+from .shapes import SIZES, SMALLER, Box, Circle, Dot, SheetPoint, SheetShape, Text, Wire, readable
 
 ARROW = (6.0, 2.2)  # length, half width
 FONT = "'STIX Two Text', STIXGeneral, 'Times New Roman', serif"
@@ -14,7 +14,7 @@ BASELINE = 0.32
 RAISED = {0: 0.0, -1: 0.22, 1: -0.38}
 
 
-def svg(shapes: Sequence[Shape], *, width: float, height: float, title: str) -> str:
+def svg(shapes: Sequence[SheetShape], *, width: float, height: float, title: str) -> str:
     """The whole file, on a sheet of that size (points); title: alternative text."""
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}pt" height="{height:g}pt" '
@@ -27,7 +27,7 @@ def svg(shapes: Sequence[Shape], *, width: float, height: float, title: str) -> 
     return "\n".join(lines) + "\n"
 
 
-def _element(shape: Shape) -> str:
+def _element(shape: SheetShape) -> str:
     if isinstance(shape, Box):
         left, top = shape.x - shape.width / 2, shape.y - shape.height / 2
         size = f'width="{shape.width:g}" height="{shape.height:g}"'
@@ -48,7 +48,7 @@ def _wire(wire: Wire) -> str:
     return f'{line}<polygon points="{head}" fill="black" stroke="none"/>'
 
 
-def shaft(wire: Wire) -> tuple[Point, ...]:
+def shaft(wire: Wire) -> tuple[SheetPoint, ...]:
     """The line of a wire: under its arrow it ends before the tip, which would be blunt else."""
     if not wire.arrow:
         return wire.points

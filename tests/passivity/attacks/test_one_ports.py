@@ -111,7 +111,7 @@ def gives_out(wave):
     return float(-(power @ weight) @ half)
 
 
-@attacked(24, 300)
+@attacked(12, 300)
 def test_no_growing_wave_gives_out_energy_where_a_port_is_proved_passive(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter(judged(rng, KINDS[k % len(KINDS)]) for k in range(number))
@@ -123,7 +123,7 @@ def test_no_growing_wave_gives_out_energy_where_a_port_is_proved_passive(seed, n
     assert unknown <= number / 100
 
 
-@attacked(3, 40)
+@attacked(2, 40)
 def test_a_storage_function_is_found_for_no_port_that_gives_out_energy(seed, number):
     pytest.importorskip("cvxpy", reason="the extra `lmi` is not installed")
     rng = np.random.default_rng(seed)
