@@ -214,3 +214,21 @@ def test_what_is_a_number_is_what_python_reads_as_one(cell):
     except ValueError:
         reads = False
     assert is_number(cell, False) is reads
+
+
+def test_a_matrix_of_no_known_class_or_size_is_refused_before_it_is_read(tmp_path):
+    """scipy ends the whole process on some of them."""
+    path = tmp_path / "log.mat"
+    names = {"t": np.arange(99.0), "x": np.arange(99.0)[:, None], "name": "rod", "more": [1, "a"]}
+    for packed in (True, False):
+        savemat(path, {"log": names, "x": np.eye(3)}, do_compression=packed)
+        assert {"log.t", "log.x"} <= set(open_log(path, "log.mat").names)
+    content = path.read_bytes()
+    for at in range(128, 600, 4):
+        path.write_bytes(content[:at] + b"\xfe\xff\xff\x7f" + content[at + 4 :])
+        try:
+            open_log(path, "log.mat").read({"log.t": ""})
+        except (ExperimentError, KeyError) as problem:
+            assert str(problem)
+    path.write_bytes(content.replace(b"\x06\0\0\0\x08\0\0\0\x06", b"\x06\0\0\0\x08\0\0\0\xfe", 1))
+    assert "a matrix of class 254" in refused(path, "x")

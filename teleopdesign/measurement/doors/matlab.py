@@ -14,6 +14,7 @@ import numpy as np
 
 from ...errors import ExperimentError
 from ._log import Log, how_to_save, part, parts_of, refuse_size, refusing_damage
+from ._mat_elements import check_elements
 from .hdf5 import open_hdf5
 
 #: how an HDF5 file begins, at its first byte or behind a head of so many bytes
@@ -30,6 +31,7 @@ def open_matlab(path: Path, file: str) -> Log:
     if _is_hdf5(path):
         return open_hdf5(path, file)
     with refusing_damage(_KIND, file):
+        check_elements(path)
         try:
             listed = whosmat(path)
             for _, shape, _ in listed:
