@@ -22,7 +22,7 @@ ALIASES = {
     "нм": "Nm", "н·м": "Nm", "н*м": "Nm", "а": "A", "°": "deg", "度": "deg", "秒": "s", "초": "s",
     "u/min": "rpm", "1/min": "rpm", "min-1": "rpm",
 }  # fmt: skip
-_BRACKETS = re.compile(r"[(\[{]\s*([^()\[\]{}]+?)\s*[)\]}]\s*$")
+_BRACKETS = re.compile(r"[(\[{](?=\s*[^\s()\[\]{}])([^()\[\]{}]++)[)\]}]\s*+$")
 #: units of two parts as names of columns write them: "v_mm_s", "rad_per_s", "tau_N_m"
 _OF_TWO = re.compile(
     r"(?:^|_|\s)(?:(?P<length>rad|deg|mm|um|m)_(?:per_)?(?:s|sec)|(?P<force>m?N)_(?P<arm>c?m))$"

@@ -7,7 +7,7 @@ from __future__ import annotations
 import shlex
 import zlib
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ExperimentError, did_you_mean, quoted
-from .doors._log import Log, bare_column, listed
+from .doors._log import Log, bare_column, listed, refuse_odd_names
 from .doors.arrays import open_arrays
 from .doors.bag import is_bag, open_bag
 from .doors.folder import open_folder
@@ -91,7 +91,9 @@ def open_log(path: Path, file: str) -> Log:
         more = ", or a folder of tables" if path.is_dir() else ""
         raise ExperimentError(f"{file}: found {kind}, expected {', '.join(DOORS)}{more}")
     door = opened
-    return _reading(lambda: door(path, file), file)
+    log = _reading(lambda: door(path, file), file)
+    refuse_odd_names(log, file)
+    return replace(log, read=lambda wanted: _reading(lambda: log.read(wanted), file))
 
 
 def tables_in(folder: Path) -> list[Path]:
@@ -135,7 +137,7 @@ def columns_of(log: Log, file: str, wanted: Wanted) -> LogColumns:
     if base is not None and base in log.clocks and log.clocks[base] != base:
         clocks = {n: clock for n, clock in clocks.items() if clock != log.clocks[base]}
     channel_of = {**wanted, **dict.fromkeys(clocks.values(), "channels.time")}
-    read = _reading(lambda: log.read(channel_of), file)
+    read = log.read(channel_of)
     try:
         values = {n: numbers_of(read[n], n, file, wanted.get(n, "")) for n in read}
     except MemoryError:

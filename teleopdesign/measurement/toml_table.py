@@ -117,14 +117,20 @@ def described(value: object) -> str:
 
 #: words of a dotted key, text in quotes left out: the time that the reader takes grows with their
 #: square, and an experiment has three
-_LONG_KEY = re.compile(r"(?:[\w-]+|\"\")(?:\s*\.\s*(?:[\w-]+|\"\")){99}")
-_QUOTED = re.compile(r"\"(?:[^\"\\\n]|\\.)*\"|'[^'\n]*'")
+_LONG_KEY = re.compile(r"(?:(?<![\w-])[\w-]++|\"\")(?:\s*+\.\s*+(?:[\w-]++|\"\")){99}")
+#: text in quotes; what a backslash makes no quote, so that an open one is looked for once
+_QUOTED = re.compile(r"\\.|\"(?:[^\"\\\n]|\\.)*+\"|'[^'\n]*+'")
+
+
+def _without_text(line: str) -> str:
+    """The line with nothing between its quotes."""
+    return _QUOTED.sub(lambda m: m[0] if m[0][0] == "\\" else '""', line)
 
 
 def parse_toml(text: str) -> dict[str, Any]:
     """The content of a TOML text; raises ValueError where it is none, or a key has 100 words."""
     for number, line in enumerate(text.splitlines(), start=1):
-        if line.count(".") > 99 and _LONG_KEY.search(_QUOTED.sub('""', line)):
+        if line.count(".") >= 99 and _LONG_KEY.search(_without_text(line)):
             raise ValueError(f"a key of 100 words or more (at line {number})")
     return tomllib.loads(text)
 

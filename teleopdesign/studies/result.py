@@ -129,8 +129,10 @@ def read_study(path: str | Path) -> Study:
     try:
         _check_size(path)
         data = xarray.load_dataset(path, engine="h5netcdf")
-    except (OSError, ValueError, KeyError) as error:
-        why = " ".join(str(error).split())
+    except ExperimentError:
+        raise
+    except Exception as error:  # a damaged file can fail in any of the three packages that read it
+        why = " ".join(str(error).split()) or type(error).__name__
         raise ExperimentError(f"{path}: no study can be read: {why}") from error
     attributes = [data.attrs.get(n) for n in ("study", "model", "axes")]
     if REASON not in data or not all(isinstance(text, str) for text in attributes):

@@ -7,13 +7,16 @@ import tracemalloc
 import h5py
 import numpy as np
 import pytest
+from clock import takes_less_than
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.io import savemat
 
 from teleopdesign.errors import ExperimentError
+from teleopdesign.measurement.column_names import bare_name, unit_in_name
 from teleopdesign.measurement.doors import text
-from teleopdesign.measurement.doors._cells import stamps_of
+from teleopdesign.measurement.doors._cells import is_number, stamps_of
+from teleopdesign.measurement.doors._log import LONGEST_NAME
 from teleopdesign.measurement.doors.text import open_text
 from teleopdesign.measurement.tables import open_log, read_columns
 
@@ -165,3 +168,67 @@ def test_cells_one_by_one_take_no_ten_times_the_memory_of_their_numbers(tmp_path
         tracemalloc.stop()
     # 8 bytes a number, twice while a column is put together, and half a megabyte beside
     assert most < 2 * 8 * rows * width + 5e5
+
+
+@pytest.mark.parametrize(
+    "head",
+    ["x" * 20_000, "/a" * 10_000, "pos (" + " " * 20_000, "a(" * 10_000, "x" + " " * 20_000],
+    ids=["word", "parts", "open bracket", "brackets", "spaces"],
+)
+def test_a_name_that_no_logger_writes_is_refused_at_once(tmp_path, head):
+    path = tmp_path / "log.csv"
+    path.write_text(f"t,{head}b!\n" + "".join(f"{k},{k * k}\n" for k in range(200)))
+    with takes_less_than(1):
+        message = refused(path, "t")
+    assert "characters, expected at most 1000" in message and len(message) < 300
+
+
+@pytest.mark.parametrize("length", [1, LONGEST_NAME])
+@pytest.mark.parametrize("head", ["/a", "(", "( ", "a_", "1/", "#1 "])
+def test_a_name_of_any_length_that_is_read_tells_its_unit_at_once(head, length):
+    name = (head * length)[:length]
+    with takes_less_than(0.5):
+        assert bare_name(f"{name}!"[:length]) is not None
+        unit_in_name(f"{name}!"[:length])
+
+
+def test_twelve_thousand_columns_are_refused_at_once(tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text(",".join(["a"] * 12_000) + "\n" + ",".join(["1"] * 12_000) + "\n")
+    with takes_less_than(10):
+        assert "12000 columns, expected at most 10000" in refused(path, "a")
+
+
+@pytest.mark.parametrize("cell", ["9" * 1_000_000, "." + "9" * 1_000_000, "1e" + "9" * 1_000_000])
+def test_a_cell_of_a_million_digits_is_decided_at_once(cell):
+    with takes_less_than(1):
+        assert is_number(cell, False)
+        assert not is_number(cell + "x", False)
+
+
+@given(st.from_regex(r"[-+]?[0-9]{0,3}\.?[0-9]{0,3}([eEdD][-+]?[0-9]{0,3})?x?", fullmatch=True))
+def test_what_is_a_number_is_what_python_reads_as_one(cell):
+    try:
+        float(cell.replace("d", "e").replace("D", "e"))
+        reads = True
+    except ValueError:
+        reads = False
+    assert is_number(cell, False) is reads
+
+
+def test_a_matrix_of_no_known_class_or_size_is_refused_before_it_is_read(tmp_path):
+    """scipy ends the whole process on some of them."""
+    path = tmp_path / "log.mat"
+    names = {"t": np.arange(99.0), "x": np.arange(99.0)[:, None], "name": "rod", "more": [1, "a"]}
+    for packed in (True, False):
+        savemat(path, {"log": names, "x": np.eye(3)}, do_compression=packed)
+        assert {"log.t", "log.x"} <= set(open_log(path, "log.mat").names)
+    content = path.read_bytes()
+    for at in range(128, 600, 4):
+        path.write_bytes(content[:at] + b"\xfe\xff\xff\x7f" + content[at + 4 :])
+        try:
+            open_log(path, "log.mat").read({"log.t": ""})
+        except (ExperimentError, KeyError) as problem:
+            assert str(problem)
+    path.write_bytes(content.replace(b"\x06\0\0\0\x08\0\0\0\x06", b"\x06\0\0\0\x08\0\0\0\xfe", 1))
+    assert "a matrix of class 254" in refused(path, "x")

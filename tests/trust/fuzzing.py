@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from measurement.rod_example import ROD, rod_columns, rows
 from passivity.small_certificates import storage
 from security.diagram_file import diagram_file
+from trust.fuzzed_logs import made_readers
 
 from teleopdesign.check import check_experiment
 from teleopdesign.cli import main
@@ -140,6 +141,7 @@ READERS = {
     ),
     "study": (STUDY.encode(), lambda c, f: read_study(c, f)),
     "effect": (EFFECT.encode(), lambda c, f: read_file(c, f, name="own.py", read=load_effect)),
+    **made_readers(),
 }
 
 #: what files are spoilt with: ends of ranges, odd texts, brackets

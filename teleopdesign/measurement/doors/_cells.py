@@ -12,7 +12,10 @@ import numpy as np
 from ...errors import ExperimentError, quoted
 from ._log import Array
 
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?$|[-+]?(nan|inf|infinity)$", re.I)
+#: digits are taken once ("++"): a cell of a million digits and a letter is decided at once
+_NUMBER = re.compile(
+    r"[-+]?(\d++(?:\.\d*+)?|\.\d++)([ed][-+]?\d++)?$|[-+]?(nan|inf|infinity)$", re.I
+)
 #: what loggers and tables write where there is no reading, in lower case
 NO_READING = frozenset(
     "n/a na n.a. #n/a #na null none nil - -- --- ? * . missing invalid "

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib import import_module
 from types import ModuleType
@@ -21,6 +23,9 @@ Array = NDArray[np.float64]
 MOST_ROWS = 50_000_000
 #: bytes that a packed file may hold unpacked: what so many rows of a few columns need
 MOST_BYTES = 4_000_000_000
+#: columns of a log, and characters of the name of one: far above any logger's; what is done with
+#: each name takes a time that may grow with its square
+MOST_COLUMNS, LONGEST_NAME = 10_000, 1000
 
 
 @dataclass(frozen=True)
@@ -51,6 +56,22 @@ def optional(module: str, file: str, extra: str = "io") -> ModuleType:
         ) from None
 
 
+@contextmanager
+def refusing_damage(kind: str, file: str) -> Iterator[None]:
+    """Where another package reads: whatever a damaged file makes it raise becomes one line.
+
+    kind: what the file should be ("MAT file")
+    raises ExperimentError: in place of all but errors of the system and of memory
+    """
+    try:
+        yield
+    except (ExperimentError, OSError, EOFError, MemoryError):
+        raise
+    except Exception as problem:  # those packages name no class of their own for it
+        reason = str(problem).strip().split("\n")[0] or type(problem).__name__
+        raise ExperimentError(f"{file}: not a readable {kind}: {reason}") from None
+
+
 def how_to_save(name: str) -> str:
     """What a user types in MATLAB so that an object can be read: its content is known to it alone.
 
@@ -71,13 +92,27 @@ def refuse_size(rows: int, file: str) -> None:
         )
 
 
+def refuse_odd_names(log: Log, file: str) -> None:
+    """Raise an ExperimentError for more columns, or longer names of them, than a logger writes."""
+    if len(log.names) > MOST_COLUMNS:
+        raise ExperimentError(
+            f"{file}: found {len(log.names)} columns, expected at most {MOST_COLUMNS}"
+        )
+    longest = max(log.names, key=len, default="")
+    if len(longest) > LONGEST_NAME:
+        raise ExperimentError(
+            f"{file}: found a column whose name has {len(longest)} characters, expected at most "
+            f"{LONGEST_NAME}: {quoted(longest)}"
+        )
+
+
 def number_names(names: Sequence[str]) -> tuple[str, ...]:
     """Names of columns, each once: those that are there several times get "#1", "#2" ..."""
-    count: dict[str, int] = {}
+    of_all, count = Counter(names), Counter[str]()
     out = []
     for name in names:
-        count[name] = count.get(name, 0) + 1
-        out.append(f"{name} #{count[name]}" if names.count(name) > 1 else name)
+        count[name] += 1
+        out.append(f"{name} #{count[name]}" if of_all[name] > 1 else name)
     return tuple(out)
 
 

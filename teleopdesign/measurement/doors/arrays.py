@@ -10,36 +10,37 @@ from typing import Any
 import numpy as np
 
 from ...errors import ExperimentError, quoted
-from ._log import MOST_BYTES, Log, part, parts_of, refuse_size
+from ._log import MOST_BYTES, Log, part, parts_of, refuse_size, refusing_damage
+
+_KIND = ".npz file"
 
 
 def open_arrays(path: Path, file: str) -> Log:
     """An .npz file; raises ExperimentError: none, or an array of objects where one is wanted."""
     columns: dict[str, tuple[str, int | None]] = {}
-    try:
-        with zipfile.ZipFile(path) as packed:
-            for entry in packed.infolist():
-                name = entry.filename.removesuffix(".npy")
-                shape = _shape(packed, entry)
-                if shape is None:
-                    continue
-                refuse_size(max(shape, default=0), file)
-                if entry.file_size > MOST_BYTES:
-                    raise ExperimentError(f"{file}: found {entry.file_size:.3g} bytes unpacked")
-                columns |= parts_of(name, shape) or {name: (name, None)}
-    except (zipfile.BadZipFile, ValueError, EOFError, NotImplementedError, SyntaxError) as problem:
-        raise ExperimentError(f"{file}: not a readable .npz file: {problem}") from None
+    with refusing_damage(_KIND, file), zipfile.ZipFile(path) as packed:
+        for entry in packed.infolist():
+            name = entry.filename.removesuffix(".npy")
+            shape = _shape(packed, entry)
+            if shape is None:
+                continue
+            refuse_size(max(shape, default=0), file)
+            if entry.file_size > MOST_BYTES:
+                raise ExperimentError(f"{file}: found {entry.file_size:.3g} bytes unpacked")
+            columns |= parts_of(name, shape) or {name: (name, None)}
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         out: dict[str, Any] = {}
-        try:
-            with np.load(path, allow_pickle=False) as content:
-                for name in wanted:
-                    array, column = columns[name]
+        with refusing_damage(_KIND, file), np.load(path, allow_pickle=False) as content:
+            for name in wanted:
+                array, column = columns[name]
+                try:
                     out[name] = part(content[array], column)
-        except (zipfile.BadZipFile, ValueError, EOFError, KeyError) as problem:
-            kind = "holds Python objects" if "pickle" in str(problem) else str(problem)
-            raise ExperimentError(f"{file}: {quoted(name)}: {kind}, expected numbers") from None
+                except (ValueError, KeyError, IndexError) as problem:
+                    kind = "holds Python objects" if "pickle" in str(problem) else str(problem)
+                    raise ExperimentError(
+                        f"{file}: {quoted(name)}: {kind}, expected numbers"
+                    ) from None
         return out
 
     return Log(tuple(columns), read)

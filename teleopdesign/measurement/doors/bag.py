@@ -18,7 +18,7 @@ import numpy as np
 
 from ...errors import ExperimentError, quoted
 from ...names import LONGEST
-from ._log import Array, Log, listed, optional, refuse_size
+from ._log import Array, Log, listed, optional, refuse_size, refusing_damage
 
 #: numbers of one message that become columns: images and point clouds are no log
 MOST_FIELDS = 200
@@ -43,7 +43,7 @@ def open_bag(path: Path, file: str) -> Log:
     source = path
     if path.name.lower().endswith(".db3") and (path.parent / "metadata.yaml").is_file():
         source = path.parent
-    try:
+    with refusing_damage("bag", file):
         _check_definitions(source, file)
         with anyreader.AnyReader([source]) as reader:
             refuse_size(reader.message_count, file)
@@ -52,11 +52,6 @@ def open_bag(path: Path, file: str) -> Log:
             for connection, written, raw in reader.messages(connections=chosen):
                 message = reader.deserialize(raw, connection.msgtype)
                 _append(topics.setdefault(connection.topic, {}), message, written, begin)
-    except ExperimentError:
-        raise
-    except Exception as problem:  # a damaged bag can fail in any of the package's readers
-        reason = str(problem).splitlines()[0] if str(problem) else type(problem).__name__
-        raise ExperimentError(f"{file}: not a readable bag: {reason}") from None
     columns = _columns(topics)
     if not columns:
         raise ExperimentError(

@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import ExperimentError, quoted
-from ._log import Log, how_to_save, optional, part, parts_of, refuse_size
+from ._log import Log, how_to_save, optional, part, parts_of, refuse_size, refusing_damage
 
+_KIND = "HDF5 file"
 #: datasets of one file that are listed
 _MOST = 10_000
 #: attribute by which MATLAB marks an object of its own; its numbers lie elsewhere in the file
@@ -24,17 +25,14 @@ def open_hdf5(path: Path, file: str) -> Log:
     h5py = optional("h5py", file)
     columns: dict[str, tuple[str, int | str | None]] = {}
     objects: list[str] = []
-    with h5py.File(path, "r") as content:
+    with refusing_damage(_KIND, file), h5py.File(path, "r") as content:
         names: list[str] = []
 
         def visit(name: str, item: Any) -> None:
             if isinstance(item, h5py.Dataset) and len(names) < _MOST:
                 names.append(name)
 
-        try:
-            content.visititems(visit)
-        except (RuntimeError, KeyError, ValueError) as problem:
-            raise ExperimentError(f"{file}: not a readable HDF5 file: {problem}") from None
+        content.visititems(visit)
         for name in names:
             if name.startswith("#"):  # where MATLAB keeps its cells
                 continue
@@ -52,7 +50,7 @@ def open_hdf5(path: Path, file: str) -> Log:
         raise ExperimentError(f"{file}: {how_to_save(objects[0])}")
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
-        with h5py.File(path, "r") as content:
+        with refusing_damage(_KIND, file), h5py.File(path, "r") as content:
             return {
                 name: _values(content[columns[name][0]], name, columns[name][1]) for name in wanted
             }

@@ -13,32 +13,34 @@ from typing import Any
 import numpy as np
 
 from ...errors import ExperimentError
-from ._log import Log, how_to_save, part, parts_of, refuse_size
+from ._log import Log, how_to_save, part, parts_of, refuse_size, refusing_damage
+from ._mat_elements import check_elements
 from .hdf5 import open_hdf5
 
 #: how an HDF5 file begins, at its first byte or behind a head of so many bytes
 _HDF5, _HEAD = b"\x89HDF\r\n\x1a\n", 512
+_KIND = "MAT file"
 #: structs within structs that are looked into
 _DEPTH = 4
 
 
 def open_matlab(path: Path, file: str) -> Log:
     """A MAT file of any version."""
-    from scipy.io import loadmat, matlab, whosmat
+    from scipy.io import loadmat, whosmat
 
     if _is_hdf5(path):
         return open_hdf5(path, file)
-    try:
-        listed = whosmat(path)
-        for _, shape, _ in listed:
-            refuse_size(max(shape, default=0), file)
-        structs = [name for name, _, kind in listed if kind == "struct"]
-        objects = [name or "it" for name, _, kind in listed if kind in ("opaque", "object")]
-        content = dict(loadmat(path, variable_names=structs)) if structs else {}
-    except NotImplementedError:  # version 7.3 is an HDF5 file
-        return open_hdf5(path, file)
-    except (matlab.MatReadError, ValueError, TypeError, KeyError, IndexError) as problem:
-        raise ExperimentError(f"{file}: not a readable MAT file: {problem}") from None
+    with refusing_damage(_KIND, file):
+        check_elements(path)
+        try:
+            listed = whosmat(path)
+            for _, shape, _ in listed:
+                refuse_size(max(shape, default=0), file)
+            structs = [name for name, _, kind in listed if kind == "struct"]
+            objects = [name or "it" for name, _, kind in listed if kind in ("opaque", "object")]
+            content = dict(loadmat(path, variable_names=structs)) if structs else {}
+        except NotImplementedError:  # version 7.3 is an HDF5 file
+            return open_hdf5(path, file)
     columns: dict[str, tuple[str, int | None]] = {}
     arrays: dict[str, Any] = {}
     for name, shape, kind in listed:
@@ -57,10 +59,8 @@ def open_matlab(path: Path, file: str) -> Log:
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         plain = [columns[n][0] for n in wanted if columns[n][0] not in arrays]
-        try:
+        with refusing_damage(_KIND, file):
             contents = loadmat(path, variable_names=list(dict.fromkeys(plain))) if plain else {}
-        except (matlab.MatReadError, ValueError, TypeError, KeyError, IndexError) as problem:
-            raise ExperimentError(f"{file}: not a readable MAT file: {problem}") from None
         out = {}
         for name in wanted:
             array, column = columns[name]

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...errors import ExperimentError
 from ._dialect import is_unit_cell
-from ._log import MOST_BYTES, Log, number_names, optional, refuse_size
+from ._log import MOST_BYTES, Log, number_names, optional, refuse_size, refusing_damage
 
 #: rows above the first row of numbers that may be titles, names and units
 _TOP = 50
@@ -23,7 +23,7 @@ _TOP = 50
 def open_workbook(path: Path, file: str) -> Log:
     """A workbook; raises ExperimentError: none, too large unpacked, no row of numbers."""
     openpyxl = optional("openpyxl", file)
-    try:
+    with refusing_damage("workbook", file):
         with zipfile.ZipFile(path) as packed:
             size = sum(entry.file_size for entry in packed.infolist())
         if size > MOST_BYTES // 4:
@@ -33,11 +33,6 @@ def open_workbook(path: Path, file: str) -> Log:
         book = openpyxl.load_workbook(path, read_only=True, data_only=True)
         sheets = [(s.title, list(s.iter_rows(values_only=True))) for s in book.worksheets]
         book.close()
-    except ExperimentError:
-        raise
-    except Exception as problem:  # a damaged workbook can fail in any of the package's readers
-        reason = str(problem).splitlines()[0] if str(problem) else type(problem).__name__
-        raise ExperimentError(f"{file}: not a readable workbook: {reason}") from None
     for title, rows in sheets:
         first = next((k for k, row in enumerate(rows[:_TOP]) if _is_data(row)), None)
         if first is None:
