@@ -14,7 +14,10 @@ _DRIVING = ("position", "velocity", "acceleration", "command")
 
 
 def is_linear(laws: Iterable[sp.Expr], signals: Iterable[sp.Symbol]) -> bool:
-    """Whether laws are linear in these, and zero where these are; all else is constant."""
+    """Whether every law is a sum of the signals, each times a constant.
+
+    signals: what counts as variable; all other symbols are constants
+    """
     signals = list(signals)
     for law in laws:
         plain = law.replace(delayed, lambda signal, _: signal)  # late is linear, too
