@@ -20,7 +20,8 @@ from ..controllers import Controller, in_exact_numbers
 from ..derive import symbol_values, transfer
 from ..derive.elimination import rows
 from ..derive.printing import dead_time_symbol
-from ..diagrams import Control, Diagram, Moving
+from ..diagrams import Control, Diagram, Kinematics, Moving, position_symbol
+from ..effects import is_linear
 from ..errors import ModelError
 from ..realise.lti import LinearBlocks, S, linear_blocks
 from ..realise.simulated import without_absent
@@ -96,6 +97,11 @@ def ports(diagram: Diagram) -> tuple[Port, ...]:
     return tuple(at_forces)
 
 
+def _is_fixed(part: Kinematics) -> bool:
+    """Whether positions are weighted sums of others, as by a Jacobian that does not change."""
+    return is_linear([sp.sympify(part.expression)], [position_symbol(n) for n in part.inputs])
+
+
 def _plain(weight: sp.Expr) -> float | sp.Expr:
     return weight if weight.free_symbols else float(weight)
 
@@ -110,7 +116,7 @@ def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
         if form is not None and form.has(speed):
             names.append(part.name)
     names += falsely_linear(diagram)
-    names += [k.name for k in diagram.kinematics]
+    names += [k.name for k in diagram.kinematics if not _is_fixed(k)]
     return (*names, *(j.name for j in diagram.junctions if j.arms))
 
 

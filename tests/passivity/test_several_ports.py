@@ -5,9 +5,19 @@ import pytest
 import sympy as sp
 from devices import body
 
+import teleopdesign as td
 from teleopdesign.blocks import matrix_impedance
-from teleopdesign.diagrams import Diagram, Linked, Moving
-from teleopdesign.passivity import diagram_claims
+from teleopdesign.diagrams import (
+    Arm,
+    Diagram,
+    Linked,
+    Moving,
+    by_jacobian,
+    joint,
+    teleoperator_of_arms,
+)
+from teleopdesign.passivity import diagram_claims, ports
+from teleopdesign.passivity.linear_diagrams import linear_claims
 from teleopdesign.passivity.two_port.several_ports import passive_together
 from teleopdesign.realise.lti import S
 
@@ -85,3 +95,27 @@ def test_no_wave_beats_what_is_proved_and_each_refutation_is_one(size):
 def test_with_dead_times_nothing_is_claimed_of_three_ports():
     z = sp.eye(3) * (1 + sp.exp(-S / 10))
     assert passive_together(z).status == "unknown"
+
+
+JOINT = td.Body("revolute", {"inertia": 0.01}).with_effect(td.EFFECTS["viscous"], {"damping": 0.1})
+LINKS = Arm((JOINT, JOINT), by_jacobian([[0.3, 0.1], [0.0, 0.2]]))
+
+
+@pytest.mark.parametrize(("stiffness", "status"), [(0.0, "proved"), (150.0, "refuted")])
+def test_two_arms_of_two_joints_behind_fixed_jacobians_are_settled_at_all_four_ports(
+    stiffness, status
+):
+    """A coupling whose matrix is not symmetric is no spring."""
+    gains = 100.0 * np.eye(2)
+    gains[0, 1] = stiffness
+    diagram = teleoperator_of_arms(LINKS, LINKS, stiffness=gains, damping=np.eye(2))
+    claim = whole(diagram)
+    assert claim.status == status
+    assert len(ports(diagram)) == 4
+
+
+def test_a_jacobian_that_changes_with_the_pose_is_not_linear():
+    circle = Arm((JOINT,), (0.3 * sp.sin(joint(1)),))
+    diagram = teleoperator_of_arms(circle, circle, stiffness=[[100.0]])
+    (one,) = linear_claims(diagram, ports(diagram))
+    assert one.claim.status == "unknown" and "kinematics X_m1" in str(one.claim)

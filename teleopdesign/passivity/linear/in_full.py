@@ -21,7 +21,16 @@ from ...controllers import (
     parameter_symbol,
     resolvent,
 )
-from ...diagrams import Attached, Control, Diagram, Junction, Linked, Moving
+from ...diagrams import (
+    Attached,
+    Control,
+    Diagram,
+    Junction,
+    Kinematics,
+    Linked,
+    Moving,
+    position_symbol,
+)
 from ...effects import Effect
 from ...realise.lti import S
 from .polynomials import fraction
@@ -174,11 +183,15 @@ def equations_in_full(diagram: Diagram, *, standing: bool = False) -> list[Equat
         elif isinstance(part, Control):
             _write_controller(writer, part)
         else:
-            assert isinstance(part, Junction)
-            weights = ((s, -polynomial_in_s(sp.sympify(w))) for s, w in part.terms.items())
+            shares = part.terms if isinstance(part, Junction) else _slopes(part)
+            weights = ((s, -polynomial_in_s(sp.sympify(w))) for s, w in shares.items())
             writer.add((part.output, _ONE), *weights)
     outside = set(diagram.outside)
     return [{n: p for n, p in row.items() if n not in outside} for row in writer.equations]
+
+
+def _slopes(part: Kinematics) -> dict[str, sp.Expr]:
+    return {n: sp.diff(part.expression, position_symbol(n)) for n in part.inputs}
 
 
 def equations_of(part: Control) -> list[Equation]:
