@@ -21,9 +21,6 @@ from .prepare import Prepared
 from .record_shift import shifts_of
 from .simulated_course import dead_times
 
-#: what holds a shift at none
-HELD = Value(0.0, fixed=True)
-
 
 def with_paying_shift(fit: Fit, prepared: Prepared) -> Fit:
     """The fit with each body's shift estimated, or held at none, whichever leaves less unseen.
@@ -32,12 +29,12 @@ def with_paying_shift(fit: Fit, prepared: Prepared) -> Fit:
     fit: with shifts of either kind;  returns: the fit itself where the other kind leaves no less
     """
     for place, late in fit.model.record_shift.items():
-        again = _with_shift(fit, place, Value(0.0) if late.fixed else HELD, prepared)
+        again = _with_shift(fit, place, Value(0.0, fixed=not late.fixed), prepared)
         if again.check_error < fit.check_error:
             fit = again
     for shift in shifts_of(fit.model, prepared.stretches):
         if shift.at_bound and shift.late < 0.0 and _stands_for_a_delay(fit, shift.at, prepared):
-            fit = _with_shift(fit, shift.at, HELD, prepared)
+            fit = _with_shift(fit, shift.at, Value(0.0, fixed=True), prepared)
     return fit
 
 
