@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from ..blocks import Value
 from ..by_value import ByValue
 from ..measurement.filtering import Array
 from ..model import Model
-from .bodies_apart import body_by_body
+from .bodies_apart import body_by_body, of_bodies
 from .effort import EFFORTS, Effort
 from .error import error_of, force_error
 from .error_at_command import AtCommand, at_command
@@ -142,7 +142,7 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
     """The fit that a solution on the fit records is, with its errors on both uses."""
     stretches, free = prepared.of("fit"), free_parameters(solution.model)
     blocks = block_numbers(stretches)
-    fitted = with_errors(solution, free, blocks).canonical()
+    fitted = with_errors(_with_held_shifts(solution, stretches), free, blocks).canonical()
     check = prepared.of("check")
     if check:
         absolute, parts = both_residuals(fitted, check)
@@ -165,6 +165,20 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
         scale=solution.scale,
         by_shift=solution.by_shift[:, ~solution.shift_at_bound],
     )
+
+
+def _with_held_shifts(solution: Solution, stretches: Sequence[Stretch]) -> Solution:
+    """The solution with slopes by shifts that are held too: errors hold what is left open of them.
+
+    A search holds them, and has none.
+    """
+    shifts = solution.shifts
+    if not shifts.held.any():
+        return solution
+    here = of_bodies(stretches, shifts.bodies)
+    columns = np.zeros_like(solution.by_shift)
+    columns[here.rows] = here.relative(solution.model, shifts.names)[1] * shifts.row
+    return replace(solution, by_shift=columns)
 
 
 def rough_fit(model: Model, prepared: Prepared) -> Fit:
