@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .by_value import ByValue
+from .notebook import html_table
 
 Array = NDArray[np.float64]
 
@@ -63,3 +64,16 @@ class Finding(ByValue):
     def __str__(self) -> str:
         place = f"{self.where}: " if self.where else ""
         return f"{self.concern:<8}{place}{self.sentence}"
+
+
+class Findings(tuple[Finding, ...]):
+    """Findings in the order in which they were made; printed and in a notebook, a line for each."""
+
+    __slots__ = ()
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self))
+
+    def _repr_html_(self) -> str:
+        rows = [(f.concern, f.topic, f.where, f.sentence) for f in self]
+        return html_table("Findings", ("concern", "topic", "where", "finding"), rows)

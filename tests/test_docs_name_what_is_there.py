@@ -17,3 +17,15 @@ def test_every_constant_on_a_page_is_there(page):
         *folders, last = re.split(r"\.(?=[A-Z])", name, maxsplit=1)
         module = import_module(".".join(["teleopdesign", *folders]))
         assert isinstance(reduce(getattr, last.split("."), module), (int, float)), name
+
+
+def test_the_robustness_study_is_written_in_at_most_thirty_lines():
+    """Diagram, both studies, claim and both figures, as a reader types them."""
+    docs = Path(__file__).parent.parent / "docs"
+    page = (docs / "robustness_study.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"^```\{session\}\n(.*?)^```", page, flags=re.MULTILINE | re.DOTALL)
+    diagram = (docs / "examples" / "swing.toml").read_text(encoding="utf-8")
+    lines = [*diagram.splitlines(), *"".join(blocks).splitlines()]
+    typed = [line for line in lines if line.strip() and not line.startswith((":", "#"))]
+    assert 20 < len(typed) <= 30
+    assert max(map(len, typed)) <= 104

@@ -153,8 +153,10 @@ def _(choice, folder, log_view, mo, names, open_button, views):
             mo.md(f"# teleopdesign\n\nWhat does the model lack? Folder: `{folder.name}`"),
             views.beside(choice, open_button)
             if names
-            else mo.md("No experiment here yet: drop a log, and look at its columns."),
-            mo.accordion({"Bring a log of your own": log_view}),
+            else mo.md("No experiment here yet. Bring a log of your own:"),
+            mo.accordion({"Bring a log of your own": log_view})
+            if names
+            else log_view,  # nothing else to begin with: not hidden
         ]
     )
     return

@@ -9,7 +9,7 @@ import numpy as np
 from ..diagnose.excerpt import excerpt
 from ..diagnose.prepare import prepare
 from ..errors import ExperimentError
-from ..finding import Finding
+from ..finding import Finding, Findings
 from ..measurement.experiment import Experiment
 from ..measurement.soundness import check_signals
 from ..model import Model
@@ -23,7 +23,7 @@ _CONTRADICTIONS = ("signs", "units", "swapped columns")
 
 def check_experiment(
     experiment: Experiment, model: Model | None = None, *, seed: int = 0
-) -> tuple[Finding, ...]:
+) -> Findings:
     """Plain findings about a recording: soundness, signs and units, what it can show.
 
     model: what the user believes so far; default: the experiment's own
@@ -31,6 +31,10 @@ def check_experiment(
     Signs, units, shifts and effects of a long experiment are judged on windows (`excerpt`).
     What stands in the way of an answer (no inertia, a bandwidth too high) is a finding, no error.
     """
+    return Findings(_findings(experiment, model, seed))
+
+
+def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[Finding, ...]:
     findings = [*_guesses(experiment), *check_clock_unit(experiment), *check_signals(experiment)]
     if model is None:
         try:

@@ -33,7 +33,6 @@ def test_the_page_is_for_this_machine_and_for_whoever_has_the_token(served):
 def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
     address, folder = served
     with opened(address) as page:
-        page.get_by_text("Bring a log of your own").click()
         log = shutil.copy(example("rod") / "fit.csv.gz", tmp_path / "swing.csv.gz")
         page.locator("input[type=file]").set_input_files(log)
         page.get_by_role("cell", name="actuator_force").wait_for()
@@ -49,7 +48,6 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
         picture(page, folder, "log", full_page=True)
         press(page, "Make the experiment")
         page.get_by_text("swing_experiment is made").wait_for()
-        page.get_by_text("Bring a log of your own").click()  # closed again
         press(page, "Open")
         page.get_by_text("noise floor").first.wait_for()
         page.locator("canvas, svg.marks").first.wait_for()  # the charts are drawn

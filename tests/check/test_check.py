@@ -269,6 +269,8 @@ def test_a_limit_that_the_command_never_reaches_is_said_to_show_below_it(rod):
 
 def test_what_a_record_can_show_is_not_asked_while_signs_disagree(rod):
     found = check_experiment(changed(rod, "position", np.negative))
+    assert str(found).count("\n") == len(found) - 1, "printed, a line for each"
+    assert found._repr_html_().count("<tr>") == len(found) + 1
     assert found[-1].sentence.startswith("not asked what the record can show")
     assert [f.topic for f in found if f.concern == "warning"] == ["signs"]
 
