@@ -30,7 +30,7 @@ INDEPENDENT = 1e-8
 
 @dataclass(frozen=True, eq=False)
 class BaseParameters(ByValue):
-    """What can be told of the p inertial parameters and motor inertias of an arm with k joints.
+    """Combinations of an arm's inertial parameters and motor inertias that its motion determines.
 
     names: of the b base parameters, "forearm_link.mx" and the like;  units: of each
     chosen: (b,) columns that stand for them;  initial: (b,) their values by those of the arm

@@ -49,7 +49,7 @@ VELOCITY_TEXTS = {
 
 
 def check_convention(convention: str) -> None:
-    """ModelError with the nearest one where it is no convention."""
+    """Raise ModelError, with the nearest name, where a text is no convention."""
     known = get_args(Convention)
     if convention not in known:
         near = did_you_mean(convention, known)
@@ -57,7 +57,7 @@ def check_convention(convention: str) -> None:
 
 
 def in_convention(name: str, expression: sp.Expr, convention: Convention) -> sp.Expr:
-    """A function of a two-port, given by the other convention, in this one; exact.
+    """A function of a two-port from the other convention into `convention`, in exact terms.
 
     name: "Z_mm", "h_11", ..., "Z_t";  expression: in `s`, of blocks or numbers
     raises ModelError: no such function or convention
@@ -73,8 +73,9 @@ def in_convention(name: str, expression: sp.Expr, convention: Convention) -> sp.
 
 
 def hybrid_from_impedance(z: sp.Matrix, *, convention: Convention) -> sp.Matrix:
-    """[[h_11, h_12], [h_21, h_22]] from [[Z_mm, Z_ms], [Z_sm, Z_ss]], both by this convention.
+    """Hybrid matrix [[h_11, h_12], [h_21, h_22]] from impedances [[Z_mm, Z_ms], [Z_sm, Z_ss]].
 
+    convention: of both matrices
     raises ModelError: no such convention, Z_ss = 0: the slave's motion follows from no force
     """
     check_convention(convention)
@@ -85,8 +86,9 @@ def hybrid_from_impedance(z: sp.Matrix, *, convention: Convention) -> sp.Matrix:
 
 
 def impedance_from_hybrid(h: sp.Matrix, *, convention: Convention) -> sp.Matrix:
-    """[[Z_mm, Z_ms], [Z_sm, Z_ss]] from [[h_11, h_12], [h_21, h_22]], both by this convention.
+    """Impedances [[Z_mm, Z_ms], [Z_sm, Z_ss]] from the hybrid matrix [[h_11, h_12], [h_21, h_22]].
 
+    convention: of both matrices
     raises ModelError: no such convention, h_22 = 0: a slave that no force moves has no impedance
     """
     check_convention(convention)

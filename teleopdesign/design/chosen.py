@@ -10,7 +10,7 @@ from ..quantity import after_number
 
 @dataclass(frozen=True)
 class Reason:
-    """Why a parameter "law.parameter" has its value (SI)."""
+    """The reason for the value (SI) of a parameter "law.parameter" of a proposed controller."""
 
     parameter: str
     value: float

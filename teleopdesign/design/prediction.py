@@ -31,7 +31,9 @@ REVERSAL = 0.3
 
 @dataclass(frozen=True, eq=False)
 class CasePrediction(ByValue):
-    """One case; forces in N or N m, rms about their mean over a cycle of the motion.
+    """Predictions for one case of compensation.
+
+    Forces are in N or N m: rms about their mean over a cycle of the motion.
 
     linear, quasi_static, simulated: the force error;  at_peak_speed: simulated
     mean: simulated, what no linear theory holds (gravity, offsets)

@@ -23,7 +23,10 @@ SHARES = np.geomspace(0.01, 1.0, 41)
 
 @dataclass(frozen=True, eq=False)
 class ResidualFriction(ByValue):
-    """speeds: (n,), m/s or rad/s;  rows: case -> friction left, (n,), N or N m."""
+    """Friction that is left at each speed, in each case of compensation.
+
+    speeds: (n,), m/s or rad/s;  rows: case -> friction left, (n,), N or N m
+    """
 
     speeds: Array
     rows: Mapping[str, Array]

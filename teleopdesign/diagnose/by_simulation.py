@@ -45,7 +45,7 @@ GIVE = 2e-5
 @checked
 @dataclass(frozen=True)
 class RecordedLoop:
-    """The controller that held the device while it was recorded, as a spring and damper.
+    """The controller of the device during the recording, as a spring and a damper.
 
     stiffness: N/m or N m/rad;  damping: N s/m or N m s/rad
     """

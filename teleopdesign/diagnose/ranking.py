@@ -24,7 +24,7 @@ def named_instead(candidate: Candidate, instead_of: Candidate | None) -> str:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ranked(ByValue):
-    """A candidate with the model fitted with it.
+    """A candidate, and the fit of the model that has this effect.
 
     score: how surely it lowers the error on the check records (standard deviations)
     behind: how surely the best candidate has the smaller error on all records; 0 for the best

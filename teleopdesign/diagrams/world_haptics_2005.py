@@ -69,7 +69,7 @@ READINGS: Mapping[str, Reading] = Catalogue(
 
 
 def reading(name: str) -> float:
-    """The value used for that number, SI."""
+    """The value (SI) used for a number that the paper leaves open, by its name in `READINGS`."""
     return READINGS[name].value
 
 

@@ -196,7 +196,10 @@ def with_block_effects(effects: Mapping[str, Effect] = EFFECTS) -> Mapping[str, 
 
 
 def catalogue(extra: Iterable[str | Path | Effect] = ()) -> Mapping[str, Effect]:
-    """Effects by name: the package's, and the user's files or effects; a user's name wins."""
+    """Effects by name: those of the package, and files or effects of the user.
+
+    extra: paths of effect files, or effects;  of two effects with one name the user's is taken
+    """
     users = (e if isinstance(e, Effect) else load_effect(e) for e in extra)
     return Catalogue({**EFFECTS, **{e.name: e for e in users}}, "effect")
 

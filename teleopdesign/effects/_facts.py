@@ -125,7 +125,7 @@ def speeds_vary_by_place(pattern: Callable[[Array], Array], facts: RecordFacts) 
 
 
 def repeats_within_travel(p: Any, facts: RecordFacts) -> str | None:
-    """Whether a period is short enough for the travel to show that something repeats."""
+    """Why a period does not show within the travel, as a sentence; None where it repeats there."""
     if facts.travel >= REPEATS * abs(p.period):
         return None
     return (

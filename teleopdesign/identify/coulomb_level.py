@@ -38,7 +38,7 @@ SAME_SPEED = 0.1
 
 @dataclass(frozen=True, eq=False)
 class LevelAtSpeed(ByValue):
-    """Friction at one speed, from so many pairs of runs; SI, with standard errors.
+    """Friction at one speed, from pairs of runs in both directions; SI, with standard errors.
 
     friction: half the difference of forward and backward force;  middle: half their sum
     """

@@ -23,6 +23,9 @@ def correlation_length(samples: Array) -> float:
 
 
 def mean_error(samples: Array) -> float:
-    """Standard error of the mean of one stretch of samples, (n,)."""
+    """Standard error of the mean of samples (n,), in their unit.
+
+    Neighbouring samples may be correlated: fewer of them then count as independent.
+    """
     independent = min(max(len(samples) / correlation_length(samples), 1.0), float(len(samples)))
     return float(np.std(samples) / np.sqrt(max(independent - 1.0, 1.0)))

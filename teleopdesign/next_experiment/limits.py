@@ -65,7 +65,7 @@ class Limits:
 
 
 def shown_limits(prepared: Prepared) -> dict[str, Limits]:
-    """Body -> the limits that its records have shown to be safe.
+    """Body -> limits of a motion that the records of this body have shown to be safe.
 
     Records whose encoder zero is their own do not share a stroke with the others: they count for
     it only where there are no others.

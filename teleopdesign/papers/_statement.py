@@ -17,7 +17,7 @@ HOW: tuple[How, ...] = ("proved", "checked numerically", "refuted", "claim of th
 
 @dataclass(frozen=True)
 class Paper:
-    """Where a statement comes from; short: as the table cites it."""
+    """A paper that states something;  short: its name in tables;  full: its reference."""
 
     short: str
     full: str
@@ -68,7 +68,7 @@ def near(what: str, value: float, expected: float, within: float, unit: str = ""
 
 @dataclass(frozen=True)
 class Numbers:
-    """What a computation gave, number by number."""
+    """Numbers that a computation gave, each with the range in which it must lie."""
 
     figures: tuple[Figure, ...]
 

@@ -202,7 +202,7 @@ def _plain(element: Element) -> list[object]:
 
 
 def symmetric_cycle(compensator: Dahl, friction: Sequence[Element], amplitude: float) -> Cycle:
-    """The cycle between -amplitude and amplitude (m)."""
+    """The periodic motion between -amplitude and amplitude (m), once its forces repeat."""
     # a cycle of u bristle lengths forgets its start as e^(-4 u): 40 of those are beyond rounding
     softest = min(
         [

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Loop:
-    """A force over a displacement, both ways: slope (N/m) and width of the loop (N)."""
+    """The loop of a force over a displacement: slope (N/m), and width between both ways (N)."""
 
     stiffness: float
     width: float

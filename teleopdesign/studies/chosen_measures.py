@@ -26,8 +26,9 @@ from .point import Amount, Point, PointFunction
 
 @dataclass(frozen=True, eq=False)
 class Measure(ByValue):
-    """A measure with its options, under the name that its values get.
+    """A measure of a study, with its options.
 
+    name: of its values in the result
     function: takes a `Point` (of the package's own), or what the point gave
     signals: all that it needs of a simulation; none: it may need anything
     """

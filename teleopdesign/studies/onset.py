@@ -38,9 +38,10 @@ def growth_of(samples: Callable[[], np.ndarray]) -> float:
 def least_that_grows(
     grows: Callable[[float], bool], *, within: tuple[float, float], steps: int
 ) -> float:
-    """By bisection of the logarithm, to the upper end; NaN where it is not within.
+    """Least value from which a simulation grows; NaN where no such value lies within the ends.
 
-    within: > 0;  steps: halvings: the result is within (high/low)^(2^-steps) of the onset
+    grows: whether the simulation with a value grows;  within: lowest and highest value, > 0
+    steps: halvings of the logarithm: the result is within (high/low)^(2^-steps) of the onset
     """
     low, high = within
     if not grows(high) or grows(low):

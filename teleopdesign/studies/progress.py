@@ -17,8 +17,10 @@ _REMEMBERED = 20
 
 @dataclass(frozen=True)
 class Progress:
-    """Points done of all, failed among them; kept: done by an earlier run; rate: points a second.
+    """How far a study is.
 
+    done, total: numbers of points;  failed: of those done;  kept: of an earlier run
+    rate: points a second
     left: s until the end at that rate, NaN where no rate is known yet
     things: what the points are
     """

@@ -23,8 +23,9 @@ _ACTIVE = 0.02
 
 @dataclass(frozen=True, eq=False)
 class CheckedLimit(ByValue):
-    """A limit at the point: its worst value, where in its intervals, and how that is known.
+    """A limit of a search, checked at the point that was found.
 
+    value: the worst within the intervals of the limit;  how: what shows this value
     active: whether it holds the search back: its value is beside the bound
     """
 

@@ -12,7 +12,7 @@ from shared_data import shared_folder
 
 import teleopdesign as td
 from teleopdesign.cli import main
-from teleopdesign.diagnose.arms.fit import ArmFit, estimate_arm, mean_error
+from teleopdesign.diagnose.arms.fit import ArmFit, error_over_joints, estimate_arm
 from teleopdesign.diagnose.arms.prepared import PreparedArm, prepare_arm
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.shared_links import Knowledge
@@ -112,7 +112,7 @@ def test_an_industrial_arm_is_predicted_better_than_by_plain_least_squares():
     _, fit = fitted(folder)
     errors = {}
     for file in ("check_15harm.csv.gz", "check_other_week.csv.gz"):
-        errors[file] = mean_error(
+        errors[file] = error_over_joints(
             {
                 j: force_error(
                     one.model,

@@ -11,7 +11,7 @@ from ..candidates import Candidate
 from ..diagnosis import Diagnosis
 from ..ladder_text import ladder_html, sentence
 from ..ranking import named_instead
-from .fit import ArmFit, mean_error
+from .fit import ArmFit, error_over_joints
 from .prepared import PreparedArm
 
 
@@ -68,7 +68,7 @@ class ArmDiagnosis(ByValue):
     @property
     def floor(self) -> float:
         """Noise floor of the arm: root of the mean square of its joints'."""
-        return mean_error({j: d.floor.value for j, d in self.joints.items()})
+        return error_over_joints({j: d.floor.value for j, d in self.joints.items()})
 
     @property
     def left(self) -> float:

@@ -70,15 +70,15 @@ class ArmFit(ByValue):
     @property
     def fit_error(self) -> float:
         """Error of the arm on the fit records."""
-        return mean_error(self.fit_errors)
+        return error_over_joints(self.fit_errors)
 
     @property
     def check_error(self) -> float:
         """Error of the arm on the check records."""
-        return mean_error(self.check_errors)
+        return error_over_joints(self.check_errors)
 
 
-def mean_error(errors: Mapping[str, float]) -> float:
+def error_over_joints(errors: Mapping[str, float]) -> float:
     """Root of the mean over joints of the squared relative error of each."""
     return float(np.sqrt(np.mean(np.square(list(errors.values())))))
 

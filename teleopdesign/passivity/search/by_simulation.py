@@ -46,7 +46,7 @@ class Given:
 
 @dataclass(frozen=True)
 class SimulatedMotion:
-    """A motion of a diagram's port that gives out energy; `replay()` simulates it anew.
+    """A motion of a port that gives out energy; `replay()` simulates this motion anew.
 
     port: (motion, force on the device that moves it);  computer, step, give: as in `simulate`
     """
