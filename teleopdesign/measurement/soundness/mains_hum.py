@@ -58,7 +58,8 @@ def check_hum(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
         sentence = (
             f"{signal.name} has a tone of {frequency:g} Hz, {rms:.3g} {signal.unit} rms "
             f"({rms / float(y.std()):.0%} of the channel), that no position shows: hum of the "
-            "mains? An answer may take it for a resonance: shield the wire, or compare below that frequency."
+            "mains? An answer may take it for a resonance: shield the wire, or compare below that "
+            "frequency."
         )
         numbers = {"frequency": frequency, "rms": rms}
         return [Finding("hum", "warning", sentence, numbers, signal.record.file)]
