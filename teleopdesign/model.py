@@ -17,6 +17,7 @@ from .frozen import Frozen
 from .measurement.description import BodyDescription, EnvironmentDescription, ModelValue
 from .measurement.experiment import Experiment
 from .notebook import html_table
+from .quantity import after_number
 from .standard_error import with_standard_error
 
 
@@ -288,7 +289,7 @@ class Model:
         for name, value in self.parameters.items():
             mark = "  (fixed)" if value.fixed else ""
             best = with_standard_error(value.value, value.stderr)
-            lines.append(f"  {name} = {best} {self.unit(name)}{mark}")
+            lines.append(f"  {name} = {best}{after_number(self.unit(name))}{mark}")
         return "Model\n" + "\n".join(lines)
 
     def _repr_html_(self) -> str:

@@ -130,6 +130,11 @@ def unit_of(quantity: str, axis: str) -> str:
     return _kind(quantity, axis, "").units[0]
 
 
+def after_number(unit: str) -> str:
+    """A unit as it stands behind a number: " N*m"; nothing where the number has no dimension."""
+    return "" if unit in ("", "1") else f" {unit}"
+
+
 def to_si(
     value: float, unit: str | None, *, quantity: str, axis: str = "prismatic", where: str = ""
 ) -> float:

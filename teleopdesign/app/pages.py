@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..diagnose.comparison import residual_data
 from ..errors import TeleopDesignError
+from ..quantity import after_number
 from ..report.words import number, unit_text, with_error
 from .workbench import Workbench
 
@@ -107,7 +108,7 @@ def moved(bench: Workbench, parameter: str, factor: float) -> str:
         ("check", there.check_error, errors[1]),
     )
     table = "\n".join(f"| {n} | {_percent(a)} | {_percent(b)} |" for n, a, b in rows)
-    there_now = f"{number(factor * value.value)} {unit}"
+    there_now = f"{number(factor * value.value)}{after_number(unit)}"
     return (
         f"`{parameter}` = {there_now} (estimated: {_estimate(bench.model, parameter)})"
         f"\n\n| error | as estimated | as moved |\n|---|---:|---:|\n{table}"

@@ -18,7 +18,7 @@ from ..effects import EFFECTS, Effect, Parameter, ordered
 from ..errors import ModelError, did_you_mean, quoted
 from ..frozen import Frozen
 from ..notebook import html_table
-from ..quantity import AXES, unit_of
+from ..quantity import AXES, after_number, unit_of
 from .body_equation import (
     BodyEquation,
     actuation_of,
@@ -86,7 +86,7 @@ class Body:
                 raise ModelError(f"body: {name} is NaN, expected a number ({self.unit(name)})")
             if not parameter.lower <= value <= parameter.upper:
                 raise ModelError(
-                    f"body: {name} = {value:g} {self.unit(name)} is outside "
+                    f"body: {name} = {value:g}{after_number(self.unit(name))} is outside "
                     f"{parameter.lower:g} .. {parameter.upper:g}"
                 )
         object.__setattr__(self, "parameters", Frozen(parameters))
@@ -239,7 +239,7 @@ class Body:
         return actuation_of(self.effects, s)
 
     def __repr__(self) -> str:
-        rows = [f"  {n} = {v:.5g} {self.unit(n)}" for n, v in self._plain().items()]
+        rows = [f"  {n} = {v:.5g}{after_number(self.unit(n))}" for n, v in self._plain().items()]
         return "\n".join([f"Body, {self.axis}", *rows])
 
     def _repr_html_(self) -> str:

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from ..effects import Effect, Parameter, find_effect
 from ..errors import ExperimentError, ModelError, did_you_mean
 from ..measurement.description import BodyDescription, Effects, ModelValue
-from ..quantity import unit_of
+from ..quantity import after_number, unit_of
 from .body import INERTIA, Body
 from .value import Value
 
@@ -78,7 +78,7 @@ def value_of(written: ModelValue, parameter: Parameter, axis: str) -> Value:
     if not parameter.lower <= number <= parameter.upper:
         unit = written.unit or unit_of(parameter.quantity, axis)
         raise ExperimentError(
-            f"{written.where}: {written.value:g} {unit} is outside {parameter.lower:g} .. "
-            f"{parameter.upper:g}"
+            f"{written.where}: {written.value:g}{after_number(unit)} is outside "
+            f"{parameter.lower:g} .. {parameter.upper:g}"
         )
     return Value(number, written.fixed) if error is None else Value(number, written.fixed, error)

@@ -18,7 +18,7 @@ from ..diagnose.prepare import Prepared
 from ..effects import CONTACT_ROLES, SIGNALS, Effect
 from ..finding import Finding
 from ..model import Model
-from ..quantity import unit_of
+from ..quantity import after_number, unit_of
 from ..standard_error import with_standard_error
 from .motion_facts import RARE, describe_motion, missing_excitation
 from .visibility import Visibility, visibilities
@@ -200,7 +200,7 @@ def _own_parameters(base: Fit, place: str) -> list[Finding]:
     if not open_:
         return []
     text = ", ".join(
-        f"{n} ({with_standard_error(v.value, v.stderr)} {base.model.unit(n)})"
+        f"{n} ({with_standard_error(v.value, v.stderr)}{after_number(base.model.unit(n))})"
         for n, v in open_.items()
     )
     return [

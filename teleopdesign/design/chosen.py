@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..controllers import Controller
+from ..quantity import after_number
 
 
 @dataclass(frozen=True)
@@ -17,7 +18,7 @@ class Reason:
     why: str
 
     def __str__(self) -> str:
-        unit = "" if self.unit == "1" else f" {self.unit}"
+        unit = after_number(self.unit)
         return f"{self.parameter} = {self.value:.4g}{unit}: {self.why}"
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..quantity import after_number
 from ..standard_error import with_standard_error
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
@@ -74,7 +75,7 @@ def doubt(fit: Fit, candidate: Candidate) -> str:
             continue
         value = fit.model.parameters[full]
         if not value.stderr < fit.model.from_absence(full):
-            unit = fit.model.unit(full)
+            unit = after_number(fit.model.unit(full))
             best = with_standard_error(value.value, value.stderr)
-            return f"{name} = {best} {unit} is not told from absence by the errors of the readings"
+            return f"{name} = {best}{unit} is not told from absence by the errors of the readings"
     return ""

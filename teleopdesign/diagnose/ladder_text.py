@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from ..blocks import Value
-from ..quantity import unit_of
+from ..quantity import after_number, unit_of
 from ..standard_error import with_standard_error
 from .criteria import CRITERIA
 from .decision import helps_but_is_barred
@@ -38,7 +38,7 @@ def offset_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 def _estimate_text(value: Value, unit: str) -> str:
     """A value with its error; one that was estimated without an error is not determined."""
-    text = f"{with_standard_error(value.value, value.stderr)} {unit}"
+    text = f"{with_standard_error(value.value, value.stderr)}{after_number(unit)}"
     if value.fixed or math.isfinite(value.stderr):
         return text
     return f"{text}, not determined by these records"

@@ -52,22 +52,53 @@ def _from_kin(
 
 
 def _refined(
-    attempt: tuple[Candidate, Fit],
-    leading: float,
-    worthless: float,
-    prepared: Prepared,
-    stated: Model | None,
+    attempt: tuple[Candidate, Fit], worthless: float, prepared: Prepared, stated: Model | None
 ) -> tuple[Candidate, Fit]:
-    """A fine fit, for a candidate with at most `leading` and less than `worthless` squares."""
+    """A fine fit, for a candidate that is there with less than `worthless` squares."""
     candidate, rough = attempt
-    present = (candidate.effect.name, candidate.at) not in rough.model.absent
-    if not present or fit_squares(rough) > leading:
+    if (candidate.effect.name, candidate.at) in rough.model.absent:
         return attempt
     if stated is not None:
         rough = from_stated(rough, prepared, stated, candidate.at)
     if fit_squares(rough) > worthless:
         return candidate, rough
     return candidate, estimate(rough.model, prepared)
+
+
+def _contenders_refined(
+    attempts: list[tuple[Candidate, Fit]],
+    base: Fit,
+    worthless: float,
+    prepared: Prepared,
+    *,
+    stated: Model | None,
+    criteria: Criteria,
+) -> list[tuple[Candidate, Fit]]:
+    """The attempts with fine fits of those that contend.
+
+    The leading ones are first: what their fine fits leave says which others contend.
+    """
+    attempts, refined = list(attempts), set[int]()
+    for contending in (PLAN.leading, PLAN.contending):
+        most = (1.0 + contending) * _least_counted(attempts, base, criteria)
+        chosen = [
+            i
+            for i, (_, fit) in enumerate(attempts)
+            if i not in refined and fit_squares(fit) <= most
+        ]
+        finer = in_threads(lambda i: _refined(attempts[i], worthless, prepared, stated), chosen)
+        for i, attempt in zip(chosen, finer, strict=True):
+            attempts[i] = attempt
+        refined.update(chosen)
+    return attempts
+
+
+def _least_counted(
+    attempts: Collection[tuple[Candidate, Fit]], base: Fit, criteria: Criteria
+) -> float:
+    """Least squares of an attempt that counts: one that is refused is no measure for others."""
+    counted = [f for _, f in attempts if not refusal(base, f, criteria=criteria)]
+    return min(map(fit_squares, counted or [f for _, f in attempts]), default=0.0)
 
 
 def rank_candidates(
@@ -113,13 +144,8 @@ def rank_candidates(
     fits = in_threads(fit_candidate, sorted(possible, key=lambda c: not c.effect.states))
     fits.sort(key=lambda cf: possible.index(cf[0]))
     fits = in_threads(lambda cf: _from_kin(cf, fits, prepared), fits)
-    # one that does not count is no measure of what others must reach
-    counted = [f for _, f in fits if not refusal(base, f, criteria=criteria)] or [
-        f for _, f in fits
-    ]
-    leading = (1.0 + PLAN.contending) * min((fit_squares(f) for f in counted), default=0.0)
     worthless = (1.0 - worth) * fit_squares(base)
-    fits = in_threads(lambda cf: _refined(cf, leading, worthless, prepared, stated), fits)
+    fits = _contenders_refined(fits, base, worthless, prepared, stated=stated, criteria=criteria)
     results = in_threads(lambda cf: _ranked_best(base, cf, prepared, criteria), fits)
     ordered = sorted(results, key=rank_key)
     entries = [

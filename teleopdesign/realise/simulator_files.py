@@ -14,6 +14,7 @@ from xml.etree import ElementTree
 from ..blocks import Body
 from ..errors import ModelError, did_you_mean
 from ..model import Model
+from ..quantity import after_number
 
 #: kg and kg m^2 of what a link must have beside what was identified: simulators refuse less. It
 #: turns or moves with no joint that was identified
@@ -183,7 +184,9 @@ def _explain(
     root: ElementTree.Element, model: Model, of_form: str, *, held: tuple[str, ...]
 ) -> None:
     """Put a comment first: the model's parameters, and what the form has no place for."""
-    lines = [f"{n} = {v.value:.5g} {model.unit(n)}" for n, v in model.parameters.items()]
+    lines = [
+        f"{n} = {v.value:.5g}{after_number(model.unit(n))}" for n, v in model.parameters.items()
+    ]
     left = ", ".join(_left_out(model, held)) or "nothing"
     text = (
         f" Identified by teleopdesign; SI units.\n  {of_form}\n  "

@@ -24,6 +24,7 @@ from ..passivity.intervals.family import family_of
 from ..passivity.intervals.linear import CLAIMS, margin_over
 from ..passivity.intervals.over_box import claim_over_intervals
 from ..passivity.ports import judged, nonlinear_parts, without_holding
+from ..quantity import after_number
 from .chosen_measures import Measure, measures_of
 
 #: margins of the loop of a controller, and their units
@@ -58,7 +59,7 @@ class TuningLimit(ByValue):
         return float(excess) if not np.isnan(excess) else -np.inf
 
     def __repr__(self) -> str:
-        unit = f" {self.unit}" if self.unit not in ("", "1") else ""
+        unit = after_number(self.unit)
         within = ", ".join(f"{n} {a:g} to {b:g}" for n, (a, b) in self.over.items())
         side = "<=" if self.from_above else ">="
         return f"{self.name} {side} {self.bound:g}{unit}{f', for all {within}' if within else ''}"

@@ -26,6 +26,7 @@ from ..diagrams import Diagram
 from ..errors import ModelError
 from ..notebook import html_table
 from ..passivity.intervals.box import ValueBox
+from ..quantity import after_number
 from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
 from ..simulate.units import signal_units
@@ -105,8 +106,7 @@ class SimulationFit(ByValue):
         rows = []
         for name, value in self.values.items():
             unit, error = self.case.unit(name), self.errors[name]
-            ending = "" if unit in ("", "1") else f" {unit}"
-            rows.append((name, f"{with_standard_error(value, error)}{ending}"))
+            rows.append((name, f"{with_standard_error(value, error)}{after_number(unit)}"))
         units = signal_units(self.diagram)
         for name, rms in self.rms.items():
             was = f"{100 * self.before[name]:.3g} -> " if np.isfinite(self.before[name]) else ""

@@ -16,6 +16,7 @@ from ..arguments import checked
 from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError
+from ..quantity import after_number
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from .case import SimulatedCase, case_of
@@ -59,7 +60,7 @@ class ParetoFront(ByValue):
         return plot_pareto(self)
 
     def __repr__(self) -> str:
-        units = [f" {u}" if u not in ("", "1") else "" for u in self.units]
+        units = [after_number(u) for u in self.units]
         head = (
             f"The best trade-offs found of {self.number} points (seed {self.seed}), "
             f"{self.names[0]} against {self.names[1]}"

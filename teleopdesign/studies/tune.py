@@ -27,6 +27,7 @@ from ..by_value import ByValue
 from ..diagrams import Diagram
 from ..errors import ModelError
 from ..notebook import html_table
+from ..quantity import after_number
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from .case import SimulatedCase, case_of
@@ -78,7 +79,7 @@ class Tuned(ByValue):
 
     def __repr__(self) -> str:
         numbers = ", ".join(f"{n} = {v:.5g}" for n, v in self.values.items())
-        unit = f" {self.unit}" if self.unit not in ("", "1") else ""
+        unit = after_number(self.unit)
         best = f"The best found of {self.number} points (seed {self.seed})"
         head = (
             best
