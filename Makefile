@@ -5,6 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PYTEST_ARGS ?=
 FUZZ ?= 2000
+MUTATE ?= teleopdesign/effects tests/effects --number 10
 STUDY_ARGS ?=
 STUDY_OUTPUT ?= studies/output
 # what is run with the lowest versions: files, equations, compiled code, proofs, tables
@@ -16,7 +17,7 @@ JOBS ?= 2
 PARTS ?= 4
 PIP := $(BIN)/python -m pip --disable-pip-version-check --no-input
 
-.PHONY: help demo test slow lint types imports docs studies benchmarks fuzz lowest lock licences wheel ci clean
+.PHONY: help demo test slow lint types imports docs studies benchmarks fuzz mutants lowest lock licences wheel ci clean
 .DEFAULT_GOAL := help
 
 help:  ## list these targets
@@ -53,6 +54,10 @@ slow: $(VENV)/installed-test  ## tests marked slow
 fuzz: $(VENV)/installed-test  ## spoilt files for every reader, FUZZ of each; failures go to build/fuzz
 	@echo "== $(FUZZ) spoilt files for each reader"
 	@FUZZ=$(FUZZ) $(BIN)/pytest tests/trust/test_fuzz.py $(PYTEST_ARGS)
+
+mutants: $(VENV)/installed-test  ## small changes that no test notices (MUTATE="FOLDER TESTS --number N")
+	@echo "== Mutants: $(MUTATE)"
+	@$(BIN)/python tests/trust/mutants.py $(MUTATE)
 
 benchmarks: $(VENV)/installed-test  ## times against their bounds, one at a time
 	@echo "== Benchmarks"

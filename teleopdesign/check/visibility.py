@@ -106,7 +106,8 @@ def visibilities(
         kept,
         math.sqrt(sum(s.measured for s in stretches)),
         # an error of `adequate` floors is where a model stops being adequate
-        floor * math.sqrt(CRITERIA.adequate**2 - 1.0),
+        # (and no floor, of a record that repeats without noise, is that of rounding)
+        max(floor * math.sqrt(CRITERIA.adequate**2 - 1.0), float(np.finfo(float).eps)),
     )
     unit = scales([s.motion for s in stretches], prepared.bandwidth)
     return [_visibility(c, scene, unit) for c in candidates]

@@ -74,7 +74,7 @@ class Journal:
             file.seek(0)
             for number, line in enumerate(file):
                 content = _content(line)
-                if content is None:
+                if content is None or number > 0 and not self._knows(content):
                     break
                 if number == 0:
                     if content.get("study") != self.study:
@@ -88,6 +88,12 @@ class Journal:
                     self._forms[content["form"]] = _tuples(content["values"])
                 end += len(line)
         return end
+
+    def _knows(self, content: Mapping[str, Any]) -> bool:
+        """Whether a line is a form, or a point that failed or whose form stands above."""
+        if "point" in content:
+            return "reason" in content or content.get("form") in self._forms
+        return "form" in content and "values" in content
 
     def _take(self, content: Mapping[str, Any]) -> None:
         index = int(content["point"])

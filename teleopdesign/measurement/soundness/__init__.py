@@ -18,6 +18,7 @@ from .encoder_steps import check_steps
 from .force_steps import check_force_steps
 from .held_samples import check_constant, check_repeats, check_stuck, check_update
 from .log_reading import check_reading
+from .mains_hum import check_hum
 from .noise import check_noise
 from .outliers import check_jumps, check_outliers
 from .segments import check_segments
@@ -53,7 +54,7 @@ def _of_a_channel(signal: Signal, others: list[Signal]) -> list[Finding]:
         return constant  # a velocity is held against the position, and used for nothing else
     findings = [*check_stuck(signal), *check_clipped(signal), *check_outliers(signal)]
     findings += [*check_jumps(signal), *check_repeats(signal), *check_update(signal)]
-    findings += check_force_steps(signal)
+    findings += check_force_steps(signal) + check_hum(signal, others)
     return findings + check_steps(signal, others) + check_noise(signal, others)
 
 
