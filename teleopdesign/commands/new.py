@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import ExperimentError
-from ..plain_data import replacing
 from ._paths import shell_word
 from ._values import number_and_unit
 
@@ -110,8 +109,7 @@ def run(options: argparse.Namespace) -> int:
     from ..plot.log import draw_survey, save_survey
 
     picture = folder / "understood.png"
-    with replacing(picture) as part:
-        save_survey(draw_survey(survey, experiment), part)
+    save_survey(draw_survey(survey, experiment), picture)
     print(f"\nwritten: {folder / 'experiment.toml'}, {picture}")
     if boxes := about_boxes(survey.columns):
         print(boxes)

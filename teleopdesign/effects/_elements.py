@@ -7,10 +7,16 @@ another, and what records must tell is asked of the first two.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
+
+from ._facts import RecordFacts, slip_is_seen
 
 #: part of the friction level below which an element comes last, whatever its stiffness: records do
 #: not tell how stiff it is. Higher: one that shows comes last; lower: one that does not, first
 LITTLE = 0.02
+#: part of the level from which an element is held against the travel: one that carries less is of
+#: no consequence, wherever a fit leaves its stiffness
+CARRIES = 0.05
 #: elements beside the first, which carries what these leave of the level
 MORE = (2, 3, 4)
 
@@ -32,3 +38,19 @@ def softest_first(p: Mapping[str, float], body: Mapping[str, float]) -> dict[str
         if i in MORE:
             values[f"level_{i}"] = level[element]
     return values
+
+
+def elements_slip(p: Any, facts: RecordFacts) -> str | None:
+    """Whether elements slip both ways within the travel, and give by more than is read."""
+    slips = {i: getattr(p, f"level_{i}") for i in MORE}
+    slips[1] = (level := facts.body["coulomb.level"]) - sum(slips.values())
+    ways = {i: slips[i] / getattr(p, f"stiffness_{i}") for i in slips if slips[i] > 0.0}
+    softest = max((i for i in ways if slips[i] > CARRIES * level), key=ways.__getitem__, default=0)
+    if softest and 2.0 * ways[softest] > facts.travel > max(ways.values()):
+        stiffness = facts.text(getattr(p, f"stiffness_{softest}"), "stiffness")
+        return (
+            f"its softest element, {stiffness} up to {facts.text(slips[softest], 'force')}, slips "
+            f"one way only within the travel of {facts.text(facts.travel, 'position')}: no loop "
+            "is seen, and it stands for a spring"
+        )
+    return slip_is_seen("its softest element", list(ways.values()), facts)

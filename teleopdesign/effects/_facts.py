@@ -27,6 +27,9 @@ SPEEDS, SAMPLES = 40, 10
 APART = 0.1
 #: share of the sliding samples below whose speed nothing is taken as seen: fewer are turning points
 SELDOM = 0.01
+#: correlation with the size of the gravity torque, over the places, from which the two look alike:
+#: a half wave of a sine over a quarter turn to each side reaches 0.97. Lower: said of uneven rails
+ALIKE = 0.9
 #: travels per period from which something is seen to repeat. One and a half: half of it comes
 #: twice. Fewer: any slow force of the position fits; more: long true periods lose their name
 REPEATS = 1.5
@@ -121,6 +124,22 @@ def speeds_vary_by_place(pattern: Callable[[Array], Array], facts: RecordFacts) 
     return (
         "each place was passed at one speed only, so what varies along the travel varies with the "
         "speed as well: it stands for a friction that depends on the speed"
+    )
+
+
+def follows_gravity(level: Callable[[Array], Array], facts: RecordFacts) -> str | None:
+    """What is said of a friction over the place that is largest where the torque of gravity is."""
+    if "gravity.phase" not in facts.body or len(facts.places) < 3:
+        return None
+    load = np.abs(np.sin(facts.places + facts.body["gravity.phase"]))
+    levels = level(facts.places)
+    if not (np.ptp(load) > 0.0 and np.ptp(levels) > 0.0):
+        return None
+    if not np.corrcoef(load, levels)[0, 1] >= ALIKE:
+        return None
+    return (
+        "friction is largest where the torque of gravity is: friction that grows with the load "
+        "(load_dependent_friction) looks much the same. Another load on the link tells them"
     )
 
 

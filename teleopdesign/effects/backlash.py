@@ -13,13 +13,7 @@ the tip is led back to its course (`_structure.py`).
 from sympy import Piecewise
 
 from ._effect import FitSearch, Parameter
-from ._structure import make_structure, tip_is_part
-
-#: part of the largest measured force that half a gap must be worth, K g/2: by no more does the
-#: coupling differ from a spring without a gap. Half a percent is less than models of real machines
-#: leave. Lower: another departure from a spring is named a gap; higher: a small gap in a soft
-#: transmission has no name
-SEEN = 0.005
+from ._structure import gap_is_seen, make_structure
 
 
 def coupling(now, p):
@@ -28,17 +22,6 @@ def coupling(now, p):
         (p.stiffness * (now.stretch - half) + damping, now.stretch > half),
         (p.stiffness * (now.stretch + half) + damping, now.stretch < -half),
         (0, True),
-    )
-
-
-def plausible(p, facts):
-    worth = p.stiffness * p.gap / 2
-    if worth >= SEEN * facts.force:
-        return tip_is_part(p, facts)
-    return (
-        f"a gap of {facts.text(p.gap, 'position')} changes the force by no more than "
-        f"{facts.text(worth, 'force')}, where {facts.text(facts.force, 'force')} act: it stands "
-        "for a transmission that is no plain spring, or for friction behind it"
     )
 
 
@@ -70,6 +53,6 @@ EFFECT = make_structure(
             ),
         ),
     },
-    plausible=plausible,
+    plausible=gap_is_seen,
     source="two masses with lost motion",
 )

@@ -9,12 +9,7 @@ all loops. Element 1 carries what the others leave of the level. Seen where the 
 from sympy import Max
 
 from ._effect import Effect, FitSearch, Parameter, State
-from ._elements import MORE, softest_first
-from ._facts import slip_is_seen
-
-#: part of the level from which an element is held against the travel: one that carries less is of
-#: no consequence, wherever a fit leaves its stiffness
-CARRIES = 0.05
+from ._elements import MORE, elements_slip, softest_first
 
 
 def law(now, p):
@@ -34,21 +29,6 @@ def of_element(i, quantity, meaning, *starts):
     return Parameter(quantity, f"{meaning} of element {i}", optional=i > 2, search=search)
 
 
-def plausible(p, facts):
-    slips = {i: getattr(p, f"level_{i}") for i in MORE}
-    slips[1] = (level := facts.body["coulomb.level"]) - sum(slips.values())
-    ways = {i: slips[i] / getattr(p, f"stiffness_{i}") for i in slips if slips[i] > 0.0}
-    softest = max((i for i in ways if slips[i] > CARRIES * level), key=ways.__getitem__, default=0)
-    if softest and 2.0 * ways[softest] > facts.travel > max(ways.values()):
-        stiffness = facts.text(getattr(p, f"stiffness_{softest}"), "stiffness")
-        return (
-            f"its softest element, {stiffness} up to {facts.text(slips[softest], 'force')}, slips "
-            f"one way only within the travel of {facts.text(facts.travel, 'position')}: no loop "
-            "is seen, and it stands for a spring"
-        )
-    return slip_is_seen("its softest element", list(ways.values()), facts)
-
-
 EFFECT = Effect(
     role="friction_shape",
     energy="dissipates",
@@ -65,7 +45,7 @@ EFFECT = Effect(
     },
     absent={"stiffness_1": float("inf"), "stiffness_2": float("inf")},
     order=softest_first,
-    plausible=plausible,
+    plausible=elements_slip,
     needs=frozenset({"coulomb"}),
     source="Al-Bender, Lampaert, Swevers, IEEE TAC 50 (2005); Iwan, J. Appl. Mech. 33 (1966)",
 )

@@ -13,40 +13,15 @@ import numpy as np
 from sympy import pi, sin
 
 from ._effect import PERIOD, Effect, FitSearch, Parameter, positive_amplitude
-from ._facts import speeds_vary_by_place
-
-#: correlation with the size of the gravity torque, over the places, from which the two look alike:
-#: a half wave of a sine over a quarter turn to each side reaches 0.97. Lower: said of uneven rails
-ALIKE = 0.9
+from ._facts import follows_gravity, speeds_vary_by_place
 
 
 def law(now, p):
     return 1 + p.amplitude * sin(2 * pi * now.position / p.period + p.phase)
 
 
-def pattern(x, p):
-    return np.sin(2 * np.pi * x / p.period + p.phase)
-
-
-def plausible(p, facts):
-    if p.period == 0.0:
-        return None
-    return speeds_vary_by_place(lambda x: pattern(x, p), facts)
-
-
-def untold(p, facts):
-    if "gravity.phase" not in facts.body or len(facts.places) < 3 or p.period == 0.0:
-        return None
-    load = np.abs(np.sin(facts.places + facts.body["gravity.phase"]))
-    level = p.amplitude * pattern(facts.places, p)
-    if not (np.ptp(load) > 0.0 and np.ptp(level) > 0.0):
-        return None
-    if not np.corrcoef(load, level)[0, 1] >= ALIKE:
-        return None
-    return (
-        "friction is largest where the torque of gravity is: friction that grows with the load "
-        "(load_dependent_friction) looks much the same. Another load on the link tells them"
-    )
+def along(p):
+    return lambda x: np.sin(2 * np.pi * x / (p.period or np.inf) + p.phase)
 
 
 EFFECT = Effect(
@@ -72,8 +47,8 @@ EFFECT = Effect(
     },
     absent={"amplitude": 0.0},
     canonical=positive_amplitude,
-    plausible=plausible,
-    untold=untold,
+    plausible=lambda p, facts: speeds_vary_by_place(along(p), facts),
+    untold=lambda p, facts: follows_gravity(along(p), facts),
     needs=frozenset({"coulomb"}),
     always=frozenset({"even in velocity", "non-negative"}),
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from ..measurement.experiment import Experiment
 from ..measurement.first_guess import motion_columns
 from ..measurement.survey import Survey
+from ..plain_data import replacing
 from ..quantity import unit_of
 from .letters import further_fonts
 
@@ -31,7 +32,8 @@ def save_survey(figure: Figure, path: Path) -> None:
     """Write the picture; `about_boxes` says which letters of names no font has."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from font")
-        figure.savefig(path, format="png")
+        with replacing(path) as part:
+            figure.savefig(part, format="png")
 
 
 def draw_survey(survey: Survey, experiment: Experiment) -> Figure:
