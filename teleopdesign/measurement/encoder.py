@@ -13,6 +13,9 @@ STEPS_APART = 20
 #: values lie on a grid where the mean of their phases in it is at least this long: 1 on the grid
 #: itself, 0.04 for 600 values anywhere
 ON_GRID = 0.9
+#: part of the readings that may be different values where a grid is an encoder's: a body that rests
+#: reads one value over and over; an even motion lies on a grid of its own, each value once
+DIFFERENT = 0.9
 #: values that are looked at
 ENOUGH = 20_000
 
@@ -28,8 +31,8 @@ def reading_step(position: Array) -> float:
     """Smallest step between neighbouring values that the readings take: the encoder's, if any.
 
     In a motion that never comes back to a place, values lie apart by the travel of a sample: then
-    the step is the one whose rounding looks like the noise that is seen. Values on a grid are an
-    encoder's, though: where a body rests or moves evenly for half the time, no noise is seen.
+    the step is the one whose rounding looks like the noise that is seen. Values on a grid that come
+    again are an encoder's, though: where a body rests for half the time, no noise is seen.
     """
     values = np.unique(position)
     if len(values) < 2:
@@ -40,7 +43,9 @@ def reading_step(position: Array) -> float:
     moving = float(np.mean(np.diff(position) != 0)) > 0.5
     # readings that are all alike in their fourth difference show no noise at all
     is_noisy = rounding > 1e-9 * float(np.ptp(position))
-    if not (is_noisy and moving and step > 3.0 * rounding) or grid_of(position[:ENOUGH], step):
+    if not (is_noisy and moving and step > 3.0 * rounding):
+        return step
+    if len(values) < DIFFERENT * len(position) and grid_of(position[:ENOUGH], step):
         return step
     return min(step, rounding)
 

@@ -169,6 +169,14 @@ def test_the_step_of_an_encoder_is_seen_though_the_body_rests_half_the_time(turn
     assert reading_step(written) == pytest.approx(step, abs=2.1 * 10.0**-digits)
 
 
+@pytest.mark.parametrize("ripple", [0.0, 1e-5, 1e-4])
+def test_the_way_of_a_sample_is_no_encoders_step_where_a_body_moves_evenly(ripple):
+    """At a constant speed readings lie on a grid too, each place of it read once."""
+    noise = 3e-5 * np.random.default_rng(4).standard_normal(120)
+    even = 2.6e-3 * np.arange(120) + ripple * np.sin(0.3 * np.arange(120)) + noise
+    assert reading_step(even) < 5e-4
+
+
 @pytest.mark.parametrize("digits", [9, 15])
 def test_a_motion_without_an_encoder_has_no_grid(digits):
     t = np.arange(10_000) / 1000
