@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import Literal
 
 from ..diagnose.prepare import Prepared
-from ..diagnose.record_shift import LARGEST
+from ..diagnose.record_shift import CLOCK
 from ..finding import Finding
 from ..measurement.soundness.signal import written
 from ..model import Model
@@ -184,7 +184,7 @@ def _shifts(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
     if less < h or balance.left > UNEXPLAINED or len(late) > 1:
         # a shift by whole samples alone does not explain it: something between force and motion may
         concern, remedy = "note", "columns out of step, or something gives in between"
-    elif set(late) == {"actuator_force"} and less <= LARGEST * h:
+    elif set(late) == {"actuator_force"} and less <= CLOCK.early * h:
         concern, remedy = "note", "a diagnosis takes up to a row of it as the logger's"
     elif late.get("actuator_force", 0.0) < 0:
         # a cause before its effect: physics does that too

@@ -13,13 +13,33 @@ from __future__ import annotations
 
 from ..blocks import Value
 from ..model import Model
-from .candidates import measured_at
+from .candidates import measured_at, started
 from .criteria import CRITERIA
 from .evidence import check_score
-from .fit import Fit, estimate
+from .fit import Fit, estimate, fit_squares, rough_fit
 from .prepare import Prepared
-from .record_shift import shifts_of
+from .record_shift import CLOCK, shifts_of
+from .search_plan import PLAN
 from .simulated_course import dead_times
+
+
+def with_late_starts(fit: Fit, stated: Model, prepared: Prepared) -> Fit:
+    """The fit, or one that began with a log much later than a row, where that leaves less.
+
+    Beside the fit of a log that is late by many rows lies a poor one that is late by few, and its
+    parameters lead nowhere else.
+    fit: of the model as its user stated it
+    """
+    for shift in shifts_of(fit.model, prepared.stretches):
+        if shift.latest <= CLOCK.early * shift.row:
+            continue
+        start = started(stated, prepared.scales)[0]
+        for part in PLAN.late_starts:
+            shifts = {**fit.model.record_shift, shift.at: Value(part * shift.latest)}
+            rough = rough_fit(start.with_record_shift(shifts), prepared)
+            if fit_squares(rough) < (1.0 - PLAN.elsewhere) * fit_squares(fit):
+                fit = min((fit, estimate(rough.model, prepared)), key=fit_squares)
+    return fit
 
 
 def with_paying_shift(fit: Fit, prepared: Prepared) -> Fit:

@@ -18,7 +18,7 @@ from .error import error_of, force_error
 from .error_at_command import AtCommand, at_command
 from .least_squares import minimise
 from .prepare import Prepared, Stretch, folds
-from .record_shift import LARGEST, RecordShifts, record_shifts
+from .record_shift import CLOCK, RecordShifts, record_shifts
 from .residual import both_residuals, relative_residuals, residuals
 from .shared_links import best_links
 
@@ -299,7 +299,7 @@ def solve(
     space = _search_space(model, free, prepared)
     p, lasts = len(free), sum(s.weight * len(s.keep) * s.row for s in stretches)
     shifts = record_shifts(stretches, round(lasts / BLOCK), model)
-    lower = np.append(space.lower, np.full(len(shifts.bodies), -LARGEST))
+    lower = np.append(space.lower, np.full(len(shifts.bodies), -CLOCK.early))
     upper = np.append(space.upper, shifts.latest)
     start = np.append(space.start, shifts.start(model))
     names = (*free, *shifts.names)

@@ -11,7 +11,7 @@ from ..effects import depends_on_time, find_effect
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .candidates import Candidate
-from .clock import with_paying_shift
+from .clock import with_late_starts, with_paying_shift
 from .criteria import CRITERIA, Criteria
 from .decision import (
     Floors,
@@ -154,7 +154,8 @@ def trying(among: Collection[str], model: Model) -> Model:
 def begin(search: LadderSearch) -> LadderState:
     """The ladder that holds the user's model alone, re-estimated."""
     search.progress("re-estimating the model")
-    return look(search, (Rung(None, estimate_from_starts(search.stated, search.prepared)),))
+    fit = estimate_from_starts(search.stated, search.prepared)
+    return look(search, (Rung(None, with_late_starts(fit, search.stated, search.prepared)),))
 
 
 def look(

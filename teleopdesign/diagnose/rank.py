@@ -80,7 +80,7 @@ def _contenders_refined(
     """
     attempts, refined = list(attempts), set[int]()
     for contending in (PLAN.leading, PLAN.contending):
-        most = (1.0 + contending) * _least_counted(attempts, base, criteria)
+        most = (1.0 + contending) * _least_counted(attempts, base, prepared, criteria)
         chosen = [
             i
             for i, (_, fit) in enumerate(attempts)
@@ -94,10 +94,21 @@ def _contenders_refined(
 
 
 def _least_counted(
-    attempts: Collection[tuple[Candidate, Fit]], base: Fit, criteria: Criteria
+    attempts: Collection[tuple[Candidate, Fit]], base: Fit, prepared: Prepared, criteria: Criteria
 ) -> float:
-    """Least squares of an attempt that counts: one that is refused is no measure for others."""
-    counted = [f for _, f in attempts if not refusal(base, f, criteria=criteria)]
+    """Least squares of an attempt that counts; all do where none counts.
+
+    One that is refused, is not told, deserves no name or leaves more unseen is no measure of what
+    others must reach.
+    """
+    counted = [
+        fit
+        for candidate, fit in attempts
+        if not refusal(base, fit, criteria=criteria)
+        and is_identifiable(fit, base, criteria=criteria)
+        and check_squares(fit) < check_squares(base)
+        and not _implausible(base, candidate, fit, prepared)
+    ]
     return min(map(fit_squares, counted or [f for _, f in attempts]), default=0.0)
 
 

@@ -12,13 +12,14 @@ Where records hardly tell it (a delay does the same to them, a spring and damper
 make viscous friction of it), what is known beforehand decides: most loggers are right, none is off
 by much more than a row. Normally distributed, the shift adds a row to the residual r of each body,
 
-    |r| d / (s sqrt(n)),    d: shift, s: `SPREAD`, n: independent observations
+    |r| d / (s sqrt(n)),    d: shift, s: the spread, n: independent observations
 
 for that makes the least squares the most probable values, r having an unknown size: -2 log p =
 n log |r|^2 + (d / s)^2. Standard errors of all else hold what is left open of the shift.
 
-A force that was measured may be late by more: its sensor, or what fed it back, may filter. No
-physics acts before its own force, so that is no missing effect, but structures would imitate it.
+The log of a force may be late by more: buffers and batches hold commands back, sensors filter what
+was measured. No physics acts before its own force, so that is no missing effect, but structures
+would imitate it.
 """
 
 from __future__ import annotations
@@ -39,16 +40,30 @@ from ..standard_error import with_standard_error
 from .prepare import Stretch
 from .simulated_course import dead_times
 
-#: samples, standard deviation of what is known of a shift beforehand: twice this is one row.
-#: Lower: a delay of less than a row is called physics; higher: what a shift imitates is left open
-SPREAD = 0.5
-#: samples by which a record may be off: one row, and a tenth for the errors of an estimate there.
-#: What is late by more is a delay
-LARGEST = 1.1
-#: s, the same two of a force that was measured, and not commanded, where they are more than those:
-#: its sensor may filter, and what a low-pass of 15 Hz passes is 11 ms late. Lower: the filter of a
-#: sensor is called a compliance; higher: a compliance with large damping is called a filter
-SENSOR_SPREAD, SENSOR_LATEST = 0.005, 0.05
+
+@dataclass(frozen=True)
+class LoggerClock:
+    """What is known of any log beforehand; `CLOCK` is in use."""
+
+    #: samples, standard deviation of a shift: twice this is one row. Lower: a delay of less than a
+    #: row is called physics; higher: what a shift imitates is left open
+    spread: float = 0.5
+    #: samples by which a command may be logged early: one row, and a tenth for errors of an
+    #: estimate. More is a delay
+    early: float = 1.1
+    #: s by which the log of a force may be late where that is more: what a low-pass of 15 Hz passes
+    #: is 11 ms late, buffers of a logger are a few rows. Lower: they are called a compliance;
+    #: higher: a compliance with large damping is called a late log
+    latest: float = 0.05
+    #: s, standard deviation of the shift of a measured force where it is more: sensors filter
+    sensor_spread: float = 0.005
+    #: rows and standard errors from which a command that acts late is said to be like a delay
+    told_rows: float = 0.1
+    told_errors: float = 2.0
+
+
+#: what is known of a log beforehand
+CLOCK = LoggerClock()
 
 
 @dataclass(frozen=True)
@@ -76,7 +91,7 @@ class RecordShifts:
         """The model's shifts, in samples (k,); none where one is held."""
         late = np.array([model.command_late(body) for body in self.bodies])
         late = np.where(self.held, 0.0, late)
-        return np.clip(late / self.row, -LARGEST, self.latest)
+        return np.clip(late / self.row, -CLOCK.early, self.latest)
 
     def beside(self, model: Model, samples: Array, errors: Array | None = None) -> Model:
         """The model with these shifts, in samples, and their standard errors."""
@@ -139,14 +154,10 @@ def record_shifts(
         tuple(row),
         rows,
         max(count, 1),
-        np.maximum(SPREAD, by_sensor * SENSOR_SPREAD / rows),
-        np.maximum(LARGEST, by_sensor * SENSOR_LATEST / rows),
+        np.maximum(CLOCK.spread, by_sensor * CLOCK.sensor_spread / rows),
+        np.maximum(CLOCK.early, CLOCK.latest / rows),
         held,
     )
-
-
-#: rows and standard errors from which a command that acts late is said to be like a delay
-TOLD_ROWS, TOLD_ERRORS = 0.1, 2.0
 
 
 @dataclass(frozen=True)
@@ -154,7 +165,7 @@ class RecordShift:
     """By how much the log of a body's command is late, as a fitted model has it.
 
     late, stderr: s;  row: s between samples;  may_delay: whether the model has a dead time there
-    latest: s by which the log of the force may be late
+    latest: s by which the log of the force may be late;  measured: whether it was, not commanded
     """
 
     at: str
@@ -163,17 +174,18 @@ class RecordShift:
     row: float
     may_delay: bool
     latest: float
+    measured: bool
 
     @property
     def at_bound(self) -> bool:
         """Whether the command is off by as much as a logger may be, or more."""
-        most = self.latest if self.late > 0.0 else LARGEST * self.row
+        most = self.latest if self.late > 0.0 else CLOCK.early * self.row
         return abs(self.late) >= 0.999 * most
 
     @property
     def is_like_a_delay(self) -> bool:
         """Whether a delay of less than a row would look the same."""
-        early = -self.late > max(TOLD_ROWS * self.row, TOLD_ERRORS * self.stderr)
+        early = -self.late > max(CLOCK.told_rows * self.row, CLOCK.told_errors * self.stderr)
         return self.may_delay or early
 
     def __str__(self) -> str:
@@ -182,10 +194,13 @@ class RecordShift:
         size = with_standard_error(abs(rows), error) if error > 0.0 else f"{abs(rows):.2f}"
         text = f"clock of the records: command at {self.at} {size} rows {word}"
         text += f" ({1e3 * self.late:.3g} ms)"
-        if self.at_bound:
+        if self.at_bound and self.late < 0.0:
             return f"{text}, at its bound: what is beyond a row counts as physics"
-        if self.late > LARGEST * self.row:
-            return f"{text}; the force was measured, and a filter of its sensor does so"
+        if self.late > CLOCK.early * self.row:
+            late = "the force was measured, and a filter of its sensor does so"
+            if not self.measured:
+                late = "no machine moves before its command, so that the log is late"
+            return f"{text}{', at its bound' if self.at_bound else ''}; {late}"
         if self.is_like_a_delay:
             return f"{text}; a delay of less than a row looks the same"
         return text
@@ -194,6 +209,7 @@ class RecordShift:
 def shifts_of(model: Model, stretches: Sequence[Stretch]) -> tuple[RecordShift, ...]:
     """The shift of each body's records that a fitted model has, but for those held at none."""
     bodies = record_shifts(stretches, 1)
+    sensed = {s.motion.body for s in stretches if s.force_is_sensed}
     return tuple(
         RecordShift(
             at=body,
@@ -202,6 +218,7 @@ def shifts_of(model: Model, stretches: Sequence[Stretch]) -> tuple[RecordShift, 
             row=float(row),
             may_delay=bool(dead_times(model.body(body))),
             latest=float(row * latest),
+            measured=body in sensed,
         )
         for body, row, latest in zip(bodies.bodies, bodies.row, bodies.latest, strict=True)
         if body in model.record_shift and not model.record_shift[body].fixed

@@ -38,6 +38,9 @@ class SearchPlan:
     #: rugged
     corrected_predicted: int = 6
     corrected_stepped: int = 3
+    #: parts of the time by which a log may be late at which the user's model begins, too: 12 and
+    #: 35 ms of 50. From none alone, a log late by 8 rows of 2 ms ended at one row
+    late_starts: tuple[float, ...] = (0.25, 0.7)
     #: part by which a user's value may be wrong: what moved further may have been led astray, and
     #: starts from the user's value too
     moved: float = 0.25
