@@ -107,6 +107,7 @@ def test_a_users_effect_has_a_page(tmp_path, capsys):
 # mistakes
 
 
+@pytest.mark.slow
 def test_a_missing_folder_is_one_line_also_in_a_process_of_its_own(tmp_path):
     done = run("diagnose", tmp_path / "nothing")
     assert done.returncode == 2

@@ -42,6 +42,7 @@ def test_every_folder_with_functions_has_a_rule_for_a_call():
     assert {*VERBS, *INSTEAD} <= set(dir(td))
 
 
+@pytest.mark.slow
 def test_a_folder_can_be_called_whichever_way_it_was_imported():
     code = (
         "from teleopdesign.simulate import sine\nimport teleopdesign as td\n"

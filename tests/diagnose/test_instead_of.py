@@ -126,6 +126,7 @@ def test_an_answer_read_back_knows_it_too(found, tmp_path):
     assert json.loads((tmp_path / "answer.json").read_text())["missing"][0]["instead_of"]
 
 
+@pytest.mark.slow
 def test_a_damper_that_is_there_stays_beside_the_bristle(tmp_path):
     experiment = load_experiment(write_bristle(tmp_path / "case", viscous=300.0))
     diagnosis = find_missing(experiment, Model.from_experiment(experiment, KNOWN))

@@ -63,7 +63,8 @@ def test_where_nothing_is_missing_nothing_is_named(tmp_path):
     assert len(found.rungs) == 1
 
 
-@pytest.mark.parametrize("pushes", [1, pytest.param(4, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("pushes", [1, 4])
 def test_what_happens_once_is_no_missing_physics(pushes, tmp_path):
     experiment = load_experiment(write_own(tmp_path / "null", None, seed=4))
     (check,) = experiment.check_records
@@ -85,6 +86,7 @@ def test_what_happens_once_is_no_missing_physics(pushes, tmp_path):
     assert answer(found)["one_moment"]["record"] == check.file
 
 
+@pytest.mark.slow
 def test_one_of_two_look_alikes_is_undecided_between_them(tmp_path):
     found = diagnosed(write_own(tmp_path / "bias", "bias"), FEW)
     assert found.verdict == "undecided"

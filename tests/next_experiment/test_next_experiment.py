@@ -189,6 +189,7 @@ def test_two_laws_that_need_the_same_force_are_said_to_be_told_by_nothing(tmp_pa
     assert not proposal.is_useful and "follow the reference" not in proposal.sentence
 
 
+@pytest.mark.slow
 def test_where_the_records_decide_nothing_is_proposed(diagnosis):
     proposal = propose(diagnosis)
     assert proposal.reference is None and not proposal.rivals

@@ -101,6 +101,7 @@ JOINT = td.Body("revolute", {"inertia": 0.01}).with_effect(td.EFFECTS["viscous"]
 LINKS = Arm((JOINT, JOINT), by_jacobian([[0.3, 0.1], [0.0, 0.2]]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("stiffness", "status"), [(0.0, "proved"), (150.0, "refuted")])
 def test_two_arms_of_two_joints_behind_fixed_jacobians_are_settled_at_all_four_ports(
     stiffness, status

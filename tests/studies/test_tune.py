@@ -48,6 +48,7 @@ def test_the_most_force_feedback_that_is_passive_is_where_algebra_has_it():
     assert "best found of" in repr(tuned) and "optim" not in repr(tuned)
 
 
+@pytest.mark.slow
 def test_a_limit_over_intervals_holds_at_the_worst_hand_and_device():
     over = {"Z_M.inertia": (0.1, 0.2), "Z_M.viscous.damping": (3.0, 6.0)}
     tuned = td.tune(
