@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from .errors import ExperimentError, did_you_mean, quoted
 
 AXES = ("prismatic", "revolute")
+#: Hz, of the mains: what hums, hums at these
+MAINS = (50.0, 60.0)
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,7 @@ from ._effect import (
 from ._facts import RecordFacts, repeats_within_travel
 from ._linear import acts_linearly, is_linear
 from ._position import depends_on_position, depends_on_time, period
-from ._structure import MAINS, make_structure, rubbing, touching
+from ._structure import make_structure, rubbing, touching
 
 __all__ = [
     "BLOCK_EFFECTS",
@@ -50,7 +50,6 @@ __all__ = [
     "EFFECTS",
     "FURTHER",
     "INERTIA",
-    "MAINS",
     "SIGNALS",
     "UNEXPLAINED",
     "Effect",

@@ -24,14 +24,15 @@ import sympy as sp
 
 from ..arguments import checked
 from ..errors import ModelError
+from ..quantity import MAINS
 from ..recipes import remember
 from ._effect import SIGNALS, Effect, Energy, Parameter, State
 from ._facts import RecordFacts
 
 Coupling = Callable[[Any, Any], Any]
-#: Hz of the mains, the part by which a hum that is fitted as a resonance lies beside it, and the
-#: damping ratio below which a resonance is a tone. More of either: true transmissions are doubted
-MAINS, BESIDE, TONE = (50.0, 60.0), 0.05, 0.1
+#: part by which a hum that is fitted as a resonance lies beside the mains, and the damping ratio
+#: below which a resonance is a tone. More of either: true transmissions are doubted
+BESIDE, TONE = 0.05, 0.1
 #: part of the largest measured force that half a gap must be worth, K g/2: by no more does the
 #: coupling differ from a spring without a gap. Half a percent is less than models of real machines
 #: leave. Lower: another departure from a spring is named a gap; higher: a small gap in a soft

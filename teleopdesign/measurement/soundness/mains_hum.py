@@ -7,11 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...finding import Finding
+from ...quantity import MAINS
 from ..filtering import Array
 from .signal import Signal
 
-#: Hz
-MAINS = (50.0, 60.0)
 #: Hz to either side that tell what is usual there, and those within which the tone itself lies
 AROUND, WITHIN = 10.0, 1.5
 #: power of the tone over the median around: noise has 2^-300 of a chance, and a force that follows
