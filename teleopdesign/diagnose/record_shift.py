@@ -73,6 +73,7 @@ class RecordShifts:
     bodies: those with a command that changes;  row: s between samples, of each;  count: n above
     held: (k,) whether the shift is held at none; what is left open of it stays in standard errors
     spread: (k,) samples, standard deviation of what is known beforehand;  latest: (k,) samples
+    measured: (k,) whether the force was, not commanded
     """
 
     bodies: tuple[str, ...]
@@ -80,6 +81,7 @@ class RecordShifts:
     count: int
     spread: Array
     latest: Array
+    measured: NDArray[np.bool_]
     held: NDArray[np.bool_]
 
     @property
@@ -149,13 +151,14 @@ def record_shifts(
             sensed[s.motion.body] = s.force_is_sensed
     late = {} if model is None else model.record_shift
     held = np.array([body in late and late[body].fixed for body in row], dtype=bool)
-    rows, by_sensor = np.array(list(row.values())), np.array(list(sensed.values()), dtype=float)
+    rows, measured = np.array(list(row.values())), np.array(list(sensed.values()), dtype=bool)
     return RecordShifts(
         tuple(row),
         rows,
         max(count, 1),
-        np.maximum(CLOCK.spread, by_sensor * CLOCK.sensor_spread / rows),
+        np.maximum(CLOCK.spread, measured * CLOCK.sensor_spread / rows),
         np.maximum(CLOCK.early, CLOCK.latest / rows),
+        measured,
         held,
     )
 
@@ -208,8 +211,7 @@ class RecordShift:
 
 def shifts_of(model: Model, stretches: Sequence[Stretch]) -> tuple[RecordShift, ...]:
     """The shift of each body's records that a fitted model has, but for those held at none."""
-    bodies = record_shifts(stretches, 1)
-    sensed = {s.motion.body for s in stretches if s.force_is_sensed}
+    shifts = record_shifts(stretches, 1)
     return tuple(
         RecordShift(
             at=body,
@@ -218,9 +220,11 @@ def shifts_of(model: Model, stretches: Sequence[Stretch]) -> tuple[RecordShift, 
             row=float(row),
             may_delay=bool(dead_times(model.body(body))),
             latest=float(row * latest),
-            measured=body in sensed,
+            measured=bool(measured),
         )
-        for body, row, latest in zip(bodies.bodies, bodies.row, bodies.latest, strict=True)
+        for body, row, latest, measured in zip(
+            shifts.bodies, shifts.row, shifts.latest, shifts.measured, strict=True
+        )
         if body in model.record_shift and not model.record_shift[body].fixed
     )
 
