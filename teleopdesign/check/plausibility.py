@@ -186,6 +186,8 @@ def _shifts(prepared: Prepared, balance: ForceBalance) -> Iterator[Finding]:
         concern, remedy = "note", "columns out of step, or something gives in between"
     elif set(late) == {"actuator_force"} and less <= CLOCK.early * h:
         concern, remedy = "note", "a diagnosis takes up to a row of it as the logger's"
+    elif set(late) == {"actuator_force"} and 0.0 < seconds <= CLOCK.latest:
+        remedy += ", or leave it to a diagnosis"
     elif late.get("actuator_force", 0.0) < 0:
         # a cause before its effect: physics does that too
         concern, remedy = "note", "the actuator is late, or the position is logged late"
