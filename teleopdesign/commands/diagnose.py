@@ -21,7 +21,7 @@ from ._paths import shell_word
 from ._report import write_arm_page, write_page
 
 if TYPE_CHECKING:
-    from ..diagnose import Diagnosis, SimulationComparison
+    from ..diagnose import ArmDiagnosis, Diagnosis, SimulationComparison
     from ..measurement import Experiment
 
 EXAMPLES = """
@@ -126,13 +126,12 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
-    """The same for an arm: no figure and no simulation yet."""
-    for value, option in (
-        (options.figure, "--figure"),
-        (options.simulate, "--simulate"),
-    ):
-        if value:
-            raise ExperimentError(f"{option}: not there for an arm: use --report or --predictions")
+    """The same for an arm."""
+    if options.simulate:
+        raise ExperimentError(
+            "--simulate: not there for an arm, whose joints push each other: `teleopdesign "
+            "export` writes one joint for a simulator"
+        )
     from ..diagnose.arms import find_missing_in_arm
     from ..diagnose.arms.answer import write_arm_answer, write_arm_predictions
 
@@ -142,13 +141,26 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
         write_arm_answer(diagnosis, options.json)
     if options.predictions is not None:
         write_arm_predictions(diagnosis, options.predictions)
+    if options.figure is not None:
+        with replacing(options.figure) as part:
+            diagnosis.plot().savefig(part)
     if options.report is not None:
         write_arm_page(diagnosis, options.report)
-    for joint, one in diagnosis.joints.items():
-        if one.verdict != "model_adequate" and one.more_is_missing:
-            place = shell_word(options.folder[0])
-            print(f"\nwhere it fails: teleopdesign describe {place} --body {joint}")
+    source = shell_word(options.folder[0] if options.json is None else options.json)
+    for line in _next_on_joints(diagnosis, source):
+        print(line)
     return 0
+
+
+def _next_on_joints(diagnosis: ArmDiagnosis, source: str) -> list[str]:
+    """What helps on at each joint; source: the answer if one was written, else the folder."""
+    lines = []
+    for joint, one in diagnosis.joints.items():
+        if one.groups:
+            lines.append(f"which of them is it: teleopdesign next {source} --body {joint}")
+        if one.verdict != "model_adequate" and one.more_is_missing:
+            lines.append(f"where it fails: teleopdesign describe {source} --body {joint}")
+    return ["", *lines] if lines else []
 
 
 def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> SimulationComparison | None:

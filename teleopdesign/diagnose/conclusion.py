@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
+from ..measurement.motion import Motion
 from .candidates import Candidate
 from .corrected_fit import corrected
 from .decision import moment_above_noise, others_that_help, verdict
@@ -32,12 +33,12 @@ def conclude(
     state: LadderState,
     rungs: tuple[Rung, ...] | None = None,
     *,
-    learn: bool = True,
+    beside: Sequence[Sequence[Motion]] = (),
 ) -> Diagnosis:
     """The diagnosis that a ladder ends with.
 
     rungs: those of the state with the reading error removed from the last fit; default: removed now
-    learn: whether trees say what could be learned of what is left
+    beside: of each stretch, the motions of an arm's other joints, from which trees learn too
     """
     prepared, floor, criteria = search.prepared, state.floor, search.criteria
     estimated = state.fit
@@ -49,10 +50,8 @@ def conclude(
         if len(steady := without_rise(rungs)) < len(rungs):
             rungs, estimated = steady, steady[-1].fit
     model = rungs[-1].fit.model
-    trees = None
-    if learn:
-        search.progress("what could be learned")
-        trees = learnable(model, search.whole, seed=search.seed)
+    search.progress("what could be learned")
+    trees = learnable(model, search.whole, beside=beside, seed=search.seed)
     diagnosis = Diagnosis(
         experiment=search.experiment,
         prepared=search.whole,

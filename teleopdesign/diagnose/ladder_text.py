@@ -112,6 +112,31 @@ def could_be_text(rung: Rung, *, named: bool = True) -> str | None:
     return f"unexplained: less likely than not what its name says; {also}"
 
 
+def said_of_added(diagnosis: Diagnosis, rung: Rung) -> list[str]:
+    """What is said of the effect that a rung added: its parameters, and what else it could be."""
+    assert rung.added is not None
+    model, lines = diagnosis.model, []
+    for p in rung.added.effect.parameters:
+        full = f"{rung.added.at}.{rung.added.effect.name}.{p}"
+        value = model.parameters[full]
+        bound = "  at its bound" if full in diagnosis.after.at_bound else ""
+        lines.append(f"      {p} = {_estimate_text(value, model.unit(full))}{bound}")
+    if (text := command_error_text(rung.fit)) is not None:
+        lines.append(f"      {text}")
+    if rung.alternatives:
+        others = ", ".join(map(str, rung.alternatives))
+        lines.append(f"      no different on these records: {others}")
+    named = rung.added in diagnosis.named or bool(rung.alternatives)
+    if (could_be := could_be_text(rung, named=named)) is not None:
+        lines.append(f"      {could_be}")
+    lines += [
+        f"      cannot be told: {one.sentence}"
+        for one in diagnosis.untold
+        if one.candidate == rung.added
+    ]
+    return lines
+
+
 def ladder_text(diagnosis: Diagnosis) -> str:
     """The ladder as a table, with parameters, noise floor and verdict."""
     lines = [f"{'added':<42}{'fit error':>10}{'check error':>13}"]
@@ -122,25 +147,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         )
         if rung.added is None:
             continue
-        model = diagnosis.model
-        for p in rung.added.effect.parameters:
-            full = f"{rung.added.at}.{rung.added.effect.name}.{p}"
-            value = model.parameters[full]
-            bound = "  at its bound" if full in diagnosis.after.at_bound else ""
-            lines.append(f"      {p} = {_estimate_text(value, model.unit(full))}{bound}")
-        if (text := command_error_text(rung.fit)) is not None:
-            lines.append(f"      {text}")
-        if rung.alternatives:
-            others = ", ".join(map(str, rung.alternatives))
-            lines.append(f"      no different on these records: {others}")
-        named = rung.added in diagnosis.named or bool(rung.alternatives)
-        if (could_be := could_be_text(rung, named=named)) is not None:
-            lines.append(f"      {could_be}")
-        lines += [
-            f"      cannot be told: {one.sentence}"
-            for one in diagnosis.untold
-            if one.candidate == rung.added
-        ]
+        lines += said_of_added(diagnosis, rung)
     lines += [
         f"own of {o['record']}: {o['of'].replace('_', ' ')} {o['value']:.4g} {o['unit']}"
         for o in offset_rows(diagnosis)

@@ -5,6 +5,8 @@ direction, time and travel since the last reversal. They predict records that th
 what they take away is a function of the motion, whatever its law; what they leave does not repeat,
 or depends on what was not measured. That is a ceiling for models, as the noise floor is a floor.
 
+At a joint of an arm the motion of all joints is told: what one must give depends on the others.
+
 The commanded force is no input: a model that has it as an input predicts it from itself.
 """
 
@@ -21,21 +23,19 @@ from threadpoolctl import threadpool_limits
 
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
-from ..measurement.reversals import near_reversals, since_reversal
+from ..measurement.reversals import near_reversals
 from ..model import Model
 from ..quantity import unit_of
-from .candidates import tells_place_from_time
 from .effort import EFFORTS
 from .error import error_of
 from .fit import estimate
 from .prepare import FOLDS, Prepared, Stretch, folds, measured_force
 from .record_offsets import along_with_offsets
 from .residual import residuals
+from .tree_inputs import inputs_along
 
 #: s to either side of a reversal that count as near it: where presliding, gaps and lags show
 NEAR = 0.1
-#: s without a told motion after which the same direction counts as a new start
-REST = 0.5
 #: most rows that the trees learn from, spread evenly: more take time and tell little more
 MOST_ROWS = 20_000
 #: trees, their learning rate, leaves and fewest rows a leaf: those of scikit-learn with leaves
@@ -111,11 +111,18 @@ def error_near_reversals(model: Model, prepared: Prepared) -> NearReversals | No
     return NearReversals(float(np.sqrt(left / force)), rows / whole) if force > 0.0 else None
 
 
-def learnable(model: Model, prepared: Prepared, *, seed: int = 0) -> Learnable | None:
+def learnable(
+    model: Model,
+    prepared: Prepared,
+    *,
+    beside: Sequence[Sequence[Motion]] = (),
+    seed: int = 0,
+) -> Learnable | None:
     """What could be learned of what a model leaves; None without the extra `learn`.
 
     Every check record is predicted by trees that have learned from all others; without check
     records, blocks of the fit records are held out in turn.
+    beside: of each stretch, the motions of the arm's other joints at the same rows
     """
     if not is_installed():
         return None
@@ -123,11 +130,13 @@ def learnable(model: Model, prepared: Prepared, *, seed: int = 0) -> Learnable |
 
     # threads of the trees and of other callers would wait for each other by spinning
     with threadpool_limits(limits=1, user_api="openmp"):
-        return _learned(model, prepared, seed)
+        return _learned(model, prepared, beside, seed)
 
 
-def _learned(model: Model, prepared: Prepared, seed: int) -> Learnable:
-    stretches = prepared.stretches if prepared.of("check") else prepared.of("fit")
+def _learned(
+    model: Model, prepared: Prepared, beside: Sequence[Sequence[Motion]], seed: int
+) -> Learnable:
+    stretches = prepared.stretches  # without check records all are fit records
     measured = [measured_force(s) for s in stretches]
     unseen: list[Stretch] = []
     before: list[Array] = []
@@ -135,7 +144,7 @@ def _learned(model: Model, prepared: Prepared, seed: int) -> Learnable:
     alone: list[Array] = []
     for held, there in _turns(model, prepared, stretches):
         motions = [motion for _, motion in along_with_offsets(there, stretches)]
-        inputs = [_inputs(m, [o for o in motions if o.body == m.body]) for m in motions]
+        inputs = inputs_along(motions, beside)
         left = [r for r, _ in residuals(there, stretches)]
         of_rest = _predicted(stretches, inputs, left, held, seed)
         of_force = _predicted(stretches, inputs, measured, held, seed)
@@ -247,23 +256,6 @@ def _trees(inputs: Array, target: Array, seed: int) -> Any:
         random_state=seed,
     )
     return trees.fit(inputs, target)
-
-
-def _inputs(motion: Motion, motions: Sequence[Motion]) -> Array:
-    """What the trees are told of a motion (n, k); NaN before the first motion that can be told.
-
-    motions: all of that body. Where none comes to a place again, or none turns round, place or
-    time since a reversal would tell the clock, and with it the command that was played by it
-    """
-    since = since_reversal(
-        motion.direction, motion.position, sample_time=motion.sample_time, rest=REST
-    )
-    columns: list[Array] = [motion.velocity, motion.acceleration, motion.direction.astype(float)]
-    if tells_place_from_time(motions):
-        columns.append(motion.position)
-    if any({-1, 1} <= set(m.direction.tolist()) for m in motions):
-        columns += [np.where(since.known, x, np.nan) for x in (since.time, since.travel)]
-    return np.column_stack([*columns, *motion.further.values()])
 
 
 def _near(motion: Motion) -> NDArray[np.bool_]:

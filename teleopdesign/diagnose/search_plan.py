@@ -21,9 +21,14 @@ class SearchPlan:
     trials: int = 3
     #: most exchanges of an accepted effect for another: few, so that two effects cannot take turns
     exchanges: int = 2
-    #: joints up to which pairs and exchanges are sought at each joint of an arm: a real arm always
-    #: leaves more than noise, so at each they are sought, and six joints took over twice the time
+    #: joints up to which as many are tried as first of a pair at each joint of an arm; beyond,
+    #: `pairs_beyond`: a real arm always leaves more than noise, so at each joint they are sought,
+    #: and with three trials six joints took over twice the time
     whole_at: int = 3
+    pairs_beyond: int = 1
+    #: part of the squares of an arm's joint that its first effect takes away where the links were
+    #: led astray by its absence: what is left is partly theirs. Lower: more joints are ranked twice
+    astray: float = 0.75
     #: effects that may be set aside with the search going on without them. One: each asks for all
     #: candidates to be ranked again, and what comes in its place is often as little there
     searched_on: int = 1
@@ -76,15 +81,19 @@ class SearchPlan:
     def for_joints(self, count: int) -> SearchPlan:
         """The plan for each joint of an arm with so many; its records are searched whole."""
         plan = replace(self, long=SearchPlan.long, windows=SearchPlan.windows)
-        return plan if count <= self.whole_at else replace(plan, trials=0, exchanges=0)
+        most = self.trials if count <= self.whole_at else self.pairs_beyond
+        return replace(plan, trials=min(self.trials, most))
 
     def omissions(self) -> tuple[str, ...]:
         """What it leaves out of the search with `PLAN`, in words; none where it is that one."""
         words = []
         if self.most_effects < PLAN.most_effects:
             words.append(f"no more than {self.most_effects} effects were added")
-        if self.trials < PLAN.trials:
+        if self.trials == 0:
             words.append("pairs of effects that mask each other were not sought")
+        elif self.trials < PLAN.trials:
+            best = "the best candidate" if self.trials == 1 else f"the best {self.trials}"
+            words.append(f"pairs of effects that mask each other were sought with {best} only")
         if self.exchanges < PLAN.exchanges:
             words.append("no accepted effect was held against its rivals again")
         if self.long < PLAN.long:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +15,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from ..diagnose.arms.diagnosis import ArmRung
     from ..diagnose.diagnosis import Diagnosis
+    from ..diagnose.rung import Rung
 
 MEASURED, BEFORE, AFTER = "0.55", "#D55E00", "#0072B2"
 FORWARD, BACKWARD, UNTOLD = "#009E73", "#CC79A7", "0.6"
@@ -22,19 +25,21 @@ FORWARD, BACKWARD, UNTOLD = "#009E73", "#CC79A7", "0.6"
 POINTS = 6000
 
 
-def _check_rows(data: Any) -> Any:
-    """The samples that count of the check records (of all where there are none), first body."""
+def check_rows(data: Any) -> Any:
+    """What counts of the check records (of all where there are none), of the first body."""
     first = data["body"].values == data["body"].values[0]
     check = first & (data["use"].values == "check")
     chosen = data.isel(sample=(check if check.any() else first) & data["counts"].values)
     return chosen.isel(sample=slice(None, None, max(1, chosen.sizes["sample"] // POINTS)))
 
 
-def _label(data: Any, name: str) -> str:
+def label_of(data: Any, name: str) -> str:
+    """Name and unit of residual data, for an axis."""
     return f"{name} ({unit_text(data[name].attrs['units'])})"
 
 
-def _by_direction(ax: Axes, data: Any, over: str) -> None:
+def draw_by_direction(ax: Axes, data: Any, over: str) -> None:
+    """The residual over a name of the data, a colour for each direction."""
     for way, color, label in (
         (0, UNTOLD, "near rest"),
         (1, FORWARD, "forward"),
@@ -51,8 +56,8 @@ def _by_direction(ax: Axes, data: Any, over: str) -> None:
             rasterized=True,
         )
     ax.axhline(0, color="k", lw=0.5)
-    ax.set_xlabel(_label(data, over))
-    ax.set_ylabel(_label(data, "residual"))
+    ax.set_xlabel(label_of(data, over))
+    ax.set_ylabel(label_of(data, "residual"))
 
 
 def _runs(data: Any) -> list[slice]:
@@ -62,7 +67,8 @@ def _runs(data: Any) -> list[slice]:
     return [slice(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)]
 
 
-def _over_time(ax: Axes, data: Any, name: str, color: str, label: str, width: float) -> None:
+def draw_over_time(ax: Axes, data: Any, name: str, color: str, label: str, width: float) -> None:
+    """A name of the data over time; width: of its line."""
     for i, run in enumerate(_runs(data)):
         ax.plot(
             data["time"].values[run],
@@ -77,21 +83,21 @@ def plot_comparison(comparison: Comparison) -> Figure:
     """Measured and modelled force, and the residual over time, velocity and position."""
     import matplotlib.pyplot as plt
 
-    data = _check_rows(comparison.data)
+    data = check_rows(comparison.data)
     with plt.style.context(house_style()):
         figure, axes = plt.subplots(2, 2, figsize=(7.16, 4.6))
-        _over_time(axes[0, 0], data, "measured", MEASURED, "measured", 1.4)
-        _over_time(axes[0, 0], data, "model", AFTER, "model", 0.7)
+        draw_over_time(axes[0, 0], data, "measured", MEASURED, "measured", 1.4)
+        draw_over_time(axes[0, 0], data, "model", AFTER, "model", 0.7)
         _force_axes(axes[0, 0], data)
-        _over_time(axes[0, 1], data, "residual", AFTER, "residual", 0.7)
-        axes[0, 1].set(xlabel=_label(data, "time"), ylabel=_label(data, "residual"))
-        _by_direction(axes[1, 0], data, "velocity")
-        _by_direction(axes[1, 1], data, "position")
-        _direction_legend(axes[1, 0])
+        draw_over_time(axes[0, 1], data, "residual", AFTER, "residual", 0.7)
+        axes[0, 1].set(xlabel=label_of(data, "time"), ylabel=label_of(data, "residual"))
+        draw_by_direction(axes[1, 0], data, "velocity")
+        draw_by_direction(axes[1, 1], data, "position")
+        direction_legend(axes[1, 0])
     return figure
 
 
-def _direction_legend(ax: Axes) -> None:
+def direction_legend(ax: Axes) -> None:
     """The directions above the panel, clear of its points."""
     ax.legend(
         markerscale=6,
@@ -105,9 +111,8 @@ def _direction_legend(ax: Axes) -> None:
 
 
 def _force_axes(ax: Axes, data: Any) -> None:
-    ax.set(
-        xlabel=_label(data, "time"), ylabel=_label(data, "measured").replace("measured", "force")
-    )
+    force = label_of(data, "measured").replace("measured", "force")
+    ax.set(xlabel=label_of(data, "time"), ylabel=force)
     ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=3)
 
 
@@ -118,8 +123,8 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
     """
     import matplotlib.pyplot as plt
 
-    before = _check_rows(residual_data(diagnosis.before.model, diagnosis.prepared))
-    after = _check_rows(residual_data(diagnosis.model, diagnosis.prepared))
+    before = check_rows(residual_data(diagnosis.before.model, diagnosis.prepared))
+    after = check_rows(residual_data(diagnosis.model, diagnosis.prepared))
     changed = len(diagnosis.rungs) > 1
     with plt.style.context(house_style()):
         figure, axes = plt.subplot_mosaic(
@@ -134,46 +139,47 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
             height_ratios=[1.1, 1.0, 1.1, 1.1, 0.35 + 0.22 * len(diagnosis.rungs)],
         )
         ax = axes["force"]
-        _over_time(ax, before, "measured", MEASURED, "measured", 1.6)
-        _over_time(ax, before, "model", BEFORE, "your model", 0.6)
+        draw_over_time(ax, before, "measured", MEASURED, "measured", 1.6)
+        draw_over_time(ax, before, "model", BEFORE, "your model", 0.6)
         if changed:
-            _over_time(ax, after, "model", AFTER, "with what was missing", 0.6)
+            draw_over_time(ax, after, "model", AFTER, "with what was missing", 0.6)
         _force_axes(ax, before)
         # anybody's text: no formula in it
         figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
         ax = axes["time"]
-        _over_time(ax, before, "residual", BEFORE, "before", 0.7)
+        draw_over_time(ax, before, "residual", BEFORE, "before", 0.7)
         if changed:
-            _over_time(ax, after, "residual", AFTER, "after", 0.7)
-        ax.set(xlabel=_label(before, "time"), ylabel=_label(before, "residual"))
+            draw_over_time(ax, after, "residual", AFTER, "after", 0.7)
+        ax.set(xlabel=label_of(before, "time"), ylabel=label_of(before, "residual"))
         ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=2)
         _residual_maps(axes, before, after, changed=changed)
-        _ladder(axes["ladder"], diagnosis)
+        floor = diagnosis.floor.value
+        draw_ladder(axes["ladder"], diagnosis.rungs, floor, of="the measured force")
     return figure
 
 
 def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None:
     for over, first, second in (("velocity", "v0", "v1"), ("position", "x0", "x1")):
-        _by_direction(axes[first], before, over)
-        axes[first].set_ylabel(_label(before, "residual").replace("residual", "residual before"))
+        draw_by_direction(axes[first], before, over)
+        axes[first].set_ylabel(label_of(before, "residual").replace("residual", "residual before"))
         if changed:
-            _by_direction(axes[second], after, over)
+            draw_by_direction(axes[second], after, over)
             axes[second].set_ylim(axes[first].get_ylim())
-            axes[second].set_ylabel(_label(after, "residual").replace("residual", "residual after"))
+            left = label_of(after, "residual").replace("residual", "residual after")
+            axes[second].set_ylabel(left)
         else:
             axes[second].set_axis_off()
-    _direction_legend(axes["v0"])
+    direction_legend(axes["v0"])
 
 
-def _ladder(ax: Axes, diagnosis: Diagnosis) -> None:
-    names = [
-        "your model, re-estimated" if r.added is None else f"+ {r.said}" for r in diagnosis.rungs
-    ]
-    errors = [100 * r.fit.check_error for r in diagnosis.rungs]
+def draw_ladder(ax: Axes, rungs: Sequence[Rung | ArmRung], floor: float, *, of: str) -> None:
+    """Check errors of the rungs as bars, with the noise floor; of: what they are relative to."""
+    names = ["your model, re-estimated" if r.added is None else f"+ {r.said}" for r in rungs]
+    errors = [100 * r.fit.check_error for r in rungs]
     rows = np.arange(len(names))
     colors = [BEFORE] + [AFTER] * (len(names) - 1)
     ax.barh(rows, errors, height=0.62, color=colors)
-    floor = 100 * diagnosis.floor.value
+    floor = 100 * floor
     for y, error in zip(rows, errors, strict=True):
         # the label stands clear of the floor's line
         end = max(error, floor) if error > floor - 0.12 * max(errors) else error
@@ -192,4 +198,4 @@ def _ladder(ax: Axes, diagnosis: Diagnosis) -> None:
     ax.set_yticks(rows, names)
     ax.invert_yaxis()
     ax.set_xlim(0, 1.15 * max(*errors, floor))
-    ax.set_xlabel("check error (% of the measured force)")
+    ax.set_xlabel(f"check error (% of {of})")

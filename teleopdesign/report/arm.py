@@ -23,7 +23,7 @@ from .figures import ladder_figure
 from .page import DIGITS, Page, bounded, page_of, version
 from .parameter_table import AddedEffect
 from .provenance import ChannelRow, RecordRow, channel_rows, record_rows
-from .words import judged_on, listed, percent
+from .words import judged_on, listed, percent, sentence_of
 from .write import Figures, figures_of, rendered
 
 
@@ -66,6 +66,7 @@ class ArmPage:
     after: float
     floor: float
     left: float
+    learnable: str
     ladder: tuple[LadderRow, ...]
     added: tuple[AddedEffect, ...]
     joints: tuple[JointPart, ...]
@@ -108,6 +109,7 @@ def arm_page_of(
         after=diagnosis.after.check_error,
         floor=diagnosis.floor,
         left=diagnosis.left,
+        learnable=sentence_of(diagnosis.learnable),
         ladder=_ladder(diagnosis),
         added=(),  # each has its card in the part of its joint
         joints=tuple(

@@ -7,8 +7,10 @@ import gzip
 import json
 import shutil
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from arms.arm_simulator import random_arm, write_experiment
@@ -20,6 +22,8 @@ from teleopdesign.diagnose.arms.answer import arm_answer, write_arm_answer
 from teleopdesign.diagnose.arms.fit import estimate_arm
 from teleopdesign.diagnose.arms.prepared import inertias_at, prepare_arm
 from teleopdesign.diagnose.arms.restored import restored_arm
+from teleopdesign.diagnose.learnable import learnable
+from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.diagnose.search_plan import QUICK
 from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ExperimentError
@@ -97,6 +101,49 @@ def test_the_page_has_a_part_for_each_joint(answer, tmp_path):
     for place in ("ladder", "joints", "joint1-where", "joint2-candidates", "links", "provenance"):
         assert html.count(f'id="{place}"') == 1
     assert "lacks <b>spring</b> at joint2" in html
+
+
+def test_what_trees_learn_is_said_of_each_joint_and_of_the_arm(answer, folder):
+    said = json.loads(answer.read_text())
+    boxes = [said["joints"][j]["black_box"] for j in ("joint1", "joint2")]
+    assert said["black_box"]["left"] == pytest.approx(
+        np.sqrt(np.mean([box["left"] ** 2 for box in boxes]))
+    )
+    assert said["learnable"] <= said["black_box"]["left"]
+    text = str(restored_arm(load_answer(answer), td.load_experiment(folder)))
+    assert text.count("black box: ") == 2
+
+
+def test_a_force_by_another_joint_s_motion_is_learned_from_that_motion_only(folder):
+    """What is added to the command of joint 2 follows the place of joint 1."""
+    experiment = td.load_experiment(folder)
+    prepared = prepare_arm(experiment)
+    beside = prepared.beside("joint2")
+    stretches = []
+    for stretch, (other,) in zip(prepared.joints["joint2"].stretches, beside, strict=True):
+        motion = stretch.motion
+        pushed = motion.command + 3.0 * np.sign(other.position)
+        stretches.append(replace(stretch, motion=replace(motion, command=pushed)))
+    records = replace(prepared.joints["joint2"], stretches=tuple(stretches))
+    model = td.Model({"joint2": td.Model.from_experiment(experiment).bodies["joint2"]})
+    fit = estimate_from_starts(model.with_links(prepared.initial), records)
+    with_other = learnable(fit.model, records, beside=beside)
+    by_itself = learnable(fit.model, records)
+    assert with_other is not None and by_itself is not None
+    assert with_other.left == by_itself.left
+    assert with_other.part > 2.0 * by_itself.part
+
+
+def test_the_figure_has_a_row_for_each_joint_and_the_ladder(folder, answer):
+    figure = restored_arm(load_answer(answer), td.load_experiment(folder)).plot()
+    labels = [axes.get_ylabel().partition("\n")[0] for axes in figure.axes]
+    assert {"joint1", "joint2"} <= set(labels)
+    assert "check error (% of" in figure.axes[-1].get_xlabel()
+    assert [t.get_text() for t in figure.axes[-1].get_yticklabels()] == [
+        "your model, re-estimated",
+        "+ spring at joint2",
+    ]
+    plt.close(figure)
 
 
 @pytest.mark.parametrize(

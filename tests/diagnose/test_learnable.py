@@ -15,13 +15,13 @@ from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.learnable import (
     Learnable,
-    _inputs,
     error_near_reversals,
     learnable,
     learnable_data,
     learnable_from,
 )
 from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.tree_inputs import inputs_along
 from teleopdesign.measurement.reversals import near_reversals
 
 
@@ -83,8 +83,8 @@ def test_a_run_that_never_comes_back_tells_the_trees_no_clock(prepared):
     way = np.linspace(0.0, 1.0, n)
     once = replace(motion, position=way, direction=np.ones(n, dtype=np.int8))
     # velocity, acceleration and direction are left: place and time since a start tell the time
-    assert _inputs(once, [once]).shape == (n, 3)
-    assert _inputs(motion, [motion]).shape == (n, 6)
+    assert inputs_along([once])[0].shape == (n, 3)
+    assert inputs_along([motion])[0].shape == (n, 6)
 
 
 def test_the_same_seed_gives_the_same_figure(diagnosis, prepared):

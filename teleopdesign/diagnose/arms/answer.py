@@ -25,6 +25,7 @@ from ..answer import (
 )
 from ..answers.bodies import model_data
 from ..answers.fingerprint import experiment_data
+from ..learnable import learnable_data
 from ..record_offsets import along_with_offsets
 from ..record_shift import shift_data
 from .diagnosis import ArmDiagnosis, ArmRung
@@ -58,7 +59,7 @@ def arm_answer(diagnosis: ArmDiagnosis) -> dict[str, Any]:
         "set_aside": [row for d in joints for row in set_aside_rows(d)],
         "record_shift": shifts,
         "model_parameters": _parameters(diagnosis),
-        "learnable": None,  # trees learn no coupled joints
+        **learnable_data(diagnosis.learnable, None),
         "left_over_noise_floors": plain(diagnosis.left),
         "at_bound": [n for d in joints for n in d.after.at_bound],
         "models": {

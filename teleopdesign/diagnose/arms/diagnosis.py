@@ -4,15 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ...by_value import ByValue
 from ...measurement.experiment import Experiment
 from ..candidates import Candidate
 from ..diagnosis import Diagnosis
-from ..ladder_text import ladder_html, sentence
+from ..ladder_text import ladder_html, refused_lines, said_of_added, sentence
+from ..learnable import Learnable
 from ..ranking import named_instead
+from ..record_shift import shifts_of
+from ..rung import Rung
 from .fit import ArmFit, error_over_joints
 from .prepared import PreparedArm
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +66,11 @@ class ArmDiagnosis(ByValue):
         """The model with every accepted effect."""
         return self.rungs[-1].fit
 
+    def _at_its_joint(self, added: Candidate) -> Rung:
+        """The rung of the joint's own ladder that added the effect."""
+        rungs = self.joints[added.at].rungs
+        return next(r for r in rungs if r.added is not None and r.added.key == added.key)
+
     @property
     def missing(self) -> tuple[Candidate, ...]:
         """Effects that can be named, in the order added."""
@@ -76,6 +88,22 @@ class ArmDiagnosis(ByValue):
         return max(d.left for d in self.joints.values())
 
     @property
+    def learnable(self) -> Learnable | None:
+        """What could be learned of what all joints leave; None without the extra `learn`.
+
+        Errors over all joints, as those of the ladder; where it lies, each joint says.
+        """
+        boxes = {j: d.learnable for j, d in self.joints.items() if d.learnable is not None}
+        if len(boxes) < len(self.joints):
+            return None
+        # trees that make a joint worse are not used there
+        return Learnable(
+            left=error_over_joints({j: b.left for j, b in boxes.items()}),
+            error=error_over_joints({j: min(b.error, b.left) for j, b in boxes.items()}),
+            alone=error_over_joints({j: b.alone for j, b in boxes.items()}),
+        )
+
+    @property
     def left_out(self) -> tuple[str, ...]:
         """What was not searched at its joints though it usually is, in words."""
         return tuple(dict.fromkeys(words for d in self.joints.values() for words in d.left_out))
@@ -89,6 +117,12 @@ class ArmDiagnosis(ByValue):
         numbers = zip(self.after.links, self.link_errors, base.units, strict=True)
         return dict(zip(base.names, numbers, strict=True))
 
+    def plot(self) -> Figure:
+        """The figure: of each joint forces and residual, and the ladder of the arm (a Figure)."""
+        from ...plot.arm_diagnosis import plot_arm_diagnosis
+
+        return plot_arm_diagnosis(self)
+
     def _repr_html_(self) -> str:
         said = "; ".join(f"{joint}: {sentence(one)}" for joint, one in self.joints.items())
         return ladder_html(self.rungs, floor=self.floor, note=said)
@@ -100,20 +134,30 @@ class ArmDiagnosis(ByValue):
             name = "(your model, re-estimated)" if rung.added is None else f"+ {rung.said}"
             errors = f"{100 * rung.fit.fit_error:>9.2f}%{100 * rung.fit.check_error:>12.2f}%"
             lines.append(f"{name:<42}{errors}")
+            if rung.added is not None:
+                lines += said_of_added(self.joints[rung.added.at], self._at_its_joint(rung.added))
         lines.append(f"{'noise floor':<42}{'':>10}{100 * self.floor:>12.2f}%")
         lines += ["", f"{'joint':<20}{'before':>10}{'after':>10}{'floor':>10}"]
         for j, diagnosis in self.joints.items():
             before, after = self.before.check_errors[j], self.after.check_errors[j]
             shown = "".join(f"{100 * e:>9.2f}%" for e in (before, after, diagnosis.floor.value))
             lines.append(f"{j:<20}{shown}")
-        lines.append("")
         for j, diagnosis in self.joints.items():
-            lines.append(f"{j}: {sentence(diagnosis)}")
-        aside = [str(one) for d in self.joints.values() for one in d.set_aside]
-        untold = [str(one) for d in self.joints.values() for one in d.untold]
-        lines += [f"cannot be told: {one}" for one in untold]
-        lines += [f"set aside: {one}" for one in aside]
-        lines += [f"left out: {words}" for words in self.left_out]
+            lines += ["", *self._said_of(j, diagnosis)]
+        lines += ["", *(f"left out: {words}" for words in self.left_out)]
         names = ", ".join(map(str, self.missing))
-        lines += ["", f"verdict: {self.verdict}{': ' + names if names else ''}"]
+        lines += [f"verdict: {self.verdict}{': ' + names if names else ''}"]
         return "\n".join(lines)
+
+    def _said_of(self, joint: str, diagnosis: Diagnosis) -> list[str]:
+        """What is said of one joint: its verdict, and what is left there."""
+        lines = [f"{joint}: {sentence(diagnosis)}"]
+        shifts = shifts_of(diagnosis.model, diagnosis.prepared.stretches)
+        lines += [f"  {shift}" for shift in shifts]
+        if (near := diagnosis.near_reversals) is not None:
+            lines.append(f"  check error {near}")
+        if diagnosis.learnable is not None:
+            lines.append(f"  black box: {diagnosis.learnable}")
+        if diagnosis.more_is_missing:
+            lines += [f"  {line}" for line in refused_lines(diagnosis)]
+        return [*lines, *(f"  set aside: {one}" for one in diagnosis.set_aside)]

@@ -7,9 +7,10 @@ are looked at again with what it then says of the links.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from ...effects import SIGNALS, Effect
 from ...measurement.experiment import Experiment
 from ...model import Model
 from ..conclusion import conclude
@@ -18,6 +19,8 @@ from ..diagnosis import Diagnosis, SetAside
 from ..fit import Fit, estimate, fit_squares
 from ..ladder import climb, saying_what_was_tried
 from ..ladder_state import LadderSearch, LadderState, look, trying
+from ..moves import add
+from ..noise_floor import noise_floor
 from ..prepare import Prepared
 from ..rung import Rung
 from ..search_plan import PLAN, SearchPlan
@@ -28,6 +31,8 @@ from .prepared import PreparedArm, alone, prepare_arm
 
 #: why an effect that one joint's records supported is not there
 NO_HELP = "it helps no more with all joints estimated together"
+#: the same of one that passes on less of what sensors read: error and noise floor fall together
+NO_MORE_THAN_NOISE = "it weakens the noise of the sensors and explains no more than that"
 
 
 @dataclass(frozen=True)
@@ -70,9 +75,9 @@ def find_missing_in_arm(
         stated = trying(among, stated)
     said("forces of the links along the measured motion")
     prepared = prepare_arm(experiment, seed=seed)
+    known = stated.known if prepared.base is None else _beyond_links(stated.known)
     models = {
-        j: Model({j: body}, stated.known).with_links(prepared.initial)
-        for j, body in stated.bodies.items()
+        j: Model({j: body}, known).with_links(prepared.initial) for j, body in stated.bodies.items()
     }
     said("re-estimating the model")
     first = estimate_arm(models, prepared)
@@ -99,6 +104,20 @@ def find_missing_in_arm(
     return with_final_bodies(replace(diagnosis, joints=limited), motors)
 
 
+def _beyond_links(known: Mapping[str, Effect]) -> dict[str, Effect]:
+    """The effects that base parameters do not take up: that of each motor's inertia is estimated.
+
+    A force by the acceleration of the joint alone would be told from it by nothing.
+    """
+    inertia = {SIGNALS["acceleration"]}
+    return {
+        name: effect
+        for name, effect in known.items()
+        if effect.role != "force"
+        or effect.expression().free_symbols & set(SIGNALS.values()) != inertia
+    }
+
+
 def _begun(name: str, search: LadderSearch, prepared: Prepared, model: Model) -> _Joint:
     """A joint whose ladder begins, with what the others say of the links now."""
     search = replace(search, whole=prepared, prepared=prepared)
@@ -121,6 +140,9 @@ def _climb(joints: dict[str, _Joint], prepared: PreparedArm) -> list[str]:
             fresh = with_known(records, {n: x.state.fit for n, x in joints.items()}, prepared, j)
             joints[j] = _begun(j, here.search, fresh, here.state.fit.model)
             continue
+        astray = _astray(here)
+        if astray is not None:
+            here = _begun_again(joints, astray, prepared, j)
         state, _ = climb(here.search, here.state, _as_they_are)
         joints[j] = replace(here, state=state)
         waiting.remove(j)
@@ -129,6 +151,43 @@ def _climb(joints: dict[str, _Joint], prepared: PreparedArm) -> list[str]:
             for other in waiting:
                 joints[other] = replace(joints[other], is_stale=True)
     return order
+
+
+def _astray(joint: _Joint) -> Model | None:
+    """The model with the first effect, where that takes most away: the links were led astray.
+
+    None: they were not, or the other joints say nothing of them
+    """
+    if len(joint.state.rungs) > 1 or not joint.state.fit.model.links:
+        return None
+    moved = add(joint.search, joint.state)
+    if moved is None or fit_squares(moved.fit) > (1.0 - joint.search.plan.astray) * fit_squares(
+        joint.state.fit
+    ):
+        return None
+    return moved.fit.model
+
+
+def _begun_again(
+    joints: dict[str, _Joint], model: Model, prepared: PreparedArm, joint: str
+) -> _Joint:
+    """A joint whose ladder begins anew, with what the others say of the links beside its effect.
+
+    joints: those that wait get the model that they have beside it;  model: of `_astray`
+    What they said before was said of links that had to stand for that effect; a shift of their
+    records that was held at none then is estimated again.
+    """
+    models = {n: x.state.fit.model.with_record_shift({}) for n, x in joints.items()}
+    arm = estimate_arm({**models, joint: model.with_record_shift({})}, prepared)
+    for n, other in joints.items():
+        if n != joint and len(other.state.rungs) == 1:
+            rungs = [replace(other.state.rungs[0], fit=arm.fits[n])]
+            joints[n] = replace(other, state=other.state.with_rungs(rungs))
+    here = joints[joint]
+    records = {**arm.prepared, joint: here.search.prepared}
+    fresh = with_known(records, {**arm.fits, joint: here.state.fit}, prepared, joint)
+    late = arm.fits[joint].model.record_shift
+    return _begun(joint, here.search, fresh, here.state.fit.model.with_record_shift(late))
 
 
 def _as_they_are(_: LadderSearch, state: LadderState) -> tuple[Rung, ...]:
@@ -159,23 +218,44 @@ def _rungs(
     for j in order:
         joint = joints[j]
         waiting: list[ArmRung] = []
-        kept = 1
+        kept, why = 1, ""
         for i, rung in enumerate(joint.state.rungs[1:], 1):
             last = waiting[-1] if waiting else rungs[-1]
             models = {n: f.model for n, f in last.fit.fits.items()} | {j: rung.fit.model}
             fit = estimate_arm(models, prepared)
             waiting.append(ArmRung(rung.added, fit, rung.instead_of))
-            if fit.check_error > last.fit.check_error:
+            why = _refusal(joint, last.fit, fit)
+            if why:
                 break
             # of two that mask each other only the second helps: both are there then
             before, after = rungs[-1].fit.fits[j], fit.fits[j]
             if is_better(before, after, joint.state.floor, criteria=joint.search.criteria):
                 rungs, waiting, kept = [*rungs, *waiting], [], i + 1
-        joints[j] = _without(joint, kept, waiting)
+        joints[j] = _without(joint, kept, waiting, why or NO_HELP)
     return tuple(rungs)
 
 
-def _without(joint: _Joint, kept: int, refused: Sequence[ArmRung]) -> _Joint:
+def _refusal(joint: _Joint, before: ArmFit, after: ArmFit) -> str:
+    """Why an effect is not there with all joints estimated together; "": it is.
+
+    One that passes on less of what sensors read must explain more than that: the hidden tip of a
+    structure follows the force that was measured, and with it a part of its noise.
+    """
+    if after.check_error > before.check_error:
+        return NO_HELP
+    records, name = joint.search.prepared, joint.name
+    sensors, there = (
+        noise_floor(fit.fits[name].model, records, joint.search.generator()).drawn
+        for fit in (before, after)
+    )
+    kept = 1.0 - joint.search.criteria.relevant
+    if there**2 >= kept * sensors**2:
+        return ""
+    left = (after.check_errors[name] / before.check_errors[name]) ** 2
+    return "" if left <= kept * (there / sensors) ** 2 else NO_MORE_THAN_NOISE
+
+
+def _without(joint: _Joint, kept: int, refused: Sequence[ArmRung], why: str) -> _Joint:
     """The joint with the first rungs of its ladder; the others are set aside.
 
     refused: what was tried of the others with all joints estimated again
@@ -185,7 +265,7 @@ def _without(joint: _Joint, kept: int, refused: Sequence[ArmRung]) -> _Joint:
         return joint
     errors = {r.added: r.fit.check_errors[joint.name] for r in refused}
     aside = [
-        SetAside(r.added, errors.get(r.added, r.fit.check_error), NO_HELP)
+        SetAside(r.added, errors.get(r.added, r.fit.check_error), why)
         for r in state.rungs[kept:]
         if r.added is not None
     ]
@@ -201,7 +281,7 @@ def _conclude(
 ) -> ArmDiagnosis:
     """The verdict on each joint with the final links, and on the arm."""
     last = rungs[-1].fit
-    diagnoses = {j: _concluded(joints[j], last.fits[j]) for j in prepared.joints}
+    diagnoses = {j: _concluded(joints[j], last.fits[j], prepared) for j in prepared.joints}
     verdicts = {d.verdict for d in diagnoses.values()}
     whole = "undecided"
     if "effects_missing" in verdicts:
@@ -212,7 +292,7 @@ def _conclude(
     return ArmDiagnosis(experiment, prepared, whole, rungs, diagnoses, errors)
 
 
-def _concluded(joint: _Joint, fit: Fit) -> Diagnosis:
+def _concluded(joint: _Joint, fit: Fit, prepared: PreparedArm) -> Diagnosis:
     """The diagnosis of one joint, its last rung with the final links."""
     rungs = (*joint.state.rungs[:-1], replace(joint.state.rungs[-1], fit=fit))
-    return conclude(joint.search, joint.state, rungs, learn=False)
+    return conclude(joint.search, joint.state, rungs, beside=prepared.beside(joint.name))

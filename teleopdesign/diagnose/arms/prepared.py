@@ -42,6 +42,12 @@ class PreparedArm(ByValue):
         """Base parameters by the values that the arm's description gives."""
         return () if self.base is None else tuple(float(x) for x in self.base.initial)
 
+    def beside(self, joint: str) -> list[tuple[Motion, ...]]:
+        """Of each stretch of a joint, the motions of the other joints at the same rows."""
+        others = [p.stretches for j, p in self.joints.items() if j != joint]
+        count = len(self.joints[joint].stretches)
+        return [tuple(stretches[i].motion for stretches in others) for i in range(count)]
+
 
 def alone(experiment: Experiment, joint: str) -> Experiment:
     """The experiment as one on this joint by itself."""

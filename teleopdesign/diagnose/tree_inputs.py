@@ -1,0 +1,59 @@
+"""What boosted trees are told of a motion: nothing that tells the clock, and no force."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..measurement.filtering import Array
+from ..measurement.motion import Motion
+from ..measurement.reversals import since_reversal
+from .candidates import tells_place_from_time
+
+#: s without a told motion after which the same direction counts as a new start
+REST = 0.5
+
+
+def inputs_along(motions: Sequence[Motion], beside: Sequence[Sequence[Motion]] = ()) -> list[Array]:
+    """What the trees are told (n, k), for each motion.
+
+    beside: for each motion, those of an arm's other joints at the same times
+    """
+    inputs = [_of_itself(m, [o for o in motions if o.body == m.body]) for m in motions]
+    if not beside:
+        return inputs
+    with_place = [tells_place_from_time(of_one) for of_one in zip(*beside, strict=True)]
+    return [
+        np.column_stack([mine, *_of_others(others, with_place)])
+        for mine, others in zip(inputs, beside, strict=True)
+    ]
+
+
+def _of_itself(motion: Motion, motions: Sequence[Motion]) -> Array:
+    """Of the body itself (n, k); NaN before the first motion that can be told.
+
+    motions: all of that body. Where none comes to a place again, or none turns round, place or
+    time since a reversal would tell the clock, and with it the command that was played by it
+    """
+    since = since_reversal(
+        motion.direction, motion.position, sample_time=motion.sample_time, rest=REST
+    )
+    columns: list[Array] = [motion.velocity, motion.acceleration, motion.direction.astype(float)]
+    if tells_place_from_time(motions):
+        columns.append(motion.position)
+    if any({-1, 1} <= set(m.direction.tolist()) for m in motions):
+        columns += [np.where(since.known, x, np.nan) for x in (since.time, since.travel)]
+    return np.column_stack([*columns, *motion.further.values()])
+
+
+def _of_others(motions: Sequence[Motion], with_place: Sequence[bool]) -> list[Array]:
+    """Of the other joints at the same times, columns (n,).
+
+    with_place: whether the place of each tells no clock
+    """
+    columns: list[Array] = []
+    for motion, has_place in zip(motions, with_place, strict=True):
+        columns += [motion.velocity, motion.acceleration, motion.direction.astype(float)]
+        columns += [motion.position] * has_place
+    return columns
