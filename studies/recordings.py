@@ -66,6 +66,17 @@ def row_of(
     find = find_missing_in_arm if is_arm else td.find_missing
     found: Any = find(experiment, plan=plan, among=among)
     taken = time.perf_counter() - wall, time.process_time() - processor
+    return described(found, output, name) | {
+        "seconds": {"wall": taken[0], "processor": taken[1]},
+        "only": list(only),
+        "quick": quick,
+    }
+
+
+def described(found: Any, output: Path, name: str) -> dict[str, Any]:
+    """What a diagnosis, or that of an arm, says of a recording; its figure beside the table."""
+    is_arm, learned = found.experiment.arm is not None, found.learnable
+    save_figure(found.plot(), output / name)
     row = {
         "verdict": found.verdict,
         "ladder": [
@@ -73,22 +84,16 @@ def row_of(
             for rung in found.rungs
         ],
         "missing": [str(c) for c in found.missing],
-        "seconds": {"wall": taken[0], "processor": taken[1]},
-        "only": list(only),
-        "quick": quick,
-        "text": str(found).replace(str(experiment.folder), name),
-    }
-    if is_arm:
-        return row | {"floor": found.floor, "trees": None}
-    groups = [[str(c) for c in group] for group in found.groups]
-    learned = found.learnable
-    save_figure(found.plot(), output / name)
-    left = where_it_fails(found.after, found.prepared, found.floor)[:SENTENCES]
-    return row | {
-        "floor": found.floor.value,
-        "indistinguishable": groups,
+        "text": str(found).replace(str(found.experiment.folder), name),
+        "floor": found.floor if is_arm else found.floor.value,
         "trees": None if learned is None else learned.alone,
         "learnable": None if learned is None else learned.error,
+    }
+    if is_arm:
+        return row
+    left = where_it_fails(found.after, found.prepared, found.floor)[:SENTENCES]
+    return row | {
+        "indistinguishable": [[str(c) for c in group] for group in found.groups],
         "cannot_tell": [str(one) for one in found.untold],
         "left": [one.sentence for one in left],
     }

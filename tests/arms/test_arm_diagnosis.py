@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from shared_data import shared_folder
 
 import teleopdesign as td
 from teleopdesign.cli import main
+from teleopdesign.commands.diagnose import _next_on_joints
 from teleopdesign.diagnose.arms.fit import ArmFit, error_over_joints, estimate_arm
 from teleopdesign.diagnose.arms.prepared import PreparedArm, prepare_arm
 from teleopdesign.diagnose.error import force_error
@@ -71,10 +73,10 @@ def test_friction_of_every_joint_is_found_with_links_that_nobody_knows(tmp_path,
 def test_a_hidden_effect_is_named_at_its_joint_and_the_answer_recomputes(tmp_path):
     _, folder = made(tmp_path, 0, 2, ("stribeck", 1, 1.0))
     answer, predictions = tmp_path / "answer.json", tmp_path / "predictions.csv"
-    assert (
-        main(["diagnose", str(folder), "--json", str(answer), "--predictions", str(predictions)])
-        == 0
-    )
+    figure = tmp_path / "figure.png"
+    written = ["--json", str(answer), "--predictions", str(predictions), "--figure", str(figure)]
+    assert main(["diagnose", str(folder), *written]) == 0
+    assert figure.stat().st_size > 10_000
     said = json.loads(answer.read_text())
     assert said["verdict"] == "effects_missing"
     assert said["missing"] == [{"effect": "stribeck", "at": "joint2"}]
@@ -97,6 +99,25 @@ def test_a_hidden_effect_is_named_at_its_joint_and_the_answer_recomputes(tmp_pat
         assert error == pytest.approx(own[joint]["check_error"], rel=0.05)
     squares = [one["check_error"] ** 2 for one in own.values()]
     assert said["ladder"][-1]["check_error"] == pytest.approx(np.sqrt(np.mean(squares)))
+
+
+def test_what_helps_on_at_a_joint_is_said_with_the_answer_and_not_searched_anew():
+    def joint(verdict, groups, more):
+        return SimpleNamespace(verdict=verdict, groups=groups, more_is_missing=more)
+
+    joints = {
+        "joint1": joint("model_adequate", (), False),
+        "joint2": joint("effects_missing", (), True),
+        "joint3": joint("undecided", ("bias", "spring"), True),
+    }
+    assert _next_on_joints(SimpleNamespace(joints=joints), "answer.json") == [
+        "",
+        "where it fails: teleopdesign describe answer.json --body joint2",
+        "which of them is it: teleopdesign next answer.json --body joint3",
+        "where it fails: teleopdesign describe answer.json --body joint3",
+    ]
+    adequate = SimpleNamespace(joints={"joint1": joints["joint1"]})
+    assert _next_on_joints(adequate, "answer.json") == []
 
 
 @pytest.mark.slow
