@@ -23,43 +23,36 @@ if TYPE_CHECKING:
 
     from ..diagnose.arms.diagnosis import ArmDiagnosis
 
-PANELS = ("force", "time", "velocity")
-#: inches: of a joint's row, of what stands around all rows, of a rung of the ladder
-ROW, AROUND, RUNG = 1.45, 1.1, 0.22
+#: inches: of a joint's row, of what stands around all rows; of the ladder, and each of its rungs
+ROW, AROUND, LADDER, RUNG = 1.4, 0.6, 0.75, 0.22
 
 
 def plot_arm_diagnosis(diagnosis: ArmDiagnosis) -> Figure:
     """Of each joint forces, residual over time and over velocity; below, the ladder of the arm.
 
-    Drawn from the check records' low-passed forces (fit records where there is no check record),
-    by the models in which all joints agree on the links.
+    Drawn from the check records' low-passed forces (fit records where there is no check record), by
+    the models in which all joints agree on the links; over time, the first of these records.
     """
     import matplotlib.pyplot as plt
 
     joints, changed = list(diagnosis.joints), len(diagnosis.rungs) > 1
-    below = 0.35 + RUNG * len(diagnosis.rungs)
+    height, below = ROW * len(joints) + AROUND, LADDER + RUNG * len(diagnosis.rungs)
     with plt.style.context(house_style()):
-        figure, axes = plt.subplot_mosaic(
-            [[f"{j} {what}" for what in PANELS] for j in joints] + [["ladder"] * 3],
-            figsize=(7.16, ROW * len(joints) + AROUND + below),
-            height_ratios=[ROW] * len(joints) + [below],
-            width_ratios=[1.25, 1.25, 1.0],
-        )
-        for joint in joints:
-            row = [axes[f"{joint} {what}"] for what in PANELS]
-            _joint(row, diagnosis, joint, changed=changed)
-        first, last = joints[0], joints[-1]
-        for what in ("force", "time"):
-            axes[f"{first} {what}"].legend(
-                loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=3
-            )
-        direction_legend(axes[f"{first} velocity"])
-        axes[f"{last} force"].set_xlabel("time (s)")
-        axes[f"{last} time"].set_xlabel("time (s)")
+        figure = plt.figure(figsize=(7.16, height + below), layout="constrained")
+        # names of effects are long: they take no room from the joints
+        upper, lower = figure.subfigures(2, 1, height_ratios=[height, below])
+        axes = upper.subplots(len(joints), 3, squeeze=False, width_ratios=[1.25, 1.25, 1.0])
+        for joint, row in zip(joints, axes, strict=True):
+            _joint(list(row), diagnosis, joint, changed=changed)
+        for ax in axes[0, :2]:
+            ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.1), borderaxespad=0.1, ncols=3)
+        direction_legend(axes[0, 2])
+        for ax in axes[-1, :2]:
+            ax.set_xlabel("time (s)")
         # anybody's text: no formula in it
-        figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
+        upper.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
         of = "the measured force, root of the mean square over joints"
-        draw_ladder(axes["ladder"], diagnosis.rungs, diagnosis.floor, of=of)
+        draw_ladder(lower.subplots(), diagnosis.rungs, diagnosis.floor, of=of)
     return figure
 
 
@@ -70,6 +63,7 @@ def _joint(row: list[Any], diagnosis: ArmDiagnosis, joint: str, *, changed: bool
         for fit in (diagnosis.before, diagnosis.after)
     )
     force, time, velocity = row
+    every, before, after = after, _first_record(before), _first_record(after)
     draw_over_time(force, before, "measured", MEASURED, "measured", 1.4)
     draw_over_time(force, after, "model", AFTER, "model", 0.6)
     unit = label_of(before, "measured").removeprefix("measured ")
@@ -78,10 +72,15 @@ def _joint(row: list[Any], diagnosis: ArmDiagnosis, joint: str, *, changed: bool
     if changed:
         draw_over_time(time, after, "residual", AFTER, "after", 0.6)
     time.set_ylabel(label_of(before, "residual"))
-    draw_by_direction(velocity, after, "velocity")
+    draw_by_direction(velocity, every, "velocity")
     velocity.set_ylim(time.get_ylim())
     velocity.set_ylabel("")
-    velocity.set_xlabel(label_of(after, "velocity"))
+    velocity.set_xlabel(label_of(every, "velocity"))
     ends = (diagnosis.before, diagnosis.after)[0 if changed else 1 :]
     errors = " to ".join(f"{100 * fit.check_errors[joint]:.2f} %" for fit in ends)
     time.set_title(errors, loc="left", fontsize="small", pad=2)
+
+
+def _first_record(data: Any) -> Any:
+    """The rows of the first record: over time, several would lie on each other."""
+    return data.isel(sample=data["record"].values == data["record"].values[0])
