@@ -40,7 +40,8 @@ def plot_arm_diagnosis(diagnosis: ArmDiagnosis) -> Figure:
     with plt.style.context(house_style()):
         figure = plt.figure(figsize=(7.16, height + below), layout="constrained")
         # names of effects are long: they take no room from the joints
-        upper, lower = figure.subfigures(2, 1, height_ratios=[height, below])
+        parts: Any = figure.subfigures(2, 1, height_ratios=[height, below])
+        upper, lower = parts
         axes = upper.subplots(len(joints), 3, squeeze=False, width_ratios=[1.25, 1.25, 1.0])
         for joint, row in zip(joints, axes, strict=True):
             _joint(list(row), diagnosis, joint, changed=changed)
