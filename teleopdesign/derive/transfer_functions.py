@@ -75,7 +75,7 @@ def transfer_functions(diagram: Diagram) -> TransferFunctions:
 class Case:
     """Input, output and prescribed motions of one transfer function; other inputs are zero.
 
-    given: motions that are prescribed, as in `transfer`;  text: for a reader
+    given: prescribed motions, as in `transfer`;  text: for a reader
     """
 
     diagram: Diagram

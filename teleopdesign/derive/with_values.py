@@ -27,7 +27,7 @@ def with_values(
 ) -> tuple[sp.Expr, LinearBlocks]:
     """Transfer function in `realise.lti.S` with numbers, and the linear forms of its blocks.
 
-    One degree of freedom. given: motions that are prescribed
+    One degree of freedom. given: prescribed motions
     speed: m/s or rad/s, at which smoothed friction and schedules are frozen
     held: whether controllers in discrete time take part, see `linear_blocks`
     """

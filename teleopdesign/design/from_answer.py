@@ -39,7 +39,7 @@ def read_answer(
 ) -> DiagnosedModel:
     """The model of an answer that `teleopdesign diagnose --json` wrote for that experiment.
 
-    joint: of an arm, which is taken out of it: its own verdict, with the arm's last model
+    joint: of an arm, which is taken out of it: its verdict, with the arm's last model
 
     raises ExperimentError: no such file, no such answer, one of another experiment, or an effect
         that is not known

@@ -45,7 +45,7 @@ def haptic_interface(
     passivity: Controller | AnyBlock | None = None,
     analog: Collection[str] = (),
 ) -> Diagram:
-    """Wire a haptic interface; the diagram has no block that is not given.
+    """Wire a haptic interface; only the blocks named are in the diagram.
 
     device, hand: Z_M and Z_H, impedances relative to position;  cancellation: C, from the motion
     to a force;  force_feedback: H, from the force error R_D - R_M to a force;

@@ -31,7 +31,7 @@ class Grid:
 
     @staticmethod
     def of(amplitude: Amplitude, frequency: float | Sequence[float] | np.ndarray) -> Grid:
-        """From what a user gives; raises ModelError: not positive numbers."""
+        """From a user's numbers; raises ModelError: not positive numbers."""
         f = _positive("frequency", frequency)
         if callable(amplitude):
             return Grid(f, _positive("amplitude", amplitude(f)), True)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .proposal import Proposal
     from .remedies import Remedy
 
-#: pairs of rivals that are told one by one in the sentence; more are summed up
+#: pairs of rivals that are named one by one in the sentence; more are summed up
 FEW = 2
 
 

@@ -161,7 +161,7 @@ def shows(
 
 
 def claim(number: int, *, paper: Paper, place: str, words: str, see: tuple[int, ...]) -> Statement:
-    """A statement that only the paper's own experiment or text can support."""
+    """A statement that only the paper's experiment or text can support."""
     return Statement(number, paper, place, words, "", "claim of the paper", None, see=see)
 
 

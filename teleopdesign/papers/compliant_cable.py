@@ -23,7 +23,7 @@ f_D, sigma, f_1, f_2, k, c, A, u = sp.symbols("f_D sigma_D f_1 f_2 k c A u", pos
 U = sigma * A / f_D
 W = 4 * f_D * (A - f_D / sigma * sp.tanh(U))  # of a cycle; shown to be the loop's in `rising_gain`
 SHARE = 1 - sp.tanh(u) / u
-CLAMPED = W - 4 * f_1 * A  # given out a cycle, link stuck: the cable returns what it takes
+CLAMPED = W - 4 * f_1 * A  # released a cycle, link stuck: the cable returns what it takes
 FREE = CLAMPED - 4 * f_2 * (A - f_2 / k)  # link sliding, A > f_2/k
 
 
@@ -101,12 +101,12 @@ def clamped_link() -> ProofSteps:
     """What is necessary where the environment may clamp the link; for a limited stroke, of plain
     cycles: see P56.
     """
-    given_out = CLAMPED.subs(A, u * f_D / sigma)
+    released = CLAMPED.subs(A, u * f_D / sigma)
     return proof(
         rising_gain(),
         Equal(
             "given out a cycle of stroke A, cable energy returns",
-            given_out,
+            released,
             4 * (u * f_D / sigma) * (f_D * SHARE - f_1),
         ),
     )
@@ -121,7 +121,7 @@ def clamped_link() -> ProofSteps:
     "sigma_D <= k sqrt(3 f_1 f_D)/f_2",
 )
 def free_link() -> ProofSteps:
-    """Free link held by its own friction only, plain quasi-static cycles of the motor of any
+    """Free link held by its friction only, plain quasi-static cycles of the motor of any
     amplitude: the cable's stiffness limits the compensator's. Other motions: see P56.
     """
     spare, more, soft, over = sp.symbols("spare more soft over", nonnegative=True)
@@ -178,7 +178,7 @@ def free_link() -> ProofSteps:
 def relieving_the_far_contact() -> ProofSteps:
     """Over-compensating the motor's contact to relieve the far one leaves plain slow cycles without
     gain only with a soft compensator, and only against environments that do not clamp the link.
-    Other motions may give out all the same, see P56.
+    Other motions may release all the same, see P56.
     """
     excess = sp.Symbol("excess", positive=True)
     soft = k * sp.sqrt(3 * f_1 * f_D) / f_2

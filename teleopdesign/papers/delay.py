@@ -1,4 +1,4 @@
-"""Compensation that acts late: P47 to P49. Energy is that *given out* by the compensator."""
+"""Compensation that acts late: P47 to P49. Energy is that *released* by the compensator."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ late = omega * tau
 FRICTIONLIKE, SPRINGLIKE, TURN = sp.symbols("frictionlike springlike turn", nonnegative=True)
 
 
-def given_out(force: sp.Expr) -> sp.Expr:
+def released(force: sp.Expr) -> sp.Expr:
     """Work of a force(angle) over a cycle of x = A sin(angle)."""
     return sp.integrate(sp.expand(sp.expand_trig(force * A * sp.cos(angle))), (angle, 0, 2 * sp.pi))
 
 
-LATE_FRICTION = given_out(a1 * sp.sin(angle - late) + b1 * sp.cos(angle - late))
+LATE_FRICTION = released(a1 * sp.sin(angle - late) + b1 * sp.cos(angle - late))
 
 
 @shows(
@@ -35,7 +35,7 @@ LATE_FRICTION = given_out(a1 * sp.sin(angle - late) + b1 * sp.cos(angle - late))
     assumes="pi I_1(u) = integral of e^(u cos t) cos t over 0..pi (DLMF 10.32.3)",
 )
 def late_friction() -> ProofSteps:
-    """A late friction compensator gives out less: it under-compensates and pushes against the
+    """A late friction compensator releases less: it under-compensates and pushes against the
     motion after a reversal, which is felt, but dissipates.
     """
     k = sp.Symbol("k", integer=True, positive=True)
@@ -99,10 +99,10 @@ def late_friction() -> ProofSteps:
     printed="motion-based cancellation suffers from delay, seen as limit cycles at reversal",
 )
 def late_inertia() -> ProofSteps:
-    """Cancelling inertia with any delay gives out energy; a late friction compensator within the
+    """Cancelling inertia with any delay releases energy; a late friction compensator within the
     level of ideal Coulomb friction does not: limit cycles have another source.
     """
-    work = given_out(mass * -A * omega**2 * sp.sin(angle - late))
+    work = released(mass * -A * omega**2 * sp.sin(angle - late))
     less = sp.Symbol("less", nonnegative=True)
     coulomb_work = LATE_FRICTION.subs({a1: 0, b1: 4 * f_D / sp.pi})
     return proof(

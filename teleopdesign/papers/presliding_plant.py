@@ -1,4 +1,4 @@
-"""Compensation of friction that itself gives before it slides: P43 to P46.
+"""Compensation of friction that itself deflects before it slides: P43 to P46.
 
 Plant: Dahl(sigma_p, f_C). Compensator: Dahl(sigma_D, f_D) on the same position. The pair takes in
 (p - d) v, with p and d their forces.
@@ -214,16 +214,16 @@ def bristle_damping() -> ProofSteps:
     formula="small cycles give out (4/3) A^3 (sigma_D^2/f_D - sigma_p^2/f_C)",
 )
 def stiff_compensator() -> ProofSteps:
-    """A compensator stiffer than the plant gives out energy in small motion even far below its
+    """A compensator stiffer than the plant releases energy in small motion even far below its
     level; a lower sigma_D cures it, a lower f_D makes it worse.
     """
-    given_out = small_cycles(fD, sD) - small_cycles(fC, sP)
+    released = small_cycles(fD, sD) - small_cycles(fC, sP)
     stiffer, share = sp.symbols("stiffer share", positive=True)
     return proof(
-        Equal("per A^3", given_out, -sp.Rational(4, 3) * RATIOS),
+        Equal("per A^3", released, -sp.Rational(4, 3) * RATIOS),
         NotNegative(
             "sigma_D > sigma_p and f_D < f_C",
-            given_out.subs({sD: sP + stiffer, fC: fD + share}),
+            released.subs({sD: sP + stiffer, fC: fD + share}),
             sp.Rational(4, 3)
             * (2 * sP * stiffer * (fD + share) + stiffer**2 * (fD + share) + sP**2 * share)
             / (fD * (fD + share)),
@@ -231,13 +231,13 @@ def stiff_compensator() -> ProofSteps:
         ),
         NotNegative(
             "falls with lower sigma_D",
-            sp.diff(given_out, sD),
+            sp.diff(released, sD),
             sp.Rational(8, 3) * sD / fD,
             strictly=True,
         ),
         NotNegative(
             "rises with lower f_D",
-            -sp.diff(given_out, fD),
+            -sp.diff(released, fD),
             sp.Rational(4, 3) * sD**2 / fD**2,
             strictly=True,
         ),

@@ -226,7 +226,7 @@ def contact_force() -> Numbers:
     for share in CANCELLED:
         stiffness, width, _ = contact(share)
         expected = 2 * (1 - share) * FRICTION / (1 + ratio)
-        # the damper widens the loop; a hundredth of the friction for what has not settled
+        # the damper widens the loop; a hundredth of the friction for what is not yet steady
         figures.append(
             near(f"hysteresis width, f_D = {share} f_C", width, expected, viscous + 0.02, "N")
         )
@@ -268,7 +268,7 @@ def soft_contact() -> ProofSteps:
     printed='"transparency plot", without a number to it',
 )
 def transparency_figures() -> Numbers:
-    """Force against displacement at the user's hand, laid over the environment's own: three
+    """Force against displacement at the user's hand, laid over that of the environment: three
     numbers that say how close they are.
     """
     ratio = ENVIRONMENT / STIFFNESS
@@ -294,7 +294,8 @@ def transparency_figures() -> Numbers:
 
 
 def quasi_static_difference(share: float) -> float:
-    """Rms of user force less environment's own over a cycle, by the balance at the slave alone.
+    """Rms of user force less that of the environment over a cycle, by the balance at the slave
+    alone.
 
     The slave stays where it is while abs(P x_m - (P + k_e) x_s) is below the friction left.
     """

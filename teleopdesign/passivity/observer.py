@@ -3,7 +3,7 @@
     E[n] = E[n-1] + f[n] (x[n+1] - x[n])          force held between samples: exact
     E[n] = E[n-1] + (f[n] + f[n+1])/2 (x[n+1] - x[n])    force sampled
 
-with the force ON the device along its motion. A device that began at rest has given out energy
+with the force ON the device along its motion. A device that began at rest has released energy
 where E < 0. Hannaford and Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1, who put a damper into each
 sample where it would: `passivity_controlled`.
 """
@@ -38,7 +38,7 @@ _ROUNDED = 12**-0.5
 class PortEnergy(ByValue):
     """Energy into a port.
 
-    data: `energy` (J, from the start), `stderr` (J, of the sensors' noise, 0 where none was given)
+    data: `energy` (J, from the start), `stderr` (J, of the sensors' noise, 0 where none is stated)
     and `power` (W) over `time` (s)
     """
 
@@ -46,7 +46,7 @@ class PortEnergy(ByValue):
 
     @property
     def lowest(self) -> float:
-        """Least energy, J: below zero by what the port has given out more than it took in."""
+        """Least energy, J: below zero by what the port has released more than it took in."""
         return float(self.data["energy"].min())
 
     @property

@@ -71,7 +71,7 @@ def save_figure(
     import matplotlib.pyplot as plt
 
     files = [Path(path).with_suffix(suffix) for suffix in suffixes]
-    # fonts and resolution are taken when it is drawn; what has no layout of its own keeps none
+    # fonts and resolution are taken when it is drawn; what has no layout keeps none
     layout = {"figure.constrained_layout.use": figure.get_layout_engine() is not None}
     with plt.style.context([*house_style(), layout]):
         for file in files:

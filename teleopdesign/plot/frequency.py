@@ -103,7 +103,7 @@ def plot_nyquist(
         axis.set_xlabel(f"real part{beside}")
         axis.set_ylabel(f"imaginary part{beside}")
         (left, right), (lowest, highest) = axis.get_xlim(), axis.get_ylim()
-        # room for labels, and no emptier page than the curve's own shape
+        # room for labels, and no emptier page than the curve's shape
         height = 0.6 + (width - 0.6) * (highest - lowest) / (right - left)
         figure.set_size_inches(width, min(max(height, 1.6), 4.5))
         axis.set_aspect("equal", adjustable="box")

@@ -1,7 +1,7 @@
 """The compiled simulation of a diagram: equations -> generated source -> numba, cached on disk.
 
 Values are arguments: only another structure (other blocks or effects) compiles anew. A step that is
-too long is found and said, by two measures that need no second run:
+too long is detected and reported, by two measures that need no second run:
 
 - steps per radian of the fastest oscillation or decay of the equations at rest, friction stuck;
 - where a bristle is reloaded after a reversal: that takes the time sqrt(2 lambda / a), lambda its
@@ -236,7 +236,7 @@ def _states(law: Effect | ControlLaw) -> tuple[Any, ...]:
 def velocity_smoothing(bandwidth: float, period: float) -> float:
     """Factor by which the velocity filter keeps its last output over a sample.
 
-    The filter is the control law that declares to be one, its rate's own slope stepped exactly.
+    The filter is the control law that declares to be one, its rate's slope stepped exactly.
     """
     if math.isinf(bandwidth):
         return 0.0
@@ -260,7 +260,7 @@ def execute(
     """Run the loop.
 
     inputs: (inputs, 2 steps + 1), at every half step;  sampled: (sampled inputs, samples + 1)
-    start: state -> value, 0 where not given
+    start: state -> value, 0 by default
     returns: rows of the columns of the layout, and the measure of the reload (see module)
     """
     layout, rows = made.layout, (timing.steps if every_step else timing.samples) + 1
@@ -268,7 +268,7 @@ def execute(
     out = np.zeros((rows, len(kept)))
     memory = first_memory(made, 1, start)
     no_rows = np.zeros(0, dtype=np.int64)
-    with np.errstate(all="ignore"):  # plain Python warns where compiled code gives inf
+    with np.errstate(all="ignore"):  # plain Python warns where compiled code returns inf
         made.loop.run(
             *grid(made, timing, 1),
             every_step,
@@ -341,7 +341,7 @@ def fastest_rate(made: Program, values: Mapping[str, float]) -> tuple[float, str
 def slopes_at_rest(made: Program, loop: CompiledLoop, parameters: np.ndarray) -> np.ndarray:
     """How rates change with states at rest, 1/s: (lanes, states, states).
 
-    parameters: flat, row by row;  exactly stepped states without their own slope
+    parameters: flat, row by row;  exactly stepped states without their slope
     """
     layout, n, lanes = made.layout, len(made.layout.states), loop.lanes
     slopes = np.zeros(n * n * lanes)

@@ -178,7 +178,7 @@ class _Sample:
         past = self._ring(x[len(self.rows) :])
         analog = _Held(np.array([inputs[name] for name in layout.inputs]))
         sampled = _Held(np.array([inputs[name] for name in layout.sampled_inputs]))
-        with np.errstate(all="ignore"):  # plain Python warns where compiled code gives inf
+        with np.errstate(all="ignore"):  # plain Python warns where compiled code returns inf
             if at["COMPUTER"]:
                 at["sample"](
                     *(False, round(t / self.dt), self.slots, t, self.dt, 0.0, 0.0, analog, 0),

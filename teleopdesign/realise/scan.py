@@ -99,7 +99,7 @@ def stage(h, columns, {", ".join([*parameters, *(f"{n}_" for n in used)])}, dcom
 {indented(assignments({"b": b}, names), 8)}
         starting = k == 0 and a != 0.0
         if starting:
-            {_STATE} = -b / a  # settled
+            {_STATE} = -b / a  # steady
 {indented(_lines("b", b, by, names), 8)}
         z = {_STATE}
         mean[k] = z * p1 + b * h * p2
@@ -318,10 +318,10 @@ def shape_bounds(
 ) -> tuple[Traced, Traced]:
     """Bounds of the friction of a shape, driven by the measured motion.
 
-    It has one hidden state, or several that each follow the motion up to a stop of their own.
+    It has one hidden state, or several that each follow the motion up to a separate stop.
 
     forward, backward: friction level that way
-    They coincide where the motion is told; where it is not, they lie apart by what half a step of
+    They coincide where the motion is sure; where it is not, they lie apart by what half a step of
     the position means to the bristle, and no further than the level.
     """
     source, used = _shape_of(effect)

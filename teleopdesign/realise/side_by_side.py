@@ -55,7 +55,7 @@ class Reduction:
 
 @dataclass(frozen=True)
 class LaneResults:
-    """What simulations side by side give, case by case.
+    """What simulations side by side return, case by case.
 
     kept: (cases, rows, columns asked for);  reduced: (cases, reductions)
     worst: measure of the reload of bristles (see `kernel`);  is_finite: all signals stayed so

@@ -110,7 +110,7 @@ def simulated_form(
 
 @dataclass(frozen=True)
 class Setup:
-    """A simulation that is ready to run, with its own step or a shorter one."""
+    """A simulation that is ready to run, with its step or a shorter one."""
 
     diagram: Diagram
     program: Program
@@ -224,7 +224,7 @@ class Setup:
     def checked(
         self, *, long_step: Literal["refine", "refuse"], every_step: bool = False
     ) -> tuple[np.ndarray, Timing]:
-        """Run with a step that resolves oscillations and bristles, or refuse the one given."""
+        """Run with a step that resolves oscillations and bristles, or refuse a longer one."""
         from ..realise.kernel import fastest_rate
 
         inner = self.first_inner(*fastest_rate(self.program, self.diagram.values), long_step)

@@ -1,7 +1,7 @@
 """Certificates: what a proof rests on, in a form that a small program verifies.
 
 `checker` knows nothing of this package; it reads the JSON that is written here, and
-states what that proves in words of its own. A title is for people; it proves nothing.
+states in other words what that proves. A title is for people; it proves nothing.
 """
 
 from __future__ import annotations

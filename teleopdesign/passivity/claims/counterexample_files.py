@@ -40,7 +40,7 @@ def write_record(record: Counterexample, path: str | Path) -> None:
 
 
 def read_record(path: str | Path) -> Counterexample:
-    """Read a refuting motion; `replay()` then computes what it gives out, in J.
+    """Read a refuting motion; `replay()` then computes what it releases, in J.
 
     raises ModelError: not such a file, or one whose stated energy its replay does not confirm
     """
