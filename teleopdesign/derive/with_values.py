@@ -40,7 +40,10 @@ def with_values(
 
 
 def symbol_values(linear: LinearBlocks) -> dict[sp.Symbol, sp.Expr]:
-    """Symbol of a derived expression -> transfer function of the block, stage or dead time."""
+    """Symbol of a derived expression -> transfer function of the block, stage or dead time.
+
+    Substituted into a result of `derive`, they leave a function of s; dead times are in s.
+    """
     values = {block_symbol(n): e for n, e in linear.blocks.items()}
     values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
     values |= {along_symbol(n): e for n, e in linear.along.items()}

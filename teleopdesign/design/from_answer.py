@@ -26,7 +26,10 @@ class DiagnosedModel(ByValue):
 
 
 def diagnosed_model(diagnosis: Diagnosis) -> DiagnosedModel:
-    """The model that a diagnosis ends with, its verdict, and what the model leaves."""
+    """The model that a diagnosis ends with, its verdict, and what the model leaves.
+
+    The same as `read_answer` takes from the file of that diagnosis.
+    """
     return DiagnosedModel(diagnosis.experiment, diagnosis.model, diagnosis.verdict, diagnosis.left)
 
 

@@ -70,7 +70,12 @@ class Arm:
 
 
 def by_jacobian(jacobian: Any) -> tuple[sp.Expr, ...]:
-    """Coordinates of a tip whose Jacobian does not change: X = J q, J (coordinates, joints)."""
+    """Coordinates of a tip whose Jacobian does not change: X = J q, J (coordinates, joints).
+
+    jacobian: m/rad or m/m, nested lists or an array
+    returns: one expression for each coordinate (m), for `Arm`; forces go back by J^T
+    raises ModelError: no matrix of numbers
+    """
     matrix = matrix_of(jacobian, "by_jacobian: jacobian")
     symbols = [joint(n + 1) for n in range(matrix.shape[1])]
     return tuple(

@@ -107,7 +107,11 @@ def _check_position_loop(law: Controller | AnyBlock) -> None:
 
 
 def four_cases(hybrid: Diagram) -> dict[str, Diagram]:
-    """The diagram without compensation, with cancellation, with force feedback, and with both."""
+    """The diagram without compensation, with cancellation, with force feedback, and with both.
+
+    hybrid: a haptic interface with a cancellation C and a force feedback H
+    returns: case ("none", "MBC", "FF", "hybrid") -> diagram, as in the figures of the papers
+    """
     return {
         "none": hybrid.without("C", "H"),
         "MBC": hybrid.without("H"),

@@ -144,7 +144,10 @@ def follows_gravity(level: Callable[[Array], Array], facts: RecordFacts) -> str 
 
 
 def repeats_within_travel(p: Any, facts: RecordFacts) -> str | None:
-    """Why a period does not show within the travel, as a sentence; None where it repeats there."""
+    """Why a period does not show within the travel, as a sentence; None where it repeats there.
+
+    p: parameters with `period` (m or rad);  for an effect's `plausible`
+    """
     if facts.travel >= REPEATS * abs(p.period):
         return None
     return (

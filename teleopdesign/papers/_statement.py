@@ -166,7 +166,11 @@ def claim(number: int, *, paper: Paper, place: str, words: str, see: tuple[int, 
 
 
 def check(statement: Statement) -> Result:
-    """Run what shows the statement; the outcome follows from what kind of evidence holds."""
+    """Run what shows the statement; the outcome follows from what kind of evidence holds.
+
+    returns: "proved", "checked numerically", "refuted" (what is printed), "failed" where a step
+        or a figure does not hold, else "claim of the paper"; and the time it took, s
+    """
     start = time.perf_counter()
     outcome: How | Literal["failed"] = "claim of the paper"
     details: tuple[str, ...] = ()

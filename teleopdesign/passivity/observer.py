@@ -160,7 +160,12 @@ def _stderr(
 def observe_simulation(
     simulation: Simulation, *, motion: str = "L", force: str = "R_V"
 ) -> PortEnergy:
-    """Energy into a port of a simulated diagram; best with rows at every step."""
+    """Energy into a port of a simulated diagram; best with rows at every step.
+
+    motion: position of the port, m or rad;  force: on the device along that motion, N or N m
+    returns: energy over time, J; negative where the port has released more than it took in
+    The sum errs by the curvature between rows: simulate with `every_step=True`.
+    """
     return observe(
         simulation.data["time"].values, simulation[motion].values, simulation[force].values
     )

@@ -202,7 +202,11 @@ def _plain(element: Element) -> list[object]:
 
 
 def symmetric_cycle(compensator: Dahl, friction: Sequence[Element], amplitude: float) -> Cycle:
-    """The periodic motion between -amplitude and amplitude (m), once its forces repeat."""
+    """The periodic motion between -amplitude and amplitude (m), once its forces repeat.
+
+    compensator: pushes along the motion;  friction: elements that act against it
+    amplitude: m or rad;  returns: the cycle, with its energy per round in J (> 0: released)
+    """
     # a cycle of u bristle lengths forgets its start as e^(-4 u): 40 of those are beyond rounding
     softest = min(
         [

@@ -77,7 +77,11 @@ def plot_nyquist(
     measured: FrequencyResponse | None = None,
     columns: PageColumns = 1,
 ) -> matplotlib.figure.Figure:
-    """Imaginary against real part; a dot at each decade of frequency."""
+    """Imaginary against real part; a dot at each decade of frequency.
+
+    response: lines;  measured: points beside them, of the same cases;  unit: that of the response
+    columns: of a page that the figure is wide, 1 or 2
+    """
     import matplotlib.pyplot as plt
 
     unit = response.data["magnitude"].attrs["units"]

@@ -68,7 +68,11 @@ def sobol(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
 
 
 def random_samples(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
-    """Points at random, each independent of the others; arguments as of `latin_hypercube`."""
+    """Points at random, each independent of the others; arguments as of `latin_hypercube`.
+
+    samples: how many;  seed: the same one has the same points on every machine
+    raises ModelError: no range, a range without width, no whole number of points above 0
+    """
     _check_count("random_samples", samples)
     unit = np.random.default_rng(seed).random((samples, len(_of(ranges))))
     return _placed(ranges, unit, "random", seed)

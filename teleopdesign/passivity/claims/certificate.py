@@ -57,7 +57,10 @@ class Certificate:
 
 
 def read_certificate(path: str | Path) -> Certificate:
-    """Read a certificate; it proves nothing before `check` accepted it."""
+    """Read a certificate; it proves nothing before `check` accepted it.
+
+    path: a JSON file;  raises ModelError: not readable, or no certificate
+    """
     try:
         content = load(str(path))
     except Refused as problem:

@@ -35,7 +35,10 @@ MOST_STROKES = 1_000_000
 
 
 def write_record(record: Counterexample, path: str | Path) -> None:
-    """Write a motion that refutes a claim as a JSON file; `read_record` reads the file."""
+    """Write a motion that refutes a claim as a JSON file; `read_record` reads the file.
+
+    The file holds the motion and its energy (J); reading replays the motion and compares.
+    """
     write_json(path, record.as_dict())
 
 

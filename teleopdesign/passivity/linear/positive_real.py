@@ -145,7 +145,11 @@ def damping_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
 
 
 def mobility_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
-    """Excess of the mobility 1/Z, m/(N s): index of output passivity; +inf where Z = 0."""
+    """Excess of the mobility 1/Z, m/(N s): index of output passivity; +inf where Z = 0.
+
+    system: an impedance as `positive_real` takes it;  motion: what Z divides the force by
+    returns: the largest c for which 1/Z - c is still passive; < 0: that much is missing
+    """
     z = impedance(system, motion=motion)
     if z.p.is_zero:
         return Excess(float("inf"), float("inf"), 0.0)

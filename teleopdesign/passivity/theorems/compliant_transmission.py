@@ -140,7 +140,11 @@ def free_motion_margin(
     compensator_level: float,
     compensator_stiffness: float,
 ) -> float:
-    """min(f_1 + f_2 - f_D, f_1 - f_D (1 - tanh(u)/u)), N: >= 0: no symmetric cycle releases."""
+    """min(f_1 + f_2 - f_D, f_1 - f_D (1 - tanh(u)/u)), N: >= 0: no symmetric cycle releases.
+
+    motor_level, link_level, compensator_level: f_1, f_2, f_D, N;  stiffnesses: N/m
+    u = sigma_D f_2 / (k f_D): bristle lengths of spring deflection before the link slides (P53)
+    """
     stuck = compensator_level * lost_share(
         compensator_stiffness * link_level / (transmission_stiffness * compensator_level)
     )
