@@ -1,6 +1,6 @@
 """The statements of the two papers, P1 to P65, each with the code that shows how far it is known.
 
-Every file that does not begin with `_` holds the statements of one topic, which are collected here.
+Every file that does not begin with `_` holds the statements of one topic, which are found here.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ def turned_about(coordinates: np.ndarray) -> np.ndarray:
 
 
 def closed_paths() -> Numbers:
-    """Energy that couplings release along closed paths, in six axes and for orientations."""
+    """Energy that couplings give out along closed paths, in six axes and for orientations."""
     rng, n = np.random.default_rng(59), 2000
     root = rng.normal(size=(6, 6))
     spring, skew = root @ root.T, 0.3 * (root - root.T)

@@ -161,16 +161,12 @@ def shows(
 
 
 def claim(number: int, *, paper: Paper, place: str, words: str, see: tuple[int, ...]) -> Statement:
-    """A statement that only the paper's experiment or text can support."""
+    """A statement that only the paper's own experiment or text can support."""
     return Statement(number, paper, place, words, "", "claim of the paper", None, see=see)
 
 
 def check(statement: Statement) -> Result:
-    """Run what shows the statement; the outcome follows from what kind of evidence holds.
-
-    returns: "proved", "checked numerically", "refuted" (what is printed), "failed" where a step
-        or a figure does not hold, else "claim of the paper"; and the time it took, s
-    """
+    """Run what shows the statement; the outcome follows from what kind of evidence holds."""
     start = time.perf_counter()
     outcome: How | Literal["failed"] = "claim of the paper"
     details: tuple[str, ...] = ()

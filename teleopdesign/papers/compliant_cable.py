@@ -121,7 +121,7 @@ def clamped_link() -> ProofSteps:
     "sigma_D <= k sqrt(3 f_1 f_D)/f_2",
 )
 def free_link() -> ProofSteps:
-    """Free link held by its friction only, plain quasi-static cycles of the motor of any
+    """Free link held by its own friction only, plain quasi-static cycles of the motor of any
     amplitude: the cable's stiffness limits the compensator's. Other motions: see P56.
     """
     spare, more, soft, over = sp.symbols("spare more soft over", nonnegative=True)
@@ -178,7 +178,7 @@ def free_link() -> ProofSteps:
 def relieving_the_far_contact() -> ProofSteps:
     """Over-compensating the motor's contact to relieve the far one leaves plain slow cycles without
     gain only with a soft compensator, and only against environments that do not clamp the link.
-    Other motions may release all the same, see P56.
+    Other motions may give out all the same, see P56.
     """
     excess = sp.Symbol("excess", positive=True)
     soft = k * sp.sqrt(3 * f_1 * f_D) / f_2

@@ -1,4 +1,4 @@
-"""Compensation that acts late: P47 to P49. Energy is that *released* by the compensator."""
+"""Compensation that acts late: P47 to P49. Energy is that *given out* by the compensator."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ LATE_FRICTION = released(a1 * sp.sin(angle - late) + b1 * sp.cos(angle - late))
     assumes="pi I_1(u) = integral of e^(u cos t) cos t over 0..pi (DLMF 10.32.3)",
 )
 def late_friction() -> ProofSteps:
-    """A late friction compensator releases less: it under-compensates and pushes against the
+    """A late friction compensator gives out less: it under-compensates and pushes against the
     motion after a reversal, which is felt, but dissipates.
     """
     k = sp.Symbol("k", integer=True, positive=True)
@@ -99,7 +99,7 @@ def late_friction() -> ProofSteps:
     printed="motion-based cancellation suffers from delay, seen as limit cycles at reversal",
 )
 def late_inertia() -> ProofSteps:
-    """Cancelling inertia with any delay releases energy; a late friction compensator within the
+    """Cancelling inertia with any delay gives out energy; a late friction compensator within the
     level of ideal Coulomb friction does not: limit cycles have another source.
     """
     work = released(mass * -A * omega**2 * sp.sin(angle - late))

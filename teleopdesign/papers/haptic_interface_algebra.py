@@ -173,7 +173,7 @@ def free_space() -> ProofSteps:
     "Gamma",
 )
 def limits() -> ProofSteps:
-    """Perfect cancellation and infinite force feedback each produce the desired force exactly."""
+    """Perfect cancellation and infinite force feedback each give the desired force exactly."""
     x = Z_M * Z_H**-1
     q = sp.Symbol("q", positive=True)
 

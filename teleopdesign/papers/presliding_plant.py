@@ -1,4 +1,4 @@
-"""Compensation of friction that itself deflects before it slides: P43 to P46.
+"""Compensation of friction that itself gives before it slides: P43 to P46.
 
 Plant: Dahl(sigma_p, f_C). Compensator: Dahl(sigma_D, f_D) on the same position. The pair takes in
 (p - d) v, with p and d their forces.
@@ -214,7 +214,7 @@ def bristle_damping() -> ProofSteps:
     formula="small cycles give out (4/3) A^3 (sigma_D^2/f_D - sigma_p^2/f_C)",
 )
 def stiff_compensator() -> ProofSteps:
-    """A compensator stiffer than the plant releases energy in small motion even far below its
+    """A compensator stiffer than the plant gives out energy in small motion even far below its
     level; a lower sigma_D cures it, a lower f_D makes it worse.
     """
     released = small_cycles(fD, sD) - small_cycles(fC, sP)

@@ -176,7 +176,7 @@ def encoder_steps() -> ProofSteps:
 
 
 def controlled_port() -> Numbers:
-    """The observer and controller of the package over forces that release energy: 4000 samples.
+    """The observer and controller of the package over forces that give out energy: 4000 samples.
 
     A force of 1.2 N along the motion against 1 N of friction, to and fro at uneven speed.
     """

@@ -1,7 +1,7 @@
 """Compensation of ideal Coulomb friction: P37 to P42.
 
 The joint obeys m a = u_link + f_comp - f_friction + f_ext: a compensator pushes along, friction
-against. Energy released by the pair is that of the compensator less what friction takes.
+against. Energy given out by the pair is that of the compensator less what friction takes.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def saturated_compensator() -> ProofSteps:
 def only_saturation_counts() -> ProofSteps:
     """From a force within its level, eq (9) stays within it whatever positions come next: late,
     held, rounded or noisy ones. So do smoothed Coulomb friction and a force of the wrong sign, and
-    P37 covers them all. A step of forward Euler with q = 3/2 leaves the level, and releases energy.
+    P37 covers them all. A step of forward Euler with q = 3/2 leaves the level, and gives out.
     """
     above, below, rest = sp.symbols("above below rest", nonnegative=True)
     q = sp.Symbol("q", positive=True)
@@ -155,7 +155,7 @@ def unlimited_motion() -> ProofSteps:
 
 
 def needed_amplitude() -> Numbers:
-    """Amplitude u from which a ratio f_D/f_C releases energy, and simulations about it."""
+    """Amplitude u from which a ratio f_D/f_C gives out energy, and simulations about it."""
     # half of the last digit stated
     table: dict[float, tuple[float, float]] = {1.02: (51, 0.5), 1.05: (21, 0.5), 1.1: (11, 0.5)}
     table |= {1.2: (6, 0.5), 1.5: (2.98, 0.005), 2.0: (1.92, 0.005)}

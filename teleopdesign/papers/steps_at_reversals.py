@@ -1,7 +1,7 @@
 """What plain cycles do not show of a compensator behind a compliant cable: P56.
 
 A motor that steps back and forth at its reversals lets the bristle of the compensator forget the
-last stroke, so that it pushes along sooner in the next one. The price is the motor's friction
+last stroke, so that it pushes along sooner in the next one. The price is the motor's own friction
 over the steps.
 """
 
@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 
 def dithered_cycle() -> sp.Expr:
-    """Released in half a cycle of amplitude u, a step of `small` back and forth at each reversal.
+    """Energy of half a cycle of amplitude u, a step of `small` back and forth at each reversal.
 
     Units f_D = sigma_D = 1, link stuck; the second half of a cycle mirrors the first.
     """
@@ -47,10 +47,10 @@ def dithered_cycle() -> sp.Expr:
 
 
 def stepping_motor() -> Numbers:
-    """Energy released in a cycle, simulated: the case of the proof, with steps and without."""
+    """Energy given out in a cycle, simulated: the case of the proof, with steps and without."""
     steps = energy_of_cycle((0.5, 0.4, 0.5, -0.5, -0.4, -0.5))
     plain = energy_of_cycle((0.5, -0.5))
-    # a percent of what friction takes: the contact deflects before it slides
+    # a percent of what friction takes: the contact gives before it slides
     within = 0.01 * 2 * FRICTION
     return Numbers(
         (

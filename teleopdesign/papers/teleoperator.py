@@ -268,7 +268,7 @@ def soft_contact() -> ProofSteps:
     printed='"transparency plot", without a number to it',
 )
 def transparency_figures() -> Numbers:
-    """Force against displacement at the user's hand, laid over that of the environment: three
+    """Force against displacement at the user's hand, laid over the environment's own: three
     numbers that say how close they are.
     """
     ratio = ENVIRONMENT / STIFFNESS
@@ -294,8 +294,7 @@ def transparency_figures() -> Numbers:
 
 
 def quasi_static_difference(share: float) -> float:
-    """Rms of user force less that of the environment over a cycle, by the balance at the slave
-    alone.
+    """Rms of user force less environment's own over a cycle, by the balance at the slave alone.
 
     The slave stays where it is while abs(P x_m - (P + k_e) x_s) is below the friction left.
     """
