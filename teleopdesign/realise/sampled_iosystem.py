@@ -18,7 +18,8 @@ import numpy as np
 from ..diagrams import Diagram
 from ..errors import GrowsWithoutBound, ModelError
 from .delays import late_samples
-from .kernel import FASTEST, RELOAD, Program, fastest_rate, program, refine_factor, too_long
+from .kernel import FASTEST, RELOAD, fastest_rate, refine_factor, too_long
+from .program import Program, program
 from .simulated import in_computer
 
 if TYPE_CHECKING:

@@ -15,16 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import ModelError
-from .kernel import (
-    CompiledLoop,
-    Program,
-    Timing,
-    fastest_rates,
-    first_memory,
-    grid,
-    loop_of,
-    slopes_at_rest,
-)
+from .kernel import Timing, fastest_rates, first_memory, grid, slopes_at_rest
+from .program import CompiledLoop, Program, loop_of
 
 #: lanes of a block: 8 take twice the time a lane, 32 gain a tenth and need more cases to be full
 LANES = 16

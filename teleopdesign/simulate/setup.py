@@ -18,7 +18,8 @@ from .sampling import SAMPLED, Sampling
 from .trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from ..realise.kernel import Program, Timing
+    from ..realise.kernel import Timing
+    from ..realise.program import Program
 
 #: most numbers that one simulation may hold, 2 GB
 MOST_NUMBERS = 250_000_000
@@ -87,7 +88,7 @@ def _form_and_program(
     jit: bool,
 ) -> tuple[Diagram, Program]:
     """What is simulated of a diagram, and the loop for its structure."""
-    from ..realise.kernel import program
+    from ..realise.program import program
 
     body = simulated_form(same.diagram, motion=motion, computer=computer, give=give)
     sampled, observer = False, 0
