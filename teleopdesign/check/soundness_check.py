@@ -27,7 +27,7 @@ def check_experiment(
 ) -> Findings:
     """Plain findings about a recording: soundness, signs and units, what it can show.
 
-    model: what the user believes so far; default: the experiment's own
+    model: what the user believes so far; default: the experiment's model
     seed: of the draws for the noise floor
     Signs, units, shifts and effects of a long experiment are judged on windows (`excerpt`).
     What stands in the way of an answer (no inertia, a bandwidth too high) is a finding, no error.

@@ -22,7 +22,7 @@ from .spans import cut_to
 from .tables import columns_of
 from .toml_table import Table
 
-#: what a channel may be given as: a column's name, or a table as in [channels]
+#: forms of a channel: a column's name, or a table as in [channels]
 ChannelEntry = str | Mapping[str, Any]
 _WHERE = "experiment"
 
@@ -91,7 +91,7 @@ def experiment(
 
 
 def _spans(spans: Sequence[Sequence[float] | float], use: str) -> list[Sequence[float]]:
-    """Spans as given; two numbers are one span."""
+    """Spans as a tuple; two numbers are one span."""
     numbers = [span for span in spans if isinstance(span, int | float)]
     pairs = [span for span in spans if not isinstance(span, int | float)]
     if len(numbers) == 2 and not pairs:
@@ -198,7 +198,7 @@ def with_first_values(body: BodyDescription, records: Sequence[Record]) -> BodyD
 def channel_table(
     entry: ChannelEntry, key: str, axis: str, log: Log, units: Mapping[str, str]
 ) -> dict[str, Any]:
-    """The table of a channel: as given, or from a column's name with the unit that it says."""
+    """The table of a channel: as written, or from a column's name with the unit that it says."""
     table: dict[str, Any] = {"column": entry} if isinstance(entry, str) else dict(entry)
     column = table.get("column")
     if "unit" in table or not isinstance(column, str):

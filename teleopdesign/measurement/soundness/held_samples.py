@@ -21,7 +21,7 @@ STEPS = 3.0
 NEAR = 10
 #: chance of a zero among normal changes: density at zero times the step, over the median change
 _ZERO = 0.3989 * 0.6745
-#: changes on leaving a hold, in usual changes before it, that give it away
+#: changes on leaving a hold, in usual changes before it, that reveal it
 LEAP = 5.0
 #: samples that a hold must last to be called stuck: shorter ones are counted as repeats
 LASTING = 10

@@ -14,7 +14,7 @@ from ..filtering import Array
 from .signal import Signal, limit, local_scale
 
 #: deviation left at the neighbours, in local standard deviations or relative to the outlier, up to
-#: which it counts as explained: 3 is five of the deviation's own
+#: which it counts as explained: 3 is five of the deviation's errors
 EXPLAINED, RELATIVE = 3.0, 0.2
 #: a command may hold any value: one sample of it is odd where it leaves the range of all others by
 #: more than this part of it
