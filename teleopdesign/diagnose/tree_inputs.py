@@ -11,7 +11,7 @@ from ..measurement.motion import Motion
 from ..measurement.reversals import since_reversal
 from .candidates import tells_place_from_time
 
-#: s without a told motion after which the same direction counts as a new start
+#: s without sure motion after which the same direction counts as a new start
 REST = 0.5
 
 
@@ -31,7 +31,7 @@ def inputs_along(motions: Sequence[Motion], beside: Sequence[Sequence[Motion]] =
 
 
 def _of_itself(motion: Motion, motions: Sequence[Motion]) -> Array:
-    """Of the body itself (n, k); NaN before the first motion that can be told.
+    """Of the body itself (n, k); NaN before the first sure motion.
 
     motions: all of that body. Where none comes to a place again, or none turns round, place or
     time since a reversal would tell the clock, and with it the command that was played by it
