@@ -144,9 +144,9 @@ class ArmDiagnosis(ByValue):
             lines.append(f"{j:<20}{shown}")
         for j, diagnosis in self.joints.items():
             lines += ["", *self._said_of(j, diagnosis)]
-        lines += ["", *(f"left out: {words}" for words in self.left_out)]
+        lines += [""] * bool(self.left_out) + [f"left out: {words}" for words in self.left_out]
         names = ", ".join(map(str, self.missing))
-        lines += [f"verdict: {self.verdict}{': ' + names if names else ''}"]
+        lines += ["", f"verdict: {self.verdict}{': ' + names if names else ''}"]
         return "\n".join(lines)
 
     def _said_of(self, joint: str, diagnosis: Diagnosis) -> list[str]:
