@@ -13,6 +13,7 @@ from ..finding import Finding, Findings
 from ..measurement.experiment import Experiment
 from ..measurement.soundness import check_signals
 from ..model import Model
+from .bandwidth_check import check_bandwidth
 from .excitation import check_excitation
 from .mixed_columns import check_clock_unit, check_mixed_columns
 from .plausibility import check_plausibility
@@ -56,6 +57,8 @@ def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[F
     mixed = list(check_mixed_columns(part))
     if mixed:
         return (*findings, *mixed, _not_asked("first make the columns agree", "note"))
+    if hidden := list(check_bandwidth(prepared)):
+        return (*findings, *hidden, _not_asked("first choose a bandwidth", "note"))
     agreement = check_plausibility(model, prepared)
     findings += agreement
     against = [f for f in agreement if f.concern == "warning" and f.topic in _CONTRADICTIONS]

@@ -199,11 +199,13 @@ def channel_table(
     entry: ChannelEntry, key: str, axis: str, log: Log, units: Mapping[str, str]
 ) -> dict[str, Any]:
     """The table of a channel: as written, or from a column's name with the unit that it says."""
-    if not isinstance(entry, str):
-        return dict(entry)
+    table: dict[str, Any] = {"column": entry} if isinstance(entry, str) else dict(entry)
+    column = table.get("column")
+    if "unit" in table or not isinstance(column, str):
+        return table
     quantity = BODY_QUANTITIES[key]
-    unit = units.get(entry) or log.units.get(entry) or unit_in_name(entry, quantity, axis)
-    return {"column": entry, "unit": unit or unit_of(quantity, axis)}
+    unit = units.get(column) or log.units.get(column) or unit_in_name(column, quantity, axis)
+    return {**table, "unit": unit or unit_of(quantity, axis)}
 
 
 def _time_table(entry: ChannelEntry | None, log: Log, units: Mapping[str, str]) -> dict[str, Any]:

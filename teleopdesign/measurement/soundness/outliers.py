@@ -72,7 +72,7 @@ def check_outliers(signal: Signal) -> list[Finding]:
     rows: list[NDArray[np.intp]] = []
     sizes: list[Array] = []
     for first, x in signal.stretches:
-        at, size, _ = lone_samples(x, signal.step)
+        at, size, _ = lone_samples(x, signal.rounded_to)
         is_outlier = x[at] != x[at - 1]
         if signal.channel.quantity == "actuator_force":
             is_outlier &= _out_of_range(x, at)
@@ -114,8 +114,8 @@ def check_jumps(signal: Signal) -> list[Finding]:
         return []
     events: list[tuple[int, float, float]] = []
     for first, x in signal.stretches:
-        at, size, _ = jumps(x, signal.step)
-        lone = lone_samples(x, signal.step)[0]
+        at, size, _ = jumps(x, signal.rounded_to)
+        lone = lone_samples(x, signal.rounded_to)[0]
         for k, leap in zip(at.tolist(), size.tolist(), strict=True):
             held = x[k] == x[k - 1] or x[k + 1] == x[min(k + 2, len(x) - 1)]
             if held or np.any(np.abs(lone - k) <= 2):
