@@ -146,8 +146,10 @@ def test_a_law_is_the_equation_of_its_file(name):
         *(s for rate in rates.values() for s in rate.free_symbols),
         *(SIGNALS[n] for n in ("velocity", "position", "level")),
     }
-    for _ in range(6):
+    for number in range(7):
         values = drawn(rng, symbols)
+        if not number:  # where a law leaves a part out for a value, it is no other value
+            values |= dict.fromkeys(effect.symbols().values(), 1.0)
         s, p, o = spaces(effect, values)
         assert float(law.subs(values)) == pytest.approx(LAWS[name](s, p, o), rel=1e-12, abs=1e-300)
         for state, rate in RATES.get(name, lambda s, p: {})(s, p).items():
