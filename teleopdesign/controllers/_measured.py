@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import sympy as sp
-from sympy.core.function import AppliedUndef
 from sympy.utilities.lambdify import implemented_function
 
 from ..effects import Parameter
@@ -49,7 +48,6 @@ def measured(name: str, system: control.FrequencyResponseData) -> Controller:
         real, imaginary = parts
         return np.asarray(real + 1j * np.sign(s.imag) * imaginary)
 
-    at.points = w  # type: ignore[attr-defined]
     mark = hashlib.sha256(w.tobytes() + values.tobytes()).hexdigest()[:16]
     law = ControlLaw(
         law=_unknown,
@@ -59,12 +57,6 @@ def measured(name: str, system: control.FrequencyResponseData) -> Controller:
     )
     text = f"A measured frequency response at {len(w)} frequencies."
     return Controller((Stage(law.named(name, text), {"scale": 1.0}),))
-
-
-def measured_frequencies(expression: sp.Expr) -> tuple[np.ndarray, ...]:
-    """Frequencies (rad/s, in their order) of each response that an expression holds."""
-    calls = (f.func._imp_ for f in expression.atoms(AppliedUndef))
-    return tuple(call.points for call in calls if hasattr(call, "points"))
 
 
 def _unknown(now: Any, p: Any) -> Any:

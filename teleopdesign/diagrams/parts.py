@@ -193,12 +193,6 @@ class Control:
         stages = self.controller.stages if isinstance(self.controller, Controller) else ()
         return any(stage.law.system is not None for stage in stages)
 
-    @property
-    def is_measured(self) -> bool:
-        """Whether a stage of it is a measured frequency response, known at its frequencies only."""
-        stages = self.controller.stages if isinstance(self.controller, Controller) else ()
-        return any(stage.law.response is not None for stage in stages)
-
 
 @checked
 @dataclass(frozen=True)
