@@ -88,6 +88,7 @@ COMMANDS = {
     "demo": WritingCommand(
         ("demo", "--output=OUT"),
         ("answer.json", "predictions.csv.gz", "ladder.png", "report.html"),
+        progress="^step ",
     ),
     "derive": WritingCommand(
         ("derive", "haptic-interface", "--json=OUT/a.json", "--figure=OUT/a.svg"),
