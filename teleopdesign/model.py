@@ -152,11 +152,14 @@ class Model:
     @property
     def parameters(self) -> dict[str, Value]:
         """Every parameter by its full name, "device.coulomb.level" -> Value (SI)."""
-        return {
-            f"{self._place_of(place, name)}{name}": body.parameters[name]
-            for place, body in self.bodies.items()
-            for name, _ in body.declared()
-        }
+        named = {}
+        for place, body in self.bodies.items():
+            # by effect, not by parameter: a fit asks thousands of times
+            places = {e.name: self._place_of(place, f"{e.name}.any") for e in body.effects}
+            for name, _ in body.declared():
+                at = places.get(name.partition(".")[0], f"{place}.")
+                named[f"{at}{name}"] = body.parameters[name]
+        return named
 
     def locate(self, name: str) -> tuple[str, str]:
         """Body, and name within it, of the parameter of that full name.
