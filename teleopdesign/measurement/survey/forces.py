@@ -11,6 +11,7 @@ from ...quantity import is_unit, measures, si_factor, unit_of
 from ..column_names import is_wanted, likeness, unit_in_name
 from ..doors._log import listed
 from ..first_guess import FirstGuess, explain_force
+from .acting import current_that_acted
 from .content import (
     NONE,
     SURE_NAME,
@@ -68,24 +69,7 @@ def describe_forces(
         n: _force_score(c, physics[n]) + BESIDE * _stand_together(n, position)
         for n, c in free.items()
     }
-    if choices.actuator_force is not None:
-        force = choices.actuator_force
-    elif scores:
-        force = max(scores, key=lambda n: scores[n])
-    else:
-        raise ExperimentError(
-            f"{file}: found no column that could be a force beside {position!r}, "
-            f"found {listed(survey.columns)}{reasons(survey.unread)}"
-        )
-    if choices.actuator_force is None and likeness(force, "actuator_force") < SURE_NAME:
-        share = physics[force].explained
-        survey.guesses["channels.actuator_force.column"] = (
-            f"{force!r} is taken for the actuator's force: the motion explains {share:.0%} of it"
-        )
-    elif choices.actuator_force is None and (others := as_likely(scores, force)):
-        survey.guesses["channels.actuator_force.column"] = alike(
-            force, others, "the actuator's force"
-        )
+    force = _force_that_drives(survey, free, physics, scores, choices, file)
     survey.channels["actuator_force"] = _force_entry(survey, force, "actuator_force", choices)
     if entry.get("gear_ratio") is not None:
         survey.channels["actuator_force"]["gear_ratio"] = entry["gear_ratio"]
@@ -99,6 +83,41 @@ def describe_forces(
         )
     _signs(survey, motion, force, hand)
     survey.explained.update({n: guess.explained for n, guess in physics.items()})
+
+
+def _force_that_drives(
+    survey: Survey,
+    free: Mapping[str, SurveyedColumn],
+    physics: Mapping[str, FirstGuess],
+    scores: Mapping[str, float],
+    choices: Choices,
+    file: str,
+) -> str:
+    """The column of the actuator's force; where names do not say it alone, a guess is noted."""
+    if choices.actuator_force is not None:
+        return choices.actuator_force
+    if not scores:
+        raise ExperimentError(
+            f"{file}: found no column that could be a force beside "
+            f"{survey.channels['position']['column']!r}, "
+            f"found {listed(survey.columns)}{reasons(survey.unread)}"
+        )
+    force = max(scores, key=lambda n: scores[n])
+    why = None
+    if (acted := current_that_acted(force, free, scores)) is not None:
+        wanted, (force, apart) = force, acted
+        why = (
+            f"{force!r} is taken for the actuator's force: {wanted!r}, which was wanted, leaves "
+            f"{apart:.0%} of it open, and more than noise"
+        )
+    elif likeness(force, "actuator_force") < SURE_NAME:
+        share = physics[force].explained
+        why = f"{force!r} is taken for the actuator's force: the motion explains {share:.0%} of it"
+    elif others := as_likely(scores, force):
+        why = alike(force, others, "the actuator's force")
+    if why is not None:
+        survey.guesses["channels.actuator_force.column"] = why
+    return force
 
 
 def _stand_together(one: str, other: str) -> bool:
