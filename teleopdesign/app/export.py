@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from ..diagnose.answer import write_answer
@@ -36,13 +37,19 @@ def script(bench: Workbench, folder: str | None = None) -> str:
     return "\n".join(lines)
 
 
-def write_all(bench: Workbench, folder: Path) -> str:
-    """Write everything below `folder`/results; one line with what was written."""
+def write_all(
+    bench: Workbench, folder: Path, say: Callable[[str], None] = lambda text: None
+) -> str:
+    """Write everything below `folder`/results; one line with what was written.
+
+    say: gets what is being made
+    """
     from ..report import write_report
     from ..unexplained import where_it_fails
 
     target = folder / RESULTS / bench.experiment.folder.name
     target.mkdir(parents=True, exist_ok=True)
+    say("report, answer and figure")
     diagnosis = bench.diagnosis()
     left = where_it_fails(diagnosis.after, diagnosis.prepared, diagnosis.floor)
     write_report(diagnosis, target / "report.html", unexplained=left)
@@ -53,6 +60,7 @@ def write_all(bench: Workbench, folder: Path) -> str:
     names = ["report.html", "answer.json", "figure.svg", "script.py"]
     missing = []
     for body in bench.model.bodies:
+        say(f"compensation for {body}")
         try:
             text = propose_design(bench, body).to_toml()
         except TeleopDesignError as error:

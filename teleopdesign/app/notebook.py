@@ -180,6 +180,8 @@ def _(cancel, get_note, mo, pulse, set_bench, set_note, set_task, task, views):
     elif task.done:
         if task.error:
             set_note(task.error)
+        elif isinstance(task.result, str):
+            set_note(task.result)
         else:
             set_bench(task.result)
         set_task(None)
@@ -319,9 +321,10 @@ def _(bench, body, mo, views):
 
 
 @app.cell
-def _(bench, export, folder, mo, set_note, views):
+def _(BackgroundTask, bench, export, folder, mo, set_note, set_task, views):
     def write(_):
-        set_note(export.write_all(bench, folder))
+        set_note("")
+        set_task(BackgroundTask("writing", lambda say: export.write_all(bench, folder, say)))
 
     write_button = mo.ui.button(
         label="Write report, answer, model and script", on_click=write, kind="success"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -29,6 +30,8 @@ from .content import (
 )
 from .position import unwrapped, wrap_of
 
+#: names of forces in parts of what a drive is rated for: "[0.1%]", "(%)", "permille"
+PER_CENT = re.compile(r"[%‰]|per ?mill?e", re.I)
 #: part of the force that motion explains, from which physics says that a column is the force
 DRIVES = 0.3
 #: what a force gains that is a field of the position's struct or joint: more than names that are
@@ -164,7 +167,10 @@ def _force_entry(survey: Survey, name: str, key: str, choices: Choices) -> dict[
         return entry
     if unit is None or not measures(unit, "force", axis):
         unit = unit_of("force", axis)
-        survey.guesses[f"channels.{key}.unit"] = f"{unit}: the name {name!r} says no unit"
+        why = f"the name {name!r} says no unit"
+        if PER_CENT.search(name):
+            why = f"{name!r} counts parts of a rated force: `scale` is one part in {unit}"
+        survey.guesses[f"channels.{key}.unit"] = f"{unit}: {why}"
     return {**entry, "unit": unit}
 
 

@@ -29,6 +29,9 @@ from .content import (
 
 #: correlation from which one column is the derivative of another
 DERIVATIVE = 0.9
+#: words of a counter; and the range, in its steps, from which whole numbers are no rounded angle
+COUNTERS = frozenset(("enc", "encoder", "count", "counts", "counter", "ticks", "tick", "inc"))
+MOST_ANGLE = 50
 
 
 def unwrapped(x: Array, jump: float | None) -> Array:
@@ -131,6 +134,8 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
         for axis in ("prismatic", "revolute"):
             if measures(unit, "position", axis):
                 return axis
+    if choices.torque_constant is not None:
+        return "revolute" if choices.torque_constant[1].startswith("N*m") else "prismatic"
     units = [c.unit for c in survey.columns.values() if c.unit]
     if "N" in units or any(measures(u, "position") for u in units if u != "counts"):
         why, axis = "forces are in N", "prismatic"
@@ -150,8 +155,13 @@ def describe_position(
     column, axis = survey.columns[position], survey.axis
     entry: dict[str, Any] = {"column": position}
     unit = choices.units.get(position) or column.unit
-    if unit == "counts" or unit is None and choices.counts_per_turn is not None:
+    if unit is None and choices.counts_per_turn is not None:
         unit = "counts"
+    if unit is None and axis == "revolute" and _counts(column):
+        unit = "counts"
+        survey.guesses["channels.position.unit"] = (
+            f"counts: {position!r} holds whole numbers, as the counter of an encoder does"
+        )
     if unit is None or unit != "counts" and not measures(unit, "position", axis):
         unit, why = _position_unit(survey, column, velocity, axis)
         survey.guesses["channels.position.unit"] = why
@@ -185,6 +195,15 @@ def describe_position(
         if said is not None and measures(said, "velocity", axis):
             more = {} if choices.gear_ratio is None else {"gear_ratio": choices.gear_ratio}
             survey.channels["velocity"] = {"column": velocity, "unit": said, **more}
+
+
+def _counts(column: SurveyedColumn) -> bool:
+    """Whether a column is the counter of an encoder, by its name and its whole numbers."""
+    values = column.readings[np.isfinite(column.readings)]
+    named = COUNTERS & set(words_of(column.name))
+    if not named or not np.all(values == np.round(values)):
+        return False
+    return float(np.ptp(values)) > MOST_ANGLE
 
 
 def _seen_step(values: Array) -> float:
