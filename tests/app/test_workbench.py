@@ -103,7 +103,7 @@ def test_the_design_is_shown_from_its_claims_to_its_simulation_and_written_as_a_
     assert np.ptp(position) > 0
     assert "device_interface.toml" in export.write_all(added, tmp_path)
     file = tmp_path / "results" / added.experiment.folder.name / "device_interface.toml"
-    assert [b.name for b in read_diagram(file).blocks] == ["H", "Z_M", "C"]
+    assert [b.name for b in read_diagram(file).blocks] == ["Z_M", "H", "C"]
 
 
 def test_a_moved_parameter_is_shown_beside_the_record_or_not_at_all(bench):

@@ -154,6 +154,7 @@ def currents(feedback, noise=0.02):
 def test_a_wanted_current_that_did_not_act_leaves_its_place_to_the_measured_one():
     survey = look(currents(feedback=1.0))
     assert survey.channels["actuator_force"]["column"] == "actual_current"
+    assert survey.channels["actuator_force"]["measured"] is True  # no lag or limit is sought in it
     assert "'target_current', which was wanted" in survey.guesses["channels.actuator_force.column"]
     assert survey.unused["target_current"] == "what was wanted, not what was measured"
 

@@ -72,8 +72,10 @@ def describe_forces(
         n: _force_score(c, physics[n]) + BESIDE * _stand_together(n, position)
         for n, c in free.items()
     }
-    force = _force_that_drives(survey, free, physics, scores, choices, file)
+    force, measured = _force_that_drives(survey, free, physics, scores, choices, file)
     survey.channels["actuator_force"] = _force_entry(survey, force, "actuator_force", choices)
+    if measured:
+        survey.channels["actuator_force"]["measured"] = True
     if entry.get("gear_ratio") is not None:
         survey.channels["actuator_force"]["gear_ratio"] = entry["gear_ratio"]
     motion = x * _position_to_si(survey), h
@@ -95,10 +97,13 @@ def _force_that_drives(
     scores: Mapping[str, float],
     choices: Choices,
     file: str,
-) -> str:
-    """The column of the actuator's force; where names do not say it alone, a guess is noted."""
+) -> tuple[str, bool]:
+    """The column of the actuator's force, and whether it was measured in place of a wanted one.
+
+    Where names do not say it alone, a guess is noted.
+    """
     if choices.actuator_force is not None:
-        return choices.actuator_force
+        return choices.actuator_force, False
     if not scores:
         raise ExperimentError(
             f"{file}: found no column that could be a force beside "
@@ -120,7 +125,7 @@ def _force_that_drives(
         why = alike(force, others, "the actuator's force")
     if why is not None:
         survey.guesses["channels.actuator_force.column"] = why
-    return force
+    return force, acted is not None
 
 
 def _stand_together(one: str, other: str) -> bool:
