@@ -133,3 +133,13 @@ def test_the_unit_of_a_motors_constant_says_the_axis():
     for unit, axis in (("N*m/A", "revolute"), ("N/A", "prismatic")):
         survey = look(table, torque_constant=(2.0, unit))
         assert survey.axis == axis and "model.device.axis" not in survey.guesses
+
+
+def test_a_velocity_in_units_says_that_a_guessed_time_is_wrong():
+    """Frames of a motion capture at 200 Hz: a count of rows looks like milliseconds."""
+    table = {"Frame": np.arange(ROWS), "Angle [deg]": 40 * Q, "Current [A]": U}
+    speed = np.gradient(40 * Q, T)
+    why = look({**table, "Velocity [deg/s]": speed}).guesses["channels.time.unit"]
+    assert "asks for steps of 0.005 s: --sample-rate 200" in why
+    why = look({**table, "Velocity [deg/s]": 5 * speed}).guesses["channels.time.unit"]
+    assert "--sample-rate" not in why

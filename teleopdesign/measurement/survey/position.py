@@ -32,6 +32,8 @@ DERIVATIVE = 0.9
 #: words of a counter; and the range, in its steps, from which whole numbers are no rounded angle
 COUNTERS = frozenset(("enc", "encoder", "count", "counts", "counter", "ticks", "tick", "inc"))
 MOST_ANGLE = 50
+#: part by which a velocity may differ from the position's derivative: filters, and its own rounding
+SAME_TIME = 0.1
 
 
 def unwrapped(x: Array, jump: float | None) -> Array:
@@ -195,6 +197,26 @@ def describe_position(
         if said is not None and measures(said, "velocity", axis):
             more = {} if choices.gear_ratio is None else {"gear_ratio": choices.gear_ratio}
             survey.channels["velocity"] = {"column": velocity, "unit": said, **more}
+            _hold_time_against(survey, column, velocity)
+
+
+def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) -> None:
+    """Where the unit of the time is a guess: what a position and its velocity in units say."""
+    why = survey.guesses.get("channels.time.unit")
+    unit, said = (survey.channels[key]["unit"] for key in ("position", "velocity"))
+    if why is None or unit == "counts" or "channels.position.unit" in survey.guesses:
+        return
+    h = sample_time_of(survey)
+    whole = unwrapped(column.values, wrap_of(column.values))
+    factor, agree = derivative_factor(whole, survey.columns[velocity].values, h)
+    slower = factor * si_factor(said, quantity="velocity", axis=survey.axis)
+    slower /= si_factor(unit, quantity="position", axis=survey.axis)
+    if agree < DERIVATIVE or slower <= 0 or abs(slower - 1.0) < SAME_TIME:
+        return
+    survey.guesses["channels.time.unit"] = (
+        f"{why}; but {velocity!r} in {said} asks for steps of {h / slower:.3g} s: "
+        f"--sample-rate {float(f'{slower / h:.3g}'):g}"
+    )
 
 
 def _counts(column: SurveyedColumn) -> bool:
