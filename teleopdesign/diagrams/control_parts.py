@@ -145,7 +145,7 @@ def plant_parts(
         parts = by_code(system, name, (force,), (motion,), is_plant=True)
         return parts, (Junction(force, {command: 1.0, **forces}),)
     s = sp.Symbol("s")
-    # exact: python-control's own conversion of matrices leaves zeros far out
+    # exact: python-control's conversion of matrices leaves zeros far out
     form = from_control(system, name="plant").linear_form(name, s, sp.S(0))
     above, below = (sp.Poly(part, s, domain="QQ") for part in sp.fraction(sp.sympify(form)))
     if above.is_zero or below.degree() - above.degree() != 2:

@@ -41,7 +41,7 @@ def coupled_plant_parts(
 
     system: transfer functions or state space, as many inputs as outputs. Continuous, exact in the
         numbers as they came; or in discrete time, a plant of 2 n states behind a zero-order hold,
-        whose matrices in continuous time are found by a logarithm. Or nonlinear
+        whose matrices in continuous time follow from a logarithm. Or nonlinear
         (`control.nlsys`), in continuous time: code, for simulations alone, see `plant_parts`
     commands, drivers: signals of each axis, as of `Moving`
     Bodies are called "name_1", "name_2" ..., the impedance "name_link", blocks "name_rest_1_2".
