@@ -10,7 +10,6 @@ it is judged over its values. Any other friction is judged at vertices and in th
 from __future__ import annotations
 
 from collections.abc import Mapping
-
 from typing import Any
 
 import numpy as np
