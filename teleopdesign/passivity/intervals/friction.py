@@ -9,6 +9,7 @@ it is judged over its values. Any other friction is judged at vertices and in th
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -91,7 +92,7 @@ def _vertices_decide(middle: Diagram, box: ValueBox) -> bool:
     return bool(len(box.vertices()) == 2 ** len(box.names))
 
 
-def _is_of(name: str, known: dict[str, tuple[str, ...]]) -> bool:
+def _is_of(name: str, known: Mapping[str, tuple[str, ...]]) -> bool:
     part, _, value = name.rpartition(".")
     return value in known.get(part, ())
 
