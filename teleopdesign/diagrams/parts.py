@@ -92,7 +92,11 @@ class Moving:
 @checked
 @dataclass(frozen=True)
 class Attached:
-    """A body on a motion, which the body resists:  force = sign Z motion."""
+    """A body on a motion, which the body resists:  force = sign Z motion.
+
+    motion: name of the motion that it follows;  force: name of the force that it makes, N or N m
+    sign: -1: the force is counted along the motion, so that it opposes it;  1: against the motion
+    """
 
     name: str
     body: Body | AnyBlock
@@ -116,7 +120,11 @@ class Attached:
 @checked
 @dataclass(frozen=True)
 class Linked:
-    """Bodies joined by a linear impedance:  forces = sign Z motions, Z a matrix."""
+    """Bodies joined by a linear impedance:  forces = sign Z motions, Z a matrix.
+
+    motions, forces: names of signals, one of each for a row of Z;  sign: as of `Attached`
+    raises ModelError: another number of rows than of motions or forces
+    """
 
     name: str
     body: MatrixImpedance

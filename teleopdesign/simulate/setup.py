@@ -113,7 +113,10 @@ def simulated_form(
 
 @dataclass(frozen=True)
 class Setup:
-    """A simulation that is ready to run, with its step or a shorter one."""
+    """A simulation that is ready to run, with its step or a shorter one.
+
+    duration, step: s;  inputs: signal -> values;  motion: prescribed motions;  initial: SI
+    """
 
     diagram: Diagram
     program: Program
