@@ -66,7 +66,7 @@ def controller_parts(
         entry_name = f"{name}_{i + 1}_{j + 1}"
         signal, place = f"{entry_name}_out", Entry(name, i, j, tuple(there)) if shared else None
         controls.append(Control(entry_name, every[i, j], inputs[j], signal, motion, analog, place))
-        terms[i][signal] = 1.0
+        terms[i][signal] = 1
     sums = (Junction(output, terms[i]) for i, output in enumerate(outputs))
     return tuple(controls), tuple(sums)
 

@@ -32,6 +32,7 @@ from ..claims.claim import Claim, Refutation, Unknown, accepted
 from ..linear.impedance import Impedance, decimal, exact, impedance, readable
 from ..linear.positive_real import NO_WAVE, damping_excess, is_positive_real
 from ..search.growing_wave import ROUNDING, growing_wave
+from ._discrete_system import in_z
 from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, REAL, under
 from ._theorem import Question, Theorem, TopicClaim
 
@@ -51,13 +52,13 @@ def sampled_passivity(
     """Is the body with this sampled controller passive at the hand?
 
     controller: H(z), rational in z: held force against the motion (N) over position (m); delays
-        are factors z^-1
+        are factors z^-1; or a discrete system of python-control
     damping: b of the body, N s/m: >= 0, for between two samples nothing holds one that drives
     sample_time: T, s;  stiffness: spring K_0 of the body, N/m
     raises ModelError: not rational in z, or a sample time that is not positive
     """
     late = _positive(sample_time)
-    law = _law(controller)
+    law = _law(in_z(controller, sample_time=float(late), z=Z))
     b, k = exact(damping), exact(stiffness)
     operator = travel_operator(law, b, late, k)
     statement = (
@@ -90,7 +91,8 @@ def required_damping(controller: Any, *, sample_time: Any, stiffness: Any = 0) -
     Arguments as in `sampled_passivity`.
     """
     late = _positive(sample_time)
-    operator = travel_operator(_law(controller), sp.S(0), late, exact(stiffness))
+    law = _law(in_z(controller, sample_time=float(late), z=Z))
+    operator = travel_operator(law, sp.S(0), late, exact(stiffness))
     return max(-float(late) * float(damping_excess(operator)), 0.0)
 
 
