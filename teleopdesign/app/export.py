@@ -1,4 +1,4 @@
-"""What the page gives out: report, answer, figure, the compensation as a diagram, a script."""
+"""What the page offers: report, answer, figure, the compensation as a diagram, a script."""
 
 from __future__ import annotations
 

@@ -133,7 +133,8 @@ def survey_text(survey: Survey, name: str) -> str:
     """What was understood, a line a channel, and what was guessed."""
     lines = [f"{name}: {survey.duration:.4g} s, {len(survey.columns)} columns; {survey.axis} axis"]
     for key, entry in survey.channels.items():
-        rest = {k: v for k, v in entry.items() if k not in ("column", "unit")}
+        said = ("column", "unit") if "column" in entry else entry
+        rest = {k: v for k, v in entry.items() if k not in said}
         more = ", ".join(f"{k} {_short(v)}" for k, v in rest.items())
         column = f'"{entry["column"]}"' if "column" in entry else _short(entry)
         unit = f" in {entry['unit']}" if "column" in entry else ""

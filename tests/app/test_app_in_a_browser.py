@@ -71,8 +71,11 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
         page.get_by_role("tab", name="Parameters").click()
         page.get_by_role("columnheader", name="as estimated").wait_for()
         page.get_by_role("tab", name="Design").click()
+        page.get_by_role("tab", name="Before and after").wait_for()
+        page.wait_for_timeout(3000)  # the parts are laid out, the first one on top
         page.get_by_role("tab", name="Numbers, reasons and claims").click()
-        page.get_by_text("proved: Coulomb friction", exact=False).first.wait_for()
+        claims = page.get_by_text("proved: Coulomb friction")  # laid out twice, shown once
+        claims.locator("visible=true").first.wait_for()
         page.get_by_role("tab", name="Diagram").click()
         picture(page, folder, "design", full_page=True)
         page.get_by_role("tab", name="Export").click()

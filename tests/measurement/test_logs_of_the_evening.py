@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.io import savemat
 
+from teleopdesign.cli import main
 from teleopdesign.errors import ExperimentError
 from teleopdesign.measurement.column_names import likeness, words_of
 from teleopdesign.measurement.doors._log import Log
@@ -143,3 +144,11 @@ def test_a_velocity_in_units_says_that_a_guessed_time_is_wrong():
     assert "asks for steps of 0.005 s: --sample-rate 200" in why
     why = look({**table, "Velocity [deg/s]": 5 * speed}).guesses["channels.time.unit"]
     assert "--sample-rate" not in why
+
+
+def test_a_stated_rate_is_printed_once(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path / "log.csv", ["pos_deg,torque_Nm", *rows("%.6g,%.6g", 40 * Q, U)])
+    assert main(["new", "log.csv", "--yes", "--sample-rate", "200"]) == 0
+    (line,) = [r for r in capsys.readouterr().out.splitlines() if "sample_rate" in r]
+    assert line.split() == ["sample_rate", "200", "Hz"]
