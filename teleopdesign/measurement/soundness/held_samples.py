@@ -21,7 +21,7 @@ STEPS = 3.0
 NEAR = 10
 #: chance of a zero among normal changes: density at zero times the step, over the median change
 _ZERO = 0.3989 * 0.6745
-#: changes on leaving a hold, in usual changes before it, that give it away
+#: changes on leaving a hold, in usual changes before it, that reveal it
 LEAP = 5.0
 #: samples that a hold must last to be called stuck: shorter ones are counted as repeats
 LASTING = 10
@@ -80,7 +80,7 @@ def check_repeats(signal: Signal) -> list[Finding]:
     """Samples of a position that the log repeats."""
     if signal.channel.quantity != "position":
         return []
-    parts = [repeats(x, signal.step) + first for first, x in signal.stretches]
+    parts = [repeats(x, signal.rounded_to) + first for first, x in signal.stretches]
     odd = np.concatenate(parts)
     if not len(odd):
         return []
@@ -160,7 +160,7 @@ def check_stuck(signal: Signal) -> list[Finding]:
     holds = [
         (first + a, first + b)
         for first, x in signal.stretches
-        for a, b in stuck_stretches(x, signal.step, signal.channel.quantity)
+        for a, b in stuck_stretches(x, signal.rounded_to, signal.channel.quantity)
     ]
     if not holds:
         return []
