@@ -78,6 +78,15 @@ def test_a_candidate_that_displaces_a_parameter_has_no_share(diagnosis):
     assert shares(spoilt, rung)[first.candidate.key] == 0.0
 
 
+def test_what_was_accepted_keeps_its_share_with_a_parameter_of_its_own_at_a_bound(diagnosis):
+    rung = diagnosis.rungs[1]
+    first = rung.ranking.ranked[0]
+    bound = replace(first.fit, at_bound=("device.stribeck.extra_static_level",))
+    ranking = replace(rung.ranking, ranked=(replace(first, fit=bound), *rung.ranking.ranked[1:]))
+    assert shares(ranking, rung)[first.candidate.key] == pytest.approx(1.0)
+    assert shares(ranking, None)[first.candidate.key] == 0.0, "it was not accepted"
+
+
 def test_every_candidate_of_every_step_has_its_evidence(diagnosis):
     found = evidence_of(diagnosis)
     rankings = [*(r.ranking for r in diagnosis.rungs if r.ranking), diagnosis.last]

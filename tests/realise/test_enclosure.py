@@ -117,6 +117,28 @@ def test_a_law_without_a_bound_has_none():
     assert least_value(sp.log(X), {X: (0.0, 1.0)}).bound == -inf
 
 
+@pytest.mark.parametrize(
+    ("law", "over", "low", "high"),
+    [
+        (sp.sqrt(S), (0.25, 4.0), 0.5, 2.0),
+        (S ** sp.Rational(1, 3), (0.125, 8.0), 0.5, 2.0),
+        (S ** sp.Rational(2, 3), (0.125, 8.0), 0.25, 4.0),
+        (S ** sp.Rational(1, 3), (0.0, 8.0), 0.0, 2.0),
+        (1 / sp.sqrt(S), (0.25, 4.0), 0.5, 2.0),
+        (S ** sp.Float(0.75), (1.0, 16.0), 1.0, 8.0),
+        (sp.log(S), (1.0, 8.0), 0.0, 2.0794415416798357),
+        (sp.log(S), (0.0, 1.0), -inf, 0.0),
+        (sp.log(S), (-1.0, 1.0), -inf, inf),
+    ],
+    ids=str,
+)
+def test_roots_powers_and_logarithms_have_their_range_and_hardly_more(law, over, low, high):
+    least, most = ends(enclosure_of(law, [S])([interval(*over)]))
+    assert least <= low and high <= most
+    # guards of a few last places
+    assert least == pytest.approx(low, abs=1e-9) and most == pytest.approx(high, abs=1e-9)
+
+
 def test_a_function_of_which_no_bound_is_known_is_named():
     with pytest.raises(ModelError, match="erf"):
         least_value(sp.erf(X), {X: (0.0, 1.0)})
