@@ -72,11 +72,11 @@ def repeated_rows(
     noisy = [f for f in forces if np.mean(np.diff(f)[~same] == 0) <= ALONE]
     unlikely = (_by_chance([*positions, *forces], same, first, past) <= ALONE) | bool(noisy)
     inside = short & (unlikely | stopped[past])
-    stuck = np.zeros(count, dtype=bool)
-    for x, step in zip(positions, steps, strict=True):
+    lasting, stuck = np.flatnonzero(past - first >= LASTING), np.zeros(count, dtype=bool)
+    for x, step in zip(positions if len(lasting) else (), steps, strict=False):
         for a, b in stuck_stretches(x, step, "position"):
             stuck[a + 1 : b] = True
-    for k in np.flatnonzero(past - first >= LASTING):
+    for k in lasting:
         a, b = int(first[k]), int(past[k])
         inside[k] = bool(stuck[a + 1 : b + 1].all())
         inside[k] |= any(_leaps(x, a, b, s) for x, s in zip(positions, steps, strict=True))
