@@ -28,7 +28,7 @@ CASES = ("001", "004", "005", "006", "007", "010", "012", "016", "022", "024", "
 #: real recordings whose diagnosis takes seconds
 RECORDINGS = ("cicese_gravity", "cicese_presliding", "ur10e_joint1")
 #: effects that these diagnoses choose from; the whole catalogue takes five times as long
-TRIED = (
+CANDIDATES = (
     "viscous", "coulomb", "coulomb_asymmetry", "stribeck", "presliding", "bias", "spring",
     "added_inertia", "actuation_delay", "actuator_lag", "cogging", "friction_drift", "gravity",
     "shear_thinning",
@@ -199,12 +199,12 @@ def pages() -> dict[str, Any]:
 
 def answers() -> dict[str, Any]:
     """Answers on simulated cases beside the project, among few effects."""
-    return _diagnosed({f"hidden {c}": SHARED / "hidden" / "cases" / c for c in CASES}, TRIED)
+    return _diagnosed({f"hidden {c}": SHARED / "hidden" / "cases" / c for c in CASES}, CANDIDATES)
 
 
 def recordings() -> dict[str, Any]:
     """Answers on real recordings beside the project, among few effects."""
-    return _diagnosed({name: SHARED / "data" / name for name in RECORDINGS}, TRIED)
+    return _diagnosed({name: SHARED / "data" / name for name in RECORDINGS}, CANDIDATES)
 
 
 def whole_answers() -> dict[str, Any]:

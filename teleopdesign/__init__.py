@@ -38,14 +38,14 @@ verb can be called: `td.diagnose` does what `td.find_missing` does, and so do `t
 The folders, each importing only from those before it:
 
     folder_calls  a folder named by a verb can be called
-    arguments     what is given, held against the types declared (`expectations` beside it)
+    arguments     arguments of a call, checked against the types declared (`expectations` beside it)
     frozen        mappings that nobody changes (by_value, recipes, users_files, notebook: see there)
     quantity      force, velocity ... -> unit on a prismatic or a revolute axis
     finding       a sentence, its numbers, and a graph that shows it
     arms          links of an arm, of a URDF or as written, and the forces that they need
     effects       what physics does: one effect = one file
     blocks        bodies, hand: equations only
-    controllers   chosen, not found: one control law = one file
+    controllers   chosen by the user: one control law = one file
     diagrams      which blocks, wired by signal names; read from and written to files
     model         bodies with their effects at places; frozen
     realise       any block into each form: residual, transfer function, equations, kernel, iosystem
@@ -55,10 +55,10 @@ The folders, each importing only from those before it:
     simulate      motions and responses in time, sampled or continuous
     measurement   experiment, record, motion; whether a recording is sound
     diagnose      residual, noise floor, ladder, answer
-    identify      Coulomb level and largest stiffness by the papers' own experiments
+    identify      Coulomb level and largest stiffness by the papers' experiments
     check         before a diagnosis: is a recording sound, and what can it show
     unexplained   after it: where a model fails, and what that depends on
-    next_experiment  what to measure next, so that rivals are told apart
+    next_experiment  what to measure next, so that rivals are distinguished
     design        from a diagnosed model to controllers, predictions and claims
     studies       a model at every point of named parameters, on one machine or many
     papers        statements of the two papers, each with its proof or check

@@ -1,9 +1,9 @@
-"""What is given is held against the types that a function declares, before it computes anything.
+"""Arguments are checked against the types that a function declares, before it computes anything.
 
     @checked
     def sine(*, amplitude: float) -> Motion     # sine(amplitude="2 mm") is refused in one line
 
-A wrong type is refused where it is given, with what was found, what was expected, and the nearest
+A wrong type is refused at the call, with what was found, what was expected, and the nearest
 match where names are expected. Numbers are finite or infinite, never NaN, True or a text. What is
 no argument of the function stays a TypeError, as in any Python.
 """
@@ -137,7 +137,7 @@ def _resolve(annotation: Any, names: Mapping[str, Any]) -> Any:
     known = dict(names)
     for _ in range(_MOST_NAMES):
         try:
-            return eval(annotation, known)  # the package's own annotation, not a user's text
+            return eval(annotation, known)  # the package's annotation, not a user's text
         except NameError as missing:
             name = missing.name or ""
             known[name] = _for_type_checkers(names["__name__"], name)

@@ -10,7 +10,7 @@ from typing import Any
 class ByValue:
     """Base of frozen dataclasses (with eq=False): `same` compares their fields, arrays print short.
 
-    A class that writes its own `__repr__` keeps it.
+    A class that writes its `__repr__` keeps it.
     """
 
     def __init_subclass__(cls) -> None:
@@ -48,7 +48,7 @@ def _short(value: Any) -> str:
 def same(one: Any, other: Any) -> bool:
     """Whether two things have the same content; NaN is the same as NaN, arrays go by entry.
 
-    Dataclasses are compared field by field, whatever their own `==` says.
+    Dataclasses are compared field by field, whatever their `==` says.
     """
     if one is other:
         return True

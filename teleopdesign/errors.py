@@ -52,7 +52,7 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """End of a message: '; did you mean "x"?', or nothing if no known name is close.
 
-    word: what was given for a name; what is no text is close to nothing
+    word: the text in place of a name; what is no text is close to nothing
     """
     match = nearest(word, known) if isinstance(word, str) else None
     return "" if match is None else f'; did you mean "{match}"?'

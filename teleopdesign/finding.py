@@ -46,7 +46,7 @@ class Graph(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class Finding(ByValue):
-    """What was found about a recording, or about what a model leaves unexplained.
+    """One fact about a recording, or about what a model leaves unexplained.
 
     topic: what was looked at ("sample clock", "dependence on velocity")
     concern: "fine" says that all is well, "note" is worth knowing, "warning" needs care

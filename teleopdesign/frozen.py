@@ -36,15 +36,15 @@ class Frozen(Mapping[Key, Content]):
         return key in self._content
 
     def keys(self) -> KeysView[Key]:
-        """The keys, in the order given."""
+        """The keys, in the order of the call."""
         return self._content.keys()
 
     def items(self) -> ItemsView[Key, Content]:
-        """The pairs, in the order given."""
+        """The pairs, in the order of the call."""
         return self._content.items()
 
     def values(self) -> ValuesView[Content]:
-        """The values, in the order given."""
+        """The values, in the order of the call."""
         return self._content.values()
 
     def __eq__(self, other: object) -> bool:

@@ -26,7 +26,7 @@ class Model:
     """Bodies by their place ("device", or "master" and "slave"), each with its effects (SI).
 
     record_shift: body -> s by which the log of its command is late: no physics, but what a logger
-        did to the records that the model was estimated on; none where it is not given
+        did to the records that the model was estimated on; none where that is unknown
     links: base parameters (SI) of the arm whose joints the bodies are; (): none are estimated
     """
 
@@ -56,7 +56,7 @@ class Model:
     ) -> Model:
         """The model that an experiment.toml describes, its values converted to SI.
 
-        known: the effects by name, for those who add their own
+        known: the effects by name, for those who add effects
         raises ExperimentError: unknown effect or parameter, wrong unit, value out of bounds
         """
         described = experiment.bodies
@@ -96,8 +96,8 @@ class Model:
         """The model with one effect more.
 
         at: place; may be left out where there is one body only
-        values: parameter -> value (SI); where not given, the effect starts as absent and a fit
-        finds its own starting values
+        values: parameter -> value (SI); by default the effect starts as absent and a fit
+        finds its starting values
         raises ModelError: no such effect, place or parameter, or the effect is already there
         """
         added = (

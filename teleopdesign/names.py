@@ -1,4 +1,4 @@
-"""What a name may be: of a signal, a block, a parameter, wherever it is read or given.
+"""What a name may be: of a signal, a block, a parameter, wherever a file or a call states it.
 
 A name is a plain word, so that it can be shown, looked up and written into any file. No generated
 source holds it: there each name has a private stand-in (`realise.private_names`).

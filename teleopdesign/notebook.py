@@ -12,7 +12,7 @@ MOST_ROWS = 40
 def html_table(
     title: str, head: Sequence[str], rows: Iterable[Sequence[object]], *, note: str = ""
 ) -> str:
-    """A table with a title above, and a note below where one is given."""
+    """A table with a title above, and a note below where there is one."""
     listed = [tuple(map(str, row)) for row in rows]
     more = len(listed) - MOST_ROWS
     if more > 0:

@@ -1,4 +1,4 @@
-"""Python files of the user: effects and control laws of one's own.
+"""Python files of the user: effects and control laws.
 
 What was read is what is run: the digest that names a file in answers and pickles is that of the
 very bytes that are compiled. Nothing is written beside the file.

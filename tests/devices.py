@@ -4,6 +4,7 @@ import numpy as np
 
 from teleopdesign.blocks import Body, Value
 from teleopdesign.controllers import controller, scheduled_force_feedback
+from teleopdesign.diagrams import teleoperator
 from teleopdesign.effects import EFFECTS
 
 
@@ -25,3 +26,16 @@ LUGRE = {
 CANCELLATION = controller("smoothed_coulomb", {"level": 0.5, "smoothing_velocity": 0.015})
 FEEDBACK = scheduled_force_feedback(gain=5.0, scheduling_velocity=0.08, bandwidth=20.0)
 LOOP = controller("lead", {"gain": 2e4, "zero": 2 * np.pi, "pole": 100 * np.pi})
+DAHL = controller("dahl", {"level": 0.4, "stiffness": 1e4})
+LINK = controller("spring_damper", {"stiffness": 200.0, "damping": 3.0})
+
+
+def coupled(**friction):
+    """Two devices on a link, the master's friction cancelled;  friction: default: with bristles.
+
+    One structure, whether friction is ideal or deflects before it slides.
+    """
+    rubbing = friction or {"coulomb__level": 0.5, "presliding__stiffness": 2e4}
+    master, slave = (body(0.15, **rubbing, viscous__damping=0.4) for _ in range(2))
+    hand = body(0.1, viscous__damping=2.0)
+    return teleoperator(master, slave, coupling=LINK, hand=hand, master_cancellation=DAHL)

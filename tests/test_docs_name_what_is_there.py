@@ -1,13 +1,16 @@
 """Pages print constants of the code by their names: what moves in the code moves in the pages."""
 
 import re
+import runpy
 from functools import reduce
 from importlib import import_module
 from pathlib import Path
 
 import pytest
 
-PAGES = sorted((Path(__file__).parents[1] / "docs").glob("*.md"))
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+PAGES = sorted(DOCS.glob("*.md"))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
@@ -21,11 +24,27 @@ def test_every_constant_on_a_page_is_there(page):
 
 def test_the_robustness_study_is_written_in_at_most_thirty_lines():
     """Diagram, both studies, claim and both figures, as a reader types them."""
-    docs = Path(__file__).parent.parent / "docs"
-    page = (docs / "robustness_study.md").read_text(encoding="utf-8")
+    page = (DOCS / "robustness_study.md").read_text(encoding="utf-8")
     blocks = re.findall(r"^```\{session\}\n(.*?)^```", page, flags=re.MULTILINE | re.DOTALL)
-    diagram = (docs / "examples" / "swing.toml").read_text(encoding="utf-8")
+    diagram = (DOCS / "examples" / "swing.toml").read_text(encoding="utf-8")
     lines = [*diagram.splitlines(), *"".join(blocks).splitlines()]
     typed = [line for line in lines if line.strip() and not line.startswith((":", "#"))]
     assert 20 < len(typed) <= 30
     assert max(map(len, typed)) <= 104
+
+
+def test_the_picture_of_the_house_has_every_room_in_its_place():
+    """`python docs/make_house.py` was forgotten when a layer was added."""
+    drawing = (DOCS / "_static" / "house.svg").read_text(encoding="utf-8")
+    house = runpy.run_path(str(DOCS / "make_house.py"))
+    rooms = [name for row in house["layers"]() for name in row]
+    words = re.findall(r"<text[^>]*>([^<]*)</text>", drawing)
+    assert [w for w in words if w not in house["FLOORS"].values()] == rooms
+
+
+def test_every_file_that_the_page_on_the_design_names_is_there():
+    page = (DOCS / "design.md").read_text(encoding="utf-8")
+    paths = re.findall(r"`([\w/]+\.py|\w+/[\w/]+)`", page)
+    places = (ROOT, ROOT / "teleopdesign", *(ROOT / "teleopdesign").iterdir())
+    assert len(paths) > 40
+    assert [p for p in paths if not any((place / p).exists() for place in places)] == []

@@ -1,4 +1,4 @@
-"""What the page gives out: report, answer, figure, and a script that repeats what was clicked."""
+"""What the page offers: report, answer, figure, and a script that repeats what was clicked."""
 
 from __future__ import annotations
 

@@ -84,7 +84,7 @@ class Preview:
 def preview(folder: Path, name: str, choices: Choices | None = None) -> Preview:
     """Look at a log of the folder.
 
-    choices: columns, axis and constants that the user states; the rest is found
+    choices: columns, axis and constants that the user states; the rest is detected
     raises ExperimentError: the log cannot be read, or holds no position or no force
     """
     path = inside(folder, name)
@@ -115,7 +115,7 @@ def make_experiment(folder: Path, shown: Preview, spans: FitAndCheck | None = No
 
 
 def choices_of(answers: dict[str, str | None]) -> Choices:
-    """What a form of the page says; an empty answer is left to be found.
+    """What a form of the page says; an empty answer: to be detected.
 
     answers: of `ASKED`, "axis", "torque constant" (N m/A) and "gear ratio"
     raises ExperimentError: a constant that is no number

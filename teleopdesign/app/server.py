@@ -13,7 +13,7 @@ import uvicorn
 
 from ..errors import ExperimentError
 
-#: s that open pages are given to close
+#: s that open pages have to close
 LEAVING = 2.0
 NOTEBOOK = Path(__file__).with_name("notebook.py")
 

@@ -16,7 +16,7 @@ class Cancelled(Exception):  # noqa: N818 - it is no error
 
 
 class BackgroundTask(Generic[T]):
-    """One piece of work in a thread of its own.
+    """One piece of work in a separate thread.
 
     name: what it does, for the page;  progress: its last line
     result: what it gave; None until `done`, or where it failed or was cancelled

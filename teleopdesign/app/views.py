@@ -1,6 +1,7 @@
 """The parts of the page as they are laid out: buttons, tables and charts in rows and columns.
 
-Each function lays out what a cell of the notebook gives it; what a button does is in the notebook.
+Each function lays out the arguments from a cell of the notebook; what a button does is in the
+notebook.
 """
 
 from __future__ import annotations

@@ -45,7 +45,7 @@ class Workbench:
     ) -> Workbench:
         """The user's model re-estimated, and every candidate beside it; takes some seconds.
 
-        known: effects by name, which a description may use;  among: names of those that are tried
+        known: effects by name, which a description may use;  among: names of the candidates
         raises ExperimentError: the experiment lacks what the comparison needs
         """
         model = Model.from_experiment(experiment, known)

@@ -1,8 +1,8 @@
 """Arms from URDF, the format in which most robots are described: kinematics and inertial values.
 
 Read: links with their inertial values, joints with their origin, axis and kind. What is drawn,
-limits, transmissions and what simulators add are not. A file is data: one that declares entities of
-its own is refused, and so is one of a size that no robot has.
+limits, transmissions and what simulators add are not. A file is data: one that declares
+entities is refused, and so is one of a size that no robot has.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ def body_of(
 ) -> Body:
     """The body that is described, in SI.
 
-    known: effects by name;  complete: every parameter must be given that is not optional; else one
+    known: effects by name;  complete: every parameter that is not optional is required; else one
         that is left out is open, and stands where its effect is absent
     raises ExperimentError: unknown effect or parameter, wrong unit, value out of bounds or missing
     """

@@ -14,7 +14,10 @@ from .environment import CONTACT
 
 
 def free_space(body: Body) -> Body:
-    """The body without what it touches: free motion, no contact force."""
+    """The body without what it touches: free motion, no contact force.
+
+    Effects of contacts are removed; friction, structure and actuation of the body stay.
+    """
     for effect in reversed(body.effects):
         if effect.role in CONTACT_ROLES:
             body = body.without_effect(effect.name)

@@ -5,7 +5,7 @@
 
 These numbers are examples: with the grip and from person to person they vary by an order of
 magnitude. What the hand wants comes in as force (`R_V`) or as motion: the force that would lead the
-free hand along it, which a simulation of the hand alone gives (`haptic_interface(hand)` with that
+free hand along it, from a simulation of the hand alone (`haptic_interface(hand)` with that
 motion prescribed: its R_V).
 """
 

@@ -104,9 +104,9 @@ assert {f.name for f in fields(MatrixImpedance)} == set(_PARTS)
 def matrix_impedance(
     *, mass: Any = 0.0, damping: Any = 0.0, stiffness: Any = 0.0
 ) -> MatrixImpedance:
-    """An impedance from square matrices (or one number for all diagonals of a given size).
+    """An impedance from square matrices (or one number for all diagonals of one size).
 
-    raises ModelError: no matrix is given, or sizes differ
+    raises ModelError: no matrix, or sizes differ
     """
     matrices = {"mass": mass, "damping": damping, "stiffness": stiffness}
     for name, matrix in matrices.items():

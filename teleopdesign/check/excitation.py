@@ -52,7 +52,7 @@ def check_excitation(
         poor = missing_excitation(body_motions, base.model, body)
         if place == body:
             findings.append(describe_motion(body_motions, place, poor, base.model.body(place).axis))
-            findings += _own_parameters(base, place)
+            findings += _model_parameters(base, place)
         never = [c for c in every if c.at == place and c not in judged]
         mine = [v for v in visible_effects if v.candidate.at == place]
         if mine or never:
@@ -175,7 +175,7 @@ def _reason(v: Visibility, poor: Mapping[str, str], model: Model) -> str:
 def needed(effect: Effect) -> tuple[str, ...]:
     """Signals that an effect's law and hidden states follow.
 
-    Friction always follows the velocity; what stands between command and force is told by a force
+    Friction always follows the velocity; what stands between command and force shows in a force
     that does not pass through it.
     """
     laws = [effect.expression(), *effect.rates().values()]
@@ -209,8 +209,8 @@ def _look_alikes(visible_effects: Sequence[Visibility], place: str) -> list[Find
     ]
 
 
-def _own_parameters(base: Fit, place: str) -> list[Finding]:
-    """Parameters of the user's own model that the record does not determine."""
+def _model_parameters(base: Fit, place: str) -> list[Finding]:
+    """Parameters of the user's model that the record does not determine."""
     free = {n: base.model.parameters[n] for n in base.free if base.model.locate(n)[0] == place}
     open_ = {n: v for n, v in free.items() if not v.stderr < abs(v.value)}
     if not open_:

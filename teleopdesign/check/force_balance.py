@@ -2,12 +2,12 @@
 
     lead(t + shift) + gain other(t + shift') = sum of strength_j column_j + what the model says else
 
-By linear least squares, unbounded, on the rows where the body is told to move. `lead` is the
+By linear least squares, unbounded, on the rows where the body surely moves. `lead` is the
 actuator force (the interaction force where nothing is commanded); columns are the tangents of the
 user's model by its inertia and by every strength in which its force is linear. A force that is
 turned gives a negative gain, a motion that is turned negative strengths, a unit that is off a
 strength that is off by its factor. Shifts come from the forces' derivatives, solved again about
-each shift found, first at low frequency, where a period is long.
+each shift, first at low frequency, where a period is long.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class ForceBalance:
     gain: of the other force, 1 where its scale and sign are right, and 1 where there is none
     strengths: "inertia", "coulomb.level" ... -> estimate (SI);  power: of each, W, mean
     shifts: "actuator_force", "interaction_force" -> s by which its log lags the motion; "position"
-        -> s by which the motion's does, where that alone explains it; empty: none is told
+        -> s by which the motion's does, where that alone explains it; empty: no shift is reported
     left, unshifted: force left unexplained over the measured force, with and without the shifts
     rows: part of the record on which all this rests
     """

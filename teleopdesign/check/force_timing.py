@@ -1,7 +1,7 @@
 """Timing of the forces on one body: by how much each one's log lags the motion.
 
 A force that is late by t is f(t + shift) = f + shift df/dt + ...: its derivative is one more
-column of the balance. Each step moves the forces by what it found; the first ones look at low
+column of the balance. Each step moves the forces by the estimated shift; the first ones look at low
 frequency only, where a period is long. Forces that share one shift stand for a motion that is
 shifted itself.
 """
@@ -27,8 +27,8 @@ STARTS_ANEW, LATE = 0.2, 0.06
 #: part of the unexplained force that shifts must leave at most to be believed, and part of what
 #: they explain that one alone must explain to be believed alone
 REMAINS, ALONE = 0.85, 0.8
-#: low-passed share of told motion from which a row counts
-TOLD = 0.98
+#: low-passed share of samples in sure motion from which a row counts
+CLEAR_MOTION = 0.98
 #: shifts of forces that are in step with the motion, s
 ON_TIME: Mapping[str, float] = {"actuator_force": 0.0, "interaction_force": 0.0}
 
@@ -58,7 +58,7 @@ def along_in(body: Body, stretch: Stretch, names: Sequence[str], band: float) ->
     acting = along.acting.value
     rest = acting + motion.interaction - along.residual.value - values @ columns
     moving = motion.lowpassed(np.abs(motion.direction).astype(np.float64))
-    keep = stretch.keep[moving[stretch.keep] > TOLD]
+    keep = stretch.keep[moving[stretch.keep] > CLEAR_MOTION]
     low = s.lowpass(band * motion.bandwidth)
     forces = {
         "actuator_force": s.transform(acting) * low,
@@ -129,7 +129,7 @@ def _from_starts(
     groups: Sequence[tuple[str, ...]],
     measured: float,
 ) -> BalanceFit:
-    """Settled from no shift, or from others where that leaves too much."""
+    """Iterated from no shift, or from others where that leaves too much."""
     best = fit_balance(bands, forces, groups, ON_TIME)
     if best.size < STARTS_ANEW * measured:
         return best

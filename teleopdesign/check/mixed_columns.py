@@ -1,6 +1,6 @@
 """Channels that are something else than they are said to be: a clock in ms, swapped columns.
 
-These are told without a model: a force follows from inertia and friction of the motion, a position
+These show without a model: a force follows from inertia and friction of the motion, a position
 does not follow so from a force, and no machine is logged once in ten seconds.
 """
 
@@ -15,11 +15,11 @@ from ..measurement.soundness.signal import written
 
 #: Hz, rates between which a machine is logged
 SLOWEST, FASTEST = 5.0, 1e6
-#: part of the force that the motion explains, at most as given and at least the other way round: on
-#: the recordings of `fetch` and twelve simulated ones it is 0.47 to 1.0 for columns in their
+#: part of the force that the motion explains, at most as logged and at least the other way round:
+#: on the recordings of `fetch` and twelve simulated ones it is 0.47 to 1.0 for columns in their
 #: places,
 #: and with one exception (0.43) at most 0.2 for columns that are exchanged
-AS_GIVEN, EXCHANGED = 0.25, 0.6
+AS_LOGGED, EXCHANGED = 0.25, 0.6
 
 
 def check_clock_unit(experiment: Experiment) -> Iterator[Finding]:
@@ -57,7 +57,7 @@ def check_mixed_columns(experiment: Experiment) -> Iterator[Finding]:
             continue
         as_logged = explain_force(force + other, position, record.sample_time)
         exchanged = explain_force(position + other, force, record.sample_time)
-        if as_logged.explained < AS_GIVEN and exchanged.explained > EXCHANGED:
+        if as_logged.explained < AS_LOGGED and exchanged.explained > EXCHANGED:
             keys = [f"{body}.{q}" for q in ("position", "actuator_force")]
             names = [written(experiment, key) for key in keys]
             columns = [experiment.channels[key].column for key in keys]

@@ -1,6 +1,6 @@
 """Do forces, motion and model agree in sign, unit and time? Plain findings from `force_balance`.
 
-What these sentences rest on is one linear fit to the rows in motion: a warning is given where the
+What these sentences rest on is one linear fit to the rows in motion: a warning is issued where the
 user's columns, as they are labelled, contradict each other by far more than an effect could.
 """
 
@@ -23,8 +23,8 @@ from .unit_slips import NEAR, POWERS, slips
 
 #: a gain or an inertia off by more than this factor is a unit, not a calibration or a poor guess
 FAR = 10.0
-#: logarithm by which ratios may differ and still be one scale, and the least factor that is told: a
-#: user's first values are commonly 20 % off
+#: logarithm by which ratios may differ and still be one scale, and the least factor that is
+#: reported: a user's first values are commonly 20 % off
 ONE_SCALE, OFF_SCALE = 0.15, 2.0
 #: force left unexplained above which a shift is not all that is wrong
 UNEXPLAINED = 0.25

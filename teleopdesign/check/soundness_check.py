@@ -13,6 +13,7 @@ from ..finding import Finding, Findings
 from ..measurement.experiment import Experiment
 from ..measurement.soundness import check_signals
 from ..model import Model
+from .bandwidth_check import check_bandwidth
 from .excitation import check_excitation
 from .mixed_columns import check_clock_unit, check_mixed_columns
 from .plausibility import check_plausibility
@@ -26,7 +27,7 @@ def check_experiment(
 ) -> Findings:
     """Plain findings about a recording: soundness, signs and units, what it can show.
 
-    model: what the user believes so far; default: the experiment's own
+    model: what the user believes so far; default: the experiment's model
     seed: of the draws for the noise floor
     Signs, units, shifts and effects of a long experiment are judged on windows (`excerpt`).
     What stands in the way of an answer (no inertia, a bandwidth too high) is a finding, no error.
@@ -56,6 +57,8 @@ def _findings(experiment: Experiment, model: Model | None, seed: int) -> tuple[F
     mixed = list(check_mixed_columns(part))
     if mixed:
         return (*findings, *mixed, _not_asked("first make the columns agree", "note"))
+    if hidden := list(check_bandwidth(prepared)):
+        return (*findings, *hidden, _not_asked("first choose a bandwidth", "note"))
     agreement = check_plausibility(model, prepared)
     findings += agreement
     against = [f for f in agreement if f.concern == "warning" and f.topic in _CONTRADICTIONS]

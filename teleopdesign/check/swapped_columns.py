@@ -19,7 +19,7 @@ UNEXPLAINED, SWAPPED = 0.25, 0.5
 def check_swapped(
     model: Model, prepared: Prepared, balances: Mapping[str, ForceBalance]
 ) -> Iterator[Finding]:
-    """Columns that fit far better if swapped; tried only where the residual is large."""
+    """Columns that fit far better if swapped; tested only where the residual is large."""
     before = _worst(balances)
     if before < UNEXPLAINED or len(model.bodies) < 2:
         return

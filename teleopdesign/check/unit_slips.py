@@ -1,4 +1,4 @@
-"""Slips of units: one unit given as another, told by what it makes of the model's parameters."""
+"""Slips of units: one unit stated as another, seen by what it makes of the parameters."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from collections.abc import Mapping
 
 from ..quantity import unit_of
 
-#: decades that strengths may lie from where a slip of units puts them: the user's own are guesses
+#: decades that strengths may lie from where a slip of units puts them: the user's values are
+#: guesses
 NEAR = 0.5
 #: power of (force, position) in each quantity's unit
 POWERS = {
@@ -18,7 +19,7 @@ POWERS = {
     "drag": (1, -2),
     "cubic_stiffness": (1, -3),
 }
-#: factors that come from one unit given as another, by axis: on the position ...
+#: factors that come from one unit stated as another, by axis: on the position ...
 _POSITION_SLIPS = {
     "prismatic": {"mm": 1e3, "cm": 1e2, "km": 1e-3},
     "revolute": {"deg": 180 / math.pi, "mrad": 1e3, "turns": 1 / (2 * math.pi)},

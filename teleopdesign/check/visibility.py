@@ -1,10 +1,10 @@
 """How large each effect would have to be for these records to show it.
 
 The effect is put into the fitted model at some strength. By how much that changes the residual
-along the measured motion is its mark; what the model's own parameters cannot imitate of it (the
+along the measured motion is its mark; what the model's parameters cannot imitate of it (the
 part outside the span of their columns) is what a fit would see. The strength is then turned down,
 or up, until that part stands as far above the noise floor as the diagnosis asks for. Effects are
-known here by their declared parameters only, so that a user's own are judged like any other.
+known here by their declared parameters only, so that a user's effects are judged like any other.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from ..diagnose.scales import scales
 from ..measurement.filtering import Array
 from ..model import Model
 
-#: shapes of one effect (periods, speeds) that are tried at most
+#: shapes of one effect (periods, speeds) that are evaluated at most
 SHAPES = 4
 #: factor on the first strength where that shows nothing
 STRONG = 30.0
 #: corrections of the strength at most; factor above the threshold that is close enough
 CORRECTIONS, CLOSE = 6, 1.25
-#: strengths, in the effect's own starting value, between which is searched; farthest step (log)
+#: strengths, in the effect's starting value, between which is searched; farthest step (log)
 WEAKEST, STRONGEST, FARTHEST = 1e-6, 1e4, 7.0
 
 
@@ -42,7 +42,7 @@ class Visibility:
     size: force that the effect makes at the least strength that shows, relative to the measured
         force (both rms, low-passed); inf where no strength shows
     strength: parameter -> value (SI) there;  shape: of its other parameters
-    unique_share: part of its mark that the model's own parameters cannot imitate, 0 to 1
+    unique_share: part of its mark that the model's parameters cannot imitate, 0 to 1
     imitated: the model's parameters that imitate the rest best
     mark: direction of that part, (rows,), length 1;  silent: it makes no force at all
     """
@@ -82,7 +82,7 @@ class _Trial:
 
     @property
     def unique_share(self) -> float:
-        """Part of the mark that the model's own parameters cannot imitate."""
+        """Part of the mark that the model's parameters cannot imitate."""
         return self.part / self.whole if self.whole > 0.0 else 0.0
 
 
@@ -116,11 +116,11 @@ def visibilities(
 def _visibility(candidate: Candidate, scene: _Scene, unit: dict[str, float]) -> Visibility:
     shapes = _shapes(candidate, scene.base.model, unit)
     best, shaped = _best(candidate, shapes, 1.0, scene)
-    if best.unique_share < CRITERIA.own_column:
+    if best.unique_share < CRITERIA.least_unique_share:
         best, shaped = _best(candidate, shapes, STRONG, scene)
-    if best.unique_share >= CRITERIA.own_column:
+    if best.unique_share >= CRITERIA.least_unique_share:
         best = _at_threshold(candidate, best, shaped, scene)
-    shows = best.unique_share >= CRITERIA.own_column and best.part >= scene.threshold
+    shows = best.unique_share >= CRITERIA.least_unique_share and best.part >= scene.threshold
     strength, shape = _values(candidate, best.model)
     return Visibility(
         candidate,
@@ -139,7 +139,7 @@ def _best(
 ) -> tuple[_Trial, Model]:
     """The shape that shows most at equal strength; one that nothing imitates goes first."""
     trials = [(_trial(candidate, m, factor, scene), m) for m in shapes]
-    return max(trials, key=lambda t: (t[0].unique_share >= CRITERIA.own_column, t[0].part))
+    return max(trials, key=lambda t: (t[0].unique_share >= CRITERIA.least_unique_share, t[0].part))
 
 
 def _shapes(candidate: Candidate, model: Model, unit: dict[str, float]) -> list[Model]:
@@ -189,7 +189,7 @@ def _trial(candidate: Candidate, shaped: Model, factor: float, scene: _Scene) ->
 
 
 def _at_threshold(candidate: Candidate, first: _Trial, shaped: Model, scene: _Scene) -> _Trial:
-    """The least strength found at which what shows reaches the threshold; `first` if none does.
+    """The least strength at which what shows reaches the threshold; `first` if none does.
 
     Secants of the logarithms, and halves of the factor between a strength that shows and one that
     does not, for an effect such as a limit sets in all at once.

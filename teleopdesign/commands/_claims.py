@@ -1,4 +1,4 @@
-"""Settled claims on the terminal and as plain data."""
+"""Claims with their verdicts on the terminal and as plain data."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _folded(text: str) -> list[str]:
 
 
 def plain(entry: TopicClaim) -> dict[str, Any]:
-    """A settled claim as plain data, with its certificates and the motions that refute it."""
+    """A claim as plain data: verdict, certificates, and the motions that refute it."""
     claim = entry.claim
     return {
         "topic": entry.topic,

@@ -20,7 +20,7 @@ from ._terminal import plain_warnings, printable_streams
 def run(arguments: Sequence[str] | None, is_stopped: Callable[[], bool] = lambda: False) -> int:
     """Run the command; returns the exit status, but of what is stopped.
 
-    is_stopped: whether Ctrl-C was heard: what is raised after it is no error of its own
+    is_stopped: whether Ctrl-C was heard: what is raised after it is no further error
     raises KeyboardInterrupt: the command is stopped
     """
     with printable_streams(), plain_warnings():

@@ -1,4 +1,4 @@
-"""Ctrl-C at any moment of a command: heard once, never lost, and told in one line.
+"""Ctrl-C at any moment of a command: heard once, never lost, and reported in one line.
 
 Nothing but the standard library is imported here: Ctrl-C is not heard before this module is there.
 """
@@ -24,7 +24,7 @@ def hear_ctrl_c(request: threading.Event) -> bool:
 
     Python only prints what is raised where nothing can catch it: in a `__del__`, in a call from C.
     Code in C may drop it, or abort, while its module is imported: Ctrl-C waits for that import.
-    request: set by Ctrl-C: a library may turn its exception into one of its own
+    request: set by Ctrl-C: a library may turn its exception into another
     """
     loader = ExtensionFileLoader
     in_c = {loader.create_module.__code__, loader.exec_module.__code__}
@@ -70,7 +70,7 @@ def _interrupt_main() -> None:
 
 
 def end_at_once(status: int) -> None:
-    """Let Ctrl-C end the process without a word from here on: all is done or told."""
+    """Let Ctrl-C end the process without a word from here on: all is done or reported."""
     leave = os._exit  # names of modules may be gone at the end
     signal.signal(signal.SIGINT, lambda *_: leave(status))
 

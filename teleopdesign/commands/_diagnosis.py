@@ -64,11 +64,11 @@ def add_search(parser: argparse.ArgumentParser) -> None:
         help="a first look: two effects at most, no pairs, no exchanges, windows of long records; "
         "what was left out is printed",
     )
-    add_tried(parser)
+    add_candidate_options(parser)
 
 
-def add_tried(parser: argparse.ArgumentParser) -> None:
-    """Which effects are tried."""
+def add_candidate_options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options that choose the candidate effects."""
     for option, text in (
         ("--only", "the effects that are tried (all that the model could take)"),
         ("--exclude", "effects that are not tried"),
@@ -79,13 +79,13 @@ def add_tried(parser: argparse.ArgumentParser) -> None:
 
 
 def known_of(options: argparse.Namespace) -> Mapping[str, Effect]:
-    """The effects by name, the user's own among them."""
+    """The effects by name, those of the user among them."""
     from ..effects import catalogue
 
     return catalogue(options.effect)
 
 
-def tried_effects(
+def candidate_effects(
     known: Mapping[str, Effect], only: Sequence[str], exclude: Sequence[str]
 ) -> tuple[str, ...] | None:
     """Names of the effects that a diagnosis tries; None where neither list has one: all.
@@ -188,7 +188,7 @@ def searched(
     """What a search finds (`find_missing`, or that of an arm) as the options ask for it."""
     from ..diagnose.search_plan import PLAN, QUICK
 
-    among = tried_effects(
+    among = candidate_effects(
         known_of(options), getattr(options, "only", ()), getattr(options, "exclude", ())
     )
     model = stated_model(experiment, options)

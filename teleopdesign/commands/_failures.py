@@ -1,8 +1,8 @@
 """What ends a command, in one line and an exit status; no traceback unless one is asked for.
 
 Errors that the package raises on purpose tell where and what. Those of the system and of a user's
-own Python file are told here, as a class: with the file they come from. Whatever else happens is a
-mistake of the package, and the line says where.
+Python file are reported here, as a class: with the file they come from. Whatever else happens
+is a mistake of the package, and the line says where.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def _named(error: BaseException) -> str:
 
 
 def _origin(error: BaseException) -> str:
-    """The package's own innermost place: file and line."""
+    """The package's innermost place: file and line."""
     folder = Path(teleopdesign.__file__).parent
     for frame in reversed(traceback.extract_tb(error.__traceback__)):
         path = Path(frame.filename)

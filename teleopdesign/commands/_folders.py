@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from ..errors import ExperimentError
 from ..plain_data import harmless_cell, write_text
 from . import STOPPED
-from ._diagnosis import known_of, tried_effects
+from ._diagnosis import candidate_effects, known_of
 from ._failures import BAD_INPUT
 from ._options import make_folder
 from ._progress import PointReporter
@@ -70,12 +70,12 @@ def _search(options: argparse.Namespace) -> FolderSearch:
     from ..studies.folders import FolderSearch
 
     known = known_of(options)
-    among = tried_effects(known, options.only, options.exclude)
+    among = candidate_effects(known, options.only, options.exclude)
     return FolderSearch(dict(known), among, options.quick)
 
 
 def table_lines(rows: Sequence[DiagnosedFolder]) -> list[str]:
-    """The table for a terminal: a line for each folder, in the order in which they were given."""
+    """The table for a terminal: a line for each folder, in the order of the command line."""
     cells = [_HEAD, *(_cells(row) for row in rows if not row.failure)]
     widths = [max(len(line[k]) for line in cells) for k in range(len(_HEAD))]
     widths[0] = max(widths[0], *(len(str(row.folder)) for row in rows))

@@ -16,7 +16,7 @@ def add_folder(parser: argparse.ArgumentParser) -> None:
 
 
 def add_effect_files(parser: argparse.ArgumentParser) -> None:
-    """The user's own effect files."""
+    """The user's effect files."""
     parser.add_argument(
         "--effect",
         action="append",

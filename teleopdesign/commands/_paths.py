@@ -25,17 +25,17 @@ def shell_word(path: Path | str) -> str:
 
 
 def inputs(options: argparse.Namespace | None) -> Iterator[Path]:
-    """What a command was told to read, as the user wrote it."""
+    """The paths that a command reads, as the user wrote them."""
     return _paths(options, INPUTS)
 
 
 def outputs(options: argparse.Namespace | None) -> Iterator[Path]:
-    """What a command was told to write."""
+    """The paths that a command writes."""
     return _paths(options, OUTPUTS)
 
 
 def python_files(options: argparse.Namespace | None) -> Iterator[Path]:
-    """The user's own Python files that a command runs: effects and studies."""
+    """The user's Python files that a command runs: effects and studies."""
     return (path for path in inputs(options) if path.suffix == ".py")
 
 
@@ -74,7 +74,7 @@ def _files_read(options: argparse.Namespace) -> Iterator[Path]:
 
 
 def _texts_of(file: Path) -> Iterator[str]:
-    """Every text in a TOML file; none where it is not sound, which is told where it is read."""
+    """Every text in a TOML file; none where it is not sound: reading it reports that."""
     from ..measurement.toml_table import parse_toml
 
     try:

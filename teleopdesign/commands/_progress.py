@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 #: s between two lines of progress where no terminal shows them
 BETWEEN_LINES = 10.0
-#: parts of a stage that must be begun before its time left is told: fewer say little of the rest
+#: parts of a stage that must be begun before its time left is shown: fewer say little of the rest
 FEWEST = 4
 
 
@@ -60,7 +60,7 @@ class Reporter:
 
 
 class PointReporter:
-    """Shows how far a study is; `last` is what it was told last."""
+    """Shows how far a study is; `last` is its latest report."""
 
     def __init__(self) -> None:
         self.last: Progress | None = None

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def write_page(diagnosis: Diagnosis, path: Path) -> None:
-    """The page, with what was found about the recording, what is left, and what to measure next."""
+    """The page, with the findings about the recording, what is left, and what to measure next."""
     from ..check import check_experiment
     from ..next_experiment import propose
     from ..report import write_report
@@ -29,7 +29,7 @@ def write_page(diagnosis: Diagnosis, path: Path) -> None:
 
 
 def write_arm_page(diagnosis: ArmDiagnosis, path: Path) -> None:
-    """The page of an arm, with what was found about the recording and what each joint leaves."""
+    """The page of an arm, with the findings about the recording and what each joint leaves."""
     from ..check import check_experiment
     from ..report import write_arm_report
     from ..unexplained import where_it_fails

@@ -1,4 +1,4 @@
-"""What a terminal is given: text alone, in characters that it has.
+"""What a terminal shows: text alone, in characters that it has.
 
 A file's text may hold codes that move the cursor, clear lines or turn the direction of writing; a
 terminal may know ASCII alone. Everything that commands print goes through here.
@@ -57,7 +57,7 @@ def printable_streams() -> Iterator[None]:
 def plain_warnings() -> Iterator[None]:
     """Within it, a warning is one line without code.
 
-    That a figure's font lacks a sign is not told: the figure shows a box in its place.
+    That a figure's font lacks a sign is not reported: the figure shows a box in its place.
     """
 
     def show(message: Warning | str, *_: Any, **__: Any) -> None:

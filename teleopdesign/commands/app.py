@@ -11,7 +11,7 @@ from typing import NoReturn
 
 from ..errors import ExperimentError
 from . import STOPPED
-from ._diagnosis import add_tried, tried_effects
+from ._diagnosis import add_candidate_options, candidate_effects
 
 #: the machine itself: the page runs code, nobody else may reach it
 LOOPBACK = "127.0.0.1"
@@ -33,7 +33,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         default=Path(),
         help="folder of experiments or logs (the present one); no file outside of it is opened",
     )
-    add_tried(parser)
+    add_candidate_options(parser)
     parser.add_argument("--port", type=int, default=0, metavar="N", help="port (a free one)")
     parser.add_argument(
         "--no-browser", action="store_true", help="print the address, open no browser"
@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> NoReturn:
     from ..app.settings import EFFECTS, FOLDER
     from ..effects import EFFECTS as KNOWN
 
-    among = tried_effects(KNOWN, options.only, options.exclude)
+    among = candidate_effects(KNOWN, options.only, options.exclude)
     os.environ[FOLDER] = str(folder.resolve())
     os.environ[EFFECTS] = ",".join(among or ())
     token = secrets.token_urlsafe(24)

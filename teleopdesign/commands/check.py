@@ -108,7 +108,7 @@ def _unreadable(folder: Path, problem: ExperimentError) -> tuple[Finding, ...]:
 
 
 def text_of(findings: Sequence[Finding]) -> str:
-    """Warnings, then notes, then what is fine, each in the order found, and a count."""
+    """Warnings, then notes, then what is fine, each in the order of the checks, and a count."""
     order = ("warning", "note", "fine")
     terminal = shutil.get_terminal_size((WIDTH, 24)).columns  # of a pipe: WIDTH
     width = min(WIDTH, max(NARROWEST, terminal))

@@ -63,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
 def diagram_of(name: str, effects: Sequence[Path] = ()) -> Diagram:
     """The shipped diagram of that name, or the one in that file.
 
-    effects: the user's own effect files
+    effects: the user's effect files
     raises ModelError, ExperimentError: neither, or a file that cannot be read
     """
     from ..diagrams import SHIPPED, read_diagram, shipped

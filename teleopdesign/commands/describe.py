@@ -39,7 +39,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
     )
-    parser.add_argument("--json", type=Path, metavar="F", help="write what was found there")
+    parser.add_argument("--json", type=Path, metavar="F", help="write the description there")
     parser.add_argument(
         "--effect-file",
         type=Path,
@@ -76,7 +76,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _fit_model(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor | None, str]:
-    """The fit that is described, its noise floor if a diagnosis told it, and which model it is."""
+    """The fit that is described, its noise floor (if a diagnosis states it), and the model."""
     from ..diagnose.prepare import prepare
     from ..diagnose.search import estimate_from_starts
 

@@ -1,4 +1,4 @@
-"""say how much friction may be compensated before a device can give out energy, and prove it"""
+"""say how much friction may be compensated before a device can release energy, and prove it"""
 
 from __future__ import annotations
 

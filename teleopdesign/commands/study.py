@@ -15,7 +15,7 @@ from ._progress import PointReporter
 if TYPE_CHECKING:
     from ..studies import Study
 
-#: name that a file of Python gives its study
+#: name of the study in a file of Python
 _NAME = "STUDY"
 _MOST_REASONS = 5
 

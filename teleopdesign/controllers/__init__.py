@@ -1,4 +1,4 @@
-"""Control laws: chosen, not found. Every file that does not begin with `_` holds one law.
+"""Control laws, chosen by the user. Every file that does not begin with `_` holds one law.
 
 controller("smoothed_coulomb", {"level": 0.5, "smoothing_velocity": 0.015})
 """
@@ -72,7 +72,7 @@ CONTROLLERS: Mapping[str, ControlLaw] = _laws()
 def controller(name: str | ControlLaw, values: Mapping[str, float]) -> Controller:
     """A control law with these parameter values (SI).
 
-    name: of a law of the catalogue, or a law of one's own (`load_controller`)
+    name: of a law of the catalogue, or a user's law (`load_controller`)
     """
     if isinstance(name, ControlLaw):
         return Controller((Stage(name, values),))

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def has_numbers(stage: Stage) -> bool:
-    """Whether it was measured, or has a transfer function in z at a period of its own."""
+    """Whether it was measured, or has a transfer function in z at a fixed period."""
     if stage.law.response is not None:
         return True
     return stage.law.shift is not None and stage.values["period"] > 0

@@ -34,7 +34,7 @@ _MOST_SHOWN = 8  # parameters of a law that one line shows
 
 @dataclass(frozen=True)
 class ControllerEquation:
-    """Output and states of a controller placed under a name, on the signals given to it.
+    """Output and states of a controller placed under a name, on its input signals.
 
     rates: state -> rate;  steps: state -> value at the next sample, for those that state it
     before: states that are brought up to a sample before its output is taken

@@ -23,7 +23,7 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
     system: transfer function or state space with one input and one output, proper. In continuous
         time its linear form is its transfer function, and a computer realises it exactly for an
         input held over each sample. In discrete time it is stepped as it is; the computer's period
-        must be its own.
+        must be its sample time.
     name: in the names of parameters: "H.state_space.numerator_0" of a transfer function, the
         coefficient of s^0, "H.state_space.a_0_0" of a state space
     Its numbers are kept as they came, so that poles and zeros that cancel on paper do cancel.
@@ -69,8 +69,8 @@ def inverted(system: control.LTI, *, bandwidth: float, name: str = "inverse") ->
     """The inverse of a transfer function with a low-pass of just enough roll-off to be proper.
 
     w(s) / T(s),   w(s) = (2 pi f_c / (s + 2 pi f_c))^r,   r: relative degree of T
-    Given T = R_M / R_D of a compensated haptic interface and wired ahead of R_D, the hand feels w
-    times the wanted force. Several axes: the same w for each makes every direction alike.
+    Where T = R_M / R_D is that of a compensated haptic interface and wired ahead of R_D, the hand
+    feels w times the wanted force. Several axes: the same w for each makes every direction alike.
 
     bandwidth: f_c in Hz
     raises ModelError: T is zero or has a zero that is not in the left half-plane, discrete time

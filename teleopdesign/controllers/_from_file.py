@@ -1,4 +1,4 @@
-"""A control law of one's own, from a file written as those of this folder are."""
+"""A user's control law, from a file written as those of this folder are."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def load_controller(path: str | Path) -> ControlLaw:
     """Read one file of a control law; the name of the file becomes the name of the law.
 
     It is used as a law of the catalogue is: `controller(load_controller("my_law.py"), values)`.
-    A file that has not changed since gives the same law again.
+    An unchanged file returns the same law again.
     raises ModelError: the file cannot be read or run, defines no CONTROLLER, or one that does
         not do what it declares
     """

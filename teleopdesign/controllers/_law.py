@@ -1,4 +1,4 @@
-"""What a control law is: one law, written once with sympy, in a file of its own.
+"""What a control law is: one law, written once with sympy, in a separate file.
 
 A law sees `now.input` (the signal wired to the block), the motion that it acts along (`velocity`,
 `speed` = abs(velocity), `travel_rate`), its hidden states and `now.period`, the duration of a
@@ -63,7 +63,7 @@ class ControlLaw:
     States whose rate or step uses `travel_rate` are brought up to a sample before its output is
     taken, all others are carried from it to the next with their inputs held.
     takes: "force" where the input must not be the motion itself; "": anything
-    transfer(values, s): transfer function from the input, where not to be found from the states
+    transfer(values, s): transfer function from the input, where the states do not determine it
     shift(values, z): transfer function in z of a law that exists in a computer only, stepped each
         `period` (a parameter of it, s); its output is held in between
     sampled(values, period): the stage that takes the place of this one in a computer of that

@@ -1,6 +1,6 @@
 """A nonlinear python-control system as a controller: code, of which no equation is known.
 
-Its law calls the system's own functions. In a computer a system in continuous time is carried over
+Its law calls the system's functions. In a computer a system in continuous time is carried over
 a sample with its input held, by an adaptive integrator; one in discrete time is stepped as it is.
 """
 
@@ -23,7 +23,7 @@ from ._state_space import check_period
 if TYPE_CHECKING:
     import control
 
-#: relative, and in the states' own units; of a system carried over a sample: far below what the
+#: relative, and in the states' units; of a system carried over a sample: far below what the
 #: simulation around it resolves, at some hundred calls a sample
 _RELATIVE, _ABSOLUTE = 1e-10, 1e-13
 #: begins the names of functions that generated source may call
@@ -88,7 +88,7 @@ def is_call(expression: sp.Expr) -> bool:
 
 
 def _function(what: str, called: Callable[..., float]) -> Callable[..., sp.Expr]:
-    """The function as one of sympy, under a name of its own."""
+    """The function as one of sympy, under a unique name."""
     symbol = sp.Function(f"{_CALLED}{next(_numbers)}_{what}", real=True)
     made: Callable[..., sp.Expr] = implemented_function(symbol, called)
     return made

@@ -1,7 +1,7 @@
 """The laws of linear systems from python-control, their numbers as they came the parameters.
 
 State space: dx/dt = A x + B u, y = C x + D u. Transfer function: numerator and denominator, as a
-system in the controllable form. States have units of their own, `scale`, on which no
+system in the controllable form. States have separate units, `scale`, on which no
 output depends.
 """
 

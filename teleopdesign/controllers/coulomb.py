@@ -5,7 +5,7 @@
 Removes Coulomb friction completely wherever the sign of the velocity is known, and is the bound for
 every law that is rounded off. Nothing is added where the velocity is exactly zero. With an encoder
 it changes by F_C at every step that is read near rest; `smoothed_coulomb` or `dahl` are used for
-that reason. Never more than F_C, so it gives out no energy where the true level is at least that.
+that reason. Never more than F_C, so it releases no energy where the true level is at least that.
 In a loop in continuous time no step of a simulation resolves the jump: sample it.
 """
 

@@ -1,4 +1,4 @@
-"""Energy limit: the largest force that cannot give out more than is in an energy tank.
+"""Energy limit: the largest force that cannot release more than is in an energy tank.
 
     output = max(input + E_0, 0)/d
 

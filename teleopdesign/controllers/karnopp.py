@@ -8,9 +8,9 @@ velocity alone can add nothing there that is right for both directions, so this 
 commanded force as its input: R_D in the haptic interface, not the motion. Stuck, the command is
 doubled up to F_C, which halves the command that breaks the device away. F_C sgn(u) would free it at
 any command, but jumps by 2 F_C with the sign of a noisy one; this law is continuous in u, and adds
-nothing where nothing is wanted. Never more than F_C: no energy given out where the true level is at
+nothing where nothing is wanted. Never more than F_C: no energy released where the true level is at
 least that. A band below encoder step over period takes single steps for motion, one below the
-speeds of presliding takes the give of the contact for it.
+speeds of presliding takes the bristle deflection of the contact for it.
 """
 
 from types import SimpleNamespace

@@ -4,7 +4,7 @@
     level = F_C + (F_S - F_C) exp(-(v / v_S)^2)
 
 The laws are those of the effects `coulomb`, `stribeck` and `presliding`: with the parameters of a
-diagnosis it is the friction that was found, viscous friction left to the device. Sampled, the
+diagnosis it is the estimated friction, viscous friction left to the device. Sampled, the
 travel of the last sample moves the bristle exactly, the level held meanwhile. The spring's share
 stays within F_S; bristle damping adds to it and carries the noise of the differenced position.
 """

@@ -3,7 +3,8 @@
     dE/dt = max(s F v, 0),   output = E
 
 Input is the force F on the body that is commanded at the port, v the velocity of the motion it acts
-along; s = 1 counts what the force has given to the body, s = -1 what it has taken. Each only grows,
+along; s = 1 counts what the force has supplied to the body, s = -1 what it has taken. Each only
+grows,
 so that a reading which arrives late, or is held where one is lost, is never too large: that is why
 a channel sends this, not the net energy. In a computer the force is held from a sample to the next
 and acts along the travel between them, so that the count is exact, at the sample itself.

@@ -3,7 +3,7 @@
     F = F_C v / (a + abs(v))
 
 Leaves F_C sgn(v) a/(a + abs(v)) of Coulomb friction: the same shape as `velocity_schedule`, which
-is why the two complement each other. Never more than F_C, so it gives out no energy where the true
+is why the two complement each other. Never more than F_C, so it releases no energy where the true
 level is at least F_C.
 """
 

@@ -4,7 +4,7 @@
 
 Input is e, and v the velocity of the motion that the block is wired along, de/dt where that motion
 is e itself. With e the difference of two positions this is position-position control; of the
-interface's own position, a virtual wall without its side. On a signal that is late or filtered the
+interface's position, a virtual wall without its side. On a signal that is late or filtered the
 damper still acts along the motion, now; `proportional_derivative` differentiates what it reads.
 """
 

@@ -118,9 +118,9 @@ def transfer(
     """Coefficients of `output` = sum of coefficient * input.
 
     inputs: signals from outside (default: all); those left out are zero
-    given: motions that are prescribed, in place of the outside forces that drive them
-    seconds: after which it is given up
-    raises ModelError: unknown signal, a loop without a solution, or more seconds than given
+    given: prescribed motions, in place of the outside forces that drive them
+    seconds: after which the elimination stops
+    raises ModelError: unknown signal, a loop without a solution, or more seconds than allowed
     """
     until = monotonic() + seconds
     diagram.signal(output)
@@ -134,7 +134,7 @@ def transfer(
         if name not in free:
             raise ModelError(f'{diagram.name}: signal "{name}" is not from outside')
     chosen = tuple(free) if inputs is None else inputs
-    # a name of its own for the output, so that what is inverted is an impedance, as in the papers
+    # a separate name for the output, so that what is inverted is an impedance, as in the papers
     system = [*rows(diagram), {_OUTPUT: sp.S(1), output: sp.S(-1)}]
     unknown = [s for s in diagram.signals if s not in free]
     for signal in _order(unknown, output, diagram):

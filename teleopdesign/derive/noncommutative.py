@@ -139,7 +139,7 @@ def _inverse_letter(letter: str) -> str:
 
 
 def _order(word: Word) -> tuple[int, bool, Word]:
-    # words with letters of their own (no inverses) lead: their rules shorten most
+    # words with unique letters (no inverses) lead: their rules shorten most
     return len(word), not any(x.endswith("^-1") for x in word), word
 
 
@@ -154,7 +154,7 @@ def _sum(parts: Sequence[WordPolynomial]) -> WordPolynomial:
 def proved_equal(left: sp.Expr, right: sp.Expr) -> bool:
     """Whether left = right is proven, for all blocks for which the inverses exist.
 
-    True is an exact proof; False says only that none was found.
+    True is an exact proof; False says only that the search for one failed.
     """
     algebra = _Algebra()
     a, b = algebra.read(sp.sympify(left, strict=True)), algebra.read(sp.sympify(right, strict=True))

@@ -75,7 +75,7 @@ def transfer_functions(diagram: Diagram) -> TransferFunctions:
 class Case:
     """Input, output and prescribed motions of one transfer function; other inputs are zero.
 
-    given: motions that are prescribed, as in `transfer`;  text: for a reader
+    given: prescribed motions, as in `transfer`;  text: for a reader
     """
 
     diagram: Diagram
@@ -118,7 +118,11 @@ _TEXTS = {
 
 
 def return_difference(diagram: Diagram, name: str) -> sp.Expr:
-    """Return difference 1 - loop gain at the output of controller `name`."""
+    """Return difference 1 - loop gain at the output of controller `name`.
+
+    Closed-loop poles are its zeros; every other loop stays closed. Blocks keep their order.
+    raises ModelError: `name` is no controller
+    """
     block = diagram.block(name)
     if not isinstance(block, Control):
         raise ModelError(f"{diagram.name}: {name} is no controller, its loop cannot be opened")

@@ -27,7 +27,7 @@ def with_values(
 ) -> tuple[sp.Expr, LinearBlocks]:
     """Transfer function in `realise.lti.S` with numbers, and the linear forms of its blocks.
 
-    One degree of freedom. given: motions that are prescribed
+    One degree of freedom. given: prescribed motions
     speed: m/s or rad/s, at which smoothed friction and schedules are frozen
     held: whether controllers in discrete time take part, see `linear_blocks`
     """
@@ -40,7 +40,10 @@ def with_values(
 
 
 def symbol_values(linear: LinearBlocks) -> dict[sp.Symbol, sp.Expr]:
-    """Symbol of a derived expression -> transfer function of the block, stage or dead time."""
+    """Symbol of a derived expression -> transfer function of the block, stage or dead time.
+
+    Substituted into a result of `derive`, they leave a function of s; dead times are in s.
+    """
     values = {block_symbol(n): e for n, e in linear.blocks.items()}
     values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
     values |= {along_symbol(n): e for n, e in linear.along.items()}

@@ -1,8 +1,8 @@
-"""Does the compensated device give out energy? Sought over sinusoids of several sizes and speeds.
+"""Does the compensated device release energy? Sought over sinusoids of several sizes and speeds.
 
-The hand moves the device along a prescribed sinusoid; the energy that it puts in over a settled
-cycle is negative where the device gives energy out. All is simulated: identified effects, encoder,
-sampling, delay. It is evidence for the motions tried, not a proof for others.
+The hand moves the device along a prescribed sinusoid; the energy that it puts in over a steady
+cycle is negative where the device releases energy. All is simulated: identified effects, encoder,
+sampling, delay. It is evidence for the simulated motions, not a proof for others.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from ..quantity import unit_of
 from ..realise.reach import Reach
 from ..realise.tips import led
 from ..simulate import Sampling
-from .prediction import settled_cycle
+from .prediction import steady_cycle
 from .stated_motion import StatedMotion
 
-#: sizes and frequencies tried, over those of the stated motion
+#: sizes and frequencies simulated, over those of the stated motion
 SIZES, FREQUENCIES = (0.1, 0.3, 1.0), (1.0, 3.0, 10.0, 30.0)
 
 
@@ -46,9 +46,9 @@ def motions_around(motion: StatedMotion, reach: Reach) -> Iterator[StatedMotion]
 
 
 def energy_taken(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> CycleEnergy:
-    """Energy that the hand puts in over a settled cycle, simulated."""
+    """Energy that the hand puts in over a steady cycle, simulated."""
     try:
-        cycle = settled_cycle(diagram, motion, sampling)
+        cycle = steady_cycle(diagram, motion, sampling)
     except ModelError:
         return CycleEnergy(motion, float("-inf"))
     power = cycle["E"].values * cycle[f"{led(diagram, 'L')}_velocity"].values
@@ -58,23 +58,23 @@ def energy_taken(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> 
 def energy_claim(
     diagram: Diagram, motion: StatedMotion, reach: Reach, sampling: Sampling, *, axis: str
 ) -> Claim:
-    """Does the device take energy from the hand along every tried motion? Evidence, not proof."""
+    """Whether the device takes energy in along every simulated motion. Evidence, not proof."""
     trials = [energy_taken(diagram, m, sampling) for m in motions_around(motion, reach)]
-    gives = [t for t in trials if t.energy < 0]
-    # where it gives energy out, the slowest such motion says from where on
-    shown = min(gives, key=lambda t: t.motion.frequency) if gives else _least(trials)
+    supplying = [t for t in trials if t.energy < 0]
+    # where it releases energy, the slowest such motion says from where on
+    shown = min(supplying, key=lambda t: t.motion.frequency) if supplying else _least(trials)
     size, unit = shown.motion.amplitude, unit_of("position", axis)
     frequencies = [t.motion.frequency for t in trials]
-    words = "gives energy out along" if gives else "takes least along"
+    words = "gives energy out along" if supplying else "takes least along"
     searched = (
         f"{len(trials)} sinusoids, {min(frequencies):.3g} to {max(frequencies):.3g} Hz, simulated "
         f"with sampling, delay and encoder; it {words} {size:.3g} {unit} at "
         f"{shown.motion.frequency:.3g} Hz"
     )
-    if gives:
-        searched += f" and {len(gives) - 1} more"
+    if supplying:
+        searched += f" and {len(supplying) - 1} more"
     statement = "the device takes energy from the hand"
-    return Claim(statement, Evidence(not gives, searched, shown.energy, "J a cycle"))
+    return Claim(statement, Evidence(not supplying, searched, shown.energy, "J a cycle"))
 
 
 def _least(trials: list[CycleEnergy]) -> CycleEnergy:

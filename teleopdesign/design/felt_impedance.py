@@ -73,7 +73,7 @@ def felt_impedance(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) ->
 
     simulated = predicted = None
     if led(hybrid, "L") != "L":
-        # friction that gives by 1e-5 of the motion, behind a spring: millions of steps
+        # friction that deflects by 1e-5 of the motion, behind a spring: millions of steps
         return FeltImpedance(None, None, ("through a transmission it takes too many steps",))
     try:
         simulated = measured_impedance(

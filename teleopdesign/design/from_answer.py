@@ -26,7 +26,10 @@ class DiagnosedModel(ByValue):
 
 
 def diagnosed_model(diagnosis: Diagnosis) -> DiagnosedModel:
-    """The model that a diagnosis ends with, its verdict, and what the model leaves."""
+    """The model that a diagnosis ends with, its verdict, and what the model leaves.
+
+    The same as `read_answer` takes from the file of that diagnosis.
+    """
     return DiagnosedModel(diagnosis.experiment, diagnosis.model, diagnosis.verdict, diagnosis.left)
 
 
@@ -39,7 +42,7 @@ def read_answer(
 ) -> DiagnosedModel:
     """The model of an answer that `teleopdesign diagnose --json` wrote for that experiment.
 
-    joint: of an arm, which is taken out of it: its own verdict, with the arm's last model
+    joint: of an arm, which is taken out of it: its verdict, with the arm's last model
 
     raises ExperimentError: no such file, no such answer, one of another experiment, or an effect
         that is not known

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 #: cycles simulated; the last one counts
 CYCLES = 3
-#: part of the amplitude by which an ideal Coulomb contact gives before it slides
-GIVE = 1e-6
+#: part of the amplitude by which an ideal Coulomb contact deflects before it slides
+BRISTLE_SHARE = 1e-6
 #: part of the peak speed within which motion counts as a reversal
 REVERSAL = 0.3
 
@@ -69,8 +69,8 @@ class Prediction(ByValue):
     rigid: str = ""
 
 
-def settled_cycle(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> xarray.Dataset:
-    """The signals of a settled cycle of a prescribed motion.
+def steady_cycle(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> xarray.Dataset:
+    """The signals of a steady cycle of a prescribed motion.
 
     raises ModelError: it cannot be simulated
     """
@@ -79,11 +79,11 @@ def settled_cycle(diagram: Diagram, motion: StatedMotion, sampling: Sampling) ->
 
 
 def simulated_error(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> float:
-    """Rms force error of one diagram about its mean over a settled cycle, N or N m.
+    """Rms force error of one diagram about its mean over a steady cycle, N or N m.
 
     raises ModelError: it cannot be simulated
     """
-    return float(np.std(settled_cycle(diagram, motion, sampling)["E"].values))
+    return float(np.std(steady_cycle(diagram, motion, sampling)["E"].values))
 
 
 def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Prediction:
@@ -148,7 +148,7 @@ def _simulated(
         motion={led(diagram, "L"): motion.motion},
         computer=sampling,
         step=step,
-        give=GIVE * motion.amplitude,
+        give=BRISTLE_SHARE * motion.amplitude,
         every_step=True,
     )
 

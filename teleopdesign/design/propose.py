@@ -67,7 +67,7 @@ def design(
 ) -> Design:
     """Propose cancellation C and force feedback H for an identified body; predict their effect.
 
-    diagnosis: a diagnosis, or what one ended with, as `read_answer` gives it
+    diagnosis: a diagnosis, or the content of an answer, from `read_answer`
     place: which body; may be left out where there is one
     Of the laws of C that are sure to be passive, the one that leaves the smaller force error.
     raises ModelError: no such body, an assumption that cannot hold, a motion beyond the records

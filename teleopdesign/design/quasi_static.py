@@ -21,7 +21,7 @@ from ..realise.simulated import without_absent
 from ..realise.tips import of_a_body
 from .stated_motion import StatedMotion
 
-#: what needs states that slow motion does not have: taken away, or at their settled value
+#: what needs states that slow motion does not have: taken away, or at their steady value
 _ROLES = ("friction_shape", "friction_speed", "structure", "actuation", "contact", "contact_shape")
 
 
@@ -67,7 +67,7 @@ def _along(law: sp.Expr, body: Body, values: dict[sp.Symbol, Array]) -> Array:
 
 
 def slow_output(controller: Controller, force: Array, velocity: Array) -> Array:
-    """Settled output of a controller at an input and a velocity, (n,) each.
+    """Steady output of a controller at an input and a velocity, (n,) each.
 
     States are where they settle at that velocity: a low-pass passes, a bristle slides.
     """

@@ -39,7 +39,7 @@ def compliant_claim(
     """
     values = {n: v.value for n, v in body.parameters.items()}
     tip = values.get("transmission_compliance.tip_inertia", 0.0)
-    # the equation of the motor side: what moves behind the compliance has one of its own
+    # the equation of the motor side: what moves behind the compliance has a separate one
     motor = float(body.equation().inertia.subs(body.numbers()))
     law = chosen.controller.stages[0].law
     if tip <= 0 or motor <= 0 or not law.bristle_stiffness:

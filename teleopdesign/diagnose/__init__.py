@@ -42,7 +42,7 @@ def fit(model: Model, experiment: Experiment, *, seed: int = 0) -> Model:
     """The model with its free parameters re-estimated on the fit records, with standard errors.
 
     Effects that are still absent (as `with_effect` leaves them) start from values of the record's
-    own scale. As in `find_missing`, what reading the motion by sensors does to the estimates is
+    scale. As in `find_missing`, what reading the motion by sensors does to the estimates is
     taken off them where the model leaves only noise, and widens their standard errors where it
     leaves more; of long records, windows are fitted.
 

@@ -1,7 +1,7 @@
 """Residuals of several bodies, each by itself: a body that hardly moved is not computed again.
 
 Along measured motions the bodies of a model have nothing in common: what one leaves unexplained
-depends on its own parameters alone. A search at one body needs no tangents of the other, and in a
+depends on its parameters alone. A search at one body needs no tangents of the other, and in a
 fit the other soon stands still.
 """
 
@@ -79,7 +79,7 @@ def _is_near(x: Array, other: Array) -> bool:
 def body_by_body(
     model: Model, names: Sequence[str], stretches: Sequence[Stretch], *, tolerance: float
 ) -> Callable[[Model, Array, Array], tuple[Array, Array]]:
-    """A function that gives residual (rows,) and jacobian (rows, p) of all stretches.
+    """A function that returns residual (rows,) and jacobian (rows, p) of all stretches.
 
     names: the p parameters and shifts;  tolerance: relative change of squares that a fit resolves
     The function takes the model, its parameters as they are searched, and their units there.

@@ -37,9 +37,9 @@ from .threads import in_threads
 
 #: s, horizons after which the model is set back onto the measured motion; then the whole record
 HORIZONS = (0.1, 0.3, 1.0, 3.0, 10.0)
-#: give of an ideal friction before it slides, as a part of the travel: far below any error of a
+#: bristle deflection of an ideal friction, as a part of the travel: far below any error of a
 #: free motion. Smaller: shorter steps
-GIVE = 2e-5
+BRISTLE_SHARE = 2e-5
 
 
 @checked
@@ -225,7 +225,7 @@ def _driven_stretches(
             continue
         led = led_body(
             with_whole_dead_times(body, motion),
-            bristle=max(motion.step, GIVE * float(np.ptp(motion.position))),
+            bristle=max(motion.step, BRISTLE_SHARE * float(np.ptp(motion.position))),
             stiffness=loop.stiffness,
             damping=loop.damping,
         )

@@ -43,9 +43,9 @@ class Candidate:
 
 
 #: share of the spread of time that must be left among samples of one place, from which place and
-#: time are told apart. A sweep that comes back by a quarter of its travel leaves 0.06, by a third
-#: 0.13, a full return 1. Lower: a drift passes for a force of the place; higher: more is not tried
-TOLD_APART = 0.1
+#: time differ enough. A sweep that comes back by a quarter of its travel leaves 0.06, by a third
+#: 0.13, a full return 1. Lower: a drift passes for a force of the place; higher: fewer candidates
+RETURNING_SHARE = 0.1
 #: places into which the travel, or the range of speeds, is divided for that: each holds 1/50 of it,
 #: far less than returns
 PLACES = 50
@@ -55,7 +55,7 @@ def candidates(
     model: Model,
     motions: Sequence[Motion] = (),
     *,
-    own_zero: Collection[str] = (),
+    separate_zeros: Collection[str] = (),
     measured: Collection[str] = (),
 ) -> tuple[Candidate, ...]:
     """Effects that the model lacks and could take, at each of its places.
@@ -63,10 +63,10 @@ def candidates(
     One that would stand for others as well while they are missing waits for them (`Effect.after`).
 
     motions: all that the records hold; where a body never comes to a place at another time, no
-        effect of the place can be told from a drift: it is no candidate there; nor is one whose law
+        effect of the place differs from a drift: it is no candidate there; nor is one whose law
         uses a channel that they have not. What repeats along the way comes back to the same place
         of its period. Nor is an effect that follows time where the speed does so too
-    own_zero: files whose positions cannot be compared with those of others
+    separate_zeros: files whose positions cannot be compared with those of others
     measured: bodies whose actuator's force was measured, not commanded: a limit, a lag or a delay
         has acted already, and is no candidate; its scale may still be wrong, or vary
     """
@@ -88,7 +88,7 @@ def candidates(
                 continue
             if any(not effect.channels() <= set(m.further) for m in motions_here):
                 continue
-            if _is_told(effect, motions_here, own_zero):
+            if _is_distinguishable(effect, motions_here, separate_zeros):
                 possible.append(Candidate(effect, place))
     return tuple(possible)
 
@@ -108,8 +108,10 @@ def _acts_before_what_is_measured(effect: Effect) -> bool:
     return bool(effect.states or law.has(delayed) or scale.has(SIGNALS["command"]))
 
 
-def _is_told(effect: Effect, motions: Sequence[Motion], own_zero: Collection[str]) -> bool:
-    """Whether these motions could tell an effect of the place, or one of time, from another."""
+def _is_distinguishable(
+    effect: Effect, motions: Sequence[Motion], separate_zeros: Collection[str]
+) -> bool:
+    """Whether these motions can separate an effect of the place, or one of time, from another."""
     if motions and depends_on_time(effect) and not tells_speed_from_time(motions):
         return False
     if not motions or not depends_on_position(effect):
@@ -117,20 +119,20 @@ def _is_told(effect: Effect, motions: Sequence[Motion], own_zero: Collection[str
     repeats = period(effect)
     if isinstance(repeats, str):  # of any length: whether it is seen to repeat, its fit decides
         return True
-    return tells_place_from_time(motions, own_zero=own_zero, turn=repeats)
+    return tells_place_from_time(motions, separate_zeros=separate_zeros, turn=repeats)
 
 
 def tells_place_from_time(
-    motions: Sequence[Motion], *, own_zero: Collection[str] = (), turn: float | None = None
+    motions: Sequence[Motion], *, separate_zeros: Collection[str] = (), turn: float | None = None
 ) -> bool:
     """Whether a body comes to the same places at different times, over all of its motions together.
 
-    own_zero: files whose positions cannot be compared with those of others
+    separate_zeros: files whose positions cannot be compared with those of others
     turn: places one such period apart are the same
     """
     groups: dict[str, list[Motion]] = {}
     for motion in motions:
-        groups.setdefault(motion.file if motion.file in own_zero else "", []).append(motion)
+        groups.setdefault(motion.file if motion.file in separate_zeros else "", []).append(motion)
     among = whole = 0.0
     for group in groups.values():
         position = np.concatenate([m.position for m in group])
@@ -142,7 +144,9 @@ def tells_place_from_time(
         here = np.mod(position, turn) if turn is not None else position
         spread = _spread_of_time(here, time, way)
         among, whole = among + spread[0], whole + spread[1]
-    return among > TOLD_APART * whole or whole == 0.0  # 0: no motion is told, nor its direction
+    return (
+        among > RETURNING_SHARE * whole or whole == 0.0
+    )  # 0: no motion is sure, nor its direction
 
 
 def tells_speed_from_time(motions: Sequence[Motion]) -> bool:
@@ -157,7 +161,7 @@ def tells_speed_from_time(motions: Sequence[Motion]) -> bool:
     if not moving.any():
         return True
     among, whole = _spread_of_time(speed, time, moving)
-    return among > TOLD_APART * whole
+    return among > RETURNING_SHARE * whole
 
 
 def _spread_of_time(values: Array, time: Array, weight: Array) -> tuple[float, float]:
@@ -173,7 +177,7 @@ def _spread_of_time(values: Array, time: Array, weight: Array) -> tuple[float, f
 def started(model: Model, scale: dict[str, float]) -> list[Model]:
     """The model with its absent effects at each combination of their starting values.
 
-    scale: quantity -> the record's own size of it (SI)
+    scale: quantity -> the record's size of it (SI)
     returns: the model itself where no effect is absent
     """
     models = [model]

@@ -78,7 +78,7 @@ def conclude(
 def _unexplained(rung: Rung, named: Collection[Candidate]) -> Rung:
     """A rung that is not named, with all else that explains a good part of what it does.
 
-    One that stands for a group says already what it cannot be told from.
+    One that stands for a group says already what it cannot be distinguished from.
     """
     if rung.added is None or rung.added in named or rung.alternatives:
         return rung

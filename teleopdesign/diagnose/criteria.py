@@ -25,7 +25,7 @@ class Criteria:
     #: catalogue in a hundred. It rules where an adequate model is made of one that is not
     by_chance: float = 0.01
     #: part of the noise floor's square from which a gain counts: while a body is stuck or turns,
-    #: its friction is known no better. Lower: the method's own errors count; higher: weak effects
+    #: its friction is known no better. Lower: the method's errors count; higher: weak effects
     #: are missed
     of_floor: float = 0.5
     #: part of the noise floor of a clock that jitters below which an effect leaves too little to be
@@ -35,21 +35,21 @@ class Criteria:
     #: part of the squares before from which a gain counts: less is no answer to where a model fails
     relevant: float = 0.03
     #: standard deviations of a difference below which two fits explain the records equally well.
-    #: Three: one in 700 by chance. Lower: look-alikes are told apart by chance; higher: more is
+    #: Three: one in 700 by chance. Lower: look-alikes are distinguished by chance; higher: more is
     #: undecided
     close: float = 3.0
     #: relative difference of two check errors below which they may be equal (with `close`): what a
     #: reader sees as the same figure
     near: float = 0.02
     #: noise floors (in quadrature) by which the check errors of two models must differ, or they are
-    #: left open: a right model's own error lies between one and about one and a half floors
+    #: left open: a right model's error lies between one and about one and a half floors
     open: float = 1.0
     #: share of the samples where the body slides that may be blind. A quarter: of more, a model
     #: says too little; less would refuse every saturation that was really reached
     blind: float = 0.25
-    #: part of a new parameter's column that must lie outside the span of the model's own: below,
-    #: rounding and noise in the tangents make the difference
-    own_column: float = 0.02
+    #: part of a new parameter's column that must lie outside the span of the model's columns:
+    #: below, rounding and noise in the tangents make the difference
+    least_unique_share: float = 0.02
     #: standard errors by which a parameter that makes an effect what it is must differ from zero.
     #: Lower: a gap is named that noise alone asks for; higher: a small one is missed
     surely: float = 5.0
@@ -71,7 +71,7 @@ class Criteria:
     #: part by which a tone may lie beside the mains: frequencies of networks and clocks of loggers
     #: are off by less. Higher: a resonance near by passes for a hum
     mains_within: float = 0.004
-    #: part of the check squares that a tone must take to be tried as a force: as `relevant`
+    #: part of the check squares that a tone must explain to be a candidate force: as `relevant`
     tone_heard: float = 0.03
     #: probability of an effect that was accepted with nothing but noise left: of 74 on simulated
     #: cases 73 were true, (73 + 1)/(74 + 2)

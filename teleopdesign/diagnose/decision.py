@@ -166,7 +166,7 @@ def _makes_adequate(base: Fit, other: Fit, floor: NoiseFloor, criteria: Criteria
 def is_supported(
     base: Fit, ranked: Ranked, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
 ) -> bool:
-    """Whether a candidate can be told, lowers the check error enough, and nothing bars it."""
+    """Whether a candidate is identifiable, lowers the check error enough, and nothing bars it."""
     return (
         ranked.is_identifiable
         and not objection(base, ranked, floor, criteria=criteria)
@@ -180,8 +180,8 @@ def objection(
     """Which check bars a candidate however much it explains, in words; "" where none does.
 
     One that drives a parameter of the model to its bound, and whose effect the model still has,
-    describes the records, but is no missing physics beside the model's own. One that needs a
-    parameter of its own at its bound is itself another effect, unless it leaves noise only.
+    describes the records, but is no missing physics beside the model's effects. One that needs a
+    parameter at its bound is itself another effect, unless it leaves noise only.
     """
     if ranked.refused or ranked.implausible:
         return REFUSALS.get(ranked.refused, ranked.implausible)
@@ -244,8 +244,8 @@ def superfluous_beside(
 ) -> Candidate | None:
     """The one effect of the base that a candidate at its place makes superfluous; None or several.
 
-    It was told from its absence, and beside the candidate its strength ends where it is absent; or,
-    where no effect does so, it was surely there and is no longer told from its absence.
+    Its strength surely differed from zero, and beside the candidate it ends where it is absent; or,
+    where no effect does so, it surely differed from zero before and no longer does.
     """
     gone, ended, open_now = set(displaced(base, fit)), [], []
     for effect in base.model.body(candidate.at).effects:
@@ -264,13 +264,13 @@ def superfluous_beside(
             for n in strengths
         ):
             open_now.append(effect)
-    given_up = ended or open_now
-    if len(given_up) != 1:
+    superfluous = ended or open_now
+    if len(superfluous) != 1:
         return None
-    start = f"{candidate.at}.{given_up[0].name}."
+    start = f"{candidate.at}.{superfluous[0].name}."
     sure = displaced(base, fit, least=criteria.close)
     left = [n for n in sure if not n.startswith(start)]
-    return None if left else Candidate(given_up[0], candidate.at)
+    return None if left else Candidate(superfluous[0], candidate.at)
 
 
 def _near_absence(fit: Fit, name: str, absent: float) -> bool:

@@ -70,7 +70,7 @@ class Diagnosis(ByValue):
     floor: the noise floor: the error that the sensors alone would leave
     moment: the single time span that holds all of the residual above noise; None: there is no such
         span
-    open: questions that the records leave open; given for a diagnosis that was read from a file,
+    open: questions that the records leave open; stated for a diagnosis that was read from a file,
         which has no rankings
     named: accepted effects that are probable enough to be called missing
     learnable: how much of the residual a black box can learn; None without the extra `learn`

@@ -32,7 +32,8 @@ class Efforts:
     fine: Effort = Effort(1e-7, 60)
     #: residuals and derivatives alone: the values stay where they are
     stay: Effort = Effort(1.0, 1)
-    #: squares of what a body's residual changes by, over its own and over the tolerance, up to
+    #: squares of what a body's residual changes by, over the squares themselves and over the
+    #: tolerance, up to
     #: which the residual follows its tangents: what they miss is of higher order. More: faster, and
     #: fits end where the tangents lead
     followed: float = 0.1

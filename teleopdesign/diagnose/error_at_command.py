@@ -31,7 +31,7 @@ class AtCommand:
     sighted: per stretch, the rows that are not blind
     error: relative, over the rows that are not blind, above the line and below; NaN: there are none
     blind: share of blind samples among those where the body slides
-    weak: an actuator can give, at no command, what its model needs to slide
+    weak: an actuator cannot deliver, at any command, what its model needs to slide
     """
 
     residual: tuple[Array, ...]

@@ -62,13 +62,13 @@ def score_at_command(before: Fit, after: Fit) -> float:
 def gain_at_command(before: Fit, after: Fit) -> float:
     """Share of the squares at the command that `after` removes, on rows sighted in both fits.
 
-    No more than the error itself says of each model on its own rows: to be blind to where most is
+    No more than the error itself says of each model on its rows: to be blind to where most is
     left is no gain.
     """
     rows = before.at_command.sighted & after.at_command.sighted
     whole, left = (float(np.sum(f.at_command.residual[rows] ** 2)) for f in (before, after))
-    on_own_rows = 1.0 - (after.at_command.error / before.at_command.error) ** 2
-    return min(on_own_rows, 1.0 - left / whole) if whole > 0.0 else 0.0
+    by_error = 1.0 - (after.at_command.error / before.at_command.error) ** 2
+    return min(by_error, 1.0 - left / whole) if whole > 0.0 else 0.0
 
 
 def whole_score(before: Fit, after: Fit) -> float:

@@ -1,4 +1,4 @@
-"""An excerpt of a long experiment: windows spread evenly over each record, at their own times."""
+"""An excerpt of a long experiment: windows spread evenly over each record, at their times."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ def on_windows(whole: Prepared, plan: SearchPlan = PLAN) -> Prepared:
 def _windows(record: Record, part: float) -> tuple[slice, ...]:
     """Windows that make up about `part` of a record, spread over its segments, one at least.
 
-    Each segment gives what its length and that of those before it owe: of many short ones every
-    n-th is taken.
+    Each segment contributes what its length and that of those before it owe: of many short ones
+    every n-th is taken.
     """
     size = max(64, round(WINDOW / record.sample_time))
     windows, owed = [], 0.0

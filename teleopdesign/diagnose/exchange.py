@@ -1,4 +1,4 @@
-"""Exchange: an accepted effect gives way to one that explains the records better beside the rest.
+"""Exchange: an accepted effect is replaced by one that explains the records better beside the rest.
 
 Effects are added one at a time, so an early one may only stand in for what was not there yet. Where
 more than noise is left in the end, each of those that others followed is taken out once, and the
@@ -27,7 +27,7 @@ from .rungs import estimate_without, refitted
 class Exchange:
     """One effect for another.
 
-    dropped: the one that gives way;  without: the fit that both are compared on
+    dropped: the one that is replaced;  without: the fit that both are compared on
     replacement: the one in its place, with the model fitted with it
     ranking: all candidates for that place
     """

@@ -371,7 +371,7 @@ def standard_errors(jacobian: Array, residual: Array, blocks: NDArray[np.intp]) 
     """Standard errors that hold under residuals correlated within a block (sandwich estimate).
 
     jacobian: (rows, p);  residual: (rows,);  blocks: block number of each row
-    NaN where the parameter cannot be told from the others
+    NaN where the parameter cannot be distinguished from the others
     """
     p = jacobian.shape[1]
     if p == 0:

@@ -17,7 +17,7 @@ def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bo
 
     Each must be further from absence than its standard error (an angle within half a turn) unless
     the effect is there without it or a product of its parameters is known, what is essential to it
-    surely so, and some must change the residual in a way of its own.
+    surely so, and some must change the residual in a unique way.
     """
     new = [i for i, n in enumerate(fit.free) if n not in base.free]
     effects = {fit.free[i].rpartition(".")[0] for i in new}
@@ -40,13 +40,13 @@ def is_identifiable(fit: Fit, base: Fit, *, criteria: Criteria = CRITERIA) -> bo
             return True
         old_columns = fit.jacobian[:, old]
         rest = column - old_columns @ np.linalg.lstsq(old_columns, column, rcond=1e-10)[0]
-        if float(np.linalg.norm(rest)) > criteria.own_column * size:
+        if float(np.linalg.norm(rest)) > criteria.least_unique_share * size:
             return True
     return False
 
 
 def known_in_a_product(fit: Fit, effect: str, *, criteria: Criteria = CRITERIA) -> frozenset[str]:
-    """Parameters of an effect that differ surely from zero at given others of a product.
+    """Parameters of an effect that differ surely from zero, the others of a product held.
 
     The effect is there, though along such a valley the records leave open by which of them.
     effect: with its place, "device.stribeck"

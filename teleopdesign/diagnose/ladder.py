@@ -34,19 +34,19 @@ def find_missing(
     Of more than `SearchPlan.long` samples, effects are sought and parameters estimated on
     `SearchPlan.windows` samples in windows spread evenly over the records; errors are those of the
     whole records.
-    progress: called with a line of text at each step (a `ProgressLine` while candidates are tried)
+    progress: called with a line of text at each step (a `ProgressLine` while candidates are fitted)
     seed: of the draws for the noise floor;  plan: how much is searched, such as `QUICK`
-    among: names of the effects that are tried; default: all that the model knows
+    among: names of the candidate effects; default: all that the model knows
     raises ExperimentError: the experiment lacks what the comparison needs
     """
     if among is not None:
         model = trying(among, model or Model.from_experiment(experiment))
     search = search_for(experiment, model, progress=progress, seed=seed, plan=plan)
     state, rungs = climb(search, begin(search), with_last_corrected)
-    return saying_what_was_tried(among, conclude(search, state, rungs))
+    return with_candidates_named(among, conclude(search, state, rungs))
 
 
-def saying_what_was_tried(among: Collection[str] | None, diagnosis: Diagnosis) -> Diagnosis:
+def with_candidates_named(among: Collection[str] | None, diagnosis: Diagnosis) -> Diagnosis:
     """The diagnosis with the effects that it was restricted to; among: None for no restriction."""
     if among is None:
         return diagnosis
@@ -80,8 +80,8 @@ def climb(
 def next_move(search: LadderSearch, state: LadderState) -> LadderState | None:
     """The state after the next move; None: the ladder ends here.
 
-    Where no effect is supported alone, a straight line is tried in place of bends; then, where more
-    than a tone is left, a pair is sought, then an exchange, then a pair in place of all rungs.
+    Where no effect is supported alone, a straight line is fitted in place of bends; then, where
+    more than a tone is left, a pair is sought, then an exchange, then a pair in place of all rungs.
     """
     if state.step > search.plan.most_effects:
         return straighten(search, state)

@@ -87,8 +87,8 @@ class LadderState:
     supported: candidates that the records support, in the order of the ranking
     exchanges: how many were made;  replaced: whether a pair took the place of all rungs once
     straightened: whether a straight line took the place of forces of the place once
-    came_back: effects (name, place) that were given up for another once, or came back beside it:
-        none of them gives way again, so that two effects cannot take turns
+    came_back: effects (name, place) that were replaced by another once, or came back beside it:
+        none of them is replaced again, so that two effects cannot take turns
     set_aside: effects that were accepted and are not there by the errors that the answer would
         state: none of them is added again
     """

@@ -61,7 +61,7 @@ def _estimate_text(value: Value, unit: str) -> str:
     return f"{text}, not determined by these records"
 
 
-#: part of the error from which the one seen at the command is told beside it
+#: part of the error from which the one seen at the command is stated beside it
 DIFFERENT = 0.02
 
 
@@ -82,7 +82,7 @@ def _percent(error: float) -> str:
     return f"{100 * error:.2f} %" if math.isfinite(error) else "not told"
 
 
-#: part of the last model's error by which a refused candidate must be lower to be told of: what a
+#: part of the last model's error by which a refused candidate must be lower to be reported: what a
 #: reader sees as less
 LESS = 0.02
 

@@ -34,7 +34,7 @@ from .residual import residuals
 
 #: s to either side of a reversal that count as near it: where presliding, gaps and lags show
 NEAR = 0.1
-#: s without a told motion after which the same direction counts as a new start
+#: s without sure motion after which the same direction counts as a new start
 REST = 0.5
 #: most rows that the trees learn from, spread evenly: more take time and tell little more
 MOST_ROWS = 20_000
@@ -250,7 +250,7 @@ def _trees(inputs: Array, target: Array, seed: int) -> Any:
 
 
 def _inputs(motion: Motion, motions: Sequence[Motion]) -> Array:
-    """What the trees are told of a motion (n, k); NaN before the first motion that can be told.
+    """Features of a motion for the trees (n, k); NaN before the first sure motion.
 
     motions: all of that body. Where none comes to a place again, or none turns round, place or
     time since a reversal would tell the clock, and with it the command that was played by it

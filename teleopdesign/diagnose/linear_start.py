@@ -1,8 +1,8 @@
 """Where the search of an effect begins: at its least-squares strength, for every form of it.
 
-An effect whose law is linear in its strength (an amplitude, a damping, an extra level) is tried at
+An effect whose law is linear in its strength (an amplitude, a damping, an extra level) is fitted at
 zero strength: one column of tangents for each combination of its other parameters, or two where a
-phase turns a sine into a cosine. No steps are needed, so forms by the hundred can be tried.
+phase turns a sine into a cosine. No steps are needed, so hundreds of forms can be fitted.
 """
 
 from __future__ import annotations

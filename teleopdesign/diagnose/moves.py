@@ -1,6 +1,6 @@
 """Moves of a ladder by one effect: add one, or remove one that others have made superfluous.
 
-A move takes a search and a state and gives the state that it leads to, or None: no such move is
+A move takes a search and a state and returns the next state, or None: no such move is
 supported. It is judged by the noise floor that the state holds.
 """
 

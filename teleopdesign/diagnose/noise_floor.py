@@ -3,7 +3,7 @@
 The readings are made anew: the smoothed motion is read off by an encoder of the stated step with a
 random zero, and the stated noise is drawn. Where the record's readings scatter the more the faster
 they move, its clock jitters, and so do the moments of those drawn anew. By how much that changes
-the residual is the floor; the directions of motion stay those that the record's own readings told.
+the residual is the floor; the directions of motion stay those that the record's readings showed.
 Where no resolution is stated, steps and noise of all channels are estimated from the readings, from
 their content near the Nyquist frequency, and the answer says so.
 """
@@ -91,7 +91,7 @@ def noise_floor(
 def _drawn(
     stretch: Stretch, prepared: Prepared, generator: np.random.Generator, draw: int
 ) -> Stretch:
-    """The stretch read once more, with the directions that were told."""
+    """The stretch read once more, with the directions that were determined."""
     motion = read_again(stretch, prepared, generator)
     if stretch.motion.links is not None:
         motion = replace(motion, links=stretch.motion.links.drawn[draw])

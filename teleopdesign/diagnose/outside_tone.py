@@ -1,12 +1,12 @@
 """A tone from outside: a force of one frequency, whatever the motion, such as mains hum.
 
-It moves the machine a little, at its own frequency. A body with a lightly damped tip that resonates
+It moves the machine a little, at its frequency. A body with a lightly damped tip that resonates
 there moves so without any force, and effects that are not there can stand in for the tone. So an
 effect counts only if it leaves surely less than a plain tone does, where motion holds next to
 nothing at the tone's frequency that could have brought it about, nor its direction or its size.
 
 Hum of the mains moves the machine itself, so that its motion holds the tone all the same. Its
-frequency gives it away: there the tone is held against effects unless the motion is mostly that.
+frequency reveals it: there the tone is held against effects unless the motion is mostly that.
 
 A body that sticks shows nothing of the tone, for its friction balances it: so the tone is taken
 both off the residual and as a force on the body, whichever leaves less.
@@ -56,7 +56,8 @@ class Tone:
 def best_tone(fitted: Fit, prepared: Prepared) -> Tone:
     """The tone that removes most of the residual of a model.
 
-    Its frequency is found on the fit records; amplitude and phase are those of each check stretch.
+    Its frequency is estimated on the fit records; amplitude and phase are those of each check
+    stretch.
     """
     fit, check = prepared.of("fit"), prepared.of("check")
     if not check:

@@ -32,7 +32,7 @@ def replace_by_pair(search: LadderSearch, state: LadderState) -> LadderState | N
     """Replace the rungs, once, by two effects that leave only noise.
 
     Where two are missing, a third can explain more than either does alone, and stand in their way.
-    They are sought among those that explained something of their own.
+    They are sought among those that explained something alone.
     """
     ranking = state.rungs[1].ranking if state.step > 1 else None
     if state.replaced or ranking is None:

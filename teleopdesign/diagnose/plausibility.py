@@ -1,7 +1,7 @@
-"""Whether fitted effects deserve their names, by what their own files say of their parameters.
+"""Whether fitted effects deserve their names, by what their files say of their parameters.
 
-One rule holds for every force, a user's own among them: along the motion it cannot vary by more
-than what was measured, or another effect takes away again what it gives.
+One rule holds for every force, a user's effects too: along the motion it cannot vary by more
+than what was measured, or another effect cancels what it adds.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from .prepare import Prepared, Stretch
 def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str], str]:
     """(effect, place) -> what it stands for instead, of each whose parameters do not fit its name.
 
-    raises ModelError: an effect's own check fails, or says something else than None or a sentence
+    raises ModelError: an effect's check fails, or says something else than None or a sentence
     """
     meanings = {}
     for place, body in model.bodies.items():
@@ -50,7 +50,7 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
 
 
 def untold_of(effect: Effect, at: str, model: Model, prepared: Prepared) -> str | None:
-    """What an effect's own file says that these records cannot tell of its parameters; None.
+    """What an effect's file says that these records cannot tell of its parameters; None.
 
     raises ModelError: as `implausible_effects`
     """
@@ -89,7 +89,7 @@ def _all_that_acts(stretches: Sequence[Stretch], facts: RecordFacts) -> float:
 
 
 def _said(effect: Effect, hook: str, facts: RecordFacts) -> str | None:
-    """What the effect's own `plausible` or `untold` says; None where it has none."""
+    """What the effect's `plausible` or `untold` says; None where it has none."""
     check: Callable[[Any, RecordFacts], str | None] | None = getattr(effect, hook)
     if check is None:
         return None
@@ -108,7 +108,7 @@ def record_facts(
 ) -> RecordFacts:
     """What all records say of the body at that place.
 
-    numbers: the body's own, by their names; default: those of the model
+    numbers: the body's, by their names; default: those of the model
     """
     stretches = [s for s in prepared.stretches if s.motion.body == place]
     motions = [s.motion for s in stretches]
@@ -146,7 +146,7 @@ def _film(body: Body, speed: float, numbers: Mapping[str, float]) -> float:
 
 
 def _comparable_positions(stretches: Sequence[Stretch]) -> list[np.ndarray]:
-    """Positions of all records together; those with an encoder zero of their own stand alone."""
+    """Positions of all records together; those with a separate encoder zero stand alone."""
     groups: dict[str, list[np.ndarray]] = {}
     for s in stretches:
         groups.setdefault(s.motion.file if s.has_zero_offset else "", []).append(s.motion.position)

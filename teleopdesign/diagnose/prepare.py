@@ -18,7 +18,7 @@ from .bandwidth import default_bandwidth
 from .scales import scales
 from .shared_links import Shared, share_again
 
-#: seconds at each end of a stretch where the low-pass has not settled
+#: seconds at each end of a stretch where the low-pass is not yet in steady state
 TRIM = 0.25
 #: samples kept per second and hertz of bandwidth after the low-pass (2 would be Nyquist's)
 OVERSAMPLING = 5.0
@@ -89,7 +89,7 @@ class Prepared(ByValue):
     def coarse(self) -> Prepared:
         """The fit records with as few samples as effects can be sought on; itself if not fewer.
 
-        What is found there is estimated and judged on the samples of the records themselves.
+        The effects are estimated and judged on the samples of the records themselves.
         """
         stretches = self.of("fit")
         if any(s.motion.links is not None or s.shared is not None for s in stretches):

@@ -1,4 +1,4 @@
-"""How probable it is that a candidate is what is missing, from what the ladder found of it.
+"""How probable it is that a candidate is what is missing, from its fits in the ladder.
 
 Calibrated on diagnoses of an independent simulator's cases, not by a formula that supposes white
 noise. What an accepted effect's truth depends on there is what is left in the end: where that is
@@ -158,7 +158,7 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
     weights = {}
     for r in ranking.ranked:
         driven = set(r.fit.at_bound) - bound
-        # what was accepted may have a parameter of its own at a bound: it was supported so
+        # what was accepted may have a parameter at a bound: it was supported so
         gone = displaced(ranking.base, r.fit, least=CRITERIA.close) if accepted else driven
         serious = r.counts and r.candidate.key in alike and not gone
         weights[r.candidate.key] = (

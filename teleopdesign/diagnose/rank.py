@@ -98,8 +98,8 @@ def _least_counted(
 ) -> float:
     """Least squares of an attempt that counts; all do where none counts.
 
-    One that is refused, is not told, deserves no name or leaves more unseen is no measure of what
-    others must reach.
+    One that is refused, is not identifiable, deserves no name or leaves more unseen is no measure
+    of what others must reach.
     """
     counted = [
         fit
@@ -125,7 +125,7 @@ def rank_candidates(
     """Try every candidate on top of a fitted model.
 
     base: the fitted model that something may be missing in
-    among: those that are tried, of all that the model could take
+    among: the candidates, of all that the model could take
     stated: the model as its user gave it; its values are starts too
     worth: part of the base's squares on the fit records below which a gain is not pursued; default:
         that of the criteria
@@ -145,7 +145,7 @@ def rank_candidates(
     possible = candidates(
         base.model,
         [s.motion for s in prepared.stretches],
-        own_zero={s.motion.file for s in prepared.stretches if s.has_zero_offset},
+        separate_zeros={s.motion.file for s in prepared.stretches if s.has_zero_offset},
         measured=measured_at(prepared.experiment),
     )
     if among is not None:

@@ -28,9 +28,9 @@ class Ranked(ByValue):
 
     score: how surely it lowers the error on the check records (standard deviations)
     behind: how surely the best candidate has the smaller error on all records; 0 for the best
-    is_identifiable: its parameters are determined, and told from those of the model it was added to
+    is_identifiable: its parameters are determined, beside those of the model it was added to
     refused: why it does not count though it may leave less force (a key of `REFUSALS`), or ""
-    implausible: what its own file, or that of an effect beside it, says that its parameters stand
+    implausible: what its file, or that of an effect beside it, says that its parameters stand
         for instead of what its name says; ""
     instead_of: effect of the base that it makes superfluous, and that its model lacks; None
     """
@@ -46,7 +46,7 @@ class Ranked(ByValue):
 
     @property
     def counts(self) -> bool:
-        """Whether the records can speak for it: told, not refused, and what its name says."""
+        """Whether the records can support it: identifiable, not refused, and what its name says."""
         return self.is_identifiable and not self.refused and not self.implausible
 
     @property

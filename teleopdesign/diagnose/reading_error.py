@@ -3,12 +3,12 @@
 Where readings cannot tell a direction, friction may be anything up to its level, and what noise
 asks for is followed on one side only; noise in an acceleration makes an inertia look smaller. Such
 shifts are small, but larger than what residuals tell: at the optimum those are as small as they can
-be. So the model that was found is simulated where the records were made. Its parameters are known;
+be. So the final model is simulated where the records were made. Its parameters are known;
 its motion is read by the stated sensors and estimated from again, and by how much that misses is
 how much the first estimate did (a parametric bootstrap: Efron, Tibshirani, An Introduction to the
-Bootstrap, 1993, chapters 6 and 10). Where it is much, it is found again at the values that it leads
-to, until they agree (indirect inference: Gourieroux, Monfort, Renault, J. Applied Econometrics 8,
-1993): a tip that swings in the band looks damped by noise the more, the less it is.
+Bootstrap, 1993, chapters 6 and 10). Where it is much, it is estimated again at the values that it
+leads to, until they agree (indirect inference: Gourieroux, Monfort, Renault, J. Applied
+Econometrics 8, 1993): a tip that swings in the band looks damped by noise the more, the less it is.
 """
 
 from __future__ import annotations
@@ -31,17 +31,18 @@ from .record_offsets import along_with_offsets
 from .simulated_course import as_led, dead_times, simulated_course, with_whole_dead_times
 from .threads import in_threads
 
-#: gives of an ideal friction, in encoder steps, and damping ratios of what gives: none can be read,
-#: nor which it is, so that each pair has its turn (by the largest give, turns look as if friction
-#: remembered; by the smallest it breaks away at once; damping resists what moves the contact, be it
-#: a turn or a level that changes). 0 is Dahl's friction, 0.5 what the authors of LuGre chose:
-#: stiffness 1e5 N/m, damping sqrt(1e5) N s/m at 1 kg. 1e-9 stands for 0: it moves a position by
-#: less than 1e-10 of its travel, and both ratios share one loop, which takes 2.5 s to compile
-GIVES, DAMPED = (0.3, 0.1, 0.03), (1e-9, 0.5)
+#: bristle lengths of an ideal friction, in encoder steps, and their damping ratios: none can be
+#: read, nor which it is, so that each pair has its turn (with the longest bristle, turns look as if
+#: friction remembered; by the smallest it breaks away at once; damping resists what moves the
+#: contact, be it a turn or a level that changes). 0 is Dahl's friction, 0.5 what the authors of
+#: LuGre chose: stiffness 1e5 N/m, damping sqrt(1e5) N s/m at 1 kg. 1e-9 stands for 0: it moves a
+#: position by less than 1e-10 of its travel, and both ratios share one loop, which takes 2.5 s to
+#: compile
+BRISTLE_STEPS, DAMPED = (0.3, 0.1, 0.03), (1e-9, 0.5)
 #: shift, over the estimate (in decades' logarithms and angles: as it is), from which nothing is
 #: corrected: what reading moves so far is not known well enough
 LARGEST = 0.5
-#: simulations one after the other, at most, while the shift still moves by more than its own error
+#: simulations one after the other, at most, while the shift still moves by more than its error
 ROUNDS = 4
 
 
@@ -75,7 +76,7 @@ def reading_error(
     # what is simulated is logged in time
     truth = _with_whole_dead_times(fit.model.with_record_shift({}), prepared)
     true = coordinates(truth, fit.free)
-    made = [_simulated(truth, prepared, g, d) for g, d in product(GIVES, DAMPED)]
+    made = [_simulated(truth, prepared, g, d) for g, d in product(BRISTLE_STEPS, DAMPED)]
     exact = [stretches for stretches in made if stretches is not None]
     if len(exact) < len(made):
         return None

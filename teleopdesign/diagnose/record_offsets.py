@@ -1,9 +1,9 @@
-"""Record offsets: an encoder zero, a bias, a level of friction that a record has of its own.
+"""Record offsets: an encoder zero, a bias, a level of friction that belongs to one record.
 
-Where an experiment says that a record does not share one of these with the others, it is found
+Where an experiment says that a record does not share one of these with the others, it is estimated
 anew on that record for every model, by least squares: two steps by the slopes of the residual,
 exact where force is linear in it. The slopes are then taken out of the residual and of its
-tangents, so that nothing else in a model is used for what is the record's own.
+tangents, so that nothing else in a model is used for what belongs to one record.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ..model import Model
 from ..realise.along_motion import residual_along
 from .prepare import Stretch
 
-#: steps of finding them: two are exact where force is linear in what is found
+#: steps of the estimate: two are exact where force is linear in the offsets
 TURNS = 2
 #: part of their scale over which a slope is taken: far above rounding, far below a curve
 SLOPE = 1e-3
@@ -74,8 +74,8 @@ def find_offsets(
     values = dict.fromkeys(steps, 0.0)
     slopes: list[Array] = []
     for turn in range(TURNS + 1):
-        own_body, own_motions = _with(body, motions, values)
-        here = [residual(own_body, m, k) for k, m in enumerate(own_motions)]
+        corrected_body, corrected_motions = _with(body, motions, values)
+        here = [residual(corrected_body, m, k) for k, m in enumerate(corrected_motions)]
         slopes = [np.zeros((len(steps), len(r))) for r in here]
         for i, (name, step) in enumerate(steps.items()):
             moved_body, moved = _with(body, motions, {**values, name: values[name] + step})
@@ -89,7 +89,7 @@ def find_offsets(
         if "friction_level" in values:
             values["friction_level"] = max(values["friction_level"], LEAST - 1.0)
     said = {n: 1.0 + v if n == "friction_level" else v for n, v in values.items()}
-    return RecordOffsets(said, own_body, own_motions, tuple(slopes))
+    return RecordOffsets(said, corrected_body, corrected_motions, tuple(slopes))
 
 
 def _steps(body: Body, motions: Sequence[Motion], names: Collection[str]) -> dict[str, float]:

@@ -1,7 +1,8 @@
 """The clock of a logger: by how much the log of a body's command is later than its position's.
 
 A controller may write a command with the position that it answers, or with the next: a shift of up
-to one row, either way, belongs to the record. It is no physics, but what is not told of it looks
+to one row, either way, belongs to the record. It is no physics, but what is not explained by it
+looks
 like some: a delay, a lag, the lead of a compliant transmission. So it is estimated with every
 model, one shift for each body, common to all its records.
 
@@ -18,7 +19,7 @@ for that makes the least squares the most probable values, r having an unknown s
 n log |r|^2 + (d / s)^2. Standard errors of all else hold what is left open of the shift.
 
 The log of a force may be late by more: buffers and batches hold commands back, sensors filter what
-was measured. No physics acts before its own force, so that is no missing effect, but structures
+was measured. No physics acts before its force, so that is no missing effect, but structures
 would imitate it.
 """
 
@@ -58,8 +59,8 @@ class LoggerClock:
     #: s, standard deviation of the shift of a measured force where it is more: sensors filter
     sensor_spread: float = 0.005
     #: rows and standard errors from which a command that acts late is said to be like a delay
-    told_rows: float = 0.1
-    told_errors: float = 2.0
+    reported_rows: float = 0.1
+    reported_errors: float = 2.0
 
 
 #: what is known of a log beforehand
@@ -122,7 +123,7 @@ class RecordShifts:
     ) -> tuple[Array, Array, NDArray[np.intp]]:
         """Jacobian, residual and blocks with what is known beforehand as observations more.
 
-        Each is as far off as it is expected to be: so standard errors hold the prior's own spread.
+        Each is as far off as it is expected to be: so standard errors hold the prior's spread.
         """
         k = len(self.bodies)
         size = float(np.linalg.norm(residual)) / np.sqrt(self.count)
@@ -188,7 +189,9 @@ class RecordShift:
     @property
     def is_like_a_delay(self) -> bool:
         """Whether a delay of less than a row would look the same."""
-        early = -self.late > max(CLOCK.told_rows * self.row, CLOCK.told_errors * self.stderr)
+        early = -self.late > max(
+            CLOCK.reported_rows * self.row, CLOCK.reported_errors * self.stderr
+        )
         return self.may_delay or early
 
     def __str__(self) -> str:

@@ -1,6 +1,6 @@
 """The force that a model leaves unexplained along the measured motion, low-passed.
 
-LP is the zero-phase low-pass at the comparison's bandwidth. What a record has of its own is found
+LP is the zero-phase low-pass at the comparison's bandwidth. What belongs to one record is estimated
 for the model first, and taken out.
 """
 

@@ -34,7 +34,7 @@ def replaced_by(ranked: Ranked, before: Model) -> Replaced | None:
 
 
 def replaced_from(effect: Candidate, before: Model) -> Replaced:
-    """An effect that gives way, as it was in the model before."""
+    """An effect that is replaced, as it was in the model before."""
     start = f"{effect.at}.{effect.effect.name}."
     values = tuple((n, v) for n, v in before.parameters.items() if n.startswith(start))
     return Replaced(effect, values)

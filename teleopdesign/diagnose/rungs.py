@@ -36,7 +36,7 @@ def estimate_without(model: Model, rung: Rung, prepared: Prepared) -> Fit | None
 
 
 def falling(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, ...] | None:
-    """The rungs in an order in which the check error falls with each; None where none is found.
+    """The rungs in an order in which the check error falls with each; None where there is none.
 
     A rung that leaves more than the one before it was masked by what follows it: the two change
     places.

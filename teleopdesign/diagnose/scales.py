@@ -1,4 +1,4 @@
-"""The record's own scale of every quantity: where searches start and steps are measured."""
+"""The record's scale of every quantity: where searches start and steps are measured."""
 
 from __future__ import annotations
 

@@ -142,7 +142,7 @@ def _followed(model: Model, prepared: Prepared, effort: Effort) -> Solution:
 def _in_order(best: Solution, prepared: Prepared) -> Solution:
     """The solution with parts of effects in their order, where no less is explained so.
 
-    By their order it is known which parts must be told, and which may be open.
+    Their order says which parts must be determined, and which may be open.
     """
     model = best.model.in_order()
     if model is best.model:

@@ -53,7 +53,7 @@ class SearchPlan:
     onward: float = 0.1
     #: part of the squares before that such an effect leaves at most where jolts are worth the time
     jolted: float = 0.5
-    #: part of the squares by which two fits must differ to be told for two places: ten times what a
+    #: part of the squares by which two fits must differ to count as two places: ten times what a
     #: rough fit leaves open
     elsewhere: float = 1e-3
     #: squares on the fit records above the least that a rough fit leaves, as a part of these, up to
@@ -63,14 +63,14 @@ class SearchPlan:
     #: rough one left at most, in 136 fits on simulated and real records, but for four: those of the
     #: candidates that led
     contending: float = 0.15
-    #: frequencies tried for a tone per inverse of the longest stretch: four, so that none falls
+    #: frequencies evaluated for a tone per inverse of the longest stretch: four, so that none falls
     #: between two
     tone_fineness: int = 4
     #: turns of finding the force of a tone on one stretch
     tone_turns: int = 4
     #: turns of finding that force and estimating the model beside it
     tone_estimates: int = 2
-    #: most models that one open question holds: each is told from the others by an experiment
+    #: most models that one open question holds: an experiment separates each from the others
     rivals: int = 4
 
     def for_joints(self, count: int) -> SearchPlan:

@@ -1,7 +1,7 @@
 """The links of an arm, seen from one joint: what other joints say of them, and what stays free.
 
 The base parameters b of an arm act at all of its joints, and force is linear in them. What the
-other joints know of b is a quadratic, (b - c)^T H (b - c) with centre c, their own parameters free.
+other joints know of b is a quadratic, (b - c)^T H (b - c) with centre c, their parameters free.
 So a joint can be compared alone: to minimise
 
     |r - Y (b - c)|^2 + (b - c)^T H (b - c)        over b,     Y: force of its links per unit of b

@@ -18,7 +18,7 @@ from ..effects import delayed
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..realise.kernel import FASTEST, fastest_rate
-from ..realise.simulated import with_give, without_absent
+from ..realise.simulated import with_bristle, without_absent
 from ..simulate import Sampling, prepare
 
 #: natural frequency of the leading spring over the comparison's bandwidth
@@ -57,7 +57,7 @@ def simulated_course(
     """The course that this body takes under a record's forces, led along its motion.
 
     deflection: of an ideal friction, in steps of the position's reading
-    damping_ratio: of the inertia on what gives
+    damping_ratio: of the inertia on the bristle
     raises ModelError: the body cannot be simulated, a dead time is no multiple of `grid`
     """
     frequency = 2.0 * np.pi * LEADS * motion.bandwidth
@@ -77,10 +77,10 @@ def led_body(
 ) -> LedBody:
     """The body with what leads it; none leads it where stiffness and damping are zero.
 
-    bristle: way that an ideal friction gives before it slides (m or rad)
+    bristle: length of the bristle of an ideal friction (m or rad)
     damping_ratio: of the inertia on that bristle
     """
-    body = with_give(without_absent(body), bristle, damping_ratio=damping_ratio)
+    body = with_bristle(without_absent(body), bristle, damping_ratio=damping_ratio)
     has_tip = any(e.role == "structure" for e in body.effects)
     return LedBody(_wired(body, stiffness, damping), stiffness, damping, has_tip)
 

@@ -16,7 +16,7 @@ def at_stated(model: Model, stated: Model, at: str | None = None) -> Model:
 
     at: place whose body gets them; None: all bodies
     """
-    there = model.parameters  # an effect of the user's may have given way to another
+    there = model.parameters  # another effect may have replaced one of the user's
     values = {n: v.value for n, v in stated.parameters.items() if n in there}
     if at is not None:
         values = {n: v for n, v in values.items() if model.locate(n)[0] == model.holder(at)}

@@ -126,7 +126,7 @@ def is_straight(effect: Effect) -> bool:
 
 
 def is_bent(effect: Effect) -> bool:
-    """Whether a force of the place is no straight line, nor seen to repeat with a period found."""
+    """Whether a force of the place is no straight line, nor seen to repeat with a period."""
     if not _is_of_place(effect) or isinstance(period(effect), str):
         return False
     return bool(sp.diff(effect.expression(), SIGNALS["position"], 2) != 0)

@@ -1,6 +1,6 @@
 """Work shared among the cores: kernels and transforms release the interpreter's lock.
 
-Linear algebra keeps to one core meanwhile. Its own threads wait for each other by spinning: with
+Linear algebra keeps to one core meanwhile. Its threads wait for each other by spinning: with
 several callers on two cores that took a third of the time.
 """
 

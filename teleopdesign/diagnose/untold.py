@@ -2,7 +2,7 @@
 
 An effect may be there beyond doubt while its parameters are not: a level at rest that no force ever
 reached is an extrapolation, and of two parameters a record may show one product. What follows from
-physics an effect's own file says (`untold`); what follows from the records is seen here.
+physics an effect's file says (`untold`); what follows from the records is seen here.
 """
 
 from __future__ import annotations

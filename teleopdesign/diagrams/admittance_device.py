@@ -35,7 +35,7 @@ def admittance_device(
 ) -> Diagram:
     """Wire an admittance-controlled interface on one axis.
 
-    device: Z_d;  hand: Z_H, what the user's arm does passively, not there unless given
+    device: Z_d;  hand: Z_H, what the user's arm does passively, optional: absent by default
     admittance: Y, from force to position, such as `controller("virtual_admittance", ...)`
     position_loop: C, from the position error to a force, such as `proportional_derivative` or
         `lead`: it sees no velocity but that of its input

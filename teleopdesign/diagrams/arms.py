@@ -3,7 +3,7 @@
     M q'' + ... = tau + J^T F        X = f(q), J = df/dq
     tau_m = -J_m^T F_P + C_m q_m     tau_s = J_s^T F_P + C_s q_s     F_P = P e + D e', e = X_m - X_s
 
-Each joint is a body with friction and, where wanted, a cancellation on its own position. What hangs
+Each joint is a body with friction and, where wanted, a cancellation on its position. What hangs
 on the tip (`load`, hand, environment) is carried through the kinematics, so that full and changing
 inertia and its Coriolis forces follow. Mahvash, Okamura, ICRA 2006, eq (10), figure 4.
 """
@@ -70,7 +70,12 @@ class Arm:
 
 
 def by_jacobian(jacobian: Any) -> tuple[sp.Expr, ...]:
-    """Coordinates of a tip whose Jacobian does not change: X = J q, J (coordinates, joints)."""
+    """Coordinates of a tip whose Jacobian does not change: X = J q, J (coordinates, joints).
+
+    jacobian: m/rad or m/m, nested lists or an array
+    returns: one expression for each coordinate (m), for `Arm`; forces go back by J^T
+    raises ModelError: no matrix of numbers
+    """
     matrix = matrix_of(jacobian, "by_jacobian: jacobian")
     symbols = [joint(n + 1) for n in range(matrix.shape[1])]
     return tuple(

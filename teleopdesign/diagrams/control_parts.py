@@ -35,7 +35,7 @@ def controller_parts(
         `from_control` takes them
     inputs, outputs: signals, in the order of the system's;  motion, analog: as of `Control`
     Entries that are zero are left out. Blocks are called "name_1_2", row first; signals between
-    them "name_1_2_out". Each entry has states of its own: modes that entries of a state space
+    them "name_1_2_out". Each entry has separate states: modes that entries of a state space
     share are there once for each.
     raises ModelError: numbers of signals do not fit, an entry that `from_control` refuses
     """
@@ -98,7 +98,7 @@ def plant_parts(
 
     _check_plant(system, name)
     s = sp.Symbol("s")
-    # exact: python-control's own conversion of matrices leaves zeros far out
+    # exact: python-control's conversion of matrices leaves zeros far out
     form = from_control(system, name="plant").linear_form(name, s, sp.S(0))
     above, below = (sp.Poly(part, s, domain="QQ") for part in sp.fraction(sp.sympify(form)))
     if above.is_zero or below.degree() - above.degree() != 2:

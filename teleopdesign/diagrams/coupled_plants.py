@@ -41,7 +41,7 @@ def coupled_plant_parts(
 
     system: transfer functions or state space, as many inputs as outputs. Continuous, exact in the
         numbers as they came; or in discrete time, a plant of 2 n states behind a zero-order hold,
-        whose matrices in continuous time are found by a logarithm
+        whose matrices in continuous time follow from a logarithm
     commands, drivers: signals of each axis, as of `Moving`
     Bodies are called "name_1", "name_2" ..., the impedance "name_link", blocks "name_rest_1_2".
     raises ModelError: numbers of signals do not fit, no regular matrix, a mass that is not positive

@@ -1,9 +1,10 @@
-"""Energy tanks at both ends of a channel: neither end gives out what the other has not taken in.
+"""Energy tanks at both ends of a channel: neither end releases what the other has not taken in.
 
     E_b = E_0 + arrived(taken at the other end) - given at b,   abs(U_b) <= E_b/d
 
-At each end the computer counts what its force U_b has given to the body and what it has taken from
-it, exactly, for it holds the force over each sample. What it has taken is sent to the other end,
+At each end the computer counts what its force U_b has supplied to the body and what it has taken
+from it, exactly, for it holds the force over each sample. What it has taken is sent to the other
+end,
 by any channel: a count that only grows is never too large where it is late, lost, or held. A force
 within E_b/d takes no more than E_b out in a travel of d at most, so that no tank is ever overdrawn:
 
@@ -88,7 +89,7 @@ def energy_tanks(
 
 
 def _counters(name: str, command: str, motion: str) -> list[Block]:
-    """What the command has given to the body, and taken from it."""
+    """What the command has supplied to the body, and taken from it."""
     return [
         Control(
             f"{letter}_{name}",

@@ -76,7 +76,7 @@ _LARGEST_POWER, _MOST_BITS, _MOST_TERMS, _DEEPEST_NUMBER = 64, 1024, 10_000, 8
 _MOST_ROOTS = 24
 #: calls and returns of Python that reading may take, about 1 s: no bound on a text's form tells
 #: how long sympy thinks about it. The tip of an arm of six joints takes 0.12 million, a sum of 600
-#: sines of as many positions 5 million: that is given up.
+#: sines of as many positions 5 million: then it stops.
 _MOST_CALLS = 4_000_000
 _NO_VALUE = "has no finite real value"
 
@@ -285,7 +285,7 @@ class _Reader:
 
 
 def _links(node: ast.BinOp) -> Iterator[tuple[type, ast.expr]]:
-    """The parts of a chain of one kind of operator, from left to right, each with its own."""
+    """The parts of a chain of one kind of operator, from left to right, each with its operator."""
     pair = (ast.Add, ast.Sub) if isinstance(node.op, ast.Add | ast.Sub) else (ast.Mult, ast.Div)
     links: list[tuple[type, ast.expr]] = []
     left: ast.expr = node

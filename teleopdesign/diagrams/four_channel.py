@@ -47,10 +47,10 @@ def four_channel(
     hand: Body | AnyBlock | None = None,
     environment: Body | AnyBlock | None = None,
 ) -> Diagram:
-    """Wire a teleoperator of up to four channels; the diagram has no block that is not given.
+    """Wire a teleoperator of up to four channels; only the blocks named are in the diagram.
 
     master, slave, hand, environment: as of `teleoperator`
-    master_control, slave_control: C_m and C_s, from each side's own motion, subtracted
+    master_control, slave_control: C_m and C_s, from each side's motion, subtracted
     channels: "C_1" to "C_4", those that are there; default: all four. A law of a channel sees no
         velocity but that of its input (`proportional_derivative`, not `spring_damper`)
     delay: of every channel, or of each by name, s: delay blocks T_1 to T_4; none where it is 0

@@ -45,7 +45,7 @@ def haptic_interface(
     passivity: Controller | AnyBlock | None = None,
     analog: Collection[str] = (),
 ) -> Diagram:
-    """Wire a haptic interface; the diagram has no block that is not given.
+    """Wire a haptic interface; only the blocks named are in the diagram.
 
     device, hand: Z_M and Z_H, impedances relative to position;  cancellation: C, from the motion
     to a force;  force_feedback: H, from the force error R_D - R_M to a force;
@@ -107,7 +107,11 @@ def _check_position_loop(law: Controller | AnyBlock) -> None:
 
 
 def four_cases(hybrid: Diagram) -> dict[str, Diagram]:
-    """The diagram without compensation, with cancellation, with force feedback, and with both."""
+    """The diagram without compensation, with cancellation, with force feedback, and with both.
+
+    hybrid: a haptic interface with a cancellation C and a force feedback H
+    returns: case ("none", "MBC", "FF", "hybrid") -> diagram, as in the figures of the papers
+    """
     return {
         "none": hybrid.without("C", "H"),
         "MBC": hybrid.without("H"),

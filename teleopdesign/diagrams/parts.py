@@ -140,7 +140,7 @@ class Linked:
         return tuple(sorted((int(i) - 1, int(j) - 1) for i, j in indices))
 
     def entry_name(self, row: int, column: int) -> str:
-        """Name of an entry as a block of its own, such as "Z_H_1_2"; row and column from 0."""
+        """Name of an entry as a separate block, such as "Z_H_1_2"; row and column from 0."""
         return f"{self.name}_{row + 1}_{column + 1}"
 
     @property

@@ -1,4 +1,4 @@
-"""Kinds of diagram whose wiring is the package's own: a file gives the blocks only."""
+"""Kinds of diagram whose wiring the package knows: a file states the blocks only."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Content = Body | MatrixImpedance | Controller | AnyBlock
 class ShortForm:
     """What wires a kind of diagram, and which of its arguments each block is.
 
-    has_analog: whether it can be told which controllers no computer samples
+    has_analog: whether a file can say which controllers no computer samples
     """
 
     make: Callable[..., Diagram]
@@ -58,7 +58,7 @@ KINDS: Mapping[str, ShortForm] = MappingProxyType(
 
 
 def kind_of(diagram: Diagram) -> str | None:
-    """The kind whose wiring, given the blocks of this diagram, is this diagram; None if none."""
+    """The kind whose wiring of the blocks of this diagram is this diagram; None if none."""
     contents: dict[str, Content] = {
         b.name: b.controller if isinstance(b, Control) else b.body for b in diagram.blocks
     }

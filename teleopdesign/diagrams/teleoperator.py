@@ -4,7 +4,7 @@
     Z_s X_s = F_s + P (X_m - X_s) + C_s X_s        F_s = F_d - Z_E X_s
 
 All forces act on master or slave, positive along its motion: F_m is all that the hand does, F_u the
-user's own part of it; F_s all that the environment does, F_d what it does of its own accord. P is
+user's part of it; F_s all that the environment does, F_d its active part. P is
 position-position control (a spring, with a damper where wanted); C_m and C_s cancel friction by
 motion. Mahvash, Okamura, ICRA 2006, eqs (10), (11), figures 3 and 4, in the signs of forces that
 act: their eq (10) as printed would repel.
@@ -45,13 +45,13 @@ def teleoperator(
     master_cancellation: Controller | AnyBlock | None = None,
     slave_cancellation: Controller | AnyBlock | None = None,
 ) -> Diagram:
-    """Wire a teleoperator on one axis; the diagram has no block that is not given.
+    """Wire a teleoperator on one axis; only the blocks named are in the diagram.
 
     master, slave: Z_m and Z_s, impedances relative to position;  coupling: P, from the position
     error X_m - X_s to a force, such as `controller("spring_damper", ...)`;  hand: Z_H, what the
     user's arm does passively;  environment: Z_E, such as a body without inertia with the contact
     `CONTACT` on it
-    master_cancellation, slave_cancellation: C_m and C_s, each on its own side's motion
+    master_cancellation, slave_cancellation: C_m and C_s, each on its side's motion
     ANY stands for a block of which nothing but its place is known.
     """
     blocks: list[Block] = [

@@ -50,9 +50,9 @@ WIRING = {
 def read_diagram(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS) -> Diagram:
     """The diagram that a file describes; the format is on the page "Diagrams" of the documentation.
 
-    effects: the effects by name, for those who add their own (`effects.catalogue`); those of
+    effects: the effects by name, for those who add effects (`effects.catalogue`); those of
         blocks, such as "environment", are known too
-    raises ExperimentError: what cannot be read or has no meaning: file, key, found, expected
+    raises ExperimentError: what cannot be read or has no meaning
     """
     path = Path(path)
     root, effects = read_toml(path, path.name), with_block_effects(effects)

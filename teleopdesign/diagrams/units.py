@@ -9,7 +9,7 @@ from .wiring import Diagram
 
 
 def first_axis(diagram: Diagram) -> str:
-    """Axis of the first body: what has no axis of its own is given on it."""
+    """Axis of the first body: blocks without an axis are stated on it."""
     bodies = (b.body for b in diagram.bodies if isinstance(b.body, Body))
     return next((b.axis for b in bodies), "prismatic")
 

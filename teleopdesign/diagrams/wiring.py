@@ -41,7 +41,7 @@ class Diagram:
     """Blocks and junctions wired by signal names.
 
     outside: signals that come from outside, name -> quantity
-    measured: signals that sensors give to the computer; what controllers make of them is sampled
+    measured: signals of the sensors to the computer; what controllers make of them is sampled
     texts: what each signal is, with sign
     kinematics: positions computed from those of bodies
     pose: position of each motion (default 0) at which weights and kinematics are linearised

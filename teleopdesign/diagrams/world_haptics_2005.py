@@ -69,7 +69,10 @@ READINGS: Mapping[str, Reading] = Catalogue(
 
 
 def reading(name: str) -> float:
-    """The value (SI) used for a number that the paper leaves open, by its name in `READINGS`."""
+    """The value (SI) used for a number that the paper leaves open, by its name in `READINGS`.
+
+    raises ModelError: no reading of that name, with the nearest one
+    """
     return READINGS[name].value
 
 

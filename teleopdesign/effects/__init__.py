@@ -3,7 +3,7 @@
 An effect that belongs to a hand or an environment says so by its `block`: it is wanted there, and
 is no candidate of a diagnosis. `BLOCK_EFFECTS` are these, `EFFECTS` all others.
 
-The file name is the effect's name, its docstring the effect's page. A user's own file is read by
+The file name is the effect's name, its docstring the effect's page. A user's file is read by
 `load_effect` and takes part like any other.
 """
 
@@ -80,7 +80,7 @@ __all__ = [
 def load_effect(path: str | Path) -> Effect:
     """Read one effect file; the name of the file becomes the name of the effect.
 
-    A file that has not changed since gives the same effect again.
+    An unchanged file returns the same effect again.
     raises ModelError: the file cannot be read or run, defines no EFFECT, or an unsound one, such as
         one that is declared linear and is not
     """
@@ -165,31 +165,33 @@ def _checked(module: ModuleType, path: Path) -> Effect:
     return effect
 
 
-def _own_effects() -> dict[str, Effect]:
+def _shipped_effects() -> dict[str, Effect]:
     files = sorted(p for p in Path(__file__).parent.glob("*.py") if not p.name.startswith("_"))
     modules = {p: importlib.import_module(f"{__name__}.{p.stem}") for p in files}
-    return {p.stem: remember(_checked(m, p), _own_effect, p.stem) for p, m in modules.items()}
+    return {p.stem: remember(_checked(m, p), _shipped_effect, p.stem) for p, m in modules.items()}
 
 
-def _own_effect(name: str) -> Effect:
-    return _OWN[name]
+def _shipped_effect(name: str) -> Effect:
+    return _SHIPPED[name]
 
 
-_OWN = _own_effects()
+_SHIPPED = _shipped_effects()
 #: effects of a body or its actuation, and of contacts: the candidates of a diagnosis
 EFFECTS: Mapping[str, Effect] = Catalogue(
-    {n: e for n, e in _OWN.items() if not e.block}, "effect", see=" (see `teleopdesign effects`)"
+    {n: e for n, e in _SHIPPED.items() if not e.block},
+    "effect",
+    see=" (see `teleopdesign effects`)",
 )
 #: effects that belong to a hand or an environment
 BLOCK_EFFECTS: Mapping[str, Effect] = Catalogue(
-    {n: e for n, e in _OWN.items() if e.block}, "effect of a block"
+    {n: e for n, e in _SHIPPED.items() if e.block}, "effect of a block"
 )
 
 
 def with_block_effects(effects: Mapping[str, Effect] = EFFECTS) -> Mapping[str, Effect]:
-    """The given effects and those of blocks such as "environment", by name.
+    """These effects and those of blocks such as "environment", by name.
 
-    Of two effects with one name the given effect is taken.
+    Of two effects with one name the one passed in is taken.
     """
     return Catalogue({**BLOCK_EFFECTS, **effects}, "effect")
 

@@ -4,10 +4,10 @@ A body is a chain of roles:
 
     command -> actuation -> acting force
     inertia * a = acting force + interaction force - force - friction
-    friction    = friction_shape (sgn v unless one is given) of the friction level
+    friction    = friction_shape (sgn v by default) of the friction level
     level       = sum of the friction_level laws, each times the friction_factor laws that need
                   it (a factor that needs no effect scales all); where a friction_speed law is
-                  there, at that speed instead of the body's own
+                  there, at that speed instead of the body's
     tip         = of a structure: held by dry friction of the sum of the tip_level laws
     contact     = sum of the contact laws where the environment is touched, and no pull: among the
                   forces; a contact_shape law takes the place of the penetration in them
@@ -38,7 +38,7 @@ from ._roles import ACTUATION_ORDER, CONTACT_ROLES, ENERGIES, ROLES, Energy, Rol
 from ._signals import FURTHER, INERTIA, SIGNALS, UNEXPLAINED, delayed, parameter_symbol
 from ._state import State
 
-#: what an effect's own file may need: the names above stand in files of their own
+#: what an effect's file may need: the names above stand in separate files
 __all__ = [
     "ACTUATION_ORDER",
     "CONTACT_ROLES",
@@ -69,7 +69,7 @@ class Effect:
 
     law(now, p) returns, by role:
         force: the force that the effect adds
-        structure: the same, with the interaction force in it, which acts on a tip of its own
+        structure: the same, with the interaction force in it, which acts on a separate tip
         friction_level, tip_level: a share of the friction level, of the body or of the tip
         friction_factor: a factor of the levels that the effect needs
         friction_speed: the speed that the friction level follows
@@ -80,12 +80,12 @@ class Effect:
     block: "" for an effect of a body; else the block it is for, such as "hand" or "environment":
         a diagnosis does not try it
     energy: what it does with energy, together with the effects that it needs, for all parameters
-        within their bounds. "stores": gives all of it back on a closed path; "dissipates": never
-        gives back more than it took; "supplies": may give more, or nothing is known. Claims of
+        within their bounds. "stores": returns all of it on a closed path; "dissipates": never
+        returns more than it took; "supplies": may return more, or nothing is known. Claims of
         passivity rest on it
     linear: declares that the law is linear in the motion (or in the command), so that the LTI form
     is that law at (position, velocity, acceleration) = (1, s, s^2); False: the LTI form leaves the
-    effect out, and says so. It is never found by differentiating sgn.
+    effect out, and says so. It never comes from differentiating sgn.
     absent: parameter values at which the effect is not there at all.
     canonical: of parameter values that mean the same, those to report.
     order: order(p, body), of parts that may change places, the same law with its parts in the order
@@ -95,7 +95,7 @@ class Effect:
     needs: effects that the model must have for this one to mean anything; where a body has one of a
         role at most, another of that role will do.
     counts_as: effects that it takes the place of for those that need them, where their laws hold
-        none of these effects' own parameters
+        none of these effects' parameters
     always: what holds for any values of its parameters, such as "even in velocity"
     elsewhere: an axis that the law does not hold on ("prismatic" or "revolute") -> the effect that
         says the same there
@@ -172,7 +172,7 @@ class Effect:
         return phase(self)
 
     def parameters_of_others(self) -> frozenset[str]:
-        """Names of the needed effects whose own parameters its laws hold."""
+        """Names of the needed effects whose parameters its laws hold."""
         laws = (self.expression(), *self.rates().values())
         ours = set(self.symbols().values()) | set(self.state_symbols().values())
         symbols = {s.name for law in laws for s in law.free_symbols - ours}

@@ -41,7 +41,7 @@ def softest_first(p: Mapping[str, float], body: Mapping[str, float]) -> dict[str
 
 
 def elements_slip(p: Any, facts: RecordFacts) -> str | None:
-    """Whether elements slip both ways within the travel, and give by more than is read."""
+    """Whether elements slip both ways within the travel, and deflect by more than is read."""
     slips = {i: getattr(p, f"level_{i}") for i in MORE}
     slips[1] = (level := facts.body["coulomb.level"]) - sum(slips.values())
     ways = {i: slips[i] / getattr(p, f"stiffness_{i}") for i in slips if slips[i] > 0.0}

@@ -1,7 +1,7 @@
-"""What records say of a body: what an effect may hold its own parameters against.
+"""What records say of a body: what an effect may hold its parameters against.
 
 An effect deserves its name only where its parameters mean what the name says: something periodic
-must be seen to repeat, a bristle must give way within the travel. Each effect says so in its own
+must be seen to repeat, a bristle must deflect within the travel. Each effect says so in its
 file, as `plausible(p, facts)`: None, or one sentence that says what the values stand for instead.
 """
 
@@ -98,16 +98,16 @@ class RecordFacts:
 
 
 def slip_is_seen(subject: str, ways: Sequence[float], facts: RecordFacts) -> str | None:
-    """Whether one of the ways that something gives before it slips lies within what is read.
+    """Whether one of the deflections before something slips can be read.
 
-    subject: what gives by the longest of them
+    subject: what has the longest of them
     """
     if facts.stroke == float("inf"):
         return (
             f"{subject} gives once where the motion never turns round: no loop is seen, and it "
             "stands for how the friction of a record begins"
         )
-    # what gives by less than half a step is never read
+    # a deflection of less than half a step is never read
     if any(0.5 * facts.step < way < facts.travel for way in ways):
         return None
     if max(ways, default=0.0) >= facts.travel:
@@ -144,7 +144,10 @@ def follows_gravity(level: Callable[[Array], Array], facts: RecordFacts) -> str 
 
 
 def repeats_within_travel(p: Any, facts: RecordFacts) -> str | None:
-    """Why a period does not show within the travel, as a sentence; None where it repeats there."""
+    """Why a period does not show within the travel, as a sentence; None where it repeats there.
+
+    p: parameters with `period` (m or rad);  for an effect's `plausible`
+    """
     if facts.travel >= REPEATS * abs(p.period):
         return None
     return (

@@ -31,7 +31,10 @@ def is_linear(laws: Iterable[sp.Expr], signals: Iterable[sp.Symbol]) -> bool:
 
 
 def acts_linearly(effect: Effect) -> bool:
-    """Whether laws and rates are linear in the body's motion, its command and the states."""
+    """Whether laws and rates are linear in the body's motion, its command and the states.
+
+    With parameters held. An effect file may state `linear` only where this holds.
+    """
     driving = [SIGNALS[n] for n in _DRIVING]
     driving += [SIGNALS["interaction_force"]] * (effect.role == "structure")
     laws = (effect.expression(), *effect.rates().values())

@@ -24,9 +24,9 @@ def positive_amplitude(values: Mapping[str, float]) -> dict[str, float]:
 @checked
 @dataclass(frozen=True)
 class FitSearch:
-    """How a fit searches a parameter whose value nobody gives.
+    """How a fit searches a parameter whose value nobody states.
 
-    starts: where the search begins, as multiples of the record's own scale
+    starts: where the search begins, as multiples of the record's scale
     scale: "": the scale of the parameter's quantity; "duration": of the record; "travel": the whole
         travel; "resonance_stiffness" and the like: of a resonance within the bandwidth
     within: upper bound in that scale, where a larger value would mean something else

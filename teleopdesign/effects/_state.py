@@ -19,7 +19,7 @@ HELD = 1.001
 class State:
     """A hidden state: its quantity and rate law(now, p), where `now` also carries the states.
 
-    start: the signal that it equals when a record starts; "": it starts settled, or at rest
+    start: the signal that it equals when a record starts; "": it starts in steady state, or at rest
     correction: correction(now, p), the rate by which the force that is left unexplained, also in
         `now`, leads the state back along a measured motion; None: it runs free
     dry: dry(now, p), the largest rate by which dry friction slows the state down; at zero it holds

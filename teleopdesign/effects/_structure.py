@@ -7,7 +7,7 @@ An effect states coupling(now, p), the force between the sides, once: on `now.st
 less that of the tip, and `now.stretch_rate`. From it follow the law of one body with a hidden tip,
 the contact that the tip has, and the joint of two bodies (`realise/tips.py`).
 
-The inertia m of the body counts both sides, as what moves together where nothing gives: a stiff
+The inertia m of the body counts both sides, as what moves together where nothing deflects: a stiff
 coupling is the rigid body.
 """
 

@@ -2,8 +2,8 @@
 
     tau dw/dt = command - w,   acting force = w
 
-A current loop, a motor's inductance. Told from `actuation_delay` by commands that hold content
-above 1/tau: a lag also weakens them.
+A current loop, a motor's inductance. Distinguished from `actuation_delay` by commands that hold
+content above 1/tau: a lag also weakens them.
 """
 
 from ._effect import Effect, FitSearch, Parameter, State

@@ -2,7 +2,7 @@
 
     F = m_+ a
 
-A tool, a gripper, a gear's reflected rotor. Where the model's own inertia is free, that takes it up
+A tool, a gripper, a gear's reflected rotor. Where the model's inertia is free, that takes it up
 and nothing is missing; without an exciting interaction force it equals an actuator gain.
 """
 

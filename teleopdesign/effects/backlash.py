@@ -3,8 +3,8 @@
     F = K (d -+ g/2) + C (v - v_t) outside the gap, abs(d) > g/2, else 0;   d = x - x_t
     m_t dv_t/dt = F + interaction force;   the body's inertia counts both sides
 
-Gears and worn joints. Told from `transmission_compliance` by small motion, in which the tip does
-not follow at all.
+Gears and worn joints. Distinguished from `transmission_compliance` by small motion, in which the
+tip does not follow at all.
 
 When the two meet next depends on the last time by more than sensors tell: along a measured motion
 the tip is led back to its course (`_structure.py`).

@@ -3,8 +3,8 @@
     F = K d_0 (d / d_0)^n while the penetration d = x - x_c > 0
 
 K is the secant stiffness at the depth d_0, which is chosen, not estimated; at d_0 = 1 m its number
-is that of K in F = K d^n. n = 1.5 for a sphere on a flat (Hertz), more for soft tissue. Told from a
-stiffer linear contact only if the depth varies widely.
+is that of K in F = K d^n. n = 1.5 for a sphere on a flat (Hertz), more for soft tissue.
+Distinguished from a stiffer linear contact only if the depth varies widely.
 """
 
 from ._effect import Effect, FitSearch, Parameter

@@ -3,7 +3,7 @@
     level = F_C,   F = F_C sgn(v);   stuck: whatever balances, up to F_C
 
 Holds for dry contacts that slide steadily. Near rest a record shows `presliding` instead where the
-position resolves the give of the contact.
+position resolves the deflection of the contact.
 """
 
 from ._effect import Effect, Parameter

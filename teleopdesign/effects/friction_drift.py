@@ -3,7 +3,7 @@
     level = F_C (1 - d (1 - exp(-t / tau))),   t from the start of each record, which starts cold
 
 Grease and seals. What other effects add to the level stays as it is. Records shorter than tau show
-only a trend, from which d and tau cannot both be told.
+only a trend, from which d and tau cannot both be known.
 """
 
 from sympy import exp

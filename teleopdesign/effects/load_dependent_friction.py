@@ -5,10 +5,11 @@
 Gears, screws and capstans press harder on their contacts the more they transmit. The acting force
 is what they carry as the actuator feels it: gravity, inertia and the hand on the far side included.
 d tells an actuator that drives (d > 0: more friction) from one that is driven back; e is the extra
-at rest of contacts that slide better as speed grows. Told from `coulomb` by commands that vary at
-equal speed, d by loads both with and against the motion. From mu = 1 on no acting force moves the
-body. mu d takes u as an `actuator_gain` does, and e is told from `stribeck` by loads alone: so d, e
-and v_S are estimated where a model states them, and a search leaves them at zero.
+at rest of contacts that slide better as speed grows. Distinguished from `coulomb` by commands that
+vary at equal speed, d by loads both with and against the motion. From mu = 1 on no acting force
+moves the body. mu d takes u as an `actuator_gain` does, and e is distinguished from `stribeck` by
+loads
+alone: so d, e and v_S are estimated where a model states them, and a search leaves them at zero.
 """
 
 from sympy import exp, sign

@@ -4,7 +4,7 @@
 
 Holds for lubricated contacts in steady sliding. A record tells it from `presliding` only if it
 crosses v_S slowly, both ways, and travels many bristle lengths between reversals. What is extra at
-rest is told where a speed far below v_S was seen, or a force of that size.
+rest is known where a speed far below v_S was seen, or a force of that size.
 """
 
 from types import SimpleNamespace

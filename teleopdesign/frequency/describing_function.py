@@ -32,7 +32,7 @@ def describing_function(
     """Impedance relative to position of a body, or of a controller driven by the motion, N/m.
 
     of: a body: the force that opposes its motion, inertia and all effects except actuation, at rest
-        its command; a controller: the force that it gives
+        its command; a controller: its force
     amplitude: of the position, m or rad;  frequency: Hz; arrays are broadcast
     returns: complex, spring real, friction and damper +j, mass negative; of the shape of the grid
     raises ModelError: a law of the hand's force or of time, or states that never repeat

@@ -17,7 +17,10 @@ Amplitude = float | Sequence[float] | np.ndarray | Callable[[np.ndarray], np.nda
 
 
 def falling(amplitude: float, *, exponent: float = 0.8) -> Callable[[np.ndarray], np.ndarray]:
-    """The profile amplitude * (f / 1 Hz)^-exponent; 0.8 is that of figure 7 of the paper."""
+    """The profile amplitude * (f / 1 Hz)^-exponent; 0.8 is that of figure 7 of the paper.
+
+    amplitude: at 1 Hz, m or rad;  returns: frequency (n,), Hz -> amplitude (n,), m or rad
+    """
     return lambda frequency: amplitude * np.asarray(frequency, dtype=float) ** -exponent
 
 
@@ -31,7 +34,7 @@ class Grid:
 
     @staticmethod
     def of(amplitude: Amplitude, frequency: float | Sequence[float] | np.ndarray) -> Grid:
-        """From what a user gives; raises ModelError: not positive numbers."""
+        """From a user's numbers; raises ModelError: not positive numbers."""
         f = _positive("frequency", frequency)
         if callable(amplitude):
             return Grid(f, _positive("amplitude", amplitude(f)), True)

@@ -64,7 +64,7 @@ class ImpedanceMap(ByValue):
         """How far from linear: largest less smallest size (dB) and phase (deg) over amplitude.
 
         0 for a linear system;  over `case` and `frequency`
-        raises ModelError: amplitude follows a profile, so that it cannot be told from frequency
+        raises ModelError: amplitude follows a profile, and thereby frequency
         """
         import xarray
 

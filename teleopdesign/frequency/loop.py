@@ -19,7 +19,7 @@ from ..realise.tips import linear_tips
 if TYPE_CHECKING:
     import control
 
-#: order of the Pade approximation by which the loop without further delay is found stable
+#: order of the Pade approximation by which the loop without further delay is shown stable
 _PADE = 8
 #: rad/s; crossings are sought between these on a grid of so many points, then refined
 _SLOWEST, _FASTEST, _POINTS = 1e-4, 1e7, 20001

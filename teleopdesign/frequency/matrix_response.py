@@ -62,7 +62,7 @@ def matrix_response(
 ) -> MatrixResponse:
     """Response of each output to each input, all others zero.
 
-    frequency: (n,), Hz;  given: motions that are prescribed, in place of the forces that drive
+    frequency: (n,), Hz;  given: prescribed motions, in place of the forces that drive
     them; the tip's of a body with a compliant transmission
     speed: at which smoothed friction and schedules are frozen, m/s or rad/s
     raises ModelError: a signal is not there, an input is not free, a loop has no solution

@@ -21,7 +21,7 @@ from ..simulate.sampling import SAMPLED
 from .cases import cases_of
 from .grid import Amplitude, Grid
 from .impedance_map import ImpedanceMap
-from .sinusoid import GIVE, Sinusoid, steady_harmonics
+from .sinusoid import BRISTLE_SHARE, Sinusoid, steady_harmonics
 
 
 def measured_impedance(
@@ -33,7 +33,7 @@ def measured_impedance(
     motion: str = "L",
     force: str = "E",
     computer: Sampling | Literal["continuous"] = SAMPLED,
-    give: float = GIVE,
+    give: float = BRISTLE_SHARE,
 ) -> ImpedanceMap:
     """Impedance Zhat_M that a hand feels, by simulation, over frequency and amplitude.
 
@@ -44,8 +44,8 @@ def measured_impedance(
     motion, force: signals whose first harmonics are divided; a motion that is prescribed is that of
         the tip where the body has a compliant transmission or backlash
     computer: how controllers are sampled, or "continuous"
-    give: share of the amplitude by which ideal Coulomb friction gives before it slides; sqrt(give)
-        sets the error (1e-5: 0.2 degrees of its phase), 1/sqrt(give) the time
+    give: share of the amplitude by which ideal Coulomb friction deflects before it slides;
+        sqrt(give) sets the error (1e-5: 0.2 degrees of its phase), 1/sqrt(give) the time
     raises ModelError: a frequency or amplitude that is not positive, a signal that is not there, or
         a loop that is unstable
     """

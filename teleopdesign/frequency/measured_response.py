@@ -13,7 +13,7 @@ from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
 from .cases import cases_of
 from .response import FrequencyResponse, labelled, ratio_unit
-from .sinusoid import GIVE, Sinusoid, steady_harmonics
+from .sinusoid import BRISTLE_SHARE, Sinusoid, steady_harmonics
 
 if TYPE_CHECKING:
     import control
@@ -63,7 +63,7 @@ def simulated_response(
     output: str = "R_M",
     input: str = "R_D",
     computer: Sampling | Literal["continuous"] = SAMPLED,
-    give: float = GIVE,
+    give: float = BRISTLE_SHARE,
 ) -> FrequencyResponse:
     """First harmonic of `output` over that of `input`, simulated with a sinusoid of that amplitude.
 

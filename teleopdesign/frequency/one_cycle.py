@@ -1,6 +1,6 @@
 """A law along one cycle of a sinusoidal motion, its hidden states such that they repeat.
 
-Rates that are affine in their own state, A z + B, are stepped exactly over a step in which the rest
+Rates that are affine in their state, A z + B, are stepped exactly over a step in which the rest
 is held at its middle (second order); the start from which a cycle closes follows from the decay of
 each state over it.
 """

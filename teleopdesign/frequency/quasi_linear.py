@@ -27,8 +27,8 @@ from .describing_function import describing_function, driven_gain
 from .grid import Amplitude, Grid
 from .impedance_map import ImpedanceMap
 
-#: the phase of what drives a controller is found by iteration: relative change at its end
-_FOUND, _MOST = 1e-9, 100
+#: the phase of what drives a controller follows from iteration: relative change at its end
+_CONVERGED, _MOST = 1e-9, 100
 
 
 def quasi_linear_impedance(
@@ -122,8 +122,8 @@ class _Form:
             before = dict(values)
             for symbol, gain, drive in gains:
                 size = _number(drive, values) * amplitude
-                values[symbol] = gain(size) if size else 0j  # nothing drives it: it gives nothing
-            if all(cmath.isclose(values[k], before[k], rel_tol=_FOUND) for k in values):
+                values[symbol] = gain(size) if size else 0j  # nothing drives it: no output
+            if all(cmath.isclose(values[k], before[k], rel_tol=_CONVERGED) for k in values):
                 return _number(self.force, values)
         raise ModelError(f"{self.diagram.name}: the gains of its controllers settle on no phase")
 

@@ -111,8 +111,8 @@ def bode(
     """Frequency response from one signal to another, for one diagram or several cases.
 
     A controller in discrete time counts as it samples and holds, up to half its sampling rate.
-    given: motions that are prescribed; output "E", input and given "L" is the apparent mechanism
-        impedance Zhat_M. Of a body with a compliant transmission it is the tip's that is given
+    given: prescribed motions; output "E", input and given "L" is the apparent mechanism
+        impedance Zhat_M. Of a body with a compliant transmission the tip's motion is prescribed
     frequency: Hz, default 0.1 to 1000;  speed: where smoothed friction and schedules are frozen
     """
     cases = cases_of(diagrams)

@@ -14,9 +14,9 @@ from ..simulate import Sampling, Setup, prepare, sine
 from ..simulate.sampling import SAMPLED
 from .lock_in import Harmonic, lock_in
 
-#: share of the amplitude by which ideal Coulomb friction gives before it slides. What it leaves of
-#: a spring, 1.25 sqrt(share) of the friction (P18), turns the phase of friction by 0.2 degrees
-GIVE = 1e-5
+#: share of the amplitude by which ideal Coulomb friction deflects before it slides. What it leaves
+#: of a spring, 1.25 sqrt(share) of the friction (P18), turns the phase of friction by 0.2 degrees
+BRISTLE_SHARE = 1e-5
 #: inner steps in which such a bristle is reloaded after a reversal: one more than the kernel needs
 _RELOAD_STEPS = 11
 #: at least that many inner steps a cycle, also where nothing slides
@@ -31,8 +31,8 @@ class Sinusoid:
 
     drive: a motion (prescribed), or a signal from outside;  amplitude: its unit;  frequency: Hz
     computer: how controllers are sampled, see `simulate`
-    give: share of the amplitude (of the motion) by which ideal Coulomb friction gives
-    tolerance: difference of cycles, relative, at which a first harmonic counts as settled; what a
+    give: share of the amplitude (of the motion) by which ideal Coulomb friction deflects
+    tolerance: difference of cycles, relative, at which a first harmonic counts as steady; what a
         transient that loses a quarter over half the run has still to come is three times that
     """
 
@@ -40,7 +40,7 @@ class Sinusoid:
     amplitude: float
     frequency: float
     computer: Sampling | Literal["continuous"] = SAMPLED
-    give: float = GIVE
+    give: float = BRISTLE_SHARE
     tolerance: float = 3e-4
 
 
@@ -118,7 +118,7 @@ def _outside(diagram: Diagram, drive: Sinusoid, rows: int, step: float) -> dict[
 
 
 def _signal(diagram: Diagram, columns: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """A signal at the nodes; sums anew, for the computer's own hold the last sample."""
+    """A signal at the nodes; sums anew, for the computer's hold the last sample."""
     for part in diagram.parts:
         if isinstance(part, Junction) and part.output == name:
             shape = np.zeros_like(next(iter(columns.values())))

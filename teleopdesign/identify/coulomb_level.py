@@ -69,7 +69,7 @@ class Line(ByValue):
 class CoulombLevel(ByValue):
     """Friction over speed, from runs at constant speed.
 
-    runs: all that were found;  speeds: friction at each speed that was run both ways
+    runs: all in the recording;  speeds: friction at each speed that was run both ways
     line: friction over speed: its level is the Coulomb level; None where not two speeds were run
         both ways
     forward, backward: force over speed of the runs that way; their level is that of friction and

@@ -26,7 +26,7 @@ from ..simulate import Sampling, Simulation, simulate
 class LargestStiffness(ByValue):
     """The largest stiffness without oscillation, N/m.
 
-    stiffness: inf where the largest one tried does not oscillate, 0 where the smallest does
+    stiffness: inf where the largest one simulated does not oscillate, 0 where the smallest does
     oscillates: the smallest that was seen to oscillate, inf where none was;
     simulations: their number
     kick: initial speed, m/s;  decay: of the criterion
@@ -67,7 +67,8 @@ def largest_stiffness_without_oscillation(
     """Raise the stiffness of the block C, a `dahl` cancellation, until the loop oscillates.
 
     diagram: a haptic interface with a hand and a Dahl cancellation C
-    smallest, largest: stiffness tried, N/m;  kick: initial speed, m/s;  duration: of each run, s
+    smallest, largest: stiffness simulated, N/m;  kick: initial speed, m/s;  duration: of each run,
+        s
     precision: relative, of the result;  step, give: of the simulation, see `simulate`
     raises ModelError: the diagram has no Dahl cancellation, or the range is empty
     """

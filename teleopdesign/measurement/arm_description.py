@@ -1,4 +1,4 @@
-"""The arm of an experiment as written: [model.arm], from a URDF or with links of its own."""
+"""The arm of an experiment as written: [model.arm], from a URDF or with its links."""
 
 from __future__ import annotations
 

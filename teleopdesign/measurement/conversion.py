@@ -40,7 +40,7 @@ class Conversion:
 
     columns: summed, each times its `scales`;  offset: added to the sum
     factor: from the sum to SI, with sign, gears and constants;  period: of a wrap, in the column's
-    own unit, 0 for none;  delay: s by which the log has the signal late
+    unit, 0 for none;  delay: s by which the log has the signal late
     """
 
     columns: tuple[str, ...]
@@ -227,7 +227,7 @@ def _without_constant(unit: str, kind: str, axis: str, where: str) -> float:
 
 
 def _period(table: Table, unit: str, *, kind: str, axis: str, scales: Sequence[float]) -> float:
-    """Period of a wrap in the column's own unit; 0 where it does not wrap."""
+    """Period of a wrap in the column's unit; 0 where it does not wrap."""
     value = table.content.get("unwrap", False)
     if value is False:
         return 0.0

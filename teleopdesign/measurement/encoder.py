@@ -15,7 +15,7 @@ STEPS_APART = 20
 #: itself, 0.04 for 600 values anywhere
 ON_GRID = 0.9
 #: part of the readings that may be different values where a grid is an encoder's: a body that rests
-#: reads one value over and over; an even motion lies on a grid of its own, each value once
+#: reads one value over and over; an even motion lies on a different grid, each value once
 DIFFERENT = 0.9
 #: values that are looked at
 ENOUGH = 20_000

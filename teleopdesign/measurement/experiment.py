@@ -15,7 +15,7 @@ from .channel import BODY_QUANTITIES, Channel, channels_from, frequency_from, sa
 from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from
 from .doors.bag import is_bag
 from .reading import ReadingStep, reading_table
-from .record import OWN, Record, read_record
+from .record import SEPARATE, Record, read_record
 from .tables import is_log, tables_in
 from .toml_table import Table, described, read_toml
 
@@ -112,7 +112,7 @@ def load_experiment(folder: str | Path) -> Experiment:
     folder: that of experiment.toml (the path of the file itself will do)
     raises ExperimentError: anything missing, unknown, of the wrong type or unit, in one line
     """
-    folder = _found_folder(Path(folder))
+    folder = _folder_of(Path(folder))
     experiment = read_toml(folder / _FILE, f"{folder.name}/{_FILE}")
     experiment.allow(
         ("title", "model", "channels", "comparison", "records", "sample_rate", "guessed")
@@ -147,7 +147,7 @@ def load_experiment(folder: str | Path) -> Experiment:
     )
 
 
-def _found_folder(path: Path) -> Path:
+def _folder_of(path: Path) -> Path:
     try:
         if path.is_file() and (path.parent / _FILE).is_file():
             path = path.parent
@@ -180,10 +180,10 @@ def _found_folder(path: Path) -> Path:
 def _record_entries(
     experiment: Table, folder: Path
 ) -> list[tuple[str, str, frozenset[str], tuple[float, ...] | None]]:
-    """(file, use, what is its own, span) of each [[records]], checked before any file is read."""
+    """(file, use, its offsets, span) of each [[records]], checked before any file is read."""
     entries: list[tuple[str, str, frozenset[str], tuple[float, ...] | None]] = []
     for table in experiment.tables("records"):
-        table.allow(("file", "use", "span", *OWN))
+        table.allow(("file", "use", "span", *SEPARATE))
         file, span = table.text("file"), _span(table)
         _check_path(table, folder, file)
         for other, _, _, other_span in entries:
@@ -194,7 +194,7 @@ def _record_entries(
                 raise ExperimentError(f"{table.where('file')}: {quoted(file)} {what}")
         use = _choice(table, "use", ("fit", "check"))
         separate = {
-            name for name in OWN if _choice(table, name, ("common", "own"), "common") == "own"
+            name for name in SEPARATE if _choice(table, name, ("common", "own"), "common") == "own"
         }
         entries.append((file, use, frozenset(separate), span))
     if not any(use == "fit" for _, use, _, _ in entries):

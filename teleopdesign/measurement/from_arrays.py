@@ -22,7 +22,7 @@ from .spans import cut_to
 from .tables import columns_of
 from .toml_table import Table
 
-#: what a channel may be given as: a column's name, or a table as in [channels]
+#: forms of a channel: a column's name, or a table as in [channels]
 ChannelEntry = str | Mapping[str, Any]
 _WHERE = "experiment"
 
@@ -91,7 +91,7 @@ def experiment(
 
 
 def _spans(spans: Sequence[Sequence[float] | float], use: str) -> list[Sequence[float]]:
-    """Spans as given; two numbers are one span."""
+    """Spans as a tuple; two numbers are one span."""
     numbers = [span for span in spans if isinstance(span, int | float)]
     pairs = [span for span in spans if not isinstance(span, int | float)]
     if len(numbers) == 2 and not pairs:
@@ -198,12 +198,14 @@ def with_first_values(body: BodyDescription, records: Sequence[Record]) -> BodyD
 def channel_table(
     entry: ChannelEntry, key: str, axis: str, log: Log, units: Mapping[str, str]
 ) -> dict[str, Any]:
-    """The table of a channel: as given, or from a column's name with the unit that it says."""
-    if not isinstance(entry, str):
-        return dict(entry)
+    """The table of a channel: as written, or from a column's name with the unit that it says."""
+    table: dict[str, Any] = {"column": entry} if isinstance(entry, str) else dict(entry)
+    column = table.get("column")
+    if "unit" in table or not isinstance(column, str):
+        return table
     quantity = BODY_QUANTITIES[key]
-    unit = units.get(entry) or log.units.get(entry) or unit_in_name(entry, quantity, axis)
-    return {"column": entry, "unit": unit or unit_of(quantity, axis)}
+    unit = units.get(column) or log.units.get(column) or unit_in_name(column, quantity, axis)
+    return {**table, "unit": unit or unit_of(quantity, axis)}
 
 
 def _time_table(entry: ChannelEntry | None, log: Log, units: Mapping[str, str]) -> dict[str, Any]:

@@ -24,7 +24,7 @@ AROUND, WITHIN = 10.0, 1.5
 TONE = 300.0
 #: the same of a position: above, the body moves with that frequency, and the force may well
 MOVES = 30.0
-#: rms of the tone over that of the channel from which it is told: a hundredth changed no answer
+#: rms of the tone over that of the channel from which it is reported: a hundredth changed no answer
 SHARE = 0.02
 #: s: shorter records do not part the tone from what is beside it
 SHORTEST = 2.0

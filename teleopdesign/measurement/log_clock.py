@@ -218,7 +218,7 @@ def _stamps(
             ("shortest", float(steps.min())),
             ("longest", float(steps.max())),
         )
-        effect = _own_stamps(clock, positions)
+        effect = _effect_of_even_stamps(clock, positions)
         return True, [ReadingStep(file, text, rule, effect, topic="sample clock", numbers=numbers)]
     slope, error = stamps_are_true(clock, positions)
     text = f"stamps {100 * clock.jitter / h:.2g} % of a row off an even clock"
@@ -229,7 +229,7 @@ def _stamps(
         rule = (
             f"the position was read at its stamps ({share}): positions interpolated, commands held"
         )
-        effect = _own_stamps(clock, positions)
+        effect = _effect_of_even_stamps(clock, positions)
     else:
         rule = f"an even clock: the position does not follow the stamps ({share})"
         effect = "none"
@@ -239,7 +239,7 @@ def _stamps(
     return stamped, [ReadingStep(file, text, rule, effect, topic="sample clock", numbers=numbers)]
 
 
-def _own_stamps(clock: RecordClock, positions: list[Array]) -> str:
+def _effect_of_even_stamps(clock: RecordClock, positions: list[Array]) -> str:
     """What even stamps would have done to the position."""
     off = clock.stamps - clock.time[clock.places]
     speeds = [

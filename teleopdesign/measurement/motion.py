@@ -18,9 +18,10 @@ from .record import Record
 SMOOTHING = 1.5
 #: a body whose reading stands still longer than this part of a period at the bandwidth may be stuck
 DWELL = 0.25
-#: steps of the reading that a motion must cover to be told from the give of a contact that holds
+#: steps of the reading that a motion must cover to be more than the deflection of a contact that
+#: holds
 TRAVEL = 3
-#: velocities within so many of the errors that readings leave are not told from rest: at slow
+#: velocities within so many of the errors that readings leave count as rest: at slow
 #: motion the steps of an encoder are no white noise, and leave more than that
 SLOW = 4.0
 #: s, shortest stretch that leaves something after the ends are trimmed
@@ -113,9 +114,9 @@ class Motion(ByValue):
 def direction_of(position: Array, change: float, step: float, patience: int) -> NDArray[np.int8]:
     """+1 or -1 where consecutive readings show a direction of motion, else 0.
 
-    A motion is told by changes of the reading that go the same way, no more than `patience` samples
-    apart, over at least `TRAVEL` steps; a shorter one may be the give of a contact that holds.
-    Between motions the body may rest, creep or turn, and nothing is said.
+    A motion shows in changes of the reading that go the same way, no more than `patience` samples
+    apart, over at least `TRAVEL` steps; a shorter one may be the deflection of a contact that
+    holds. Between motions the body may rest, creep or turn, and nothing is said.
 
     change: smallest change of a reading that counts;  step: what one reading leaves open
     """
@@ -178,7 +179,7 @@ def motion_of(
     smoothing = s.lowpass(min(SMOOTHING * bandwidth, 0.45 / sample_time), order=8)
     transformed = s.transform(position) * smoothing
     noise = reading_noise(position)
-    # rounding to a step looks like noise of 0.29 steps: more than that is noise of its own
+    # rounding to a step looks like noise of 0.29 steps: more than that is real noise
     step, reading = resolution or reading_step(position), position
     if noise > 0.6 * step:
         step = max(step, 4.0 * noise)
@@ -230,7 +231,7 @@ def without_mains(record: Record, name: str) -> Array:
     return clean
 
 
-#: channels of a body that a law may use besides those of its own motion
+#: channels of a body that a law may use besides those of its motion
 FURTHER = ("temperature", "other_position")
 
 

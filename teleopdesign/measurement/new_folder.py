@@ -37,8 +37,8 @@ def make_folder(
 ) -> Path:
     """Copy the logs into a folder and write experiment.toml beside them.
 
-    One log is cut into a fit and a check record, at `spans` (s from its first row) where they are
-    given; of several the last is the check record.
+    One log is cut into a fit and a check record, at `spans` (s from its first row) if any; of
+    several the last is the check record.
     raises ExperimentError: the folder holds an experiment already, or cannot be written; spans that
         overlap, lie outside of the log or belong to several logs
     """

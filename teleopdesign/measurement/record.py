@@ -20,8 +20,8 @@ from .tables import LogColumns, read_columns
 
 #: the end of the name of a record that is a part of a log: "log.csv 0-14.4 s"
 _SPAN = re.compile(r" [-+.\de]+-[-+.\de]+ s$")
-#: what a record may have of its own: "own" at these keys of [[records]]
-OWN = ("position_zero", "bias", "friction_level")
+#: what a record need not share with others: "own" at these keys of [[records]]
+SEPARATE = ("position_zero", "bias", "friction_level")
 
 
 @final
@@ -94,7 +94,7 @@ def read_record(
 
 
 def log_name(file: str) -> str:
-    """The name of the log that a record was cut from; of a record that is a whole log, its own."""
+    """The name of the log that a record was cut from; of an uncut record its name."""
     return _SPAN.sub("", file)
 
 

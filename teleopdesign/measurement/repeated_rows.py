@@ -30,7 +30,7 @@ SHOWN, TURNS = 20, 0.4
 STEPS = 3.0
 #: samples to either side over which a usual change is taken
 NEAR = 10
-#: changes on leaving a hold, in usual changes before it, that give it away
+#: changes on leaving a hold, in usual changes before it, that reveal it
 LEAP = 5.0
 #: samples that a hold must last to be called stuck, and may be a rest: shorter ones are repeats
 LASTING = 10

@@ -51,16 +51,16 @@ def on_grid(
 
 
 def placed(
-    values: Array, at: Array, grid: Array, rule: Rule, *, step: float, own_clock: bool = False
+    values: Array, at: Array, grid: Array, rule: Rule, *, step: float, slower_clock: bool = False
 ) -> Array:
     """Values (m,) at ascending instants (m,) by their rule at others (n,), both in samples.
 
-    own_clock: a slower signal, whose rows are not lost where they are more than a sample apart
+    slower_clock: a slower signal, whose rows are not lost where they are more than a sample apart
     """
     if len(at) == len(grid) and np.array_equal(at, grid):
         return values
     if rule == "held":
-        return _held(*((values, at) if own_clock else _filled(values, at)), grid)
+        return _held(*((values, at) if slower_clock else _filled(values, at)), grid)
     if rule == "position":
         return _position(values, at, grid, step)
     return np.interp(grid, at, values)
@@ -69,7 +69,7 @@ def placed(
 def command_phase(values: Array, clock: RecordClock) -> float | None:
     """Phase of the even clock on which a command changes, in samples; None: it follows the rows.
 
-    A log may read the command of a controller at instants of its own. Then two rows between the
+    A log may read the command of a controller at other instants. Then two rows between the
     same two changes say the same, and some commands are in no row. The phase is the one for which
     rows say the same exactly where they lie between the same two changes.
     values: (m,) of the clock's rows, whose stamps are true
@@ -117,7 +117,7 @@ def commands_on_clock(values: Array, clock: RecordClock, phase: float) -> tuple[
 def _filled(values: Array, at: Array) -> tuple[Array, Array]:
     """Held values with the line between rows where rows are lost.
 
-    A row that is lost had a command of its own: the line between its neighbours errs by half of
+    A lost row had a different command: the line between its neighbours errs by half of
     what the older one would, held on.
     """
     steps = np.rint(np.diff(at)).astype(np.intp)

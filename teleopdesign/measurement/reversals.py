@@ -12,10 +12,10 @@ from .filtering import Array
 
 @dataclass(frozen=True)
 class SinceReversal:
-    """Per sample (n,); zero, and `known` false, before the first motion that can be told.
+    """Per sample (n,); zero, and `known` false, before the first sure motion.
 
     time: s since the body set off in its present direction;  travel: path since then (SI)
-    rested: s for which no motion could be told before it set off
+    rested: s without sure motion before it set off
     """
 
     time: Array
@@ -29,8 +29,8 @@ def since_reversal(
 ) -> SinceReversal:
     """Look back from each sample to where the present motion began.
 
-    direction: +1, -1, or 0 where no motion can be told;  position: (n,)
-    rest: s without a told motion after which the same direction counts as a new start
+    direction: +1, -1, or 0 where no motion is sure;  position: (n,)
+    rest: s without sure motion after which the same direction counts as a new start
     """
     n = len(direction)
     moving = np.flatnonzero(direction)
@@ -56,7 +56,7 @@ def since_reversal(
 def near_reversals(direction: NDArray[np.int8], *, within: int) -> NDArray[np.bool_]:
     """The samples at most so many before or after one where the motion sets off the other way.
 
-    direction: +1, -1, or 0 where no motion can be told
+    direction: +1, -1, or 0 where no motion is sure
     """
     moving = np.flatnonzero(direction)
     turned = moving[1:][np.diff(direction[moving].astype(int)) != 0]

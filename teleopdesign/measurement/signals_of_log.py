@@ -64,13 +64,13 @@ def signals_of_log(
             signals[key] = _on_grid(values, channel, conversion, clock)
             continue
         signals[key], unseen = commands_on_clock(values, clock.clock, phase)
-        steps.append(_on_own_clock(values, clock, phase, unseen, file, name))
+        steps.append(_on_signal_clock(values, clock, phase, unseen, file, name))
     if clock.clock.lost:
         steps.append(_lost(columns, channels, conversions, clock, file))
     return signals, steps
 
 
-def _on_own_clock(
+def _on_signal_clock(
     values: Array, clock: LogClock, phase: float, unseen: float, file: str, name: str
 ) -> ReadingStep:
     """What is said of a command that changes on an even clock while rows are read at others."""
@@ -136,7 +136,7 @@ def _of_another_clock(
     file: str,
     name: str,
 ) -> tuple[Array, ReadingStep]:
-    """A channel with stamps of its own, as each topic of a bag has them."""
+    """A channel with separate stamps, as each topic of a bag has them."""
     stamps = columns.stamps[conversion.columns[0]] - conversion.delay
     values = conversion.signal({c: columns.values[c] for c in conversion.columns})
     fine = np.isfinite(values) & np.isfinite(stamps)
@@ -154,7 +154,7 @@ def _of_another_clock(
                 np.arange(s.stop - s.start, dtype=np.float64),
                 rule,
                 step=step,
-                own_clock=True,
+                slower_clock=True,
             )
             for s in clock.clock.segments
         ]
@@ -172,7 +172,7 @@ def _lost(
     clock: LogClock,
     file: str,
 ) -> ReadingStep:
-    """Lost rows: how many, how they are filled, and by how much that errs where it can be tried."""
+    """Lost rows: how many, how they are filled, and the error of that where it can be tested."""
     lost, rows = clock.clock.lost, clock.clock.rows
     part = lost / len(clock.clock.time)
     error = force = 0.0

@@ -56,8 +56,8 @@ EXPERIMENT = "experiment.toml"
 class LogColumns:
     """Columns of one log as numbers, NaN where a cell holds none.
 
-    values: column -> (n,);  stamps: of columns with a clock of their own, s, shape as the column
-    notes: what was found about the file
+        values: column -> (n,);  stamps: of columns with a separate clock, s, shape as the column
+    notes: remarks on the file
     """
 
     values: Mapping[str, Array]
@@ -65,7 +65,7 @@ class LogColumns:
     notes: tuple[str, ...] = ()
 
     def steps(self, file: str) -> tuple[ReadingStep, ...]:
-        """What was found about the file, as steps of reading it."""
+        """Remarks on the file, as steps of reading it."""
         return tuple(ReadingStep(file, note, "read accordingly", "none") for note in self.notes)
 
 
@@ -149,7 +149,7 @@ def columns_of(log: Log, file: str, wanted: Wanted) -> LogColumns:
 
 
 def require_columns(columns: Iterable[str], file: str, wanted: Wanted) -> None:
-    """Raise an ExperimentError for the first wanted column that is not among those found."""
+    """Raise an ExperimentError for the first wanted column that is not in the log."""
     columns = list(columns)
     for column, channel in wanted.items():
         same = [name for name in columns if bare_column(name) == column]

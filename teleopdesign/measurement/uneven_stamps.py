@@ -139,7 +139,7 @@ def _grid_of(
 
 
 def _off_clock(stamps: Array, time: Array, stretches: Sequence[slice]) -> Array:
-    """Stamps less the even time, each stretch about its own mean: its clock may have been set."""
+    """Stamps less the even time, each stretch about its mean: its clock may have been set."""
     off = stamps - time
     for stretch in stretches:
         off[stretch] -= off[stretch].mean()

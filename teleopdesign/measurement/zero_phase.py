@@ -1,7 +1,7 @@
 """The comparison's low-pass in time: Butterworth of 4th order, run forward and backward, compiled.
 
 Many signals at once, side by side in memory, so that the processor filters them together. The
-record is continued oddly at both ends and the filter starts settled there.
+record is continued oddly at both ends and the filter starts in steady state there.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .filtering import CONTINUED, Array
 
 @lru_cache(maxsize=64)
 def sections(cutoff: float, sample_time: float) -> tuple[Array, Array]:
-    """Second-order sections (2, 6) of the one-way filter and their settled states (2, 2).
+    """Second-order sections (2, 6) of the one-way filter and their steady states (2, 2).
 
     cutoff: Hz, -3 dB of the one-way filter
     """

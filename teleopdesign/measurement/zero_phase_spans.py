@@ -1,6 +1,6 @@
 """The comparison's low-pass of signals that are zero but for a few rows: exact, and faster.
 
-What friction takes up changes only where the motion is not told. Between such rows the filter
+What friction takes up changes only where the motion is not sure. Between such rows the filter
 swings freely: from one span of them to the next its states follow powers of one matrix, and what
 it puts out on the way reaches the way back by another. Both are put together from those of one,
 two, four ... rows. Nothing is left out.
@@ -135,7 +135,7 @@ def _cross(rows: int, step: Array, swing: Array, free: Array, back: Array) -> No
 def between(spans: NDArray[np.intp], free: Array, back: Array) -> tuple[Array, Array]:
     """Both matrices of `crossings` from each span to the next, (k, 4, 4); zeros before the first.
 
-    free, back: as `crossings` gives them
+    free, back: from `crossings`
     """
     steps, swings = np.zeros((len(spans), 4, 4)), np.zeros((len(spans), 4, 4))
     for c in range(1, len(spans)):
@@ -154,7 +154,7 @@ def filter_spans(
 
     extended: (m + n + m, signals); afterwards its rows m + k hold row k of the filtered signals
         where it is in a span, anything elsewhere
-    filters: what `sections` gives, and then `between`
+    filters: from `sections`, and then `between`
     """
     n, r = y.shape
     sos, steady_state, steps, swings = filters

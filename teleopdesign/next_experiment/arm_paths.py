@@ -91,7 +91,7 @@ def propose_paths(
     duration: s, of the reference: whole periods of at most `PERIOD`;  seed: of the random paths
     limits: joint -> limits; default: those that its records have shown. The force is held to them
         by the links of the diagnosis, and by Coulomb and viscous friction
-    raises ExperimentError: no path within the limits was found
+    raises ExperimentError: no path keeps within the limits
     """
     experiment, prepared = diagnosis.experiment, diagnosis.prepared
     assert experiment.arm is not None

@@ -1,4 +1,4 @@
-"""The motions that are tried: what an experimenter would ask a servo for, within limits.
+"""The candidate motions: what an experimenter would ask a servo for, within limits.
 
 Each part starts and ends at rest in the middle of the stroke, so that parts follow one another.
 """
@@ -53,7 +53,7 @@ class Setting:
 
 
 def family(setting: Setting) -> tuple[PathPart, ...]:
-    """Every part that is tried."""
+    """Every part that is evaluated."""
     makers = (
         _sums_of_sines,
         _runs,

@@ -45,7 +45,7 @@ class FollowedPath:
 
 
 def servo_of(model: Model, stretches: Sequence[Stretch], body: str) -> Servo:
-    """The servo that the records of a body show, given a model of its friction.
+    """The servo that the records of a body show, with a model of its friction.
 
     A reference that turns leaves with t^2, and a spring-like force with it: the force then changes
     fastest at the end, at twice its mean rate.

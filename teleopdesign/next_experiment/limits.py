@@ -1,6 +1,6 @@
 """Limits within which a motion is known to be safe: those that the records have shown.
 
-Nothing further out is proposed unless the user says so (`Limits` of one's own).
+Nothing further out is proposed unless the user says so (with other `Limits`).
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class Limits:
 def shown_limits(prepared: Prepared) -> dict[str, Limits]:
     """Body -> limits of a motion that the records of this body have shown to be safe.
 
-    Records whose encoder zero is their own do not share a stroke with the others: they count for
+    Records with a separate encoder zero do not share a stroke with the others: they count for
     it only where there are no others.
     """
     bodies = dict.fromkeys(s.motion.body for s in prepared.stretches)
@@ -122,7 +122,7 @@ def course_of(limits: Mapping[str, Limits], prepared: Prepared) -> BodyPaths:
 
     half = min(0.5 * (limit.high - limit.low) / abs(gain[b]) for b, limit in limits.items())
     bounds = {name: tightest(name) for name in ("speed", "acceleration", "jerk")}
-    # each body is held to its own force when the force is known
+    # each body is held to its force when the force is known
     return BodyPaths(middle, gain, Limits(-half, half, **bounds, force=limits[first].force))
 
 

@@ -27,8 +27,8 @@ from .synthesis import Bench, PlannedMotion, record_under
 
 #: the two records of a proposed motion
 FIT, CHECK = "next_fit", "next_check"
-#: separation (noise floors) from which a motion decides: a right model's own error lies between one
-#: and about one and a half noise floors, so that less may be the method's own
+#: separation (noise floors) from which a motion decides: a right model's error lies between one
+#: and about one and a half noise floors, so that less may be the method's error
 DECIDES = 1.0
 #: separation below which two models' forces count as the same: a twentieth of what sensors leave
 SAME = 0.05
@@ -38,7 +38,7 @@ SAME = 0.05
 class Separation:
     """Error of one rival along the proposed motion if another is the truth.
 
-    present: error that the present records show beyond the truth's own, in noise floors
+    present: error that the present records show beyond that of the truth, in noise floors
     predicted: the same of the new check record, after all is fitted anew on all fit records
     score: how surely the truth then has the smaller error (standard deviations)
     """
@@ -126,7 +126,7 @@ class Refit:
         return float(np.sqrt(max(self.errors[other] ** 2 - self.errors[truth] ** 2, 0.0)))
 
     def expected(self, *, truth: int, other: int) -> float:
-        """Mean of `separation` over the sensors' errors, for records that the truth would give."""
+        """Mean of `separation` over the sensors' errors, for records of the truth."""
         both = (relative_residuals(self.fits[i].model, self.check) for i in (truth, other))
         apart = [b - a for (a, _), (b, _) in zip(*both, strict=True)]
         return error_of(self.check, apart) / self.floor
@@ -159,7 +159,7 @@ def predict(
     *,
     seed: int,
 ) -> RivalPrediction:
-    """Fit every rival to the present and the new records that rival `number` would give.
+    """Fit every rival to the present and the new records of rival `number`.
 
     present: (truth, other) -> separation on the present records
     """
@@ -208,8 +208,9 @@ def least_determined(determined: Sequence[DeterminedParameter]) -> tuple[Determi
     return tuple(least.values())
 
 
-#: standard error over value from which a parameter counts as left open, and below which as settled
-LEFT_OPEN, SETTLED = 0.25, 0.1
+#: standard error over value from which a parameter counts as left open, and below which as
+#: determined
+LEFT_OPEN, DETERMINED = 0.25, 0.1
 
 
 def _determined_parameters(truth: Rival, fit: Fit) -> tuple[DeterminedParameter, ...]:
@@ -221,6 +222,6 @@ def _determined_parameters(truth: Rival, fit: Fit) -> tuple[DeterminedParameter,
         size = max(float(size), 1e-300)
         before, after = old.stderr / size, new.stderr / size
         # a standard error that is not a number: the records say nothing at all
-        if not before < LEFT_OPEN and after < SETTLED:
+        if not before < LEFT_OPEN and after < DETERMINED:
             rows.append(DeterminedParameter(name, new.value, fit.model.unit(name), before, after))
     return tuple(rows)

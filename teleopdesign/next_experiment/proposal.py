@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 class Reference(ByValue):
     """Positions for the servos of the bodies (SI).
 
-    time: s, (n,), uniform with the record's own sample time;  position: body -> (n,)
+    time: s, (n,), uniform with the record's sample time;  position: body -> (n,)
     parts: what is done, one sentence each, in their order;  repeats: of all of them
     """
 
@@ -48,7 +48,7 @@ class Proposal(ByValue):
     reference: the motion; None where there is nothing to tell apart or nothing could be proposed
     sentence: what to do and what it will show, in words
     separations: one for each truth and each of its rivals;  determined: what becomes determinable
-    remedies: pair of rivals (numbers) that the motion leaves open -> changes that were tried
+    remedies: pair of rivals (numbers) that the motion leaves open -> changes that were simulated
     limits: body -> limits that the motion keeps
     bench, plan: what its records are made with (`in_simulation`)
     """

@@ -30,7 +30,7 @@ LONGEST, SHORTEST = 20.0, 10.0
 #: s of a repeated run, and how many times the longest record, where time itself matters: a warm-up
 #: is seen when a record lasts several of its time constants
 REPEATED, TIMES = 60.0, 3.0
-#: most pairs that remedies are tried for
+#: most pairs that remedies are simulated for
 PAIRS = 2
 
 
@@ -170,7 +170,7 @@ def _reference(parts: Sequence[PathPart], bench: Bench) -> tuple[Reference, list
 def _remedies(
     proposal: Proposal, candidates: SafeParts, setting: Setting, seed: int
 ) -> dict[tuple[int, int], tuple[Remedy, ...]]:
-    """What was tried for the first pairs that the motion does not separate, whichever is true."""
+    """The remedies for the first pairs that the motion does not separate, whichever is true."""
     diagnosis, bench = proposal.diagnosis, proposal.bench
     inertia = {b: body.parameters["inertia"].value for b, body in diagnosis.model.bodies.items()}
     others = {}

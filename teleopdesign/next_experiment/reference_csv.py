@@ -14,7 +14,7 @@ from .proposal import Reference
 
 
 def write_reference(reference: Reference, experiment: Experiment, path: str | Path) -> None:
-    """Write time and position reference of each body; header and units are the experiment's own.
+    """Write time and position reference of each body; header and units are those of the experiment.
 
     Without a time channel the first column is t, in s.
     """

@@ -1,7 +1,7 @@
-"""What would separate two rivals where no motion does: changes of the set-up, each one tried.
+"""What would separate two rivals where no motion does: changes of the set-up, each one simulated.
 
-The separation is found again as if the limits were wider, a sensor finer, a mass of known inertia
-attached, a pushing force measured, or a parameter known from elsewhere.
+The separation is computed again as if the limits were wider, a sensor finer, a mass of known
+inertia attached, a pushing force measured, or a parameter known from elsewhere.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from .synthesis import Bench
 
 #: how much finer a sensor, how much wider the limits are taken
 FINER, WIDER = 10.0, 2.0
-#: attached inertia over the body's own; pushing force over the rms force of the records
+#: attached inertia over that of the body; pushing force over the rms force of the records
 ATTACHED, PUSHING = 0.5, 0.5
 #: noise of the sensor that measures a pushing force, over that force
 SENSOR_NOISE = 0.01
-#: every how many parts of the family a change is tried on: neighbours differ in size alone
+#: every how many parts of the family a change is simulated on: neighbours differ in size alone
 EVERY = 3
 
 
@@ -66,7 +66,7 @@ def remedies(
     *,
     seed: int,
 ) -> tuple[Remedy, ...]:
-    """Every change that was tried for a pair that no motion separates, best first.
+    """Every change that was simulated for a pair that no motion separates, best first.
 
     along, back: sums of the pair over the family, in both orders
     """
@@ -91,7 +91,7 @@ def setups(
     limits: Mapping[str, Limits],
     inertia: Mapping[str, float],
 ) -> Iterator[ChangedSetUp]:
-    """The set-ups that are tried; places: bodies that the rivals differ at."""
+    """The simulated set-ups; places: bodies that the rivals differ at."""
     wide = {b: limit.widened(WIDER) for b, limit in limits.items()}
     course = course_of(wide, prepared)
     yield ChangedSetUp(
@@ -191,7 +191,7 @@ def _with_known(truth: Rival, other: Rival, sums: Sums, names: Sequence[str]) ->
 
 
 def _step(normal: Array, gradient: Array, change: Array, held: Array) -> Array:
-    """Least-squares step with some parameters held at a given change."""
+    """Least-squares step with the change of some parameters held."""
     step = change.copy()
     free = ~held.astype(bool)
     if free.any():

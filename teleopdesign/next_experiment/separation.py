@@ -70,7 +70,7 @@ def sums_of(
 ) -> Sums:
     """The sums for one other model along parts that were made with one truth.
 
-    truth_left: the truth's own residual on the rows that count, per stretch
+    truth_left: the truth's residual on the rows that count, per stretch
     part_of: number of the part of each stretch
     floor: force (rms) that sensors leave on the present records: a motion that hardly moves the
         body has a lower one, which the present records would drown

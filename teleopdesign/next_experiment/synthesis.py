@@ -1,7 +1,8 @@
-"""Records that a device would give if a model were the truth.
+"""Records of a device for which a model were the truth.
 
-The motion is given; the force that the model needs along it, and the command that brings that force
-through the model's actuator, follow. Ideal friction is given a small give, so that it has a value
+The motion is prescribed; the force that the model needs along it, and the command that brings that
+force through the model's actuator, follow. Ideal friction gets a short bristle, so that it has a
+value
 at rest too: the one that the last motion left.
 """
 
@@ -21,12 +22,12 @@ from ..measurement.motion import Motion, motion_of
 from ..measurement.record import Record
 from ..model import Model
 from ..realise.along_motion import residual_along
-from ..realise.simulated import with_give, without_absent
+from ..realise.simulated import with_bristle, without_absent
 from .following import Servo, follow_path, with_ramps
 from .limits import BodyPaths
 
-#: give of an ideal friction, in encoder steps: too small to be read
-GIVE = 0.3
+#: bristle length of an ideal friction, in encoder steps: too small to be read
+BRISTLE_STEPS = 0.3
 #: speed over the largest below which a body counts as at rest: far below one step a sample
 AT_REST = 1e-5
 #: corrections of the command, and the part of the force that may be left by the last
@@ -72,7 +73,7 @@ def command_along(
 
     deflection: of an ideal friction (SI);  stuck: rows in which the servo's force turns round
     """
-    body = with_give(without_absent(body), deflection)
+    body = with_bristle(without_absent(body), deflection)
     command = np.zeros(len(motion.time))
     inverse: NDArray[np.complex128] | None = None
     for _ in range(CORRECTIONS):
@@ -181,7 +182,7 @@ def record_under(
         true = {
             "position": exact.position,
             "actuator_force": command_along(
-                model.body(body), exact, deflection=GIVE * step, stuck=plan.stuck[body]
+                model.body(body), exact, deflection=BRISTLE_STEPS * step, stuck=plan.stuck[body]
             ),
         }
         if f"{body}.interaction_force" in bench.sensors:

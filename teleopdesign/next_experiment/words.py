@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .proposal import Proposal
     from .remedies import Remedy
 
-#: pairs of rivals that are told one by one in the sentence; more are summed up
+#: pairs of rivals that are named one by one in the sentence; more are summed up
 FEW = 2
 
 
@@ -155,7 +155,10 @@ def _percent(part: float) -> str:
 
 
 def proposal_data(proposal: Proposal) -> dict[str, Any]:
-    """The proposal as plain data (SI) for a JSON file."""
+    """The proposal as plain data (SI) for a JSON file.
+
+    Separations in noise floors (1: a right model's error); times in s, bodies by name.
+    """
     reference = proposal.reference
     data = {
         "verdict": proposal.diagnosis.verdict,

@@ -26,7 +26,7 @@ def closed_paths() -> Numbers:
     circle = 0.7 * plane @ np.array([np.cos(angle), np.sin(angle)])
     rate = 0.7 * plane @ np.array([-np.sin(angle), np.cos(angle)]) * 2 * np.pi
 
-    def given_out(matrix: np.ndarray) -> float:
+    def released(matrix: np.ndarray) -> float:
         return float(-np.einsum("it,it->", matrix @ circle, rate) / n)
 
     inner = plane.T @ skew @ plane
@@ -43,8 +43,8 @@ def closed_paths() -> Numbers:
         mapped -= float(np.linalg.solve(to_velocity.T, 2.0 * e) @ velocity) / n
     return Numbers(
         (
-            near("symmetric 6 x 6 over its size, one turn", given_out(spring) / size, 0, 1e-12),
-            near("its skew part, against the formula", given_out(skew), expected, 1e-9, "J"),
+            near("symmetric 6 x 6 over its size, one turn", released(spring) / size, 0, 1e-12),
+            near("its skew part, against the formula", released(skew), expected, 1e-9, "J"),
             near("angles, torques by J^T", mapped, 0.0, 1e-12, "J"),
             Figure("angles, torques as they are: size", abs(plain), low=0.01, unit="J"),
         )

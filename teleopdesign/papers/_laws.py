@@ -1,4 +1,4 @@
-"""Laws of the package on symbols of one's own, for proofs: nothing is typed again here."""
+"""Laws of the package on other symbols, for proofs: nothing is typed again here."""
 
 from __future__ import annotations
 

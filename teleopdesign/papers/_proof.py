@@ -59,7 +59,7 @@ class ProofStep:
     words: str
 
     def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Expressions shown not to be negative, given those in `known`; raises NotProved."""
+        """Expressions shown not to be negative where those in `known` are not; raises NotProved."""
         raise NotImplementedError
 
     def as_text(self) -> str:
@@ -234,7 +234,7 @@ class ProofSteps:
 
 
 def proof(*steps: ProofStep | Iterable[ProofStep], assuming: Iterable[sp.Expr] = ()) -> ProofSteps:
-    """A proof of these steps; several may be given as one iterable."""
+    """A proof of these steps; several may be passed as one iterable."""
     flat: list[ProofStep] = []
     for step in steps:
         flat += [step] if isinstance(step, ProofStep) else list(step)

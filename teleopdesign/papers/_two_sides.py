@@ -14,7 +14,7 @@ FRICTION = 1.0  # N, at the slave
 STIFFNESS = 1000.0  # P, N/m
 SLAVE_DAMPING = 2.0  # N s/m; settles the slave on the coupling spring
 AMPLITUDE, FREQUENCY = 5e-3, 0.1  # of the master: up to 3 mm/s, inertial forces below 1 mN
-GIVE = 1e-5  # m; presliding of what stands for ideal Coulomb friction
+BRISTLE = 1e-5  # m; presliding of what stands for ideal Coulomb friction
 
 
 def two_sides(*, cancelled: float, environment: float = 0.0) -> Diagram:
@@ -28,7 +28,7 @@ def two_sides(*, cancelled: float, environment: float = 0.0) -> Diagram:
     held = Body("prismatic", {"inertia": Value(0.0)})
     cancelled = max(cancelled, 1e-9)  # a level of zero leaves the bristle without a length
     # as soft as the plant's presliding: (sigma_D/sigma_p)^2 = (f_D/f_C)^2 <= f_D/f_C
-    dahl = controller("dahl", {"level": cancelled, "stiffness": cancelled / GIVE})
+    dahl = controller("dahl", {"level": cancelled, "stiffness": cancelled / BRISTLE})
     return teleoperator(
         master,
         slave,
@@ -45,7 +45,7 @@ def slow_cycle(*, cancelled: float, environment: float = 0.0) -> Simulation:
         duration=2 / FREQUENCY,
         motion={"X_m": sine(amplitude=AMPLITUDE, frequency=FREQUENCY)},
         computer="continuous",
-        give=GIVE,
+        give=BRISTLE,
     )
     kept = simulation.data["time"].values >= 1 / FREQUENCY
     return Simulation(simulation.diagram, simulation.data.isel(time=np.flatnonzero(kept)))

@@ -23,7 +23,7 @@ f_D, sigma, f_1, f_2, k, c, A, u = sp.symbols("f_D sigma_D f_1 f_2 k c A u", pos
 U = sigma * A / f_D
 W = 4 * f_D * (A - f_D / sigma * sp.tanh(U))  # of a cycle; shown to be the loop's in `rising_gain`
 SHARE = 1 - sp.tanh(u) / u
-CLAMPED = W - 4 * f_1 * A  # given out a cycle, link stuck: the cable returns what it takes
+CLAMPED = W - 4 * f_1 * A  # released a cycle, link stuck: the cable returns what it takes
 FREE = CLAMPED - 4 * f_2 * (A - f_2 / k)  # link sliding, A > f_2/k
 
 
@@ -101,12 +101,12 @@ def clamped_link() -> ProofSteps:
     """What is necessary where the environment may clamp the link; for a limited stroke, of plain
     cycles: see P56.
     """
-    given_out = CLAMPED.subs(A, u * f_D / sigma)
+    released = CLAMPED.subs(A, u * f_D / sigma)
     return proof(
         rising_gain(),
         Equal(
             "given out a cycle of stroke A, cable energy returns",
-            given_out,
+            released,
             4 * (u * f_D / sigma) * (f_D * SHARE - f_1),
         ),
     )

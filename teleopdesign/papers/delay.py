@@ -18,12 +18,12 @@ late = omega * tau
 FRICTIONLIKE, SPRINGLIKE, TURN = sp.symbols("frictionlike springlike turn", nonnegative=True)
 
 
-def given_out(force: sp.Expr) -> sp.Expr:
+def released(force: sp.Expr) -> sp.Expr:
     """Work of a force(angle) over a cycle of x = A sin(angle)."""
     return sp.integrate(sp.expand(sp.expand_trig(force * A * sp.cos(angle))), (angle, 0, 2 * sp.pi))
 
 
-LATE_FRICTION = given_out(a1 * sp.sin(angle - late) + b1 * sp.cos(angle - late))
+LATE_FRICTION = released(a1 * sp.sin(angle - late) + b1 * sp.cos(angle - late))
 
 
 @shows(
@@ -102,7 +102,7 @@ def late_inertia() -> ProofSteps:
     """Cancelling inertia with any delay gives out energy; a late friction compensator within the
     level of ideal Coulomb friction does not: limit cycles have another source.
     """
-    work = given_out(mass * -A * omega**2 * sp.sin(angle - late))
+    work = released(mass * -A * omega**2 * sp.sin(angle - late))
     less = sp.Symbol("less", nonnegative=True)
     coulomb_work = LATE_FRICTION.subs({a1: 0, b1: 4 * f_D / sp.pi})
     return proof(

@@ -96,7 +96,7 @@ def place_of_the_schedule() -> ProofSteps:
     forms = [c.linear_form("H", s, v) for c in orders]
     error, speed = SIGNALS["input"], SIGNALS["speed"]
     fast = sp.Symbol("fast", positive=True)
-    # the filter has settled at speed v, then the speed jumps: outputs just after the jump
+    # the filter is in steady state at speed v, then the speed jumps: outputs just after the jump
     outputs = []
     for equation in (c.equation("H", SIGNALS) for c in orders):
         (state,) = equation.rates

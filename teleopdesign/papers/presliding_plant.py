@@ -217,13 +217,13 @@ def stiff_compensator() -> ProofSteps:
     """A compensator stiffer than the plant gives out energy in small motion even far below its
     level; a lower sigma_D cures it, a lower f_D makes it worse.
     """
-    given_out = small_cycles(fD, sD) - small_cycles(fC, sP)
+    released = small_cycles(fD, sD) - small_cycles(fC, sP)
     stiffer, share = sp.symbols("stiffer share", positive=True)
     return proof(
-        Equal("per A^3", given_out, -sp.Rational(4, 3) * RATIOS),
+        Equal("per A^3", released, -sp.Rational(4, 3) * RATIOS),
         NotNegative(
             "sigma_D > sigma_p and f_D < f_C",
-            given_out.subs({sD: sP + stiffer, fC: fD + share}),
+            released.subs({sD: sP + stiffer, fC: fD + share}),
             sp.Rational(4, 3)
             * (2 * sP * stiffer * (fD + share) + stiffer**2 * (fD + share) + sP**2 * share)
             / (fD * (fD + share)),
@@ -231,13 +231,13 @@ def stiff_compensator() -> ProofSteps:
         ),
         NotNegative(
             "falls with lower sigma_D",
-            sp.diff(given_out, sD),
+            sp.diff(released, sD),
             sp.Rational(8, 3) * sD / fD,
             strictly=True,
         ),
         NotNegative(
             "rises with lower f_D",
-            -sp.diff(given_out, fD),
+            -sp.diff(released, fD),
             sp.Rational(4, 3) * sD**2 / fD**2,
             strictly=True,
         ),

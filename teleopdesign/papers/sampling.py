@@ -258,11 +258,11 @@ def sampled_coupling() -> ProofSteps:
     spare = sp.Symbol("spare", nonnegative=True)
     losses = (b_m * d_m**2 + b_s * d_s**2) / T
     stored = P * ((e + d_m - d_s) ** 2 - e**2) / 2
-    given_out = -P * e * d_m + P * e * d_s
+    released = -P * e * d_m + P * e * d_s
     swing = d_m - d_s
     # e = -a, a, -a ..., split so that b_m D_m = -b_s D_s: the damper losses are least
     split = {d_m: 2 * a * b_s / (b_m + b_s), d_s: -2 * a * b_m / (b_m + b_s)}
-    cycle = 2 * (given_out.subs(e, -a) - losses).subs(split)
+    cycle = 2 * (released.subs(e, -a) - losses).subs(split)
     return proof(
         damper_takes_most(),
         Equal(
@@ -272,7 +272,7 @@ def sampled_coupling() -> ProofSteps:
         ),
         NotNegative(
             "losses cover work and storage",
-            losses - given_out - stored,
+            losses - released - stored,
             spare * swing**2 / T + (b_m * d_m + b_s * d_s) ** 2 / ((b_m + b_s) * T),
             {spare: parallel - P * T / 2},
         ),

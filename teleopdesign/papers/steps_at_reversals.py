@@ -28,9 +28,9 @@ Array = NDArray[np.float64]
 
 
 def dithered_cycle() -> sp.Expr:
-    """Given out in half a cycle of amplitude u, a step of `small` back and forth at each reversal.
+    """Energy of half a cycle of amplitude u, a step of `small` back and forth at each reversal.
 
-    Units f_D = sigma_D = 1, link stuck; the motion is its own mirror after half a cycle.
+    Units f_D = sigma_D = 1, link stuck; the second half of a cycle mirrors the first.
     """
     h, along = sp.Symbol("h", real=True), sp.Symbol("along", positive=True)
 

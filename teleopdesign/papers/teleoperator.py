@@ -226,7 +226,7 @@ def contact_force() -> Numbers:
     for share in CANCELLED:
         stiffness, width, _ = contact(share)
         expected = 2 * (1 - share) * FRICTION / (1 + ratio)
-        # the damper widens the loop; a hundredth of the friction for what has not settled
+        # the damper widens the loop; a hundredth of the friction for what is not yet steady
         figures.append(
             near(f"hysteresis width, f_D = {share} f_C", width, expected, viscous + 0.02, "N")
         )

@@ -4,11 +4,11 @@ Willems: a system is passive from rest where this is finite, and then it is a st
 friction that depends on the path alone, every motion is a sequence of small travels forward or
 back, so that the available storage V of the forces x solves
 
-    V(x) = max(0, max over both directions of (given out over the travel + V(x after it)))
+    V(x) = max(0, max over both directions of (released over the travel + V(x after it)))
 
 It is iterated on a grid of the forces, with linear interpolation. Where it settles, a storage
-function has been found numerically. Where it grows without end, energy comes out or the grid is too
-coarse: interpolation lies above a convex V, so that limits found this way lie on the safe side.
+function is known numerically. Where it grows without end, energy comes out or the grid is too
+coarse: interpolation lies above a convex V, so that its limits lie on the safe side.
 Evidence either way.
 """
 
@@ -26,7 +26,7 @@ from .claims.claim import Evidence
 from .rate_independent import Coulomb, Dahl, Element, compliance
 
 Array = NDArray[np.float64]
-#: gain, as a share of the compensator's level, below which the storage counts as settled
+#: gain, as a share of the compensator's level, below which the storage counts as steady
 _BLUR = 1e-3
 #: share of the storage that may still be gained over the second half of the moves: as much as
 #: interpolation blurs on a grid of 25 points. Less asks for more moves where a limit is near
@@ -37,13 +37,13 @@ _MOST_MOVES, _MOST_WORK = 400_000, 500_000_000
 
 @dataclass(frozen=True, eq=False)
 class AvailableStorage(ByValue):
-    """Available storage (J): the most energy that friction can give out, on a grid of forces.
+    """Available storage (J): the most energy that friction can release, on a grid of forces.
 
     storage: J, an axis for each force with a state, compensator first, from -level to level
-    gain: energy given out per travel once everything has settled, N; 0 where it is finite
+    gain: energy released per travel in steady state, N; 0 where it is finite
     travel: m, of one move;  moves: how many were made
     growth: what the storage still gained over the second half of the moves, J, where it gained most
-    coarse: largest storage on a grid of half the points, J: how far the grid's own may be off
+    coarse: largest storage on a grid of half the points, J: how far that of the grid may be off
     """
 
     storage: Array
@@ -86,7 +86,7 @@ def available_storage(
     """Iterate the available storage of friction beside a compensator.
 
     friction: Coulomb friction has no state, every other element one
-    points: of each force;  moves: default: six strokes of what gives furthest, both ways
+    points: of each force;  moves: default: six strokes of the softest part, both ways
     load_coefficient: the first element of friction grows by this much of
         the size of the last one's force (capstan: a contact pressed by the cable's tension)
     raises ModelError: more than three forces with a state, lengths too far apart for one grid

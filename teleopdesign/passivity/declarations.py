@@ -1,4 +1,4 @@
-"""What files of a user's own declare about energy and size, checked before a claim rests on it.
+"""What files of a user declare about energy and size, checked before a claim rests on it.
 
 Effects and laws of the catalogue are held to their declarations by tests. What another file
 declares counts here only where the law itself shows it: a force of no states that is against the
@@ -44,7 +44,7 @@ def is_shipped(effect: Effect) -> bool:
 
 
 def unchecked_energy(body: Body, reach: Reach | None = None, *, errors: float) -> tuple[str, ...]:
-    """Effects of one's own that declare to store or dissipate, and nothing shows that they do.
+    """Effects of a user that declare to store or dissipate, and nothing shows that they do.
 
     Friction levels, and shapes of friction, are judged elsewhere, whatever they declare.
     """

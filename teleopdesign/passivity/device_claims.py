@@ -17,7 +17,7 @@ from .identified import IdentifiedDevice
 from .search.by_simulation import SimulatedMotion, search_counterexample
 from .theorems import Question, TopicClaim, Wall, settle
 
-#: N/m; gives a scale of length to friction that was identified as ideal
+#: N/m; sets a scale of length to friction that was identified as ideal
 _RIGID = 1e5
 
 
@@ -154,9 +154,9 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
         return [*limits, Margin(text + alone, device.least_resistance.low, force)]
     recoil = device.bristle_damping.high * (device.highest.high - device.lowest.low)
     if device.damping.low * device.lowest.low < recoil:
-        return []  # no limit is known where the bristle's damping may give out energy
+        return []  # no limit is known where the bristle's damping may release energy
     if compensator is not None and compensator.stage.value_of("bristle_stiffness") is None:
-        return []  # no limit is known for such a law on a contact that gives
+        return []  # no limit is known for such a law on a contact that deflects
     level = min(compensator.level if compensator else math.inf, device.lowest.low)
     softest = presliding.low * math.sqrt(level / device.highest.high)
     limits.append(Margin(f"largest sigma_D at f_D = {level:.4g} {force}{alone}", softest, stiff))

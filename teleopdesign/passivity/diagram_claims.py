@@ -1,7 +1,7 @@
 """Claims about every port of a diagram.
 
 They are exact where it is linear, by theorem where only friction and its cancellation are not, and
-else rest on a search for motions that give out energy.
+else rest on a search for motions that release energy.
 
 Controllers act in continuous time in what is proved; the search takes them as `computer` says.
 """

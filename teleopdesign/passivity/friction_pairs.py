@@ -57,7 +57,7 @@ class FrictionPair:
 def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
     """One for each body with friction whose cancellation, if any, is a law with a known bound.
 
-    A cancellation takes the body's own motion, and its force acts on this body just as it is, and
+    A cancellation takes the body's motion, and its force acts on this body just as it is, and
     on nothing else, through whichever sums. A level that reaches down to nothing leaves nothing to
     cancel.
     """

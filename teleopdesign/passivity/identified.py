@@ -132,7 +132,7 @@ def identified(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
 
 
 def _resistance(body: Body, damping: Interval, reach: Reach | None) -> Interval:
-    """The least of level and damping together, each damping at its own end of its interval."""
+    """The least of level and damping together, each damping at its end of its interval."""
     at_estimate, at_low = (
         lowest_of(body, body.level() + sp.Float(b) * SPEED, reach, errors=NINETY_FIVE)[0]
         for b in (damping.estimate, damping.low)
@@ -143,7 +143,7 @@ def _resistance(body: Body, damping: Interval, reach: Reach | None) -> Interval:
 def effects_left_open(body: Body, reach: Reach | None = None, *, errors: float) -> tuple[str, ...]:
     """Effects that may supply energy, or are of a kind that no theorem on friction is about.
 
-    Those of one's own that declare not to, where nothing has checked that, are among them.
+    Those of a user that declare not to, where nothing has checked that, are among them.
     errors: standard errors of the parameters to either side
     """
     body = without_absent(body, surely=True)

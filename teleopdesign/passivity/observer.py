@@ -3,7 +3,7 @@
     E[n] = E[n-1] + f[n] (x[n+1] - x[n])          force held between samples: exact
     E[n] = E[n-1] + (f[n] + f[n+1])/2 (x[n+1] - x[n])    force sampled
 
-with the force ON the device along its motion. A device that began at rest has given out energy
+with the force ON the device along its motion. A device that began at rest has released energy
 where E < 0. Hannaford and Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1, who put a damper into each
 sample where it would: `passivity_controlled`.
 """
@@ -38,7 +38,7 @@ _ROUNDED = 12**-0.5
 class PortEnergy(ByValue):
     """Energy into a port.
 
-    data: `energy` (J, from the start), `stderr` (J, of the sensors' noise, 0 where none was given)
+    data: `energy` (J, from the start), `stderr` (J, of the sensors' noise, 0 where none is stated)
     and `power` (W) over `time` (s)
     """
 
@@ -46,7 +46,7 @@ class PortEnergy(ByValue):
 
     @property
     def lowest(self) -> float:
-        """Least energy, J: below zero by what the port has given out more than it took in."""
+        """Least energy, J: below zero by what the port has released more than it took in."""
         return float(self.data["energy"].min())
 
     @property
@@ -160,7 +160,12 @@ def _stderr(
 def observe_simulation(
     simulation: Simulation, *, motion: str = "L", force: str = "R_V"
 ) -> PortEnergy:
-    """Energy into a port of a simulated diagram; best with rows at every step."""
+    """Energy into a port of a simulated diagram; best with rows at every step.
+
+    motion: position of the port, m or rad;  force: on the device along that motion, N or N m
+    returns: energy over time, J; negative where the port has released more than it took in
+    The sum errs by the curvature between rows: simulate with `every_step=True`.
+    """
     return observe(
         simulation.data["time"].values, simulation[motion].values, simulation[force].values
     )

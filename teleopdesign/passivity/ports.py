@@ -30,7 +30,7 @@ from .declarations import falsely_linear
 from .linear.impedance import exact
 from .shares import shares_of, total_share
 
-#: blocks that hold a port, by the names that the package gives them: not part of what is judged
+#: blocks that hold a port, by their names in the package: not part of what is judged
 HOLDING = ("Z_H", "Z_E")
 
 
@@ -126,11 +126,11 @@ def impedance_matrix(
     """Forces over velocities at ports, in exact numbers; all other outside signals are zero.
 
     linear: forms of its blocks where they are not those of its values
-    raises ModelError: the wiring does not determine it, or a port that gives way to any force
+    raises ModelError: the wiring does not determine it, or a port that yields to any force
     """
     diagram = with_tips(diagram)
     linear = linear or linear_blocks(diagram)
-    # a dead time is a symbol of its own until the matrix is inverted: it commutes, and stays short
+    # a dead time is a separate symbol until the matrix is inverted: it commutes, and stays short
     late = {dead_time_symbol(n): sp.Dummy(n) for n in linear.dead_times}
     times = {late[dead_time_symbol(n)]: sp.exp(-S * t) for n, t in linear.dead_times.items()}
     values = symbol_values(linear)

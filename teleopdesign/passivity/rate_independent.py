@@ -1,7 +1,7 @@
 """Friction that depends on the path, not on the speed, integrated exactly along turning points.
 
-Each element resists: `leg` takes its force and a travel of one sign, and gives the force at the end
-and the work that the travel puts in. No time step, no approximation but rounding.
+Each element resists: `leg` takes its force and a travel of one sign, and returns the force at the
+end and the work that the travel puts in. No time step, no approximation but rounding.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Protocol
 from ..arguments import checked
 from ..errors import ModelError
 
-#: share of the energy of a round below which springs that have not settled do not matter
+#: share of the energy of a round below which springs that are not yet steady do not matter
 _FED = 1e-3
 
 
@@ -146,12 +146,12 @@ def _beyond_linear(y: float) -> float:
 
 @dataclass(frozen=True)
 class Cycle:
-    """A closed path through turning points that gives out energy each time, as often as one likes.
+    """A closed path through turning points that releases energy each time, as often as one likes.
 
     compensator: whose force helps the motion;  friction: what resists
     turning_points: positions, m, of one round, starting at the last of them; from rest and without
     preloads, `rounds` are travelled, and the last one is counted; where that may still be fed by
-    what springs held, no more than all rounds together gave out
+    what springs held, no more than all rounds together released
     """
 
     compensator: Dahl
@@ -161,11 +161,11 @@ class Cycle:
 
     @property
     def energy(self) -> float:
-        """Energy given out in the last round, J."""
+        """Energy released in the last round, J."""
         return self.replay()
 
     def replay(self) -> float:
-        """Energy given out in the last round, J, integrated anew."""
+        """Energy released in the last round, J, integrated anew."""
         elements: tuple[Element, ...] = (self.compensator, *self.friction)
         forces, here, out = [0.0] * len(elements), self.turning_points[-1], 0.0
         before, total = list(forces), 0.0
@@ -202,7 +202,11 @@ def _plain(element: Element) -> list[object]:
 
 
 def symmetric_cycle(compensator: Dahl, friction: Sequence[Element], amplitude: float) -> Cycle:
-    """The periodic motion between -amplitude and amplitude (m), once its forces repeat."""
+    """The periodic motion between -amplitude and amplitude (m), once its forces repeat.
+
+    compensator: pushes along the motion;  friction: elements that act against it
+    amplitude: m or rad;  returns: the cycle, with its energy per round in J (> 0: released)
+    """
     # a cycle of u bristle lengths forgets its start as e^(-4 u): 40 of those are beyond rounding
     softest = min(
         [

@@ -67,11 +67,15 @@ def save_figure(
     *,
     suffixes: tuple[str, ...] = (".pdf", ".svg", ".png"),
 ) -> list[Path]:
-    """Write the figure in house style, once for each suffix; returns the files."""
+    """Write the figure in house style, once for each suffix; returns the files.
+
+    path: its suffix is replaced by each of `suffixes`; an older file is overwritten when the new
+        one is whole
+    """
     import matplotlib.pyplot as plt
 
     files = [Path(path).with_suffix(suffix) for suffix in suffixes]
-    # fonts and resolution are taken when it is drawn; what has no layout of its own keeps none
+    # fonts and resolution are taken when it is drawn; what has no layout keeps none
     layout = {"figure.constrained_layout.use": figure.get_layout_engine() is not None}
     with plt.style.context([*house_style(), layout]):
         for file in files:
@@ -81,7 +85,10 @@ def save_figure(
 
 
 def plot_force_velocity(result: ForceVelocity) -> matplotlib.figure.Figure:
-    """Force against velocity, a panel for each case, top to bottom."""
+    """Force against velocity, a panel for each case, top to bottom.
+
+    Axes in SI units of the axis (N over m/s, or N m over rad/s); each panel states its rms force.
+    """
     import matplotlib.pyplot as plt
     from matplotlib.ticker import MaxNLocator, MultipleLocator
 
@@ -116,7 +123,10 @@ def plot_force_velocity(result: ForceVelocity) -> matplotlib.figure.Figure:
 def plot_simulation(
     simulation: Simulation, names: tuple[str, ...] = ()
 ) -> matplotlib.figure.Figure:
-    """Signals against time, one panel each."""
+    """Signals against time, one panel each.
+
+    names: signals of the diagram, in SI units;  default: those of "L", "R_A" and "R_M" that it has
+    """
     import matplotlib.pyplot as plt
 
     shown = names or tuple(n for n in ("L", "R_A", "R_M") if n in simulation.data)

@@ -1,4 +1,4 @@
-"""Figures of comparisons and diagnoses; draws what they hold and computes nothing of its own."""
+"""Figures of comparisons and diagnoses; draws what they hold and computes nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Figures of what a user feels: force over displacement, beside the environment's own curve."""
+"""Figures of what a user feels: force over displacement, beside the environment's curve."""
 
 from __future__ import annotations
 

@@ -77,7 +77,11 @@ def plot_nyquist(
     measured: FrequencyResponse | None = None,
     columns: PageColumns = 1,
 ) -> matplotlib.figure.Figure:
-    """Imaginary against real part; a dot at each decade of frequency."""
+    """Imaginary against real part; a dot at each decade of frequency.
+
+    response: lines;  measured: points beside them, of the same cases;  unit: that of the response
+    columns: of a page that the figure is wide, 1 or 2
+    """
     import matplotlib.pyplot as plt
 
     unit = response.data["magnitude"].attrs["units"]
@@ -103,7 +107,7 @@ def plot_nyquist(
         axis.set_xlabel(f"real part{beside}")
         axis.set_ylabel(f"imaginary part{beside}")
         (left, right), (lowest, highest) = axis.get_xlim(), axis.get_ylim()
-        # room for labels, and no emptier page than the curve's own shape
+        # room for labels, and no emptier page than the curve's shape
         height = 0.6 + (width - 0.6) * (highest - lowest) / (right - left)
         figure.set_size_inches(width, min(max(height, 1.6), 4.5))
         axis.set_aspect("equal", adjustable="box")

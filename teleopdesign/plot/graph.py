@@ -1,4 +1,4 @@
-"""Draw the graph of a finding on given axes; computes nothing but which points to leave out."""
+"""Draw the graph of a finding on axes; computes nothing but which points to leave out."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ def further_fonts() -> tuple[str, ...]:
 
 
 def house_style() -> Any:
-    """The house style for `plt.style.context`, with fonts of this machine behind its own."""
+    """The house style for `plt.style.context`, with this machine's fonts behind its fonts."""
     return [STYLE, {"font.family": ["STIXGeneral", "DejaVu Serif", *further_fonts()]}]
 
 

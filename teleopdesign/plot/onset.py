@@ -116,7 +116,7 @@ def _set_decades(axis: Axes, x: np.ndarray, stiffness: np.ndarray) -> None:
 
 
 def plot_delay_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
-    """Settled couplings over delay and over sample period, and where simulation starts to grow."""
+    """Judged couplings over delay and over sample period, and where simulation starts to grow."""
     import matplotlib.pyplot as plt
 
     stiffness = data["stiffness"].values
@@ -140,7 +140,7 @@ def plot_delay_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
 
 
 def plot_period_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
-    """Settled late compensators over sample period and stiffness, and where a swing grows."""
+    """Judged late compensators over sample period and stiffness, and where a swing grows."""
     import matplotlib.pyplot as plt
 
     x, stiffness = data["period"].values, data["stiffness"].values
@@ -163,7 +163,7 @@ def plot_period_and_stiffness(data: xarray.Dataset) -> matplotlib.figure.Figure:
 
 
 def _mark_status(axis: Axes, x: np.ndarray, y: np.ndarray, status: np.ndarray) -> None:
-    """A dot at each point that a claim settled."""
+    """A dot at each point that a claim decides."""
     import numpy as np
 
     across, up = np.meshgrid(x, y)

@@ -20,7 +20,7 @@ GREY, BEST, BEFORE = "#BFBFBF", "#0072B2", "#D55E00"
 
 
 def plot_pareto(front: ParetoFront) -> matplotlib.figure.Figure:
-    """The front as steps; points that keep the limits in grey; the diagram's own as a cross."""
+    """The front as steps; points that keep the limits in grey; the diagram itself as a cross."""
     import matplotlib.pyplot as plt
     import numpy as np
 

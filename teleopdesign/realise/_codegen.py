@@ -33,7 +33,7 @@ DIGITAL = "n period sampled parameters memory".split()
 
 @dataclass(frozen=True)
 class Layout:
-    """Order of everything that the loop takes and gives, as names.
+    """Order of everything that the loop takes and returns, as names.
 
     columns: of a row of the result;  exponential: states stepped exactly in their affine part, the
     last ones among the states

@@ -1,7 +1,7 @@
 """Linear equations with symbolic coefficients, solved by elimination.
 
 Where unknowns are joined by coefficients that are no numbers (accelerations through a mass matrix),
-expressions of their solution would grow beyond all bounds: its steps are given names instead.
+expressions of their solution would grow beyond all bounds: its steps get names instead.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ class _Named:
 def _joined(
     rows: list[sp.Expr], left: set[sp.Symbol], name: str
 ) -> tuple[dict[sp.Symbol, sp.Expr], Steps]:
-    """Solution of what is left by Gaussian elimination, every step under a name of its own."""
+    """Solution of what is left by Gaussian elimination, every step under a separate name."""
     named = _Named()
     values: dict[sp.Symbol, sp.Expr] = {}
     todo = sorted(left, key=str)

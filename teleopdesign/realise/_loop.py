@@ -39,7 +39,7 @@ entry = jitted
 
 
 def module_source(laws: str, *, jit: bool = True, lanes: int = 1) -> str:
-    """The module whose `run` simulates that many lanes;  laws: as `Generator.source` gives them."""
+    """The module whose `run` simulates that many lanes;  laws: from `Generator.source`."""
     return "\n".join([*_laws_part(laws, jit=jit, lanes=lanes), _integrator()])
 
 
@@ -47,7 +47,7 @@ def _laws_part(laws: str, *, jit: bool, lanes: int) -> list[str]:
     text = '"""Generated from the laws of the blocks of a diagram; do not edit."""'
     if jit:
         # places by which functions are called: numba compiles a function again for each literal
-        # number that it is given, and once for all numbers of a type
+        # number that it gets, and once for all numbers of a type
         laws = re.sub(r"^(\w+ = )(\d+ \* LANES)$", r"\1np.int64(\2)", laws, flags=re.MULTILINE)
     # numba takes as long for a product of constants as for any other
     laws = re.sub(r"(\d+) \* LANES", lambda match: str(int(match[1]) * lanes), laws)
@@ -69,6 +69,6 @@ def _laws_part(laws: str, *, jit: bool, lanes: int) -> list[str]:
 
 @cache
 def _integrator() -> str:
-    """The file behind its line of "#": in front of that it imports what the laws give here."""
+    """The file behind its line of "#": in front of that it imports what the laws define here."""
     text = Path(__file__).with_name("integrator.py").read_text(encoding="utf-8")
     return text.split("#" * 98 + "\n", 1)[1]

@@ -1,6 +1,6 @@
 """A body along a measured motion: the force that its model leaves unexplained, with tangents.
 
-The motion is given, so the effects decouple: each turns arrays into arrays, composed by role.
+The motion is prescribed, so the effects decouple: each turns arrays into arrays, composed by role.
 
     command -> actuation stages (averages over each hold) -> acting force at the rows
     needed friction = acting + interaction - inertia a - forces (- what the links of an arm need)

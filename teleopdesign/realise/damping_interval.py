@@ -23,7 +23,7 @@ from .simulated import without_absent
 @dataclass(frozen=True)
 class DampingInterval:
     """least: force against the motion over speed, the least at any speed, N s/m; not below zero
-    supplying: forces that may give out energy, by name
+    supplying: forces that may release energy, by name
     """
 
     least: Interval

@@ -52,7 +52,7 @@ class Equations:
     as "Z_M_friction";  inputs: analog inputs
     commands: held commands (sampled) by signal;  late: symbol -> (expression, delay)
     sampled_inputs: outside signals that the computer reads;  motions: motions that are simulated
-    prescribed: motions that are given;  parameters: symbol -> name in `Diagram.values`
+    prescribed: prescribed motions;  parameters: symbol -> name in `Diagram.values`
     joined: quantities that all these are written in, in an order in which they can be computed
     """
 
@@ -79,7 +79,7 @@ def equations(
 ) -> Equations:
     """Explicit equations of a diagram whose blocks all have laws.
 
-    prescribed: motions that are given; the outside force that drives each is then a result
+    prescribed: prescribed motions; the outside force that drives each is then a result
     sampled: commands are held inputs and the computer is apart; False: all is one
     """
     return _Builder(diagram, tuple(prescribed), sampled).build()
@@ -233,7 +233,7 @@ class _Builder:
             SIGNALS["command"]: command,
         }
         acting = undelayed(part.name, equation.acting.xreplace(here), self.late)
-        if sp.diff(acting, command).has(command):  # found once the command is known
+        if sp.diff(acting, command).has(command):  # known once the command is
             force = sp.Symbol(f"{part.name}_acting", real=True)
             self.acting[force], acting = acting, force
         here[SIGNALS["acting_force"]] = acting

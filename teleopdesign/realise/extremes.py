@@ -1,6 +1,6 @@
 """The least value of a law over ranges of its symbols: a bound that holds, and where it is met.
 
-Branch and bound: the box with the least enclosure is halved until the least value found at a point
+Branch and bound: the box with the least enclosure is halved until the least value at a point
 is as low as what no value is below. Where the law is monotone in a symbol its range is left out.
 """
 
@@ -110,7 +110,7 @@ class _Search:
 def least_value(law: sp.Expr, ranges: Ranges) -> Least:
     """The least value of the law over ranges of its symbols, which may be unbounded.
 
-    The bound is -inf where the law has none, or none is found.
+    The bound is -inf where the law has none, or where it has no finite one.
     raises ModelError: a symbol without range, or a function of which no bound is known
     """
     if strangers := law.free_symbols - set(ranges):

@@ -12,7 +12,8 @@ from ..blocks import Body
 from ..effects import SIGNALS, ordered
 from ..measurement.motion import Motion
 from .balance import balanced
-from .scan import driven_scan, shape_bounds
+from .scan import driven_scan
+from .shape_scan import shape_bounds
 from .traced import Along, Traced, constant
 
 _DIRECTION, _ACTING = SIGNALS["direction"], SIGNALS["acting_force"]

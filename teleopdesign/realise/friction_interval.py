@@ -3,7 +3,7 @@
 Over the reach of a motion, and with each parameter anywhere within so many standard errors of its
 estimate and within its declared bounds: a box of parameters, so that a bound holds whatever their
 correlation, and a sinusoid of unknown phase never counts for more than its amplitude. The bounds
-are those of interval arithmetic on the body's own law (`extremes`), not of draws or a grid.
+are those of interval arithmetic on the body's law (`extremes`), not of draws or a grid.
 """
 
 from __future__ import annotations
@@ -134,7 +134,7 @@ def lowest_of(
     if all(low == high for low, high in within.values()):
         return Interval(estimate.bound, estimate.bound, estimate.bound), point
     low, worst = _either_way(law, signals | exact | within)
-    # any parameters give at most this where it is least at the estimates
+    # with any parameters it is at most this where it is least at the estimates
     there = {s: (x, x) for s, x in point.items() if s in signals}
     turned = -_one_way(law, point.get(DIRECTION, 1.0))
     high = -least_value(turned, signals | exact | within | there).bound
@@ -232,7 +232,7 @@ def _where(point: Mapping[sp.Symbol, float], body: Body) -> str:
 
 
 def _unbounded(level: sp.Expr, reach: Reach | None) -> str:
-    """What to give where a level has no lower bound."""
+    """What to state where a level has no lower bound."""
     names = sorted(
         n for n, s in SIGNALS.items() if level.has(s) and n not in ("direction", "position")
     )

@@ -58,7 +58,7 @@ def prepare_step(first, time, h, inputs, column, parameters, memory, lane):
 
 @jitted
 def take_rests(bristles, rests, memory, lane):
-    """B of each bristle, whose rate A z + B is given."""
+    """B of each bristle, whose rate is A z + B."""
     for i in range(MANY_BRISTLES):
         at = i * LANES + lane
         memory[rests + at] -= memory[SLOPES + at] * memory[bristles + at]

@@ -172,7 +172,7 @@ def _mechanics(
     moved = [s for m in parts.motions for s in (signal(m), velocity(m))]
     inputs = [s for s in (*parts.inputs, *parts.commands.values()) if s not in idle]
     states = sorted(parts.rates, key=lambda state: names.public_name(str(state)))
-    # a signal that the system takes and gives under one name would be wired to itself
+    # a signal that the system takes and returns under one name would be wired to itself
     outputs = {str(s): s for s in moved} | {n: e for n, e in parts.signals.items()}
     outputs |= {str(s): s for s in idle}
     rates = [parts.rates[s] for s in states]
@@ -182,7 +182,7 @@ def _mechanics(
 
 
 def _known(diagram: Diagram) -> Diagram:
-    """Systems that are known as code only give way to a wire: the mechanics do not see them."""
+    """Systems that are known as code only become a wire: the mechanics do not see them."""
     for part in diagram.controls:
         if _code(part) is not None:
             diagram = diagram.with_block(part.name, Controller(()))

@@ -1,7 +1,6 @@
-"""The compiled simulation of a diagram: equations -> generated source -> numba, cached on disk.
+"""Run the loop of a structure (`program.py`) for values, inputs, a grid of steps and samples.
 
-Values are arguments: only another structure (other blocks or effects) compiles anew. A step that is
-too long is found and said, by two measures that need no second run:
+A step that is too long is detected and reported, by two measures that need no second run:
 
 - steps per radian of the fastest oscillation or decay of the equations at rest, friction stuck;
 - where a bristle is reloaded after a reversal: that takes the time sqrt(2 lambda / a), lambda its
@@ -12,25 +11,17 @@ too long is found and said, by two measures that need no second run:
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields, replace
-from functools import lru_cache
+from collections.abc import Mapping
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from ..blocks import Body, MatrixImpedance
-from ..controllers import SIGNALS, ControlLaw, Controller, laws_that_declare
-from ..diagrams import Attached, Control, Diagram, Kinematics, Moving
-from ..effects import Effect
+from ..controllers import SIGNALS, laws_that_declare
 from ..errors import ModelError
-from ._codegen import Generator, Layout
-from ._loop import module_source
-from .compiled import compiled_module
-from .equations import Equations, equations
-from .private_names import PrivateNames, private_names
+from .program import CompiledLoop, Program
 
 #: h times the fastest rate of the equations at rest; 0.3: 20 steps a period
 FASTEST = 0.3
@@ -40,33 +31,6 @@ JUMP = 1e7
 _SMALL = 1e-9
 #: bound of h * (change of a bristle's decay rate in a step); 0.02: 10 steps a reload
 RELOAD = 0.02
-
-
-@dataclass(frozen=True)
-class CompiledLoop:
-    """Entries of `integrator.py` on the laws of one structure, compiled or plain Python."""
-
-    lanes: int
-    run: Callable[..., None]
-    differentiate_at_rest: Callable[..., None]
-
-
-@dataclass(frozen=True)
-class Program:
-    """The simulation loop for one structure of a diagram, for any values.
-
-    laws: their source;  loop: the loop around them, for one simulation
-    functions: names of the plain module: its laws, its constants
-    equations: on private symbols (`private_names`), their parameters by the user's names
-    has_code: whether a block is known as code only, so that the loop is plain Python
-    """
-
-    equations: Equations
-    layout: Layout
-    laws: str
-    loop: CompiledLoop
-    functions: Mapping[str, Any]
-    has_code: bool = False
 
 
 @dataclass(frozen=True)
@@ -97,146 +61,10 @@ class Timing:
         return self.inner * self.samples
 
 
-_programs: dict[Any, Program] = {}
-#: the same by structure under the user's names, each with the diagram that it was made for
-_named: dict[Any, tuple[Diagram, Program]] = {}
-_MOST_NAMED = 256
-
-
-def program(
-    diagram: Diagram,
-    *,
-    prescribed: tuple[str, ...] = (),
-    sampled: bool = True,
-    observer: int = 0,
-    jit: bool = True,
-) -> Program:
-    """The loop for this diagram's structure, built and compiled where it is not yet.
-
-    observer: its order, where the computer observes velocities in place of filtering differences
-    jit: False runs the same generated source in plain Python, some hundred times slower
-    """
-    named = (_named_structure(diagram), prescribed, sampled, observer, jit)
-    if named not in _named:
-        made = _program(diagram, prescribed, sampled, observer, jit)
-        if len(_named) >= _MOST_NAMED:
-            _named.clear()
-        _named[named] = diagram, made
-    return _named[named][1]
-
-
-def _program(
-    diagram: Diagram, prescribed: tuple[str, ...], sampled: bool, observer: int, jit: bool
-) -> Program:
-    names = private_names(diagram)
-    motions = tuple(names.private.get(motion, motion) for motion in prescribed)
-    key = (_structure(names.diagram), motions, sampled, observer, jit)
-    if key not in _programs:
-        with names.in_errors():
-            private = equations(names.diagram, prescribed=motions, sampled=sampled)
-        generator = Generator(private, observer=observer)
-        laws = generator.source()
-        calls = generator.calls()
-        plain = _executed(module_source(laws, jit=False))
-        plain.update(calls)
-        loop = loop_of(laws, 1) if jit and not calls else _entries(plain, 1)
-        _programs[key] = Program(
-            generator.equations, generator.layout(), laws, loop, plain, bool(calls)
-        )
-    return _in_public(_programs[key], names)
-
-
-def loop_of(laws: str, lanes: int) -> CompiledLoop:
-    """The compiled loop on laws for that many simulations side by side."""
-    return _entries(compiled_module(module_source(laws, lanes=lanes), "run"), lanes)
-
-
-def _entries(module: Mapping[str, Any], lanes: int) -> CompiledLoop:
-    return CompiledLoop(lanes, module["run"], module["differentiate_at_rest"])
-
-
-def _in_public(private: Program, names: PrivateNames) -> Program:
-    """The program with the user's names of signals, states and parameters."""
-    layout = private.layout
-    named = (*layout.columns, *layout.states, *layout.computer_states, *layout.inputs)
-    names.public_names(*named, *layout.sampled_inputs)
-    public = {
-        field.name: tuple(map(names.public_name, getattr(layout, field.name)))
-        for field in fields(layout)
-    }
-    parameters = private.equations.parameters
-    public_parameters = {symbol: names.public_name(name) for symbol, name in parameters.items()}
-    equations = replace(private.equations, parameters=public_parameters)
-    return replace(private, equations=equations, layout=Layout(**public))
-
-
-@lru_cache(maxsize=64)
-def _executed(source: str) -> dict[str, Any]:
-    module: dict[str, Any] = {"__name__": "teleopdesign_plain_kernel"}
-    exec(compile(source, "<generated>", "exec"), module)
-    return module
-
-
-def _named_structure(diagram: Diagram) -> tuple[Any, ...]:
-    """As `_structure`, names included, of what diagrams with other values share.
-
-    Wiring and laws count by identity: the diagram that is kept beside the program keeps them alive.
-    """
-    out: list[Any] = [tuple(diagram.outside.items()), diagram.measured]
-    out.append((diagram.name, *map(id, diagram.junctions), *map(id, diagram.kinematics)))
-    out += diagram.pose.items()
-    for part in diagram.blocks:
-        if isinstance(part, Control):
-            block: Any = part.controller
-            wires: tuple[Any, ...] = (part.input, part.output, part.motion, part.analog)
-        elif isinstance(part, Moving):
-            block = part.body
-            wires = (part.motion, part.command, part.driver, *part.loads.items())
-        elif isinstance(part, Attached):
-            block, wires = part.body, (part.motion, part.force, part.sign)
-        else:
-            block, wires = part.body, (part.motions, part.forces, part.sign)
-        laws: tuple[Any, ...]
-        if isinstance(block, Controller):
-            laws = tuple((stage.name, id(stage.law)) for stage in block.stages)
-        elif isinstance(block, Body):
-            laws = tuple(map(id, block.effects))
-        else:
-            laws = tuple(block.parameters)
-        out.append((type(part), part.name, wires, laws))
-    return tuple(out)
-
-
-def _structure(diagram: Diagram) -> tuple[Any, ...]:
-    """What the equations depend on apart from values; laws compare by identity."""
-    out: list[Any] = [tuple(diagram.outside.items()), diagram.measured]
-    for part in diagram.parts:
-        wires = (part.name, part.inputs, part.outputs)
-        terms = tuple(getattr(part, "terms", getattr(part, "loads", {})).items())
-        block = getattr(part, "controller", getattr(part, "body", None))
-        laws: tuple[Any, ...] = ()
-        if isinstance(block, Controller):
-            laws = tuple((g.name, g.law.law, _states(g.law)) for g in block.stages)
-        elif isinstance(block, Body):
-            laws = tuple((e.name, e.role, e.law, _states(e)) for e in block.effects)
-        elif isinstance(block, MatrixImpedance):
-            laws = tuple(block.parameters)
-        elif isinstance(part, Kinematics):
-            laws = (part.expression,)
-        sign = getattr(part, "sign", 1)
-        motion = (part.motion, part.analog) if isinstance(part, Control) else ()
-        out.append((type(part).__name__, wires, terms, sign, motion, laws))
-    return tuple(out)
-
-
-def _states(law: Effect | ControlLaw) -> tuple[Any, ...]:
-    return tuple(law.states.items())
-
-
 def velocity_smoothing(bandwidth: float, period: float) -> float:
     """Factor by which the velocity filter keeps its last output over a sample.
 
-    The filter is the control law that declares to be one, its rate's own slope stepped exactly.
+    The filter is the control law that declares to be one, its rate's slope stepped exactly.
     """
     if math.isinf(bandwidth):
         return 0.0
@@ -260,7 +88,7 @@ def execute(
     """Run the loop.
 
     inputs: (inputs, 2 steps + 1), at every half step;  sampled: (sampled inputs, samples + 1)
-    start: state -> value, 0 where not given
+    start: state -> value, 0 by default
     returns: rows of the columns of the layout, and the measure of the reload (see module)
     """
     layout, rows = made.layout, (timing.steps if every_step else timing.samples) + 1
@@ -268,7 +96,7 @@ def execute(
     out = np.zeros((rows, len(kept)))
     memory = first_memory(made, 1, start)
     no_rows = np.zeros(0, dtype=np.int64)
-    with np.errstate(all="ignore"):  # plain Python warns where compiled code gives inf
+    with np.errstate(all="ignore"):  # plain Python warns where compiled code returns inf
         made.loop.run(
             *grid(made, timing, 1),
             every_step,
@@ -341,7 +169,7 @@ def fastest_rate(made: Program, values: Mapping[str, float]) -> tuple[float, str
 def slopes_at_rest(made: Program, loop: CompiledLoop, parameters: np.ndarray) -> np.ndarray:
     """How rates change with states at rest, 1/s: (lanes, states, states).
 
-    parameters: flat, row by row;  exactly stepped states without their own slope
+    parameters: flat, row by row;  exactly stepped states without their slope
     """
     layout, n, lanes = made.layout, len(made.layout.states), loop.lanes
     slopes = np.zeros(n * n * lanes)

@@ -2,7 +2,7 @@
 
 An expression is printed with the private name of each of its symbols; a symbol without one, or a
 function that neither Python nor the package knows, has no source. A system that is known as code
-is called by a name of the package's own. So nothing that a user calls
+is called by a name of the package. So nothing that a user calls
 something by can stand in generated code.
 """
 
@@ -22,7 +22,7 @@ Names = Mapping[sp.Symbol, str]
 
 
 class _Printer(PythonCodePrinter):
-    """Python of the functions of `math`; symbols by their private names, in sympy's own order."""
+    """Python of the functions of `math`; symbols by their private names, in sympy's order."""
 
     def __init__(self, names: Names) -> None:
         super().__init__({"fully_qualified_modules": False})

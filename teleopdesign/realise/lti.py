@@ -1,6 +1,6 @@
 """Linear form of each block of a diagram, for one degree of freedom.
 
-Bodies give the impedance that their effects declare; controllers their law at a frozen speed. What
+Bodies bring the impedance that their effects declare; controllers their law at a frozen speed. What
 has no linear form is left out, and named. Numbers are exact, as they were written: what cancels on
 paper does so here.
 """

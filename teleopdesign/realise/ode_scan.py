@@ -1,7 +1,7 @@
 """Several coupled hidden states along a measured motion, such as a tip body, with tangents.
 
 Runge-Kutta steps; sub-steps keep the fastest mode well within the method's stability. Between rows
-the motion that drives them follows the cubic of its own rates, for a straight line weakens what
+the motion that drives them follows the cubic of its rates, for a straight line weakens what
 swings at a tenth of the sample rate by 3 %. Generated from the effect's rates.
 
 A state that declares a correction is led back by the force r that is left unexplained, as by an
@@ -9,7 +9,7 @@ observer: dz/dt = rate + correction(r), r = rest - law - friction, 0 where frict
 Without it two bodies that part and meet fall out of step with the machine after a few meetings.
 Dry friction on a state is a constant rate over each sub-step: what brings the state to rest at its
 end where the friction can, else its bound (time stepping by Moreau and Jean). A stuck state rests,
-without a stiff law of its own.
+without a stiff law.
 
 Where a course of meetings depends on its past more and more, so do its tangents, until they say
 nothing of any change that could be made: they begin anew wherever a small difference has grown by
@@ -138,7 +138,9 @@ def _rate_lines(effect: Effect) -> list[str]:
     each = [f"d_{i} = d[{i}, c] + ahead * g[before, {i}, c]" for i in range(len(states))]
     ends: list[str] = []
     if corrections:
-        before, moved, law_own = _slopes("by_law", effect.expression(), states, parameters, names)
+        before, moved, law_slopes = _slopes(
+            "by_law", effect.expression(), states, parameters, names
+        )
         lines += [*_left_lines(effect), *before]
         each += [
             f"d{_LEFT} = 0.0",
@@ -160,7 +162,7 @@ def _rate_lines(effect: Effect) -> list[str]:
             moved += f" + by_{i}_left * d{_LEFT}"
             ends += [
                 f"if bound and columns[{j}] >= 0:\n    {here}[{j}]] -= by_{i}_left * {k}"
-                for j, k in law_own.items()
+                for j, k in law_slopes.items()
             ]
         each.append(f"g_{i} = {moved}")
     # a stage may follow itself, so slopes are stored when all of them are known

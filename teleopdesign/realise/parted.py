@@ -1,6 +1,6 @@
 """Responses of a device with a compliant structure: its two sides apart, as they are simulated.
 
-A hand leads the tip, so that of a motion which is given the tip's is meant.
+A hand leads the tip, so that a prescribed motion is that of the tip.
 """
 
 from __future__ import annotations

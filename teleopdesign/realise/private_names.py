@@ -1,8 +1,8 @@
-"""A diagram under names of its own: what equations and generated source are written in.
+"""A diagram under private names: what equations and generated source are written in.
 
 Signals are s000_, s001_ ... and blocks b000_, b001_ ... in their order, whatever the user calls
 them. So no name of a user meets a word of the generated source, or a name that the package makes
-itself (`s000__velocity`), and a diagram whose signals are called otherwise gives the same numbers
+itself (`s000__velocity`), and a diagram whose signals are called otherwise has the same numbers
 to the last bit. What the user sees is translated back.
 """
 

@@ -23,8 +23,9 @@ class Reach:
 
     low, high: of its position;  peak_speed, rms_speed;  command: largest commanded force
     duration: of the longest record;  sample_period: s;  step: what one reading leaves open
-    unresolved: length below which the give of a contact before it slides cannot be told: within the
-        steps that tell a motion, or half a period of the comparison's bandwidth after a reversal
+    unresolved: length below which the deflection of a contact before it slides does not show:
+        within the steps that tell a motion, or half a period of the comparison's bandwidth after a
+        reversal
     measures_force: whether the force of hand or environment is a channel
     both_ways: whether it moves forward and backward for at least `RARE` of the time it moves
     """
@@ -69,7 +70,7 @@ def signal_ranges(reach: Reach | None) -> dict[sp.Symbol, tuple[float, float]]:
 def words_of(reach: Reach | None, law: sp.Expr, *, speed: bool, axis: str) -> str:
     """The ranges of a law's signals in words: "speeds up to 3 m/s, position -0.1 to 0.1 m".
 
-    speed: whether it follows a speed, its own or a lagging one
+    speed: whether it follows a speed, that of the body or a lagging one
     """
     top = largest_speed(reach)
     parts = [_range("speed", 0.0, top, unit_of("velocity", axis))] if speed else []

@@ -18,7 +18,8 @@ import numpy as np
 from ..diagrams import Diagram
 from ..errors import GrowsWithoutBound, ModelError
 from .delays import late_samples
-from .kernel import FASTEST, RELOAD, Program, fastest_rate, program, refine_factor, too_long
+from .kernel import FASTEST, RELOAD, fastest_rate, refine_factor, too_long
+from .program import Program, program
 from .simulated import in_computer
 
 if TYPE_CHECKING:
@@ -178,7 +179,7 @@ class _Sample:
         past = self._ring(x[len(self.rows) :])
         analog = _Held(np.array([inputs[name] for name in layout.inputs]))
         sampled = _Held(np.array([inputs[name] for name in layout.sampled_inputs]))
-        with np.errstate(all="ignore"):  # plain Python warns where compiled code gives inf
+        with np.errstate(all="ignore"):  # plain Python warns where compiled code returns inf
             if at["COMPUTER"]:
                 at["sample"](
                     *(False, round(t / self.dt), self.slots, t, self.dt, 0.0, 0.0, analog, 0),

@@ -3,7 +3,7 @@
     gain g: r / g     lag: (1 + tau s) r     delay: r, earlier by it     ripple: r / (1 + r sin ...)
 
 Nothing here knows an effect. Each law between the command and what moves the body is linearised
-along the motion by its own derivatives: the stages of the actuation, friction that the acting force
+along the motion by its derivatives: the stages of the actuation, friction that the acting force
 makes, forces that depend on it. A law then is a gain, sample by sample, of a command held for good,
 times dynamics that are 1 at rest, with coefficients at their mean along the motion:
 
@@ -34,8 +34,8 @@ from .stages_along import ActuationStage, stages_along
 from .traced import Along, slope
 
 #: part of the gain that a law has where it has most, below which a sample is blind. A command ten
-#: times as uncertain as elsewhere is not told; of a larger part a ripple or a soft limit would be
-#: called blind that still tells
+#: times as uncertain as elsewhere is not reported; of a larger part a ripple or a soft limit would
+#: be called blind that still tells
 SLIGHT = 0.1
 #: dynamics are divided by no less than this part of what they are at rest: rounding, not physics
 LEAST = 1e-3
@@ -54,7 +54,7 @@ class SeenAtCommand:
     residual: mapped back, SI; in blind samples only through what the command passes elsewhere
     blind: samples in which the command has next to no influence on what moves the body
     passed: part of the interaction force that reaches the body, signed as it
-    weak: the actuator cannot give, at any command, what the model needs to slide
+    weak: the actuator cannot deliver, at any command, what the model needs to slide
     """
 
     residual: Array
@@ -132,7 +132,7 @@ def _function(expression: sp.Expr) -> tuple[tuple[sp.Symbol, ...], Any]:
 
 
 def _evaluate(expression: sp.Expr, along: Along, n: int) -> Array:
-    """An expression along the motion (n,); a hidden state that is not given is at rest."""
+    """An expression along the motion (n,); a hidden state that is not stated is at rest."""
     signals, values = along.signals, along.values
     symbols, call = _function(expression)
     # arrays all: what is printed for a Max of a number and an array stacks the two

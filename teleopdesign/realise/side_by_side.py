@@ -15,16 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import ModelError
-from .kernel import (
-    CompiledLoop,
-    Program,
-    Timing,
-    fastest_rates,
-    first_memory,
-    grid,
-    loop_of,
-    slopes_at_rest,
-)
+from .kernel import Timing, fastest_rates, first_memory, grid, slopes_at_rest
+from .program import CompiledLoop, Program, loop_of
 
 #: lanes of a block: 8 take twice the time a lane, 32 gain a tenth and need more cases to be full
 LANES = 16
@@ -55,7 +47,7 @@ class Reduction:
 
 @dataclass(frozen=True)
 class LaneResults:
-    """What simulations side by side give, case by case.
+    """What simulations side by side return, case by case.
 
     kept: (cases, rows, columns asked for);  reduced: (cases, reductions)
     worst: measure of the reload of bristles (see `kernel`);  is_finite: all signals stayed so

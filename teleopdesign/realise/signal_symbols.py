@@ -29,7 +29,7 @@ def acceleration(motion: str) -> sp.Symbol:
 
 
 def measured(name: str) -> sp.Symbol:
-    """What a sensor gives at a sample."""
+    """The reading of a sensor at a sample."""
     return sp.Symbol(f"{name}_measured", real=True)
 
 

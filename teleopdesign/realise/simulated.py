@@ -1,4 +1,4 @@
-"""Bodies as they are simulated: absent effects left out, ideal friction given a small give."""
+"""Bodies as they are simulated: absent effects left out, ideal friction with a short bristle."""
 
 from __future__ import annotations
 
@@ -63,13 +63,13 @@ def without_absent(body: Body, *, surely: bool = False) -> Body:
 
 @lru_cache(maxsize=2)  # laws compare by identity
 def _bristle(of_any_level: bool) -> Effect:
-    """Presliding, or presliding of any friction level: of a tip's, of a user's own."""
+    """Presliding, or presliding of any friction level: of a tip, of a user's effect."""
     bristle = EFFECTS["presliding"]
     return replace(bristle, needs=frozenset()) if of_any_level else bristle
 
 
-def with_give(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> Body:
-    """Ideal Coulomb friction realised by a bristle that gives by `deflection` before it slides.
+def with_bristle(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> Body:
+    """Ideal Coulomb friction realised by a bristle that deflects by `deflection` before it slides.
 
     damping_ratio: of the inertia on this bristle while it sticks
     """
@@ -160,9 +160,10 @@ def _with_blocks(diagram: Diagram, contents: Mapping[str, Body | Controller]) ->
 
 
 def simulated(diagram: Diagram, deflection: float, prescribed: Iterable[str] = ()) -> Diagram:
-    """The diagram with bodies as they are simulated: absent effects out, ideal friction given.
+    """The diagram with bodies as they are simulated: absent effects out, ideal friction with a
+    bristle.
 
-    prescribed: motions that are given
+    prescribed: prescribed motions
     """
     bodies: dict[str, Body | Controller] = {}
     for part in diagram.blocks:
@@ -174,8 +175,10 @@ def simulated(diagram: Diagram, deflection: float, prescribed: Iterable[str] = (
         if isinstance(content, Body):
             there = without_absent(content)
             check_levels(there, f"{diagram.name}: {part.name}")
-            bodies[part.name] = with_give(there, deflection)
+            bodies[part.name] = with_bristle(there, deflection)
     apart = with_tips(_with_blocks(diagram, bodies), prescribed=prescribed)
     # of a tip that dry friction holds
-    tips = {b.name: with_give(b.body, deflection) for b in apart.bodies if isinstance(b.body, Body)}
+    tips = {
+        b.name: with_bristle(b.body, deflection) for b in apart.bodies if isinstance(b.body, Body)
+    }
     return _with_blocks(apart, dict(tips))

@@ -54,7 +54,7 @@ class SimulatorFile:
 
 
 def as_simulator_file(model: Model, form: str, *, name: str = "identified") -> SimulatorFile:
-    """The model's bodies as joints of their own, with a motor each; nothing couples them.
+    """The model's bodies as separate joints, with a motor each; nothing couples them.
 
     form: a key of `FORMS`;  name: of the model in the file
     raises ModelError: no such form, or a body whose inertia is not a positive number

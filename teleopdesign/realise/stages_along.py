@@ -36,7 +36,7 @@ COMMAND_LATE = sp.Symbol(RECORD_SHIFT, real=True)
 class ActuationStage:
     """A stage of the actuation along a motion: its input, hidden states and output.
 
-    law: on symbols, its delayed signals as symbols of their own;  delays: those symbols -> s
+    law: on symbols, its delayed signals as separate symbols;  delays: those symbols -> s
     signals: symbols -> signals over `parts` equal parts of each row;  output: as long
     """
 

@@ -64,9 +64,9 @@ def linear_tips(diagram: Diagram) -> Diagram:
 def with_tips(diagram: Diagram, *, prescribed: Iterable[str] = ()) -> Diagram:
     """The diagram with every body that has a structure as two bodies.
 
-    prescribed: motions that are given; of such a body only the tip's can be
-    raises ModelError: the tip is no lighter than the body, a motion given that no outside force
-        drives
+    prescribed: prescribed motions; of such a body only the tip's can be
+    raises ModelError: the tip is no lighter than the body, a prescribed motion that no outside
+        force drives
     """
     for part in diagram.blocks:
         if not isinstance(part, Moving) or not isinstance(part.body, Body):
@@ -148,7 +148,7 @@ def _sides(diagram: Diagram, part: Moving, body: Body, structure: Effect) -> tup
 
 @lru_cache(maxsize=8)  # laws compare by identity
 def of_a_body(effect: Effect) -> Effect:
-    """Friction of a tip as the friction level that it is of the tip as a body of its own."""
+    """Friction of a tip as the friction level that it is of the tip as a separate body."""
     return replace(effect, role="friction_level", needs=frozenset())
 
 

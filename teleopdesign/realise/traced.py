@@ -221,7 +221,7 @@ def law_of(
 ) -> NumericLaw:
     """The expression as a numpy function; every symbol that is no signal is a parameter.
 
-    traced: the signals that carry tangents; the motion is given and carries none
+    traced: the signals that carry tangents; the motion is prescribed and carries none
     """
     used = tuple(s for s in signals if expression.has(s))
     parameters = tuple(sorted(expression.free_symbols - set(signals), key=str))

@@ -29,7 +29,7 @@ from .write import Figures, figures_of, rendered
 
 @dataclass(frozen=True)
 class JointPart:
-    """A joint: its errors with all joints estimated together, and its own page.
+    """A joint: its errors with all joints estimated together, and its page.
 
     left: in noise floors of the joint;  said: the verdict on it in words
     """
@@ -45,7 +45,7 @@ class JointPart:
 
 @dataclass(frozen=True)
 class LinkRow:
-    """A base parameter of the links, SI; stderr: None where it is not told."""
+    """A base parameter of the links, SI; stderr: None where it is not determined."""
 
     name: str
     unit: str
@@ -181,7 +181,7 @@ def write_arm_report(
     soundness: Sequence[Finding] = (),
     unexplained: Mapping[str, Sequence[Finding]] | None = None,
 ) -> None:
-    """Write the page of an arm; the same diagnosis gives the same bytes.
+    """Write the page of an arm; the same diagnosis has the same bytes.
 
     soundness, unexplained: as `arm_page_of` takes them
     """

@@ -1,4 +1,4 @@
-"""The ladder's rungs, and every candidate that was tried with how it did on each of them."""
+"""The ladder's rungs, and every candidate, with how it did on each of them."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class CandidateStep:
 
 @dataclass(frozen=True)
 class CandidateRow:
-    """A candidate with its probability, and how it did on each step (None: not tried there)."""
+    """A candidate with its probability, and how it did on each step (None: not fitted there)."""
 
     effect: str
     at: str
@@ -76,7 +76,7 @@ def ladder_rows(diagnosis: Diagnosis) -> tuple[LadderRow, ...]:
 
 
 def candidate_steps(diagnosis: Diagnosis) -> tuple[CandidateStep, ...]:
-    """The steps that candidates were tried on; of an answer that was read back, the best alone."""
+    """The steps that candidates were fitted on; of an answer that was read back, the best alone."""
     ladder = ladder_rows(diagnosis)
     if diagnosis.recorded is not None:
         return (CandidateStep("at its best step", ladder[0].check_error),)
@@ -87,7 +87,7 @@ def candidate_steps(diagnosis: Diagnosis) -> tuple[CandidateStep, ...]:
 
 
 def candidate_rows(diagnosis: Diagnosis) -> tuple[CandidateRow, ...]:
-    """Every effect tried, with its check error on each step: those added, then by probability."""
+    """Every candidate, with its check error on each step: those added, then by probability."""
     if diagnosis.recorded is not None:
         return tuple(_recorded_row(diagnosis, row) for row in diagnosis.recorded["candidates"])
     steps = [(r, r.ranking) for r in diagnosis.rungs if r.ranking is not None]

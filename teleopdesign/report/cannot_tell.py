@@ -35,7 +35,7 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
         *_open_parameters(diagnosis),
         *_together(diagnosis.after),
         *_open_candidates(diagnosis),
-        *_not_tried(diagnosis),
+        *_excluded_effects(diagnosis),
         *_left_out(diagnosis),
         *_unchecked(diagnosis),
     ]
@@ -207,7 +207,7 @@ def _open_candidates(diagnosis: Diagnosis) -> list[Finding]:
     ]
 
 
-def _not_tried(diagnosis: Diagnosis) -> list[Finding]:
+def _excluded_effects(diagnosis: Diagnosis) -> list[Finding]:
     """Effects of the catalogue that could not be candidates on the last step."""
     model = diagnosis.model
     fitted = {r.candidate.key for r in diagnosis.last.ranked}

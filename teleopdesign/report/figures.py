@@ -28,7 +28,7 @@ GREY, RULE = "0.55", "#D9D9D9"
 
 
 def diverging() -> Colormap:
-    """Blue for less force than the model needs, grey for none, orange for more; told by all eyes.
+    """Blue for less force than the model needs, grey for none, orange for more; clear to all eyes.
 
     The middle is grey, not white, so that cells without data stand out on light and dark pages.
     """
@@ -49,7 +49,7 @@ def ladder_figure(rows: tuple[LadderRow, ...], floor: float) -> Markup:
             axes.barh(y, 100 * row.check_error, height=0.42, color=colour)
             axes.plot(100 * row.fit_error, y, "o", ms=4.5, mfc="w", mec="k", mew=0.9)
             name = row.name if y == 0 else f"+ {row.name}"
-            # on paper of its own, for the line of the noise floor may cross it
+            # on separate paper, for the line of the noise floor may cross it
             paper = {"facecolor": "w", "edgecolor": "none", "pad": 0.8}
             axes.text(
                 0, y - 0.29, name, va="bottom", ha="left", parse_math=False, bbox=paper, zorder=3.5

@@ -85,10 +85,10 @@ def parameter_rows(diagnosis: Diagnosis) -> tuple[ParameterRow, ...]:
                 added=(effect, place) in added,
             )
         )
-    return (*rows, *_rows_given_up(diagnosis, stated))
+    return (*rows, *_rows_removed(diagnosis, stated))
 
 
-def _rows_given_up(diagnosis: Diagnosis, stated: Mapping[str, float]) -> list[ParameterRow]:
+def _rows_removed(diagnosis: Diagnosis, stated: Mapping[str, float]) -> list[ParameterRow]:
     """The parameters of effects of the user's model that gave way to others."""
     model, there = diagnosis.before.model, diagnosis.model.parameters
     instead = {r.instead_of.key: r.added for r in diagnosis.rungs if r.added and r.instead_of}
@@ -123,14 +123,14 @@ def _rows_given_up(diagnosis: Diagnosis, stated: Mapping[str, float]) -> list[Pa
 
 
 def _parts(name: str) -> tuple[str, str, str]:
-    """Place, effect ("" for the body's own) and parameter of a full name."""
+    """Place, effect ("" for one of the body) and parameter of a full name."""
     place, _, local = name.partition(".")
     effect, _, parameter = local.rpartition(".")
     return place, effect, parameter
 
 
 def added_effects(diagnosis: Diagnosis, rows: tuple[ParameterRow, ...]) -> tuple[AddedEffect, ...]:
-    """What each added effect is, from its own file."""
+    """What each added effect is, from its file."""
     return tuple(
         AddedEffect(
             effect=r.added.effect.name,
@@ -147,12 +147,12 @@ def added_effects(diagnosis: Diagnosis, rows: tuple[ParameterRow, ...]) -> tuple
 
 
 def _stated(diagnosis: Diagnosis) -> dict[str, float]:
-    """Values that the experiment's own file gives, by full name (SI)."""
+    """Values of the experiment's file, by full name (SI)."""
     experiment = diagnosis.experiment
     try:
-        # a diagnosis that tried some effects knows no others; the file's model may have them
+        # a diagnosis among some effects knows no others; the file's model may have them
         model = Model.from_experiment(experiment, {**EFFECTS, **diagnosis.model.known})
-    except ExperimentError:  # diagnosed with a model of its own: the file's cannot be built
+    except ExperimentError:  # diagnosed with another model: the file's cannot be built
         return {}
     stated = {f"{place}.inertia" for place in experiment.bodies}
     for place, body in experiment.bodies.items():

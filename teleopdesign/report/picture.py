@@ -1,7 +1,7 @@
-"""A matplotlib figure as an <img> element that holds its own SVG: nothing is loaded from elsewhere.
+"""A matplotlib figure as an <img> element that holds the SVG: nothing is loaded from elsewhere.
 
-The SVG is the library's own output. As the content of an image its identifiers and styles cannot
-meet those of the page, and no text in it can become an element of the page. The same figure gives
+The SVG is the library's output. As the content of an image its identifiers and styles cannot
+meet those of the page, and no text in it can become an element of the page. The same figure has
 the same bytes. On a dark page the style sheet inverts the picture's lightness.
 """
 
@@ -41,7 +41,7 @@ PIXELS_PER_INCH = 288
 def picture(draw: Callable[[Figure], None], *, size: tuple[float, float], alt: str) -> Markup:
     """What `draw` draws, as an <img> element with an alternative text.
 
-    draw: is given an empty figure in house style;  size: width and height, inches
+    draw: gets an empty figure in house style;  size: width and height, inches
     alt: plain text, escaped here
     """
     import matplotlib.style

@@ -46,7 +46,7 @@ def write_report(
     unexplained: Sequence[Finding] = (),
     next_steps: Sequence[Finding] = (),
 ) -> None:
-    """Write the page of a diagnosis; the same diagnosis gives the same bytes.
+    """Write the page of a diagnosis; the same diagnosis has the same bytes.
 
     soundness: findings about the recording;  unexplained: about what the last model leaves
     next_steps: what to measure next; a section without findings is left out

@@ -1,8 +1,9 @@
 """Parameter sets of one diagram as numbers for its compiled laws, grouped by structure.
 
-What is simulated is not the diagram as it is given: absent effects are left out, ideal friction
-gets a little give, controllers take their sampled form. So cases fall into groups, by which
-effects their values switch off, and some numbers of the simulated form follow from several given.
+What is simulated is not the diagram as stated: absent effects are left out, ideal friction
+gets a short bristle, controllers take their sampled form. So cases fall into groups, by which
+effects their values switch off, and some numbers of the simulated form follow from several of a
+case.
 """
 
 from __future__ import annotations
@@ -160,8 +161,8 @@ def simulated_values(
         for k, row in enumerate(different):
             here = np.flatnonzero(which.reshape(-1) == k)
             try:
-                given_here = dict(zip(from_, map(float, row), strict=True))
-                there = form(group.diagram.with_values(given_here)).values
+                case_values = dict(zip(from_, map(float, row), strict=True))
+                there = form(group.diagram.with_values(case_values)).values
                 out[np.ix_(here, np.array(at))] = [there[n] for n in many]
             except ModelError as error:
                 out[np.ix_(here, np.array(at))] = np.nan

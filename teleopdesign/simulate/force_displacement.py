@@ -1,4 +1,4 @@
-"""Force against displacement at the user's hand, laid over the environment's own curve."""
+"""Force against displacement at the user's hand, laid over the environment's curve."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class ForceDisplacement(ByValue):
 
     data: `force` and `displacement` at the hand, `environment_force` and `environment_displacement`
     at the environment, over `case` and `time`; forces are those that the user and the tip exert
-    loops: case -> figures of the user's loop;  environment: case -> those of the environment's own
+    loops: case -> figures of the user's loop;  environment: case -> those of the environment itself
     rms: case -> rms of the user's force less the environment's at the same time, N
     """
 

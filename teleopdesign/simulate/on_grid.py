@@ -41,7 +41,7 @@ def whole_steps(delay: float, step: float, what: str) -> int:
 def input_table(
     names: tuple[str, ...], signals: Mapping[str, Input], time: np.ndarray
 ) -> np.ndarray:
-    """Inputs (names, n) at times (n,), s; 0 where a signal is not given."""
+    """Inputs (names, n) at times (n,), s; 0 where a signal is missing."""
     table = np.zeros((max(len(names), 1), len(time)))
     for i, name in enumerate(names):
         value = signals.get(name, 0.0)

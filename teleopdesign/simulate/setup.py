@@ -18,7 +18,8 @@ from .sampling import SAMPLED, Sampling
 from .trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from ..realise.kernel import Program, Timing
+    from ..realise.kernel import Timing
+    from ..realise.program import Program
 
 #: most numbers that one simulation may hold, 2 GB
 MOST_NUMBERS = 250_000_000
@@ -87,7 +88,7 @@ def _form_and_program(
     jit: bool,
 ) -> tuple[Diagram, Program]:
     """What is simulated of a diagram, and the loop for its structure."""
-    from ..realise.kernel import program
+    from ..realise.program import program
 
     body = simulated_form(same.diagram, motion=motion, computer=computer, give=give)
     sampled, observer = False, 0
@@ -110,7 +111,7 @@ def simulated_form(
 
 @dataclass(frozen=True)
 class Setup:
-    """A simulation that is ready to run, with its own step or a shorter one."""
+    """A simulation that is ready to run, with its step or a shorter one."""
 
     diagram: Diagram
     program: Program
@@ -224,7 +225,7 @@ class Setup:
     def checked(
         self, *, long_step: Literal["refine", "refuse"], every_step: bool = False
     ) -> tuple[np.ndarray, Timing]:
-        """Run with a step that resolves oscillations and bristles, or refuse the one given."""
+        """Run with a step that resolves oscillations and bristles, or refuse a longer one."""
         from ..realise.kernel import fastest_rate
 
         inner = self.first_inner(*fastest_rate(self.program, self.diagram.values), long_step)

@@ -110,17 +110,17 @@ def simulate(
     """Simulate a diagram from t = 0: all its signals over time.
 
     inputs: signals from outside (SI): a number, a function of time, or samples (those that the
-        computer reads: one a sample; others: one each half step); 0 where not given
+        computer reads: one a sample; others: one each half step); 0 by default
     motion: motions that are prescribed; the force that this takes becomes a result (R_V)
     initial: state -> start, such as "L", "L_velocity" or "Z_M_presliding_bristle"; else 0
     computer: how controllers are sampled; "continuous": they are not, as in `to_iosystem`
     step: inner step, s, rounded down to divide the sample period
-    give: m or rad; ideal Coulomb friction is a bristle that gives by this before it slides
+    give: m or rad; ideal Coulomb friction is a bristle that deflects by this before it slides
     long_step: a step too long for bristle or oscillations is made shorter, or refused
     every_step: rows at every inner step instead of every sample (continuous: of 1 ms)
-    estimate_error: run again with half and a quarter of the step (7 times the work) and give each
-        signal an attribute `step_error`, the largest difference between the three over its largest
-        size; large where stick and slip make motion chaotic
+    estimate_error: run again with half and a quarter of the step (7 times the work) and return for
+        each signal an attribute `step_error`, the largest difference between the three over its
+        largest size; large where stick and slip make motion chaotic
     jit: False runs the generated code in plain Python, as a nonlinear python-control system among
         the controllers does in any case: some hundred times slower
     raises ModelError: block without laws, unknown signal, step refused or force not finite

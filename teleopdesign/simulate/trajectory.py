@@ -81,7 +81,11 @@ class _Sampled(ByValue):
 
 
 def sine(*, amplitude: float, frequency: float, phase: float = 0.0) -> Trajectory:
-    """amplitude * sin(2 pi frequency t + phase); frequency in Hz, phase in rad."""
+    """amplitude * sin(2 pi frequency t + phase); frequency in Hz, phase in rad.
+
+    amplitude: of the position, m or rad;  frequency: Hz;  phase: rad, of the position
+    returns: position, velocity and acceleration over time (s); `.position` is a signal for `inputs`
+    """
     omega = 2 * np.pi * frequency
     return Trajectory(
         _Sinusoid(amplitude, omega, phase),
@@ -91,7 +95,12 @@ def sine(*, amplitude: float, frequency: float, phase: float = 0.0) -> Trajector
 
 
 def sampled_motion(time: np.ndarray, position: np.ndarray) -> Trajectory:
-    """A measured motion: quintic spline through the samples (n,), constant beyond the ends."""
+    """A measured motion: quintic spline through the samples (n,), constant beyond the ends.
+
+    time: s, increasing;  position: m or rad
+    returns: position, velocity and acceleration over time (s), to be prescribed in `simulate`
+    raises ModelError: other shapes, too few samples, or time that does not increase
+    """
     time, position = np.asarray(time, dtype=float), np.asarray(position, dtype=float)
     if time.ndim != 1 or time.shape != position.shape or len(time) < _FEWEST:
         raise ModelError(

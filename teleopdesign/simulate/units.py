@@ -45,7 +45,7 @@ def _states(diagram: Diagram) -> dict[str, tuple[str, str]]:
 def _quantities(diagram: Diagram) -> dict[str, str]:
     """Quantity of each signal: of bodies, and carried on by sums; of a controller by what takes it.
 
-    What a controller gives to a sum is what the sum is of: a position, where it is compared with
+    What a controller brings to a sum is what the sum is of: a position, where it is compared with
     one. What goes to controllers alone is what came in: a filter.
     """
     by_signal = dict(diagram.outside)

@@ -1,6 +1,6 @@
 """What is simulated at a point: a diagram with everything that `simulate` takes.
 
-A parameter is named as in `Diagram.values` ("C.dahl.level"), or is one of the simulation's own:
+A parameter is named as in `Diagram.values` ("C.dahl.level"), or is one of the simulation:
 
     computer.delay, .period, .encoder_step, .velocity_bandwidth    of `Sampling`
     inputs.R_D, initial.L                          signals from outside and states at the start
@@ -29,7 +29,7 @@ from ..simulate.units import signal_units
 #: numbers of a computer that may be varied -> unit; "": that of the first body's motion
 _COMPUTER = {"period": "s", "delay": "s", "encoder_step": "", "velocity_bandwidth": "Hz"}
 _SINE = {"amplitude": "", "frequency": "Hz", "phase": "rad"}
-_OWN = {"duration": "s", "step": "s", "give": ""}
+_OF_SIMULATION = {"duration": "s", "step": "s", "give": ""}
 
 
 @checked
@@ -63,12 +63,12 @@ class SimulatedCase(ByValue):
         return prepare(self.diagram, **settings)
 
     def names(self) -> tuple[str, ...]:
-        """Every parameter that can be varied; states at the start by those given."""
+        """Every parameter that can be varied; states at the start by those stated."""
         computer = [] if isinstance(self.computer, str) else [f"computer.{n}" for n in _COMPUTER]
         inputs = [f"inputs.{s}" for s in self.diagram.outside if s not in self.motion]
         initial = [f"initial.{s}" for s in self.initial]
         motions = [f"motion.{s}.{n}" for s, m in self.motion.items() if _is_sine(m) for n in _SINE]
-        return (*self.diagram.values, *computer, *inputs, *initial, *motions, *_OWN)
+        return (*self.diagram.values, *computer, *inputs, *initial, *motions, *_OF_SIMULATION)
 
     def check_names(self, names: Iterable[str]) -> None:
         """Refuse with ModelError, and the nearest name, what is no parameter."""
@@ -89,7 +89,7 @@ class SimulatedCase(ByValue):
     def with_values(self, values: Mapping[str, Any]) -> SimulatedCase:
         """The case with other values, by the names in `names`."""
         self.check_names(values)
-        changes: dict[str, Any] = {n: values[n] for n in _OWN if n in values}
+        changes: dict[str, Any] = {n: values[n] for n in _OF_SIMULATION if n in values}
         computer: dict[str, float] = {}
         inputs, motion, initial = dict(self.inputs), dict(self.motion), dict(self.initial)
         within: dict[str, float] = {}
@@ -120,8 +120,8 @@ class SimulatedCase(ByValue):
         length = unit_of("position", first_axis(self.diagram))
         if name in self.diagram.values:
             return unit_of_value(self.diagram, name)
-        if name in _OWN:
-            return _OWN[name] or length
+        if name in _OF_SIMULATION:
+            return _OF_SIMULATION[name] or length
         if stem == "computer":
             return _COMPUTER.get(rest, "1") or length
         units = signal_units(self.diagram)
@@ -135,7 +135,7 @@ class SimulatedCase(ByValue):
         stem, _, rest = name.partition(".")
         if name in self.diagram.values:
             return self.diagram.values[name]
-        if name in _OWN:
+        if name in _OF_SIMULATION:
             return getattr(self, name)
         if stem == "computer":
             return getattr(self.computer, rest)

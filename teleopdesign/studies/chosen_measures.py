@@ -1,6 +1,6 @@
-"""Measures: what is kept of each point; the package's own by name, or any function of a result.
+"""Measures: what is kept of each point; those of the package by name, or any function of a result.
 
-    "tracking_error"                              one of the package's own
+    "tracking_error"                              one of the package
     measure("rms", signal="R_M")                  with its options
     lambda simulation: float(abs(simulation["E"]).max())
 
@@ -29,7 +29,7 @@ class Measure(ByValue):
     """A measure of a study, with its options.
 
     name: of its values in the result
-    function: takes a `Point` (of the package's own), or what the point gave
+    function: takes a `Point` (measures of the package), or the result of the point
     signals: all that it needs of a simulation; none: it may need anything
     """
 
@@ -71,7 +71,7 @@ def measure(name: str, **options: Any) -> Measure:
 
 
 def measures_of(content: Any) -> tuple[Measure, ...]:
-    """One measure or several, by name where a mapping gives names.
+    """One measure or several, by name where there is a mapping.
 
     raises ModelError: a name twice, something that is no measure, none at all
     """

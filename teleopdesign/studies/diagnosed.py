@@ -9,7 +9,11 @@ if TYPE_CHECKING:
 
 
 def diagnosed(experiment: str) -> Diagnosis:
-    """The diagnosis of the recording in that folder; see `find_missing`."""
+    """The diagnosis of the recording in that folder; see `find_missing`.
+
+    experiment: path of a folder with experiment.toml;  a model function for `study`
+    raises ExperimentError: no such folder, or an experiment that cannot be read
+    """
     from ..diagnose import find_missing
     from ..measurement import load_experiment
 

@@ -3,7 +3,7 @@
 A slope is taken over five sizes of difference, each an eighth of the one before, and is read where
 two neighbours agree best. Too large a difference errs by curvature. Too small a one errs by
 rounding, and where an encoder rounds or motion sticks and slips, by jumps: there no two sizes
-agree, and how far they are apart is told beside each slope.
+agree, and their difference stands beside each slope.
 """
 
 from __future__ import annotations

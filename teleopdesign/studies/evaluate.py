@@ -1,4 +1,4 @@
-"""One point of a study: what the model gives there, and what the measures make of that."""
+"""One point of a study: the result of the model there, and what the measures make of that."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""What a study is, as one number: a model, axes and measures that are the same give the same.
+"""What a study is, as one number: the same for the same model, axes and measures.
 
-Numbers and texts count by value. A function counts by its source, with what it uses of its own
+Numbers and texts count by value. A function counts by its source, with what it uses of the same
 module and of what it encloses: a constant changed above it makes another study. Functions of
 installed packages count by their name; the versions stand beside.
 """
@@ -46,7 +46,7 @@ def _parts(thing: Any, above: set[int]) -> Iterator[str]:
     elif id(thing) in above:
         yield "as before"
     else:
-        # what is being described is kept alive by the one who asked: its id stays its own
+        # what is being described is kept alive by the caller: its id stays unique
         yield from _of_object(thing, above | {id(thing)})
 
 

@@ -40,7 +40,7 @@ _DIGITS = 15
 class FolderSearch:
     """How each folder is diagnosed.
 
-    known: effects by name;  among: names of those that are tried, None: all
+    known: effects by name;  among: names of the candidates, None: all
     quick: a first look alone
     """
 

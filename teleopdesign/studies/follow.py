@@ -91,7 +91,7 @@ class Followed:
     values, errors: (p,) SI; errors NaN at ends of intervals, where not `is_determined`, and all of
         them where the slopes of one parameter are more than MOST_APART apart
     apart: (p,) of the slopes, see `SignalSlopes`, over all signals
-    at_start: (signals, n) simulated with the diagram's own values, NaN where they have none
+    at_start: (signals, n) simulated with the diagram's values, NaN where they have none
     """
 
     values: np.ndarray
@@ -160,7 +160,7 @@ class _Search:
 
 
 def follow(case: SimulatedCase, box: ValueBox, target: Target, starts: int, seed: int) -> Followed:
-    """Values within the box whose simulation follows the target most closely, of those found."""
+    """Of the simulated values in the box, those that follow the target most closely."""
     search = _Search(case, box, target, 1 / _noise(target, target.size))
     first = shares_of(box, start_values(case, box))
     points = np.vstack([first, unit_box(box.names).inside(starts, seed)])

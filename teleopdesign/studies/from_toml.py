@@ -67,7 +67,7 @@ class SineInput:
 def read_study_file(path: str | Path, *, effects: Mapping[str, Effect] = EFFECTS) -> dict[str, Any]:
     """The arguments of `study` that a file describes.
 
-    raises ExperimentError: what cannot be read or has no meaning: file, key, found, expected
+    raises ExperimentError: what cannot be read or has no meaning
     """
     path = Path(path)
     root = read_toml(path, path.name)

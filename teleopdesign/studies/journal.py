@@ -28,7 +28,7 @@ except ImportError:  # no such thing on Windows: there two processes are not kep
 
 
 class Journal:
-    """Outcomes by point, also on disk where a path is given."""
+    """Outcomes by point, also on disk where there is a path."""
 
     def __init__(self, path: Path | None, study: str, points: int) -> None:
         """Open the journal, with what an earlier run has left of the same study.
@@ -138,7 +138,7 @@ class Journal:
             ) from error
 
     def forget_failures(self) -> None:
-        """Take failed points as not done: they may be tried again."""
+        """Take failed points as not done: they may be computed again."""
         for point in self.outcomes.failed():
             self.outcomes.drop(point)
 

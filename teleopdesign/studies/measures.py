@@ -1,4 +1,4 @@
-"""The package's own measures: a function of a point each, and its line in `MEASURES`."""
+"""The package's measures: a function of a point each, and its line in `MEASURES`."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def _impedance(point: Point, *, frequency: Any, amplitude: float, motion: str, f
 
 
 def _energy_drawn(point: Point, *, motion: str, force: str) -> Amount:
-    """most energy that a port has given out, beyond what went in before"""
+    """most energy that a port has released, beyond what went in before"""
     from ..passivity import observe_simulation
 
     lowest = observe_simulation(point.simulation, motion=motion, force=force).lowest

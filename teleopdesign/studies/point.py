@@ -45,8 +45,8 @@ class Point:
 
     content: what the model gave there: a `SimulatedCase`, or anything that its function returned
     values: parameter -> value;  seed: of this point, the same wherever it is computed
-    simulated: gives the simulation, where it was computed with those of other points;  rows: alike
-        one signal of it, without a labelled array for each point, which takes 0.3 ms
+    simulated: returns the simulation, where it was computed with those of other points;  rows:
+        alike one signal of it, without a labelled array for each point, which takes 0.3 ms
     """
 
     content: Any
@@ -78,7 +78,7 @@ class Point:
 
     @property
     def result(self) -> Any:
-        """What a user's own measure is given."""
+        """The argument of a user's measure."""
         if not isinstance(self.content, SimulatedCase):
             return self.content
         return self.simulation if self.content.duration else self.content.diagram
@@ -95,7 +95,7 @@ PointFunction = Callable[..., Any]
 class Kind(ByValue):
     """A measure that the package has: function(point, **options) -> Amount, or several by name.
 
-    options: name -> default; `...` where it must be given
+    options: name -> default; `...` where it is required
     signals: all that it needs of a simulation: signals, or options that name them
     """
 

@@ -18,7 +18,7 @@ SAMPLE = "sample"
 #: reason and what is still to do some tens
 MOST_POINTS = 100_000_000
 
-#: parameter -> values (a dimension of its own), or one value;  or points drawn together
+#: parameter -> values (a separate dimension), or one value;  or points drawn together
 Axes = Mapping[str, Any] | Samples | Sequence[Mapping[str, Any] | Samples]
 
 

@@ -30,7 +30,7 @@ _SLACK = 1e-6
 
 @dataclass(frozen=True)
 class TrialPoint:
-    """A point that was tried.
+    """A point that was evaluated.
 
     excesses: of every limit, < 0 where it is beyond its bound, NaN where it was not looked at
     objectives: NaN where not measured, as a limit was missed or the simulation failed
@@ -52,7 +52,7 @@ class TrialPoint:
 
 @dataclass
 class Problem:
-    """Parameters, objectives and limits of a search, and every point that was tried."""
+    """Parameters, objectives and limits of a search, and every point that was evaluated."""
 
     case: SimulatedCase
     parameters: ValueBox
@@ -71,7 +71,7 @@ class Problem:
         self.slack = [_SLACK] * len(self.limits)
 
     def tries(self, points: np.ndarray) -> list[TrialPoint]:
-        """Each point tried once; those that keep the claims are simulated side by side."""
+        """Each point evaluated once; those that keep the claims are simulated side by side."""
         keys = [tuple(map(float, p)) for p in points]
         new = [k for k in dict.fromkeys(keys) if k not in self.trials]
         excesses = {k: self._claims(k) for k in new}
@@ -95,11 +95,11 @@ class Problem:
         return self._study([values], others, (one.measure,))[values].get(one.name, np.nan)
 
     def start_values(self) -> np.ndarray:
-        """The case's own values of the parameters, brought into their intervals."""
+        """The case's values of the parameters, brought into their intervals."""
         return start_values(self.case, self.parameters)
 
     def start(self) -> TrialPoint:
-        """The case's own values, tried."""
+        """The case's values, evaluated."""
         return self.tries(self.start_values()[None])[0]
 
     def within(self, values: Sequence[float]) -> SimulatedCase:
@@ -223,7 +223,7 @@ def box_over(one: TuningLimit) -> ValueBox:
 
 
 def start_values(case: SimulatedCase, box: ValueBox) -> np.ndarray:
-    """The case's own values of the parameters (n,), brought into their intervals."""
+    """The case's values of the parameters (n,), brought into their intervals."""
     listed = [case.value(n) for n in box.names]
     numbers = [np.nan if x is None else float(x) for x in listed]
     inside = np.where(np.isnan(numbers), box.centre, numbers)

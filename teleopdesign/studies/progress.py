@@ -1,4 +1,4 @@
-"""How far a study is: what a caller is told while it runs."""
+"""How far a study is: the reports to a caller while it runs."""
 
 from __future__ import annotations
 

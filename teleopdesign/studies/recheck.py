@@ -23,7 +23,7 @@ _ACTIVE = 0.02
 
 @dataclass(frozen=True, eq=False)
 class CheckedLimit(ByValue):
-    """A limit of a search, checked at the point that was found.
+    """A limit of a search, checked at the best point.
 
     value: the worst within the intervals of the limit;  how: what shows this value
     active: whether it holds the search back: its value is beside the bound

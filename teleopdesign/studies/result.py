@@ -1,4 +1,4 @@
-"""What a study gives: one labelled data set, and figures of it."""
+"""The result of a study: one labelled data set, and figures of it."""
 
 from __future__ import annotations
 
@@ -183,7 +183,7 @@ def labelled(
 ) -> Study:
     """Outcomes of all points as one data set; it depends on nothing but them.
 
-    What a measure gives is settled by the first point that did not fail: one that gives something
+    The kind of a measure follows from the first point that did not fail: one that returns something
     else (other names, units or dimensions) has failed.
     """
     import xarray
@@ -225,7 +225,7 @@ def labelled(
 def _form_of(
     outcomes: Mapping[int, PointOutcome], many: int
 ) -> tuple[list[tuple[Any, ...]], np.ndarray]:
-    """What the measures give, and why points have failed, "" where they have not."""
+    """Results of the measures, and why points have failed, "" where they have not."""
     first = next((o.form for i in range(many) if not (o := outcomes[i]).reason), ())
     units = ["" for _ in first]
     verdicts: dict[tuple[Any, ...], str] = {}  # few forms, many points

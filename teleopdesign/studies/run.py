@@ -90,7 +90,7 @@ def study(
 
 @dataclass(frozen=True)
 class _Words:
-    """Units and labels that a user gives, by parameter or measure."""
+    """Units and labels of a user, by parameter or measure."""
 
     units: Mapping[str, str]
     labels: Mapping[str, str]

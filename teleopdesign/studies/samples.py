@@ -2,7 +2,7 @@
 
 A range is (low, high), uniform between them; (low, high, step), of which every low + n step is as
 probable, for delays that are whole steps of a simulation; or a distribution of `scipy.stats`, such
-as `scipy.stats.loguniform(1e-4, 1e-2)`. The same seed gives the same points on every machine.
+as `scipy.stats.loguniform(1e-4, 1e-2)`. The same seed has the same points on every machine.
 """
 
 from __future__ import annotations
@@ -68,7 +68,11 @@ def sobol(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
 
 
 def random_samples(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
-    """Points at random, each independent of the others; arguments as of `latin_hypercube`."""
+    """Points at random, each independent of the others; arguments as of `latin_hypercube`.
+
+    samples: how many;  seed: the same one has the same points on every machine
+    raises ModelError: no range, a range without width, no whole number of points above 0
+    """
     _check_count("random_samples", samples)
     unit = np.random.default_rng(seed).random((samples, len(_of(ranges))))
     return _placed(ranges, unit, "random", seed)
@@ -77,7 +81,7 @@ def random_samples(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) ->
 def sensitivity_samples(ranges: Mapping[str, Any], base: int, *, seed: int = 0) -> Samples:
     """Points for estimates of Sobol indices: base (k + 2) points in k parameters.
 
-    Each of `base` pairs of points of a Sobol sequence of 2 k dimensions gives its two points and k
+    Each of `base` pairs of points of a Sobol sequence of 2 k dimensions yields its two points and k
     between them, in each of which one parameter is the second point's. Saltelli et al., Computer
     Physics Communications 181 (2010) 259, in the order that SALib expects.
     base: a power of two;  ranges: as in `latin_hypercube`

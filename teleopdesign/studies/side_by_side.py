@@ -1,6 +1,6 @@
 """Points of a study simulated side by side: many lanes of one compiled loop.
 
-This is for measures of the package that say which signals they need; a user's function is given a
+This is for measures of the package that say which signals they need; a user's function gets a
 whole simulation, one point at a time. Points are put into blocks by their numbers alone, so that
 the same ones are side by side wherever and whenever they are computed.
 """
@@ -79,7 +79,7 @@ def evaluate_unit(task: StudyTask, unit: Unit) -> list[PointOutcome]:
             case = task.model.with_values({**task.points.fixed, **others})
             block = _block(simulate_rows(case, columns, signals_of(task)))
         except TeleopDesignError:
-            # what is wrong with all of them: each says its own reason
+            # what is wrong with all of them: each says its reason
             outcomes |= {unit[row]: evaluate(task, unit[row]) for row in rows}
             continue
         for k, row in enumerate(rows):

@@ -56,7 +56,7 @@ class SimulationFit(ByValue):
         where the motion follows one of them by jumps
     apart: by parameter, how far the slopes behind its error are apart, see `sensitivities`
     rms: by signal, of simulated less measured (SI);  of_signal: the same over the standard
-        deviation of what was measured;  before: so with the diagram's own values, NaN where these
+        deviation of what was measured;  before: so with the diagram's values, NaN where these
         have no simulation
     data: SIGNAL_measured and SIGNAL_simulated over `time`
     sensitivities: of the signals at `values`;  searches: made from different points;  agreeing: of
@@ -152,7 +152,7 @@ def fit_simulation(
         motion is differentiated twice without a low-pass: an encoder's steps make `td.fit` better
     initial, computer, step: as in `simulate`; of a `SimulatedCase` all is as it has it but the
         duration: up to the last whole sample of the computer within the data
-    starts: points that are simulated to begin from, beside the diagram's own values
+    starts: points that are simulated to begin from, beside the diagram's values
     returns: standard errors hold for errors of measurement that are correlated over 0.25 s at most
         (a 30th of the record where that is shorter), and for a simulation that is right but for the
         parameters: what the model lacks they do not see

@@ -1,7 +1,7 @@
 """Two measures against each other: the points of which no other one is better in both.
 
 The second objective is bounded at levels between the best of either (epsilon-constraint), and the
-first is searched at each, as in `tune`; every point that was tried on the way counts.
+first is searched at each, as in `tune`; every point that was evaluated on the way counts.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ _ENDS = 0.25
 
 @dataclass(frozen=True, eq=False)
 class ParetoFront(ByValue):
-    """The best trade-offs found between two measures that are to be small.
+    """The best trade-offs between two measures that are to be small.
 
     points: each with its limits checked once more, by increasing first objective
-    objectives: (k, 2) of the points;  before: (2,), with the diagram's own values, NaN where none
-    evaluated: (m, 2), of all points that were tried and keep the limits;  tried_best: (j, 2), of
-        those that no other one beats in both: `points` are spread along them
-    number: of points that were tried;  dropped: those whose limits failed in the last check
+    objectives: (k, 2) of the points;  before: (2,), with the diagram's values, NaN where none
+    evaluated: (m, 2), of all points that were evaluated and keep the limits;  tried_best: (j, 2),
+        of those that no other one beats in both: `points` are spread along them
+    number: of points that were evaluated;  dropped: those whose limits failed in the last check
     """
 
     names: tuple[str, str]
@@ -93,7 +93,7 @@ def trade_off(
     """Search for the best trade-offs between two measures, within limits; arguments as of `tune`.
 
     objectives: two measures;  points: at most, of the front
-    evaluations: points that are tried in all
+    evaluations: points that are evaluated in all
     raises ModelError: not two objectives, no point that keeps the limits, and as `tune`
     """
     if len(objectives) != 2:

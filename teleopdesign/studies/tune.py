@@ -11,7 +11,7 @@
 
 Differential evolution, as measures of simulations are neither smooth nor convex, then a simplex
 from the best point. Points that miss a claim or a margin are not simulated. What comes out is the
-best of the points that were tried; its limits are checked once more, by the strictest method.
+best of the points that were evaluated; its limits are checked once more, by the strictest method.
 """
 
 from __future__ import annotations
@@ -49,9 +49,9 @@ _POLISH = 0.25
 class Tuned(ByValue):
     """The best point that a search came to.
 
-    diagram: with `values`;  objective: the measure there, of `before` with the diagram's own values
+    diagram: with `values`;  objective: the measure there, of `before` with the diagram's values
         (NaN where it is not measured there);  limits: checked once more at `values`
-    number: of points that were tried;  simulated: simulations, or evaluations of measures
+    number: of points that were evaluated;  simulated: simulations, or evaluations of measures
     at_ends: parameters at an end of their interval
     """
 
@@ -122,10 +122,10 @@ def tune(
     objective: a measure, as in `study`: a name, `measure(...)`, or a function of the result
     subject_to: `limit(...)`, or names of claims ("passive", "absolutely stable", "stable")
     duration ... step: how the diagram is simulated, see `study`
-    evaluations: points that are tried in one round; a round more where a limit over intervals fails
-        at a point of these that the search had not looked at
-    seed: the same one gives the same answer, whatever `workers` (processes) is
-    returns: the best point found, never "the optimum": nothing is said of points not tried
+    evaluations: points that are evaluated in one round; a round more where a limit over intervals
+        fails at a point of these that the search had not looked at
+    seed: the same one has the same answer, whatever `workers` (processes) is
+    returns: the best point evaluated, never "the optimum": nothing is said of other points
     raises ModelError: an unknown parameter or measure, an interval that is none
     """
     if isinstance(objective, list | tuple):
@@ -227,7 +227,7 @@ def search(problem: Problem, evaluations: int, *, number: int = 0, most: float =
 
 
 def _first(problem: Problem, population: int, best: TrialPoint | None) -> np.ndarray:
-    """Sobol points of the first generation; the diagram's own values and the best so far are in."""
+    """Sobol points of the first generation; the diagram's values and the best so far are in."""
     points = unit_box(problem.parameters.names).inside(population, problem.seed)
     points[0] = shares_of(problem.parameters, problem.start_values())
     if best is not None:

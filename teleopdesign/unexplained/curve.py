@@ -40,8 +40,8 @@ class Curve:
 def curve_of(rows: Rows, dependence: Dependence, earlier: tuple[Dependence, ...] = ()) -> Curve:
     """The curve in the residual without the earlier dependences.
 
-    A constant, a sinusoid and what the command loses are given at their full size, that is with the
-    model's own parameters free beside them; other lines are what the model as it is leaves.
+    A constant, a sinusoid and what the command loses are stated at their full size, that is with
+    the model's parameters free beside them; other lines are what the model as it is leaves.
     """
     left = rows.residual * rows.root
     for before in earlier:

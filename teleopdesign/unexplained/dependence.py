@@ -1,8 +1,8 @@
 """How the residual depends on something, learnt on fit records and held against check records.
 
-Beside each dependence the model's own parameters move freely (to first order), so that nothing is
-called missing that another value of a parameter would give. Roughness is weighed by blocks of the
-fit records held out in turn. What counts is the gain on rows that were not learnt from, in
+Beside each dependence the model's parameters move freely (to first order), so that nothing is
+called missing that another value of a parameter would explain. Roughness is weighed by blocks of
+the fit records held out in turn. What counts is the gain on rows that were not learnt from, in
 standard deviations of its chance part, by blocks: see `evidence`.
 """
 
@@ -22,9 +22,9 @@ from .rows import Rows
 from .shapes import SHAPES, Shape, columns_of, knots_of, roughness
 from .waves import wave_number
 
-#: weights of roughness that are tried, relative to the data's
+#: weights of roughness that are compared, relative to the data's
 SMOOTHNESS = np.logspace(-4, 3, 8)
-#: weight of f itself, relative to the data's: what another value of the model's own parameters
+#: weight of f itself, relative to the data's: what another value of the model's parameters
 #: would explain as well is left to them; what the rows tell is lowered by a thousandth
 SMALLNESS = 1e-3
 #: part of a gain that must be there too with the variable as the model expects it: at steady speed
@@ -85,7 +85,7 @@ class Dependence:
 
 
 def model_columns(rows: Rows) -> Columns:
-    """The columns of the model's own free parameters: weighted, no penalty."""
+    """The columns of the model's free parameters: weighted, no penalty."""
     values = rows.tangents * rows.root[:, None]
     size = np.linalg.norm(values, axis=0)
     values = values[:, size > 0] / size[size > 0]
@@ -184,7 +184,7 @@ def is_real(dependence: Dependence, whole: float, floor_squares: float) -> bool:
     """Whether the checked rows support it, by more than chance and by enough to matter.
 
     whole: squares on the checked rows that the model leaves;  floor_squares: what sensors alone do.
-    By the same measures as an effect of the ladder, where the gain may be the method's own; one
+    By the same measures as an effect of the ladder, where the gain may be the method's; one
     beyond all that the sensors leave needs only to be no chance.
     """
     gain = float(dependence.before @ dependence.before) - dependence.squares
@@ -200,8 +200,8 @@ def dependences(
 ) -> tuple[tuple[Dependence, ...], tuple[Dependence, ...]]:
     """What the residual depends on, largest first; and every test of the first round.
 
-    floor_squares: what sensors alone leave on the checked rows;  most: found, at most
-    Each one found is taken into account before the next is looked for.
+    floor_squares: what sensors alone leave on the checked rows;  most: dependences, at most
+    Each one is taken into account before the next is looked for.
     """
     target = rows.residual * rows.root
     whole = float(np.sum(target[rows.checked] ** 2))

@@ -24,9 +24,9 @@ from .views import curve_graph, views_of
 from .whiteness import Whiteness, whiteness_of
 
 #: part of what is left that may stay undescribed unmentioned: to first order, with f as lines
-#: between knots, a description leaves some percent of its own
+#: between knots, a description leaves some percent by itself
 UNDESCRIBED = 0.1
-#: part of what is left from which it is said to lie where no motion can be told
+#: part of what is left from which it is said to lie where no motion is sure
 MOSTLY = 0.5
 
 
@@ -51,9 +51,9 @@ class BodyResidual:
     """Residual of the model on one body, described.
 
     error: relative force error on the check records (blocks of the fit records where none)
-    floor: what sensors alone would leave of it;  after: error once what was found is taken out,
+    floor: what sensors alone would leave of it;  after: error without the explained part,
     while it slides
-    at_rest: part of the squares that is left where no motion can be told
+    at_rest: part of the squares that is left where no motion is sure
     dependences: what the residual depends on, largest first
     tests: of each dependence looked at, best first;  views: name -> graph of the residual
     """

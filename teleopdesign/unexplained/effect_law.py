@@ -62,7 +62,7 @@ def law_of_formula(formula: Formula, axis: str, unit: Mapping[str, float]) -> La
 
 
 def _reach(quantity: str, unit: Mapping[str, float]) -> float:
-    """A round number of the record's own scale: f is counted there, so that it has one unit."""
+    """A round number of the record's scale: f is counted there, so that it has one unit."""
     return 1.0 if quantity == "time" else float(f"{unit[quantity]:.1g}")
 
 

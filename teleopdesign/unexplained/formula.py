@@ -1,4 +1,4 @@
-"""A sparse formula for a dependence: found on the fit records, kept if it holds on the others."""
+"""A sparse formula for a dependence: fitted on the fit records, kept if it holds on the others."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ HOLDS = 0.95
 #: most terms
 MOST = 2
 #: standard errors that each coefficient must differ from zero by
-TOLD = 3.0
+SURE = 3.0
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Formula:
 def formula_for(rows: Rows, beside: Columns, dependence: Dependence) -> Formula | None:
     """The formula with the fewest terms that does as well as the smooth curve; None if none does.
 
-    beside: columns of the model's own parameters and of what was found before
+    beside: columns of the model's parameters and of earlier dependences
     """
     variable = dependence.shape.variable
     if variable is None or variable.signed:
@@ -71,7 +71,7 @@ def formula_for(rows: Rows, beside: Columns, dependence: Dependence) -> Formula 
         explained = beside.beside(_columns(rows, dependence.shape, chosen)) if chosen else beside
         search = _Search.beside(rows, explained)
         ranked = search.ranked(terms, every)
-        # what has no number to be found is simpler
+        # what has no number to search is simpler
         simple = [t for t in ranked if not t.is_searched]
         for term in dict.fromkeys((*simple[:1], ranked[0])):
             longer = (*chosen, _refine_number(rows, search, dependence.shape, term))
@@ -173,9 +173,9 @@ def _checked_formula(
     errors = standard_errors(together.values[learnt], left, rows.blocks[learnt])[-k:]
     formula = Formula(dependence.shape, terms, value[-k:], errors, share)
     is_significant = all(
-        np.hypot.reduce(c) > TOLD * np.hypot.reduce(e)
+        np.hypot.reduce(c) > SURE * np.hypot.reduce(e)
         for (_, c), e in zip(formula.split(), formula.split_errors(), strict=True)
     )
-    # a dependence that is a sinusoid is its own formula
+    # a dependence that is a sinusoid is its formula
     holds = dependence.shape.is_wave or (share > HOLDS and sure and is_significant)
     return formula if holds else None

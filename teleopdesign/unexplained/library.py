@@ -13,7 +13,7 @@ from ..measurement.filtering import Array
 from .shapes import ACCELERATION, COMMAND, INTERACTION, POSITION, TIME, Variable
 
 #: values of a number that a search begins with
-TRIED = 24
+STARTS = 24
 
 
 @dataclass(frozen=True)
@@ -52,12 +52,12 @@ class FormulaTerm:
 
     @property
     def is_searched(self) -> bool:
-        """Whether its number is found by search."""
+        """Whether its number is searched."""
         return self.kind != "power"
 
 
 def terms_of(variable: Variable, knots: Array, wave: float) -> list[FormulaTerm]:
-    """The terms that are tried over a variable whose f has these knots.
+    """The candidate terms over a variable whose f has these knots.
 
     wave: number of cycles per unit to try, 0 for none
     """
@@ -65,13 +65,13 @@ def terms_of(variable: Variable, knots: Array, wave: float) -> list[FormulaTerm]
     terms = [FormulaTerm("power", p) for p in (1.0, 2.0, 3.0)]
     if low >= 0.0 or variable is TIME:
         first = max(float(knots[1]), 1e-3 * high)
-        for n in np.geomspace(first, high, TRIED).tolist():
+        for n in np.geomspace(first, high, STARTS).tolist():
             terms += [FormulaTerm("bell", n), FormulaTerm("decay", n)]
     if variable in (COMMAND, INTERACTION, ACCELERATION):
         top = max(abs(low), abs(high))
-        terms += [FormulaTerm("beyond", n) for n in (top * np.arange(1, TRIED) / TRIED).tolist()]
+        terms += [FormulaTerm("beyond", n) for n in (top * np.arange(1, STARTS) / STARTS).tolist()]
     if variable is POSITION:
-        for n in np.linspace(low, high, TRIED + 2)[1:-1].tolist():
+        for n in np.linspace(low, high, STARTS + 2)[1:-1].tolist():
             terms += [FormulaTerm("above", n), FormulaTerm("below", n)]
     if wave > 0.0:
         terms.append(FormulaTerm("wave", wave))

@@ -46,7 +46,7 @@ class Contrast:
 def contrasts(rows: Rows, dependence: Dependence, left: Array) -> tuple[Contrast, ...]:
     """The dependence's size forward and backward, after a rest and after a mere reversal.
 
-    left: weighted residual (n,) that it was found in
+    left: weighted residual (n,) that it describes
     """
     whole = dependence.columns.values @ dependence.coefficients
     direction, rested = rows.at("direction"), rows.at("rested")

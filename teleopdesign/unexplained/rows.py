@@ -23,7 +23,7 @@ from ..measurement.reversals import since_reversal
 from ..model import Model
 from ..realise.along_motion import residual_along
 
-#: s without a told motion after which a body counts as having rested: above the quarter of a period
+#: s without sure motion after which a body counts as having rested: above the quarter of a period
 #: at a hertz that a hand takes to turn round, below the half second that experimenters wait
 RESTED = 0.2
 
@@ -56,7 +56,7 @@ class Rows:
 
     residual: low-passed, unit of the forces;  tangents: (n, p) by the free parameters
     measured: measured force, low-passed likewise
-    root: square root of the samples that a row stands for, 0 where no motion can be told: friction
+    root: square root of the samples that a row stands for, 0 where no motion is sure: friction
     is known there no better than between its bounds;  blocks: number of its quarter second
     number: of its stretch;  splits: (rows to learn from, rows to hold it against), masks
     """

@@ -3,7 +3,7 @@
     missing force = carrier * f(variable)
 
 The carrier says what kind of physics it is (a force, a friction, a damping, a mass, ...). f is a
-line between knots, or a sinusoid of a wave number found by search; without a variable a constant.
+line between knots, or a sinusoid of a wave number that is searched; without a variable a constant.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ LATENESS = Carrier("lateness", "time", "force_rate")
 class Variable:
     """What f depends on.
 
-    name: a signal of `Along`;  knots: how many;  signed: f has a branch of its own for each sign
+    name: a signal of `Along`;  knots: how many;  signed: f has a separate branch for each sign
     bent: knots lie closer where the variable is small, as what happens at low speed takes little
     of the range;  wave: f is a sinusoid
     expected: the signal as the model expects it, for one that holds the residual itself
@@ -132,7 +132,7 @@ def knots_of(variable: Variable, rows: Rows) -> Array:
     if not variable.bent:
         low, high = np.quantile(values[shown], [0.0005, 0.9995]).tolist()
         return np.linspace(low, high, variable.knots)
-    # the first knot holds rows enough to tell f there, down to rest: as motions are told
+    # the first knot holds rows enough to know f there, down to rest: as motions are determined
     first, top = np.quantile(np.abs(values[shown]), [0.01, 0.9995]).tolist()
     small = min(smallest_resolved(variable, rows), 0.1 * top)
     ends = np.arcsinh([first / small, top / small])
@@ -157,7 +157,7 @@ def basis(variable: Variable, knots: Array, values: Array) -> Array:
         turn = 2 * np.pi * knots[0] * values
         return np.vstack([np.cos(turn), np.sin(turn)]) * known
     size = np.abs(values) if variable.signed else values
-    # at rest friction is that of the slowest motion that is told
+    # at rest friction is that of the slowest sure motion
     hats = _hats(np.maximum(size, knots[0]) if variable.bent else size, knots) * known
     return np.vstack([hats * (values > 0), hats * (values < 0)]) if variable.signed else hats
 

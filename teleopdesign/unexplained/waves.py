@@ -64,7 +64,7 @@ def _along(values: Array, carrier: Array, left: Array, step: float) -> float:
 
 
 def _frequency(rows: Rows, used: NDArray[np.bool_], product: Array, step: float) -> float:
-    """Best frequency by Fourier transform of each stretch, in its record's own time."""
+    """Best frequency by Fourier transform of each stretch, in its record's time."""
     time, number = rows.at("time")[used], rows.number[used]
     interval = max(np.diff(time[number == i]).min() for i in np.unique(number))
     length = fft.next_fast_len(int(1.0 / (step * interval)) + 1, real=True)

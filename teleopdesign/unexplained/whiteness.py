@@ -1,4 +1,4 @@
-"""Whether what is left is more than sensor noise by its own pattern: memory, and its frequencies.
+"""Whether what is left is more than sensor noise by its pattern: memory, and its frequencies.
 
 Sensor noise below the comparison's low-pass remembers no more than that filter does. What is left
 of a force is slower: it goes along with itself some tenths of a second later.
@@ -27,7 +27,7 @@ LAGS = 12
 class Whiteness:
     """Autocorrelation of the residual.
 
-    lag: s, (l,);  correlation: (l,), with noise: the standard deviation that chance gives it
+    lag: s, (l,);  correlation: (l,), with noise: its standard deviation by chance
     probability: that chance alone brings the largest, over all lags
     spectrum: rows frequency (Hz), rms of the residual and of the measured force per band (3, f)
     """

@@ -9,7 +9,9 @@ import pytest
 from clock import takes_less_than
 from shared_data import shared_folder
 
+import teleopdesign as td
 from teleopdesign import Model, example, load_experiment
+from teleopdesign.check.bandwidth_check import check_bandwidth
 from teleopdesign.check.excitation import check_excitation
 from teleopdesign.check.plausibility import check_plausibility
 from teleopdesign.check.soundness_check import check_experiment
@@ -339,3 +341,29 @@ def test_shared_measurements_raise_no_false_warning():
         if warned:
             found[folder.name] = list(map(str, warned))
     assert found == {}
+
+
+def test_a_bandwidth_that_hides_the_motion_in_the_steps_of_the_encoder_is_doubted():
+    rate, step = 200.0, 1e-4
+    t = np.arange(6000) / rate
+    position = step * np.round(0.004 * np.sin(2 * np.pi * 0.3 * t) / step)
+    force = np.sign(np.cos(2 * np.pi * 0.3 * t))
+    data = {"t": t, "x": position, "F": force}
+
+    def asked(bandwidth):
+        return td.experiment(
+            data,
+            axis="prismatic",
+            time="t",
+            position={"column": "x", "resolution": step},
+            actuator_force="F",
+            inertia=0.1,
+            bandwidth=bandwidth,
+        )
+
+    (doubt,) = check_bandwidth(prepare(asked(40.0)))
+    assert doubt.topic == "bandwidth" and doubt.concern == "warning"
+    assert doubt.numbers["seen"] < 0.5 * doubt.numbers["could"]
+    assert 'write bandwidth = { value = 10, unit = "Hz" } at comparison' in doubt.sentence
+    # what the finding says to type is taken
+    assert list(check_bandwidth(prepare(asked(doubt.numbers["proposed"])))) == []

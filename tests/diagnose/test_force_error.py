@@ -117,7 +117,11 @@ def test_the_true_parameters_leave_the_error_that_the_simulation_says(
 
 @pytest.mark.parametrize(
     ("effect", "seed"),
-    [("stribeck", 8), (None, 4), pytest.param("spring", 8, marks=pytest.mark.slow)],
+    [
+        pytest.param("stribeck", 8, marks=pytest.mark.slow),
+        (None, 4),
+        pytest.param("spring", 8, marks=pytest.mark.slow),
+    ],
 )
 def test_the_floor_is_what_step_and_noise_leave_on_the_true_motion(effect, seed, tmp_path):
     """Within 30 % of the floor that the simulator finds by drawing errors onto its true motion."""

@@ -80,7 +80,7 @@ def test_the_same_way_at_the_same_time_in_every_record_tells_nothing():
 def test_what_lies_next_to_it_in_another_record_is_the_same_place_only_with_one_zero():
     ways = [sweep(0, 1, file="a.csv"), sweep(0, 1, 50.0, file="b.csv")]
     assert tells_place_from_time(ways)
-    assert not tells_place_from_time(ways, own_zero={"a.csv", "b.csv"})
+    assert not tells_place_from_time(ways, separate_zeros={"a.csv", "b.csv"})
 
 
 def test_eight_turns_tell_what_repeats_every_turn_and_no_spring():

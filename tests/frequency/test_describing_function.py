@@ -113,11 +113,7 @@ def against_simulation(name):
     assert simulated.data["impedance"].item() == pytest.approx(found, rel=5e-3)
 
 
-def test_describing_function_and_simulation_agree():
-    against_simulation("stribeck")
-
-
-@pytest.mark.slow
+@pytest.mark.slow  # Coulomb friction is in test_measured_impedance.py
 @pytest.mark.parametrize("name", [n for n in NAMES if n not in WITHOUT])
 def test_describing_function_and_simulation_agree_for_the_catalogue(name):
     against_simulation(name)

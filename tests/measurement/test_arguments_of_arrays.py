@@ -45,3 +45,18 @@ def test_a_file_in_place_of_arrays_is_told_how_it_is_read():
 def test_an_empty_table_is_one_line():
     with pytest.raises(ExperimentError, match="found 0 rows, expected at least 64"):
         made({name: values[:0] for name, values in DATA.items()})
+
+
+def test_a_channel_with_more_to_say_takes_its_unit_from_the_columns_name_too():
+    t = np.arange(2000) / 500
+    data = {"t": t, "x (mm)": np.sin(5 * t), "F": np.cos(5 * t)}
+    experiment = td.experiment(
+        data,
+        axis="prismatic",
+        position={"column": "x (mm)", "resolution": 0.01},
+        actuator_force={"column": "F", "sign": -1},
+    )
+    position = experiment.channels["device.position"]
+    assert (position.unit, position.resolution) == ("mm", pytest.approx(1e-5, rel=1e-12))
+    assert experiment.channels["device.actuator_force"].unit == "N"
+    assert experiment.records[0].signals["device.actuator_force"][0] == -1.0

@@ -200,6 +200,29 @@ def test_a_channel_that_never_changes_is_named(rod):
     assert "throughout" in found[0].sentence
 
 
+def test_an_averaged_log_of_a_coarse_encoder_neither_repeats_samples_nor_runs_flat(rod):
+    """Near its turns the body stays within a step; averages lie between the encoder's steps."""
+    rate, averaged_over = 50.0, 4
+    t = np.arange(averaged_over * len(T)) / (averaged_over * rate)
+    position = read(40 * STEP * np.sin(2 * np.pi * 0.5 * t)).reshape(len(T), -1).mean(axis=1)
+    first = rod.records[0]
+    channel = replace(rod.channels["device.position"], resolution=STEP)
+    experiment = replace(
+        rod,
+        records=(
+            replace(
+                first,
+                time=np.arange(len(T)) / rate,
+                sample_time=1 / rate,
+                segments=(slice(0, len(T)),),
+                signals={"device.position": position},
+            ),
+        ),
+        channels={"device.position": channel},
+    )
+    assert [f for f in check_signals(experiment) if f.concern == "warning"] == []
+
+
 def test_samples_that_repeat_while_the_body_goes_on_are_counted():
     rng = np.random.default_rng(3)
     x = read(5 * motion())

@@ -11,7 +11,7 @@ import teleopdesign as td
 from teleopdesign.cli import main
 
 #: effects that are tried: the one that is missing, and some that could stand for it
-TRIED = ("stribeck", "presliding", "quadratic_drag", "bias")
+CANDIDATES = ("stribeck", "presliding", "quadratic_drag", "bias")
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +21,7 @@ def log():
 
 def diagnosed(folder):
     """The answer of `teleopdesign diagnose FOLDER`, with a report beside it."""
-    wishes = ["--only", *TRIED, "--json", "answer.json", "--report", "report.html"]
+    wishes = ["--only", *CANDIDATES, "--json", "answer.json", "--report", "report.html"]
     assert main(["diagnose", folder, *wishes]) == 0
     assert Path("report.html").stat().st_size > 100_000
     return json.loads(Path("answer.json").read_text(encoding="utf-8"))

@@ -76,7 +76,11 @@ def device(own, damping, gives):
     return haptic_interface(body, cancellation=law)
 
 
-@pytest.mark.parametrize("computer", ["continuous", Sampling(period=1e-4, delay=1e-4)], ids=str)
+# in a computer, another loop to compile, the search finds it too
+COMPUTERS = ["continuous", pytest.param(Sampling(period=1e-4, delay=1e-4), marks=pytest.mark.slow)]
+
+
+@pytest.mark.parametrize("computer", COMPUTERS, ids=["continuous", "sampled"])
 def test_a_contact_that_gives_is_driven_by_a_tenth_of_its_friction(computer):
     """0.05 N of the 0.5 N that a contact has: passive were it ideal; its small motion is not."""
     small = Strokes((2e-7, -2e-7), speed=2e-5)

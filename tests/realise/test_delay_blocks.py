@@ -114,7 +114,9 @@ def test_two_delays_in_series_are_one_of_their_sum():
     np.testing.assert_array_equal(*runs)
 
 
-@pytest.mark.parametrize("analog", [pytest.param(True, marks=pytest.mark.slow), False])
+# two loops to compile each; lanes with delays are in simulate/test_many.py too
+@pytest.mark.slow
+@pytest.mark.parametrize("analog", [True, False])
 def test_delays_side_by_side_are_those_of_single_simulations(analog):
     """Analog and sampled, zero among them; lanes have the same arithmetic but for exp."""
     times = np.array([0.0, 0.004, 0.0125, 0.0125])
@@ -233,5 +235,6 @@ def test_a_delay_of_the_computer_adds_to_one_of_its_samples():
         duration=0.05,
         inputs={"f": 1.0},
         computer=Sampling(period=2e-3),
+        jit=False,
     )
     np.testing.assert_array_equal(found["x_late"].values[5:], found["x"].values[:-5])

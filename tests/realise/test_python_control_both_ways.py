@@ -438,7 +438,9 @@ def opened(diagram):
     return diagram
 
 
-@pytest.mark.parametrize("name", COUPLED)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.slow) if n == "three axes" else n for n in COUPLED]
+)
 def test_a_plant_of_several_axes_is_its_own_transfer_functions(name):
     """Matrices in, transfer functions out: 1e-6 of each entry, over four decades."""
     alone = opened(with_axes(COUPLED[name]))

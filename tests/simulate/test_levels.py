@@ -36,6 +36,7 @@ def test_a_level_that_falls_below_zero_in_fast_sliding_alone_is_refused():
         simulate(haptic_interface(slippery), duration=0.01, motion=MOTION, jit=False)
 
 
+@pytest.mark.slow  # a loop of lanes; simulate/test_many.py has cases that fail beside others
 def test_among_many_cases_only_those_are_refused():
     found = simulate_many(
         device(0.1),

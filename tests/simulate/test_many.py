@@ -2,29 +2,17 @@
 
 import numpy as np
 import pytest
-from devices import FEEDBACK, body
+from devices import body, coupled
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
-from teleopdesign.controllers import controller
-from teleopdesign.diagrams import haptic_interface, teleoperator
+from teleopdesign.diagrams import haptic_interface
 from teleopdesign.errors import ModelError
 from teleopdesign.simulate import Sampling, simulate, simulate_many
 
 #: two loops that differ by rounding in one exp: 1e-9 of the largest value, as golden/ allows
 ROUNDING = 1e-9
-DAHL = controller("dahl", {"level": 0.4, "stiffness": 1e4})
-LINK = controller("spring_damper", {"stiffness": 200.0, "damping": 3.0})
-
-
-def plant(**more):
-    return body(0.15, coulomb__level=0.5, presliding__stiffness=2e4, viscous__damping=0.4, **more)
-
-
-def coupled():
-    hand = body(0.1, viscous__damping=2.0)
-    return teleoperator(plant(), plant(), coupling=LINK, hand=hand, master_cancellation=DAHL)
 
 
 def push(t):
@@ -116,17 +104,13 @@ def test_sampled_and_continuous_loops_are_the_same_too(computer):
 
 def test_ideal_friction_gets_its_give_in_every_case():
     """What is simulated follows from the level: the stiffness of a bristle that nobody gave."""
-    diagram = haptic_interface(
-        body(0.15, coulomb__level=0.5, viscous__damping=0.1), force_feedback=FEEDBACK
-    )
-    inputs = {"R_V": push}
-    values = {"Z_M.coulomb.level": [0.1, 0.2, 0.4, 0.2]}
-    many = simulate_many(diagram, values, duration=0.1, inputs=inputs, keep=["L"])
-    for case, level in enumerate(values["Z_M.coulomb.level"]):
-        alone = diagram.with_values({"Z_M.coulomb.level": level})
-        one = simulate(alone, duration=0.1, inputs=inputs, jit=False)["L"].values
-        assert np.abs(one - many["L"].values[case]).max() <= ROUNDING * np.abs(one).max()
-    assert np.array_equal(many["L"][1], many["L"][3]) and np.ptp(many["L"].values[:, -1]) > 0
+    diagram = coupled(coulomb__level=0.5)
+    values = {"Z_m.coulomb.level": [0.1, 0.2, 0.4, 0.2]}
+    many = simulate_many(diagram, values, **RUN, keep=["X_m"])["X_m"]
+    for case, level in enumerate(values["Z_m.coulomb.level"]):
+        one = simulate(diagram.with_values({"Z_m.coulomb.level": level}), **RUN)["X_m"].values
+        assert np.abs(one - many.values[case]).max() <= ROUNDING * np.abs(one).max()
+    assert np.array_equal(many[1], many[3]) and np.ptp(many.values[:, -1]) > 0
 
 
 def test_delays_are_grouped_and_one_that_no_step_divides_is_said():

@@ -12,6 +12,7 @@ def trials():
     return study.trials()
 
 
+@pytest.mark.slow  # the same loop grows beyond its limit in the plain run
 def test_simulated_motion_gives_out_what_the_formula_says():
     found = study.given_out()["given_out_simulated"]
     half = study.late.INERTIA / 2

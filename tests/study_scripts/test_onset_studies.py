@@ -7,6 +7,7 @@ import stiffest_late_compensator as stiffest
 import teleoperator_onset as swing_up
 
 
+@pytest.mark.slow  # the late coupling swings up in the plain run
 def test_the_teleoperator_swings_up_only_beyond_the_passive_bound():
     light = {"damping": 0.05, "contact": 0.25}
     assert swing_up.growth(1.0, **light) < 0

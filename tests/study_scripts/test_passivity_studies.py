@@ -32,6 +32,7 @@ def test_the_passive_region_is_the_wedge_for_proof_and_for_search():
     assert found.attrs["missed"] <= 4
 
 
+@pytest.mark.slow  # the same search is in passivity/test_counterexample.py
 def test_a_motion_is_found_outside_the_wedge_and_none_inside():
     tried = passive_region_with_presliding.motions(4)
     assert not passive_region_with_presliding.gives_out(0.8, 0.7, tried)  # 0.64 <= 0.7

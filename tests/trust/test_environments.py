@@ -173,7 +173,7 @@ def test_machine_code_is_kept_for_the_user_alone_and_used_again(tmp_path):
     "damage",
     [
         "another source",
-        "short code",
+        pytest.param("short code", marks=pytest.mark.slow),
         pytest.param("a short index", marks=pytest.mark.slow),
         pytest.param("a folder", marks=pytest.mark.slow),
     ],

@@ -1,10 +1,10 @@
 """Answer files, read back: the model that a diagnosis ended with, or the diagnosis itself.
 
 saved = load_answer("answer.json")
-saved.model(catalogue(effect_files), experiment)    # with its axes, environment and own effects
+saved.model(catalogue(effect_files), experiment)    # with its axes, environment and users' effects
 restored(saved, experiment, known)                  # a Diagnosis: nothing is sought anew
 
-`diagnose.answer` writes them, with what is told of models and experiment by `bodies` and
+`diagnose.answer` writes them, with the words on models and experiment by `bodies` and
 `fingerprint` here.
 """
 

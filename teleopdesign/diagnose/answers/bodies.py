@@ -108,7 +108,7 @@ def _shifts_from(shifts: Table) -> dict[str, Value]:
 
 
 def known_effect(name: str, known: Mapping[str, Effect], *, where: str) -> Effect:
-    """The effect of that name; a line that asks for its file where it is the user's own."""
+    """The effect of that name; a line that asks for its file where it is a user's effect."""
     if name not in known:
         raise ExperimentError(
             f"{where}: no effect {quoted(name)}{did_you_mean(name, known)}; "

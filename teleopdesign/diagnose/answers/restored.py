@@ -56,9 +56,9 @@ def restored(
 ) -> Diagnosis:
     """The diagnosis in an answer, with its figures; residuals are computed, nothing is estimated.
 
-    known: effects by name, the user's own among them
+    known: effects by name, those of the user among them
     records: made ready for comparison, as those of an arm's joint; default: made ready now
-    It has no rankings: what was tried is in the answer, what is left open in `Diagnosis.open`.
+    It has no rankings: the candidates are in the answer, what is left open in `Diagnosis.open`.
     raises ExperimentError: the answer to another experiment, one of an earlier version, an effect
         that is not known
     """

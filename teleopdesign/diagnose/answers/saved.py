@@ -35,7 +35,7 @@ class SavedAnswer:
 
     @property
     def folder(self) -> Path:
-        """The folder of its experiment, as seen from the answer's own folder.
+        """The folder of its experiment, as seen from the answer's folder.
 
         raises ExperimentError: it says none, as one of an earlier version; or none is there any
             more
@@ -67,7 +67,7 @@ class SavedAnswer:
     ) -> Model:
         """The model that the diagnosis ended with.
 
-        known: effects by name, the user's own among them;  experiment: that of the answer. An older
+        known: effects by name, the user's too;  experiment: that of the answer. An older
             answer says neither axes nor what is fixed: they are the experiment's, or without it
             what the units of the inertias say, and nothing is fixed
         raises ExperimentError: the answer to another experiment, an effect that is not known
@@ -131,7 +131,7 @@ class SavedAnswer:
 def load_answer(path: str | Path) -> SavedAnswer:
     """Read an answer that `teleopdesign diagnose --json` wrote.
 
-    raises ExperimentError: no such file, or no such answer: where, found, expected
+    raises ExperimentError: no such file, or no such answer
     """
     return SavedAnswer(str(path), read_content(path))
 
@@ -194,7 +194,7 @@ def _is_chosen(effect: Effect | None, key: str) -> bool:
 
 
 def _axis_of(saved: SavedAnswer, place: str, unit: str) -> str:
-    """The axis of an older answer, whose inertias are in SI: each axis has a unit of its own."""
+    """The axis of an older answer, whose inertias are in SI: each axis has a different unit."""
     for axis in AXES:
         if unit == unit_of("inertia", axis):
             return axis
@@ -239,8 +239,10 @@ def _older_difference(saved: SavedAnswer, experiment: Experiment) -> str | None:
         return f"check by {content['check']}, found {check}"
     moment = content.get("one_moment")
     files = {r.file for r in experiment.records}
-    told_of = [o["record"] for o in content.get("own", [])] + ([moment["record"]] if moment else [])
-    if others := [file for file in told_of if file not in files]:
+    named_records = [o["record"] for o in content.get("own", [])] + (
+        [moment["record"]] if moment else []
+    )
+    if others := [file for file in named_records if file not in files]:
         return f"a record {quoted(others[0])}, found {', '.join(sorted(files))}"
     bandwidth = content.get("bandwidth", {}).get("value", experiment.bandwidth)
     if experiment.bandwidth is not None and bandwidth != experiment.bandwidth:

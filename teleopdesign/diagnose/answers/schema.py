@@ -1,4 +1,5 @@
-"""What an answer file must hold: every key, its type and range, told in one line where it fails.
+"""What an answer file must hold: every key, its type and range, reported in one line where it
+fails.
 
 Keys that are not known here are allowed: a later version may say more. `models`, `experiment`,
 `floor` and `open` came later than the rest: an older answer has none of them.

@@ -1,7 +1,7 @@
 """Diagnosis of an arm: several joints that share the inertial parameters of its links.
 
 Each joint is diagnosed as a body by itself, with what the other joints know of the links
-(`shared_links`); what one joint is found to lack sharpens what the others know.
+(`shared_links`); the effects named at one joint sharpen what the others know.
 """
 
 from .diagnosis import ArmDiagnosis, ArmRung

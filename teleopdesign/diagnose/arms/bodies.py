@@ -2,7 +2,7 @@
 
 So structures and checks of plausibility see a body of the size that moves, and a joint can be taken
 out of its arm. What the body has, the force of the links has not: residuals are the same. Links
-that a missing effect had led astray give a wrong inertia first; in the end it is that of the last
+that a missing effect had led astray have a wrong inertia first; in the end it is that of the last
 links.
 """
 

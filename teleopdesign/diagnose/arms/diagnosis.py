@@ -38,7 +38,7 @@ class ArmDiagnosis(ByValue):
 
     verdict: "effects_missing", "model_adequate" or "undecided"
     rungs: the user's model re-estimated, then one rung an effect, over all joints
-    joints: joint -> its own diagnosis, beside what the others say of the links
+    joints: joint -> its diagnosis, beside what the others say of the links
     link_errors: (b,) standard errors of the base parameters
     """
 

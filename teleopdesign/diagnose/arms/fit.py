@@ -154,7 +154,7 @@ def with_common_links(
 def _held_against(fit: Fit, model: Model, records: Prepared) -> Fit:
     """A fit with the errors of its model at other base parameters.
 
-    Without check records the blocks that were held out keep the links of their own fits.
+    Without check records the blocks that were held out keep the links of their fits.
     """
     fit = replace(fit, model=model, fit_error=force_error(model, bare(records.of("fit"))))
     check = records.of("check")
@@ -197,7 +197,7 @@ def bare(stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
 
 
 def knowledge(model: Model, stretches: tuple[Stretch, ...], size: float) -> Knowledge:
-    """What one joint knows of the base parameters, its own parameters free.
+    """What one joint knows of the base parameters, its parameters free.
 
     size: root of the squares that count as one observation's
     """
@@ -212,7 +212,7 @@ def knowledge(model: Model, stretches: tuple[Stretch, ...], size: float) -> Know
 def _linear(
     model: Model, stretches: tuple[Stretch, ...]
 ) -> tuple[Array, Array, Array, tuple[Stretch, ...]]:
-    """Columns of the links, residual, and columns of the joint's own parameters, with priors."""
+    """Columns of the links, residual, and columns of the joint's parameters, with priors."""
     plain, free = bare(felt(model, stretches)), _inside(model)
     lasts = sum(s.weight * len(s.keep) * s.motion.sample_time for s in plain)
     shifts = record_shifts(plain, round(lasts / BLOCK))
@@ -275,7 +275,7 @@ def with_others(
 
 
 def link_errors(arm: ArmFit, prepared: PreparedArm) -> Array:
-    """Standard errors (b,) of the base parameters; NaN where a parameter is not told."""
+    """Standard errors (b,) of the base parameters; NaN where a parameter is not determined."""
     sizes = misfits({j: f.model for j, f in arm.fits.items()}, prepared)
     rows, left, blocks, first = [], [], [], 0
     for j, fit in arm.fits.items():

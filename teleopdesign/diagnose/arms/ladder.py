@@ -16,7 +16,7 @@ from ..conclusion import conclude
 from ..decision import is_better
 from ..diagnosis import Diagnosis, SetAside
 from ..fit import Fit, estimate, fit_squares
-from ..ladder import climb, saying_what_was_tried
+from ..ladder import climb, with_candidates_named
 from ..ladder_state import LadderSearch, LadderState, look, trying
 from ..prepare import Prepared
 from ..rung import Rung
@@ -61,7 +61,7 @@ def find_missing_in_arm(
 
     model: default: the one that the experiment describes; a body for each joint
     progress: called with a line of text at each step;  seed: of the draws for the noise floor
-    plan: how much is searched, such as `QUICK`;  among: names of the effects that are tried
+    plan: how much is searched, such as `QUICK`;  among: names of the candidate effects
     raises ExperimentError: the experiment has no arm, or lacks what the comparison needs
     """
     said = progress or (lambda _: None)
@@ -94,7 +94,7 @@ def find_missing_in_arm(
     said("all joints together")
     rungs = _rungs(joints, order, first, prepared)
     diagnosis = _conclude(experiment, prepared, joints, rungs)
-    limited = {j: saying_what_was_tried(among, d) for j, d in diagnosis.joints.items()}
+    limited = {j: with_candidates_named(among, d) for j, d in diagnosis.joints.items()}
     motors = {j: stated.parameters[f"{j}.inertia"].value for j in limited}
     return with_final_bodies(replace(diagnosis, joints=limited), motors)
 
@@ -152,7 +152,7 @@ def _rungs(
 ) -> tuple[ArmRung, ...]:
     """The ladder of the arm: each effect with all joints estimated again; none raises the error.
 
-    joints: an effect that no longer helps beside what was found at other joints, or that raises the
+    joints: an effect that no longer helps beside those named at other joints, or that raises the
         error of the whole arm, is set aside, with what was added after it;  order: of their climbs
     """
     rungs = [ArmRung(None, first)]
@@ -178,7 +178,7 @@ def _rungs(
 def _without(joint: _Joint, kept: int, refused: Sequence[ArmRung]) -> _Joint:
     """The joint with the first rungs of its ladder; the others are set aside.
 
-    refused: what was tried of the others with all joints estimated again
+    refused: the other candidates with all joints estimated again
     """
     state = joint.state
     if kept == len(state.rungs):

@@ -26,7 +26,7 @@ POSES = 50
 class PreparedArm(ByValue):
     """An experiment on an arm made ready for comparison at one bandwidth (Hz).
 
-    base: the base parameters that are estimated; None: the links are taken as they are given
+    base: the base parameters that are estimated; None: the links are those of the description
     joints: joint -> its records, as an experiment on one body
     size: joint -> root of its measured squares on the fit records
     """
@@ -39,7 +39,7 @@ class PreparedArm(ByValue):
 
     @property
     def initial(self) -> tuple[float, ...]:
-        """Base parameters by the values that the arm's description gives."""
+        """Base parameters by the values in the arm's description."""
         return () if self.base is None else tuple(float(x) for x in self.base.initial)
 
 
@@ -152,8 +152,8 @@ def mean_inertias(prepared: PreparedArm, links: tuple[float, ...]) -> dict[str, 
 def inertias_at(experiment: Experiment, links: tuple[float, ...], position: Array) -> Array:
     """Inertia (k, n) that the links have about each joint, the others at rest (kg m^2, or kg).
 
-    links: base parameters, () where the links are taken as they are given;  position: (k, n)
-    Base parameters of least squares may give what no links have, less than nothing too.
+    links: base parameters, () where the links are those of the description;  position: (k, n)
+    Base parameters of least squares may be those of no real links, less than nothing too.
     """
     assert experiment.arm is not None
     arm = experiment.arm.arm.with_gravity((0.0, 0.0, 0.0))

@@ -24,7 +24,7 @@ def restored_arm(
 ) -> ArmDiagnosis:
     """The diagnosis of an arm in an answer; residuals are computed, nothing is estimated.
 
-    known: effects by name, the user's own among them
+    known: effects by name, those of the user among them
     raises ExperimentError: the answer to another experiment, one of an earlier version
     """
     if "models" not in saved.content:
@@ -77,7 +77,7 @@ def _models(
 
 
 def _added(joints: Mapping[str, Diagnosis]) -> dict[tuple[str, str], Rung]:
-    """(effect, joint) -> the rung of that joint's own ladder that added it."""
+    """(effect, joint) -> the rung of that joint's ladder that added it."""
     return {r.added.key: r for d in joints.values() for r in d.rungs if r.added is not None}
 
 

@@ -1,4 +1,4 @@
-"""How a table of text is written, found from its first rows: separator, decimal sign, encoding."""
+"""How a table of text is written, judged by its first rows: separator, decimal sign, encoding."""
 
 from __future__ import annotations
 

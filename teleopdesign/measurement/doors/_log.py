@@ -1,4 +1,4 @@
-"""What a door gives: names of columns, and a way to read some of them."""
+"""What a door returns: names of columns, and a way to read some of them."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Log:
     names: of its columns, in order
     read: columns by name, with the channel that wants each -> values as the file holds them
     units: what the file itself says of units, by column
-    notes: what was found about the file ("semicolons, decimal comma")
+    notes: remarks on the file ("semicolons, decimal comma")
     clocks: column -> the column with its stamps, where a log has several clocks (topics of a bag)
     """
 
@@ -67,7 +67,7 @@ def refusing_damage(kind: str, file: str) -> Iterator[None]:
         yield
     except (ExperimentError, OSError, EOFError, MemoryError):
         raise
-    except Exception as problem:  # those packages name no class of their own for it
+    except Exception as problem:  # those packages name no class for it
         reason = str(problem).strip().split("\n")[0] or type(problem).__name__
         raise ExperimentError(f"{file}: not a readable {kind}: {reason}") from None
 

@@ -2,7 +2,7 @@
 
 A column is TOPIC.FIELD ("/ft.wrench.force.z"); a `sensor_msgs/JointState` and what the da Vinci
 Research Kit publishes in the same form name their joints: "/joint_states.elbow.position". Each
-topic has stamps of its own, "TOPIC.stamp": those of its headers where it has them, when it was
+topic has separate stamps, "TOPIC.stamp": those of its headers where it has them, when it was
 written down otherwise; seconds from the beginning of the bag.
 """
 

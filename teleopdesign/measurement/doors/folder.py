@@ -1,6 +1,6 @@
 """A folder of tables that one run left side by side: a drive's log beside that of a force sensor.
 
-Each table keeps its own clock, as each topic of a bag does. The name of a table stands before the
+Each table keeps its clock, as each topic of a bag does. The name of a table stands before the
 names of its columns ("drive.position").
 """
 

@@ -16,7 +16,7 @@ from ._log import Log, how_to_save, optional, part, parts_of, refuse_size, refus
 _KIND = "HDF5 file"
 #: datasets of one file that are listed
 _MOST = 10_000
-#: attribute by which MATLAB marks an object of its own; its numbers lie elsewhere in the file
+#: attribute by which MATLAB marks one of its objects; its numbers lie elsewhere in the file
 _OBJECT = "MATLAB_object_decode"
 
 

@@ -1,7 +1,7 @@
 """Tables of text: csv of any dialect, read fast if well-formed; if not, row and column are named.
 
 What separates columns, the decimal sign, the encoding, comments before the header and a row of
-units below it are found from the first rows. A time may be written as a date or a time of day.
+units below it are read from the first rows. A time may be written as a date or a time of day.
 """
 
 from __future__ import annotations

@@ -45,11 +45,11 @@ def visits(x: Array, limit: float, step: float, *, noisy: bool) -> tuple[int, in
 def check_clipped(signal: Signal) -> list[Finding]:
     """Largest and smallest value of a channel, where it runs flat against them."""
     findings = []
-    noisy = reading_noise(signal.values) > STEPS * signal.step > 0
+    noisy = reading_noise(signal.values) > STEPS * signal.rounded_to > 0
     for name, value in (("largest", signal.values.max()), ("smallest", signal.values.min())):
         count = spent = 0
         for _, x in signal.stretches:
-            c, s = visits(x, float(value), signal.step, noisy=noisy)
+            c, s = visits(x, float(value), signal.rounded_to, noisy=noisy)
             count, spent = count + c, spent + s
         if count < VISITS:
             continue

@@ -41,7 +41,7 @@ def stamps_of(experiment: Experiment, record: Record) -> Array | None:
 
 
 def check_clock(experiment: Experiment, record: Record, read: list[Signal]) -> list[Finding]:
-    """Stamps against the uniform time that the record was given; positions against their speed.
+    """Stamps against the uniform time of the record; positions against their speed.
 
     read: the record's channels
     """

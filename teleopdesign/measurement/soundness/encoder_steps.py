@@ -16,7 +16,7 @@ from .signal import Signal
 
 #: how close the readings lie to a grid: mean of exp(2 pi i x/step), 1 on it, 0 anywhere
 ON_GRID = 0.9
-#: multiples of the stated step that are tried as the true one
+#: multiples of the stated step that are tested as the true one
 MULTIPLES = range(2, 65)
 #: readings that are looked at
 ENOUGH = 20_000

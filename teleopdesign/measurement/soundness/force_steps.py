@@ -8,8 +8,9 @@ from ...finding import Finding
 from .encoder_steps import ON_GRID, gridded
 from .signal import Signal
 
-#: 1: rounding error over the signal's standard deviation from which a step is told; a hundredth of
-#: the largest value leaves 0.007 and changed no diagnosis, a tenth leaves 0.07 and six noise floors
+#: 1: rounding error over the signal's standard deviation from which a step is reported; a hundredth
+#: of the largest value leaves 0.007 and changed no diagnosis, a tenth leaves 0.07 and six noise
+#: floors
 COARSE = 0.03
 #: levels that a rounded signal takes at least; a relay takes two or three, and means them
 LEVELS = 5

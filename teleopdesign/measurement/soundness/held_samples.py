@@ -42,7 +42,7 @@ def check_repeats(signal: Signal) -> list[Finding]:
     """Samples of a position that the log repeats."""
     if signal.channel.quantity != "position":
         return []
-    parts = [repeats(x, signal.step) + first for first, x in signal.stretches]
+    parts = [repeats(x, signal.rounded_to) + first for first, x in signal.stretches]
     odd = np.concatenate(parts)
     if not len(odd):
         return []
@@ -89,7 +89,7 @@ def check_stuck(signal: Signal) -> list[Finding]:
     holds = [
         (first + a, first + b)
         for first, x in signal.stretches
-        for a, b in stuck_stretches(x, signal.step, signal.channel.quantity)
+        for a, b in stuck_stretches(x, signal.rounded_to, signal.channel.quantity)
     ]
     if not holds:
         return []

@@ -14,7 +14,7 @@ from ..filtering import Array
 from .signal import Signal, limit, local_scale
 
 #: deviation left at the neighbours, in local standard deviations or relative to the outlier, up to
-#: which it counts as explained: 3 is five of the deviation's own
+#: which it counts as explained: 3 is five of the deviation's errors
 EXPLAINED, RELATIVE = 3.0, 0.2
 #: a command may hold any value: one sample of it is odd where it leaves the range of all others by
 #: more than this part of it
@@ -72,7 +72,7 @@ def check_outliers(signal: Signal) -> list[Finding]:
     rows: list[NDArray[np.intp]] = []
     sizes: list[Array] = []
     for first, x in signal.stretches:
-        at, size, _ = lone_samples(x, signal.step)
+        at, size, _ = lone_samples(x, signal.rounded_to)
         is_outlier = x[at] != x[at - 1]
         if signal.channel.quantity == "actuator_force":
             is_outlier &= _out_of_range(x, at)
@@ -114,8 +114,8 @@ def check_jumps(signal: Signal) -> list[Finding]:
         return []
     events: list[tuple[int, float, float]] = []
     for first, x in signal.stretches:
-        at, size, _ = jumps(x, signal.step)
-        lone = lone_samples(x, signal.step)[0]
+        at, size, _ = jumps(x, signal.rounded_to)
+        lone = lone_samples(x, signal.rounded_to)[0]
         for k, leap in zip(at.tolist(), size.tolist(), strict=True):
             held = x[k] == x[k - 1] or x[k + 1] == x[min(k + 2, len(x) - 1)]
             if held or np.any(np.abs(lone - k) <= 2):

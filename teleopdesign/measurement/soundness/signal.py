@@ -43,6 +43,14 @@ class Signal:
     axis: str = "prismatic"
 
     @property
+    def rounded_to(self) -> float:
+        """What values are rounded to, SI: the stated resolution, or the step if that is larger.
+
+        A log that was averaged or resampled holds values between the steps of its encoder.
+        """
+        return max(self.step, self.channel.resolution or 0.0)
+
+    @property
     def stretches(self) -> Iterator[tuple[int, Array]]:
         """(first row, samples) of each uninterrupted stretch."""
         for rows in self.record.segments:

@@ -1,7 +1,7 @@
 """Time shift and factor between a velocity channel and the position that it belongs to.
 
 The velocity channel w is held against the position's derivative v(t - shift), both low-passed
-alike: w = factor (v - shift dv/dt), solved again about each shift found. A velocity takes no part
+alike: w = factor (v - shift dv/dt), solved again about each shift. A velocity takes no part
 in a comparison, but it tells whether clock and units of the position are what they are said to be.
 """
 

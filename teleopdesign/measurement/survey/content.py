@@ -60,7 +60,7 @@ class Survey:
 
 @dataclass(frozen=True)
 class Choices:
-    """What the user says: columns, units, axis, constants; None: to be found.
+    """What the user says: columns, units, axis, constants; None: to be detected.
 
     interaction_force: "none" where the log has none
     units: column -> unit;  torque_constant, gear_ratio: (value, unit)

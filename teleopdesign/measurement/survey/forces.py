@@ -152,7 +152,7 @@ def _force_entry(survey: Survey, name: str, key: str, choices: Choices) -> dict[
 def _hand_by_motion(
     survey: Survey, free: Mapping[str, SurveyedColumn], force: str, motion: tuple[Array, float]
 ) -> str | None:
-    """A column that no name gives away, but that balances with the command: the hand's force.
+    """A column whose name does not say so, but that balances with the command: the hand's force.
 
     The motion asks for `command + hand`, both in the unit of forces: of what it leaves of the
     command alone, the column takes a good part away, with a factor of one.

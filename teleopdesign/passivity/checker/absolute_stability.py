@@ -2,7 +2,7 @@
 
 Z(s) is a 2x2 matrix of rational functions with real coefficients, k_ij the residue of z_ij at a
 pole on the axis (at infinity: the coefficient of s), L = z12 z21. The claim: no pair of
-positive-real terminations (Z1, Z2) for which (Z + diag(Z1, Z2))^-1 exists gives it a pole in the
+positive-real terminations (Z1, Z2) for which (Z + diag(Z1, Z2))^-1 exists brings it a pole in the
 open right half plane. It holds if, and but for the second line of 2 only if,
 
     1. z11 and z22 are positive real;
@@ -10,12 +10,12 @@ open right half plane. It holds if, and but for the second line of 2 only if,
        and their poles on the axis, infinity included, are simple;
     3. A = 2 Re z11 Re z22 - Re L >= |L| at every w that is no pole;
     4. 2 k11 k22 - Re(k12 k21) >= |k12 k21| at every pole on the axis, 0 and infinity included
-       (given 3, k12 k21 is real and >= 0 there, so that this is k11 k22 >= k12 k21).
+       (with 3, k12 k21 is real and >= 0 there, so that this is k11 k22 >= k12 k21).
 
 Llewellyn's inequality is 3. Without 4 it calls [[1, 1/s], [1/s, 1]] stable, whose pole with both
 ports free lies at s = 1: at a lossless pole the axis shows nothing.
 
-Enough. Given 3, L has no simple pole on the axis: L ~ l/(j u) near it, u = w - w0, and one sign of
+Enough. With 3, L has no simple pole on the axis: L ~ l/(j u) near it, u = w - w0, and one sign of
 u makes A < |L|. At a double one, L ~ -k12 k21/u^2 while Re z_ii stay bounded, so k12 k21 > 0. Let n
 = z22 + Z2 be not identically 0: positive real, so without zero in the open half plane, and z_in =
 z11 - L/n has no pole there by 1 and 2. On the axis Re n >= Re z22, and Re(L/n) <= (|L| + Re L)/(2
@@ -35,9 +35,9 @@ With port 2 clamped, z11 + Z1 is left, positive real by 1.
 Needed. 1: a port whose z_ii is not positive real oscillates with the other one clamped. 2: a pole
 s0 of L in the open half plane is a pole of z_in, which takes every value near it; if z12 has a pole
 there and L has none, the inverse has it. 3: where it fails at w, a reactance and a damper at port 2
-give Re z_in < 0 beside j w. 4: where it fails at j w0, s = j w0 + d and Z2 of the size c/d, c
-small, give z_in ~ (k11 - k12 k21/(k22 + c))/d < 0. Then Z1 = -z_in(s), which a damper with a mass
-or a spring can be wherever abs(arg) <= arg s, so near the axis.
+make Re z_in < 0 beside j w. 4: where it fails at j w0, s = j w0 + d and Z2 of the size c/d, c
+small, lead to z_in ~ (k11 - k12 k21/(k22 + c))/d < 0. Then Z1 = -z_in(s), which a damper with a
+mass or a spring can be wherever abs(arg) <= arg s, so near the axis.
 Where 2 fails by a multiple pole on the axis alone, what passes through grows like time or faster,
 but no pole need lie in the open half plane: then nothing is claimed.
 """
@@ -83,7 +83,7 @@ _ONE = [Fraction(1)]
 
 @dataclass(frozen=True)
 class Condition:
-    """One of the conditions: what it asks for, whether it holds, where it fails ("": not told)."""
+    """One of the conditions: what it asks for, whether it holds, where it fails ("": unknown)."""
 
     name: str
     holds: bool

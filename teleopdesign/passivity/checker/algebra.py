@@ -115,7 +115,7 @@ class Algebra:
         return Quotient(self.plus(*above, factor), below)
 
     def over(self, a: Quotient, below: Mapping[str, int], present: Mapping[str, int]) -> Poly:
-        """a.above times the bases of `below` that are missing in `own`."""
+        """a.above times the bases of `below` that are missing in `present`."""
         above = a.above
         for n in below:
             if below[n] > present.get(n, 0):

@@ -16,11 +16,11 @@ h' + rate h, V and supply - V' are identically sums of weight * factors^powers *
 rational and >= 0; factors are |x|, assumptions and (not for the h) invariants; powers are integers,
 below 0 only for `positive`. So each is >= 0. (3) V and h may depend on |e| or sign_e of a state e
 where both sides agree at e = 0 and no rate depends on sign_e. At almost every time with e = 0 also
-e' = 0, so that both sides give the same V', the true one. (4) h' >= -rate h keeps h >= 0
+e' = 0, so that both sides have the same V', the true one. (4) h' >= -rate h keeps h >= 0
 (multiply by the exponential of the integral of the rate); V' <= supply is integrated. (5) At x = 0
 the supply and all rates are affine in sign_x where the statement says so; then the inequalities
 hold for all values between as well (sticking friction), being affine between the two shown.
-The example meets all assumptions, as given and at rest: the theorem is not about nothing.
+The example meets all assumptions, as stated and at rest: the theorem is not about nothing.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from .fields import expect, expect_fields, flat, read_number, read_words
 
 @dataclass(frozen=True)
 class Meaning:
-    """The expressions of a storage certificate, for given signs or in general."""
+    """The expressions of a storage certificate, for fixed signs or in general."""
 
     algebra: Algebra
     assumed: dict[str, Quotient]
@@ -166,7 +166,7 @@ class Storage:
         return all(k[i] < 2 for e in quotients for k in e.above)
 
     def _check_example(self, case: Meaning) -> None:
-        """It meets all that is assumed, as given and at rest."""
+        """It meets all that is assumed, as stated and at rest."""
         example = {n: read_number(x, "example") for n, x in self.c["example"].items()}
         need({*example} <= {*self.words}, "example: an unknown name")
         need(all(example.get(x, 0) >= 0 for x in self.signs), "example: a size below 0")

@@ -1,7 +1,7 @@
 """Certificates: what a proof rests on, in a form that a small program verifies.
 
 `checker` knows nothing of this package; it reads the JSON that is written here, and
-states what that proves in words of its own. A title is for people; it proves nothing.
+states in other words what that proves. A title is for people; it proves nothing.
 """
 
 from __future__ import annotations
@@ -57,7 +57,10 @@ class Certificate:
 
 
 def read_certificate(path: str | Path) -> Certificate:
-    """Read a certificate; it proves nothing before `check` accepted it."""
+    """Read a certificate; it proves nothing before `check` accepted it.
+
+    path: a JSON file;  raises ModelError: not readable, or no certificate
+    """
     try:
         content = load(str(path))
     except Refused as problem:

@@ -1,7 +1,7 @@
-"""A claim and how it is settled: proved, refuted, evidence, or unknown.
+"""A claim and its verdict: proved, refuted, evidence, or unknown.
 
 A proof is exact and carries a certificate that `checker` verifies without the package.
-A refutation is a motion that gives out energy, kept so that anyone can replay it. Evidence says
+A refutation is a motion that releases energy, kept so that anyone can replay it. Evidence says
 what was computed or searched, and with what margin; it is never called a proof.
 """
 
@@ -21,11 +21,11 @@ _EXACT = "decided in exact arithmetic; a certificate would ask for more work tha
 
 
 class Counterexample(Protocol):
-    """A motion that gives out energy."""
+    """A motion that releases energy."""
 
     @property
     def energy(self) -> float:
-        """Energy given out, J, > 0."""
+        """Energy released, J, > 0."""
         ...
 
     def replay(self) -> float:
@@ -67,9 +67,9 @@ class Proof(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class Refutation(ByValue):
-    """A motion that gives out `record.energy` > 0 J; `record.replay()` computes it anew.
+    """A motion that releases `record.energy` > 0 J; `record.replay()` computes it anew.
 
-    replayed: what that replay gave out, J; a claim whose motion does not replay is not refuted
+    replayed: what that replay released, J; a claim whose motion does not replay is not refuted
     """
 
     method: str

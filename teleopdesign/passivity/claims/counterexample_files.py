@@ -35,12 +35,15 @@ MOST_STROKES = 1_000_000
 
 
 def write_record(record: Counterexample, path: str | Path) -> None:
-    """Write a motion that refutes a claim as a JSON file; `read_record` reads the file."""
+    """Write a motion that refutes a claim as a JSON file; `read_record` reads the file.
+
+    The file holds the motion and its energy (J); reading replays the motion and compares.
+    """
     write_json(path, record.as_dict())
 
 
 def read_record(path: str | Path) -> Counterexample:
-    """Read a refuting motion; `replay()` then computes what it gives out, in J.
+    """Read a refuting motion; `replay()` then computes what it releases, in J.
 
     raises ModelError: not such a file, or one whose stated energy its replay does not confirm
     """

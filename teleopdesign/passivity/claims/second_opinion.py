@@ -1,7 +1,7 @@
 """The inequalities of a storage certificate put to z3, without the identities that show them.
 
 z3 decides polynomial inequalities over the reals (extra `proof`). Asked for values that meet all
-that a certificate assumes and break what it claims, it finds none, finds some, or gives up. What
+that a certificate assumes and break what it claims, it finds none, finds some, or stops. What
 a certificate means is read by the checker, whose rules for it hold here too.
 """
 
@@ -22,7 +22,7 @@ class SecondOpinion:
     """What z3 says: "confirmed", "refuted" or "unknown".
 
     open: inequalities (with their signs) that are not confirmed
-    counterexample: values that break one of them, as text; "" where none was found
+    counterexample: values that break one of them, as text; "" where the search ends without one
     """
 
     verdict: str

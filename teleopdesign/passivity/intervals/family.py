@@ -88,7 +88,7 @@ def family_of(diagram: Diagram, box: ValueBox) -> Family | None:
     """The diagram with the box's values as symbols.
 
     None where it has no such form: a value that a block does not show in its linear form (of a
-    body's structure, of a system given by numbers), one whose form changes within the box, or one
+    body's structure, of a system of numbers), one whose form changes within the box, or one
     of a law that takes the velocity of another motion than its input
     raises ModelError: a block known by its name only
     """
@@ -140,7 +140,7 @@ def _forms(
 
 
 def _stage_denominator(stage: Stage, symbols: Mapping[str, sp.Symbol]) -> sp.Expr:
-    """Of one stage as it was given, with its parameters that are symbols; nothing is cancelled."""
+    """Of one stage as stated, with its parameters that are symbols; nothing is cancelled."""
 
     def placed(name: str, value: float) -> sp.Expr:
         return symbols.get(f"{stage.name}.{name}", as_written(value))

@@ -4,7 +4,7 @@ A Dahl or bounded cancellation (f_D, sigma_D) of Coulomb or Dahl friction (f_C, 
 if f_D <= f_C and sigma_D^2 f_C <= sigma_p^2 f_D (`theorems/dahl_compensation.py`). Written as
 f_C - f_D >= 0 and sigma_p^2 f_D - sigma_D^2 f_C >= 0, each side is monotone in each of the four
 positive values by itself, so that its least value over a box is at a vertex. What is linear beside
-it is judged over its own values. Any other friction is settled at vertices and in the middle alone.
+it is judged over its values. Any other friction is judged at vertices and in the middle alone.
 """
 
 from __future__ import annotations
@@ -105,21 +105,21 @@ def _in_friction(name: str, pairs: list[FrictionPair]) -> bool:
 
 
 def _rest_is_passive(middle: Diagram, box: ValueBox) -> bool:
-    """Whether what is left without friction and its cancellation is passive over its own values."""
+    """Whether what is left without friction and its cancellation is passive over its values."""
     rest = judged(middle)
     pairs = friction_pairs(rest)
     for pair in pairs:
         gone = [pair.cancellation.name] if pair.cancellation else []
         rest = without_friction(rest, pair.body.motion, *gone)
-    own_values = tuple(n for n in box.names if not _in_friction(n, pairs))
+    other_values = tuple(n for n in box.names if not _in_friction(n, pairs))
     if nonlinear_parts(rest):
         return False
-    if not own_values:
+    if not other_values:
         return True  # it is proved in the composed claim
-    family = family_of(rest, box.only(own_values))
+    family = family_of(rest, box.only(other_values))
     if family is None or not family.is_rational:
         return False
-    ask, z = Conditions.over(box.only(own_values), family.symbols), family.impedance()
+    ask, z = Conditions.over(box.only(other_values), family.symbols), family.impedance()
     one_port = np.shape(z) == (1, 1)
     passive = one_port_is_passive(ask, z[0, 0]) if one_port else two_port_is_passive(ask, z)
     return passive and hides_no_growth(ask, family, z)

@@ -24,7 +24,7 @@ class IntervalClaim(ByValue):
 
     status: "proved" over the whole box; "refuted" at `worst`; "evidence": holds at all points that
         were looked at; "unknown"
-    margin: the least that was found, at `worst`, in `unit`
+    margin: the least one evaluated, at `worst`, in `unit`
     proved_margin: what the margin is proved to be at least, over the whole box; NaN: none is
     points: at which it was looked at;  how: in words;  at_worst: the claim at `worst` alone
     time: of the controllers: "any" where no computer samples one

@@ -26,7 +26,7 @@ from .worst import MarginFunction, pole_margin, port_margin, search_worst
 
 #: claims that the package knows, and the unit of their margins
 CLAIMS = {"passive": "N s/m", "absolutely stable": "1", "stable": "1/s"}
-#: shares of the worst margin found that are tried as its proved bound, the best first
+#: shares of the worst margin that are tested as its proved bound, the best first
 _SHARES = (0.999, 0.9, 0.5)
 
 
@@ -176,13 +176,13 @@ def _point_by_point(
     made = judge_at_points(alone, box, one, points, seed)
     how = "its values are not in the linear forms as such: every point is settled by itself"
     refuted = made["status"] == "refuted"
-    settled_there = one(alone.with_values(made["worst"]))
+    claim_there = one(alone.with_values(made["worst"]))
     return {
         **made,
         "statement": statement,
         "unit": CLAIMS[claim],
-        "how": str(settled_there.verdict) if refuted else how,
-        "at_worst": settled_there,
+        "how": str(claim_there.verdict) if refuted else how,
+        "at_worst": claim_there,
     }
 
 

@@ -34,7 +34,7 @@ def claim_over_intervals(
     claim: "passive": at all ports together, hands and environments (`Z_H`, `Z_E`) left out;
         "absolutely stable": two ports between any passive terminations; "stable": every pole of the
         whole diagram, hand and environment with it, has a negative real part; or a function of a
-        diagram that gives a margin (>= 0: it holds) or a `Claim`
+        diagram that returns a margin (>= 0: it holds) or a `Claim`
     points: looked at beside the vertices and the middle;  seed: of these
     returns: proved over the whole box where exact reasoning shows it (linear, without dead times;
         friction with its cancellation by the theorems on them), refuted at a point, or checked
@@ -65,9 +65,9 @@ def claim_over_intervals(
 def _finish(
     diagram: Diagram, intervals: Mapping[str, tuple[float, float]], made: Parts
 ) -> IntervalClaim:
-    """With every value that was given, in units of the axis."""
-    given_values = {n: float(a) for n, (a, _) in intervals.items()}
-    worst = {n: made["worst"].get(n, v) for n, v in given_values.items()}
+    """With every value of the call, in units of the axis."""
+    starts = {n: float(a) for n, (a, _) in intervals.items()}
+    worst = {n: made["worst"].get(n, v) for n, v in starts.items()}
     within = ", ".join(f"{n} {float(a):g} to {float(b):g}" for n, (a, b) in intervals.items())
     axis = first_axis(diagram)
     turned = in_rotary_units if axis == "revolute" else str

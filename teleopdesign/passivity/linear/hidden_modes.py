@@ -9,7 +9,7 @@ The second is a matter of ranks. P(s) w = 0 are all equations (`in_full`), r(s) 
 with roots on the axis, m how often det P has it, n the nullity of P at its roots. The elementary
 divisors of P there are n powers of r, whose exponents sum up to m. What the ports show is contained
 in them: k divisors, whose exponents sum up to m - h. Where n = k + h each mode that no port shows
-is a divisor of its own, of exponent 1, and stays as large as it is. Otherwise one may grow as a
+is a separate divisor, of exponent 1, and stays as large as it is. Otherwise one may grow as a
 power of time. What the ports show, a free mass among it, is judged by the impedance.
 """
 

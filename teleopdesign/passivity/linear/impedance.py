@@ -89,7 +89,7 @@ def impedance(system: Any, *, motion: MotionKind = "velocity") -> Impedance:
         (continuous, one input, one output), or an Impedance
     motion: what the force is divided by in `system`; with "position" (as the blocks of a diagram
         are, N/m) it is divided by s
-    raises ModelError: anything else, with what was found
+    raises ModelError: anything else, which it names
     """
     if motion not in ("velocity", "position"):
         raise ModelError(f'impedance: motion "velocity" or "position", found "{motion}"')

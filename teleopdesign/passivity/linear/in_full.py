@@ -1,6 +1,6 @@
 """All equations of a linear diagram as polynomials in s, nothing cancelled between them.
 
-A law brings the equations of its states, an effect its own numerator and denominator, so that a
+A law brings the equations of its states, an effect its numerator and denominator, so that a
 mode is there as often as there are states for it. A transfer function shows less: what one block
 cancels of another one is not in it.
 """
@@ -137,7 +137,7 @@ class _Writer:
         self.equations.append(equation)
 
     def through(self, form: sp.Expr, signal: str) -> tuple[str, sp.Poly]:
-        """What a ratio p/q makes of a signal: p w, with a state of its own, q w = signal."""
+        """What a ratio p/q makes of a signal: p w, with a separate state, q w = signal."""
         above, below = ratio(form)
         if below == _ONE:
             return signal, above

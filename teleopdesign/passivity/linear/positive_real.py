@@ -46,7 +46,7 @@ def is_positive_real(z: Impedance) -> bool:
 
 
 def positive_real(system: Any, *, motion: MotionKind = "velocity") -> Claim:
-    """Is this impedance passive: does it never give out more energy than it took in?
+    """Is this impedance passive: does it never release more energy than it took in?
 
     system, motion: see `impedance`
     returns: proved, with the excess of damping as margin (N s/m: what could be taken away); exact
@@ -54,7 +54,7 @@ def positive_real(system: Any, *, motion: MotionKind = "velocity") -> Claim:
     refuted by a growing wave; unknown where a mode of a python-control system grows that its port
     does not show, where floats came in and the wave's sign rests on their last digits, or where so
     little comes out that a replay in double precision does not show it
-    raises ModelError: not a rational function of s with given coefficients
+    raises ModelError: not a rational function of s with known coefficients
     """
     z = impedance(system, motion=motion)
     statement = f"Z(s) = {z} is passive at its port (force, velocity)"
@@ -86,7 +86,7 @@ def positive_real(system: Any, *, motion: MotionKind = "velocity") -> Claim:
 
 
 def is_rounded(system: Any) -> bool:
-    """Whether a system was given in floats, which operations on them have rounded."""
+    """Whether a system is stated in floats, which operations on them have rounded."""
     if isinstance(system, Impedance):
         return False
     return hasattr(system, "isdtime") or bool(sp.sympify(system).atoms(sp.Float))
@@ -145,7 +145,11 @@ def damping_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
 
 
 def mobility_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
-    """Excess of the mobility 1/Z, m/(N s): index of output passivity; +inf where Z = 0."""
+    """Excess of the mobility 1/Z, m/(N s): index of output passivity; +inf where Z = 0.
+
+    system: an impedance as `positive_real` takes it;  motion: what Z divides the force by
+    returns: the largest c for which 1/Z - c is still passive; < 0: that much is missing
+    """
     z = impedance(system, motion=motion)
     if z.p.is_zero:
         return Excess(float("inf"), float("inf"), 0.0)

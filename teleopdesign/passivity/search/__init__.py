@@ -1,1 +1,1 @@
-"""Motions that give out energy, sought: along strokes by simulation, and as growing waves."""
+"""Motions that release energy, sought: along strokes by simulation, and as growing waves."""

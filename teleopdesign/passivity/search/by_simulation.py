@@ -1,8 +1,8 @@
-"""Search a diagram for a motion over which a port gives out energy, from rest back to rest.
+"""Search a diagram for a motion over which a port releases energy, from rest back to rest.
 
 The motion of the port is prescribed, what that takes of force is simulated with the compiled
-kernel, and the energy given out is -integral of force times velocity. A motion that gives out
-energy refutes passivity; that none was found proves nothing.
+kernel, and the energy released is -integral of force times velocity. A motion that releases
+energy refutes passivity; a search without result proves nothing.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ _LONGEST = 2_000_000  # steps of one simulation
 #: share of the energy turned over that came out and went in again, from which evidence names it:
 #: far above the error of a simulation, far below what a spring lends
 _LENT = 1e-3
-_ROUNDS = 300  # at most, of a motion that is repeated until it gives out what the first round took
+_ROUNDS = 300  # at most, of a motion that is repeated until it releases what the first round took
 
 
 @dataclass(frozen=True)
 class Given:
-    """Energy that one simulation gave out, J.
+    """Energy that one simulation released, J.
 
     total: from rest back to rest;  last_round: over its last closed round
     turned: integral of abs(force times velocity), the scale of both
-    most: given out up to some moment on the way; more than `total` where some of it comes back
+    most: released up to some moment on the way; more than `total` where some of it comes back
     """
 
     total: float
@@ -46,7 +46,7 @@ class Given:
 
 @dataclass(frozen=True)
 class SimulatedMotion:
-    """A motion of a port that gives out energy; `replay()` simulates this motion anew.
+    """A motion of a port that releases energy; `replay()` simulates this motion anew.
 
     port: (motion, force on the device that moves it);  computer, step, give: as in `simulate`
     """
@@ -59,7 +59,7 @@ class SimulatedMotion:
     energy: float
 
     def replay(self) -> float:
-        """Energy given out, J, from rest back to rest, simulated anew."""
+        """Energy released, J, from rest back to rest, simulated anew."""
         return given_out(
             self.diagram, self.strokes, port=self.port, computer=self.computer, give=self.give
         ).total
@@ -91,7 +91,7 @@ def given_out(
     give: float = 1e-7,
     finer: int = 1,
 ) -> Given:
-    """Energy that the port gives out along these strokes; hidden states start at zero.
+    """Energy that the port releases along these strokes; hidden states start at zero.
 
     port: (motion, force ON the device along it);  finer: steps are shorter by this factor
     raises ModelError: the port is not one whose motion can be prescribed, or a motion too long
@@ -138,10 +138,10 @@ def confirmed_motion(
     computer: Computer = "continuous",
     give: float = 1e-7,
 ) -> SimulatedMotion | None:
-    """These strokes, repeated as needed, if they give out more energy than the numerical error.
+    """These strokes, repeated as needed, if they release more energy than the numerical error.
 
     From rest, with hidden states at zero, to rest: so what comes out was never put in. It must come
-    out with half the step, and with a tenth of the give too, and be thrice what these change.
+    out with half the step, and with a tenth of the bristle too, and be thrice what these change.
     """
 
     def run(strokes: Strokes, *, finer: int = 1, give: float = give) -> Given:
@@ -180,12 +180,12 @@ def search_counterexample(
     """Does any motion within stroke and speed, from rest back to its start, take energy out?
 
     stroke: largest position, m or rad;  speed: largest speed, SI;  tries: how many motions
-    give: m or rad, of ideal Coulomb friction; the shortest motions tried are a thousandth of
+    give: m or rad, of ideal Coulomb friction; the shortest motions simulated are a thousandth of
         `stroke`, so keep it far below that and below any bristle length
-    returns: refuted by a motion that was confirmed with half the step and a tenth of the give; else
-        evidence, which is no proof, and says what came out on the way and went in again: what it
-        held from the start, such as a spring, gives that to a motion that does not return. Unknown
-        where simulations leave the finite numbers
+    returns: refuted by a motion that was confirmed with half the step and a tenth of the bristle;
+        else evidence, which is no proof, and says what came out on the way and went in again: what
+        it held from the start, such as a spring, supplies that to a motion that does not return.
+        Unknown where simulations leave the finite numbers
     """
     if stroke <= 0 or speed <= 0:
         raise ModelError(f"search_counterexample: stroke and speed > 0, found {stroke}, {speed}")

@@ -25,7 +25,7 @@ from ...realise.lti import S
 from ..linear.impedance import Impedance
 from ..linear.polynomials import even_part, fraction, where_negative
 
-LONGEST = 500  # periods of a wave that are sampled; each of them gives out energy
+LONGEST = 500  # periods of a wave that are sampled; each of them releases energy
 _DIGITS = 40  # of numerical values to begin with
 #: share of abs(Z) below which the sum of a replay in double precision loses Re Z: 1e4 roundings
 _WEAKEST = 1e-11
@@ -39,7 +39,7 @@ ROUNDING = 2.0**-48
 class GrowingWave:
     """A wave at s = rate + j frequency (1/s, rad/s; exact), velocities V at t = 0 (m/s, complex).
 
-    impedance: (n, n) forces over velocities, in `realise.lti.S`;  energy: given out to t = 0, J
+    impedance: (n, n) forces over velocities, in `realise.lti.S`;  energy: released to t = 0, J
     """
 
     impedance: sp.ImmutableMatrix
@@ -59,7 +59,7 @@ class GrowingWave:
 
     @property
     def energy(self) -> float:
-        """Energy given out from the distant past up to t = 0, J, in closed form."""
+        """Energy released from the distant past up to t = 0, J, in closed form."""
         z, v = self.value, np.array(self.velocity)
         return float(-((v.conj() @ z @ v).real / self.s.real + (v @ z @ v / self.s).real) / 4)
 
@@ -78,7 +78,7 @@ class GrowingWave:
         return t, wave.real, (wave @ self.value.T).real
 
     def replay(self) -> float:
-        """Energy given out, J: minus the integral of force times velocity over `samples`.
+        """Energy released, J: minus the integral of force times velocity over `samples`.
 
         0 where the sum is no more than the rounding of its terms: it shows nothing
         """
@@ -140,7 +140,7 @@ def _numerical(z: sp.ImmutableMatrix) -> Callable[[mpmath.mpc], list[list[mpmath
 
 
 def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> GrowingWave | None:
-    """The wave there that gives out most energy; None where it gives out none.
+    """The wave there that releases most energy; None where it releases none.
 
     To double precision, with a dead time to 1e-9 of Z; `growing_wave` checks exactly.
     """
@@ -195,7 +195,7 @@ def growing_wave(z: Impedance) -> GrowingWave | None:
 
 
 def _share(wave: GrowingWave) -> float:
-    """Part of abs(Z) that gives out energy at the wave of a single port."""
+    """Part of abs(Z) that releases energy at the wave of a single port."""
     z = complex(wave.value[0, 0])
     return -z.real / abs(z)
 

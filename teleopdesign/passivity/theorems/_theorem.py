@@ -73,7 +73,7 @@ Time = Literal["continuous", "sampled", "any"]
 
 @dataclass(frozen=True, eq=False)
 class TopicClaim(ByValue):
-    """A claim in its topic; replayed: energy (J) that its motion gave out in simulation, NaN where
+    """A claim in its topic; replayed: energy (J) that its motion released in simulation, NaN where
     none was replayed; motion: that simulated motion.
     time: of the controllers in it: "sampled", "continuous", or "any" where it holds in both
     spends_damping: whether its proof uses the device's viscous damping, which no other may then use
@@ -94,7 +94,7 @@ class TopicClaim(ByValue):
 
 
 def simulate_nothing(counterexample: Counterexample) -> SimulatedMotion | None:
-    """No simulation: the motion of a refutation is replayed by its own equations alone."""
+    """No simulation: the motion of a refutation is replayed by its equations alone."""
     return None
 
 

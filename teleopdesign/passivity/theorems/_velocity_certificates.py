@@ -89,7 +89,7 @@ def yielding_contact(
 
 
 def held_command(*, least: sp.Expr, b: sp.Expr) -> Certificate:
-    """A command c of an earlier sample, held over one: summed, no energy is given out.
+    """A command c of an earlier sample, held over one: summed, no energy is released.
 
     u and w are the mean velocities of the sample and of that earlier one.
     """

@@ -1,7 +1,7 @@
 """Any compensator whose force stays within the level of ideal friction is passive beside it.
 
 The force of friction at any speed is at least f_C against the motion, that of the compensator at
-most f_D along it, so f_D <= f_C is enough; beyond it a Dahl compensator of that level gives out
+most f_D along it, so f_D <= f_C is enough; beyond it a Dahl compensator of that level releases
 energy. Of a device the level counts, and the level together with its viscous damping.
 """
 
@@ -48,7 +48,7 @@ def bounded_compensation(*, coulomb_level: Any, bound: Any) -> Claim:
 
 
 def amplitude_beyond_onset(helps: Dahl, f_c: float) -> float:
-    """An amplitude at which cycles give out energy, m: 1 - 1/u = f_C/f_D, doubled."""
+    """An amplitude at which cycles release energy, m: 1 - 1/u = f_C/f_D, doubled."""
     length = helps.level / helps.stiffness
     return length + 2 * length / (1 - f_c / helps.level)
 

@@ -98,11 +98,11 @@ def free_motion(
     rng: np.random.Generator,
     paths: int = 2000,
 ) -> Claim:
-    """Does slow free motion never give out energy?
+    """Does slow free motion never release energy?
 
     For plain symmetric cycles of the motor exactly where f_D <= f_1 + f_2 and
     f_D (1 - tanh(u)/u) <= f_1, u = sigma_D f_2/(k f_D). Where that fails, a cycle refutes. Where it
-    holds, cycles with a small step back and forth at each reversal, which give out more (the
+    holds, cycles with a small step back and forth at each reversal, which release more (the
     bristle forgets the last stroke, at the cost of little friction), and random closed paths are
     searched: evidence, for these are not all motions.
 
@@ -140,7 +140,11 @@ def free_motion_margin(
     compensator_level: float,
     compensator_stiffness: float,
 ) -> float:
-    """min(f_1 + f_2 - f_D, f_1 - f_D (1 - tanh(u)/u)), N: >= 0 where no symmetric cycle gives."""
+    """min(f_1 + f_2 - f_D, f_1 - f_D (1 - tanh(u)/u)), N: >= 0: no symmetric cycle releases.
+
+    motor_level, link_level, compensator_level: f_1, f_2, f_D, N;  stiffnesses: N/m
+    u = sigma_D f_2 / (k f_D): bristle lengths of spring deflection before the link slides (P53)
+    """
     stuck = compensator_level * lost_share(
         compensator_stiffness * link_level / (transmission_stiffness * compensator_level)
     )
@@ -148,11 +152,11 @@ def free_motion_margin(
 
 
 def _worst_cycle(helps: Dahl, against: Sequence[Element]) -> Cycle | None:
-    """The symmetric cycle that gives out most per travel; sliding cycles get long strokes."""
+    """The symmetric cycle that releases most per travel; sliding cycles get long strokes."""
     stuck = against[1]
     elastic = stuck.level / stuck.stiffness if isinstance(stuck, Spring) else 1.0
     bristle = helps.level / helps.stiffness
-    # well within a soft bristle nothing is given out, and thousands of rounds would be travelled
+    # well within a soft bristle nothing is released, and thousands of rounds would be travelled
     shortest = max(1e-2 * elastic, 1e-3 * bristle)
     amplitudes = [elastic, *np.geomspace(shortest, 1e6 * max(elastic, bristle), 200)]
     cycles = [symmetric_cycle(helps, against, float(a)) for a in amplitudes]
@@ -162,7 +166,7 @@ def _worst_cycle(helps: Dahl, against: Sequence[Element]) -> Cycle | None:
 def _searched(
     helps: Dahl, against: Sequence[Element], rng: np.random.Generator, paths: int
 ) -> Cycle | None:
-    """The closed path that gives out most, of those with steps and random ones; None if none."""
+    """The closed path that releases most, of those with steps and random ones; None if none."""
     lengths = [helps.level / helps.stiffness]
     lengths += [e.level / e.stiffness for e in against if isinstance(e, Dahl | Spring)]
     best = _stepped(helps, against, lengths)
@@ -176,9 +180,9 @@ def _searched(
 
 
 def _stepped(helps: Dahl, against: Sequence[Element], lengths: Sequence[float]) -> Cycle | None:
-    """The cycle with a step back and forth at each reversal that gives out most; None if none does.
+    """The cycle with a step back and forth at each reversal that releases most; None if none does.
 
-    lengths: of the bristle and of what gives beside it, m
+    lengths: of the bristle and of the spring beside it, m
     """
     best: Cycle | None = None
     for a in np.geomspace(0.3 * min(lengths), 3.0 * max(lengths), 24):

@@ -1,4 +1,4 @@
-"""How much friction a Dahl compensator may cancel before the pair can give out energy.
+"""How much friction a Dahl compensator may cancel before the pair can release energy.
 
 True friction: Coulomb, or Dahl with presliding stiffness sigma_p, its level within a range.
 Compensator: Dahl, level f_D, stiffness sigma_D, on the same position. Mahvash, Okamura, ICRA 2006
@@ -89,7 +89,7 @@ def dahl_compensation(
 
 
 def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: float) -> float:
-    """Level f_D at which cycles of that amplitude neither give out nor take energy, N.
+    """Level f_D at which cycles of that amplitude neither release nor take energy, N.
 
     f_D (1 - tanh(u)/u) = f_C, u = sigma_D A/f_D: above f_C for every amplitude, and the higher the
     softer the compensator; inf where no level does. stiffness: sigma_D, N/m;  amplitude: m
@@ -105,7 +105,7 @@ def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: 
     def out(level: float) -> float:
         return dahl_loss(level, stiffness, amplitude) / (4 * amplitude) - coulomb_level
 
-    # for a level without limit the compensator is a spring, which gives out nothing
+    # for a level without limit the compensator is a spring, which releases nothing
     levels = coulomb_level * np.geomspace(1.0, 1e6, 4001)
     above = [f for f in levels if out(float(f)) > 0]
     if not above:
@@ -115,11 +115,11 @@ def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: 
 
 
 def largest_ratio(u: float, *, motion: Literal["cycles", "closed paths"] = "cycles") -> float:
-    """Largest f_D/f_C that gives out no energy within u = sigma_D A/f_D bristle lengths either way.
+    """Largest f_D/f_C that releases no energy within u = sigma_D A/f_D bristle lengths either way.
 
     motion: "cycles": exact for plain cycles of that amplitude, 1/(1 - tanh(u)/u);
         "closed paths": enough for every closed path within it, 1/(1 - e^(-2 u))^2 (P56). A motion
-        that does not come back may give out what the bristle holds, once: `largest_one_off_energy`
+        that does not come back may release what the bristle holds, once: `largest_one_off_energy`
     """
     if u <= 0:
         raise ModelError(f"largest_ratio: expected an amplitude > 0, found u = {u:g}")
@@ -127,7 +127,7 @@ def largest_ratio(u: float, *, motion: Literal["cycles", "closed paths"] = "cycl
 
 
 def largest_one_off_energy(*, level: float, stiffness: float, u: float) -> float:
-    """Most energy that a motion within u bristle lengths gives out once, from rest, J (P56).
+    """Most energy that a motion within u bristle lengths releases once, from rest, J (P56).
 
     f_D^2 (1 - e^(-2 u))^2/(2 sigma_D), what the compensator's bristle holds, wherever
     f_D <= largest_ratio(u, motion="closed paths") f_C. level: f_D, N;  stiffness: sigma_D, N/m
@@ -143,7 +143,7 @@ def largest_one_off_energy(*, level: float, stiffness: float, u: float) -> float
 def onset_amplitude(
     *, coulomb_level: float, compensator_level: float, compensator_stiffness: float
 ) -> float:
-    """Amplitude from which a cycle gives out energy, m; inf where none does.
+    """Amplitude from which a cycle releases energy, m; inf where none does.
 
     Searched: bisection on the energy of one period, integrated exactly along the path, to 1e-9.
     N and N/m
@@ -204,7 +204,7 @@ def _pair_proof(
 
 
 def _best_cycle(helps: Dahl, against: Dahl) -> Cycle | None:
-    """A symmetric cycle that gives out a good share of what the compensator gives.
+    """A symmetric cycle that releases a good share of what the compensator can release.
 
     The one nearest to the bristle lengths among those with half of the largest share.
     """

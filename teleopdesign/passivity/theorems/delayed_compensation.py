@@ -1,11 +1,11 @@
-"""A compensator that acts late: what it gives out, and when small motion stays passive.
+"""A compensator that acts late: what it releases, and when small motion stays passive.
 
 Along x = A sin(w t) a Dahl compensator of describing function N that sees the position tau late
-gives out
+releases
 
     W = pi A^2 Im(N e^(-j w tau))
 
-per cycle: for w tau < pi less than without delay. A delayed cancellation of inertia gives out
+per cycle: for w tau < pi less than without delay. A delayed cancellation of inertia releases
 energy for any delay with w tau < pi.
 """
 
@@ -32,7 +32,7 @@ SINC_LEAST = sp.Rational(21724, 100000)
 
 
 def given_out_late(*, level: float, stiffness: float, amplitude: float, phase: float) -> float:
-    """Energy that a delayed Dahl compensator gives out per cycle, J.
+    """Energy that a delayed Dahl compensator releases per cycle, J.
 
     N, N/m, m;  phase: w tau, rad
     """
@@ -42,7 +42,7 @@ def given_out_late(*, level: float, stiffness: float, amplitude: float, phase: f
 
 
 def inertia_given_out(*, inertia: float, amplitude: float, frequency: float, delay: float) -> float:
-    """Energy that a delayed cancellation of inertia gives out per cycle, J.
+    """Energy that a delayed cancellation of inertia releases per cycle, J.
 
     pi m A^2 w^2 sin(w tau);  kg, m, Hz, s
     """

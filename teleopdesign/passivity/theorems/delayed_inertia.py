@@ -2,7 +2,7 @@
 
     Z = m s + B - mhat s F(s) e^(-s tau),   F = 1/(T s + 1)^r
 
-Along x = A sin(w t) the cancellation gives out pi mhat A^2 w g(w) per cycle, and the damping takes
+Along x = A sin(w t) the cancellation releases pi mhat A^2 w g(w) per cycle, and the damping takes
 pi B A^2 w:
 
     g = Re[j w F(j w) e^(-j w tau)] = w abs(F) sin(lag),   lag = w tau + r atan(w T)
@@ -53,7 +53,7 @@ def largest_passive_inertia(
     """Largest cancelled inertia (kg) that damping B covers at every frequency.
 
     B T for r = 1; for r = 2 B over the maximum of g, at least 2 B T; without low-pass 0 with
-    any delay, and without delay inf (the device's own inertia is then the bound)
+    any delay, and without delay inf (the device's inertia is then the bound)
     """
     _check(damping, 0.0, delay, time_constant, order)
     if time_constant == 0:

@@ -1,10 +1,11 @@
 """Energy tanks at the ends of a channel: they are never overdrawn, however the channel behaves.
 
-Before a sample a tank holds W = E_0 + arrived - given, and the held force f obeys abs(f) d <= W, or
-f = 0 where W < 0. Over a travel x with abs(x) <= d it gives f x <= abs(f) d <= W. So given is never
-above E_0 + the largest count that has arrived, late, in any order, held or interpolated, and that
-is at most what is taken at the other end by now, for a count that only grows. The sum over both
-ends: what the computers give to the bodies, less what they take from them, is at most 2 E_0.
+Before a sample a tank holds W = E_0 + arrived - supplied, and the held force f obeys abs(f) d <= W,
+or f = 0 where W < 0. Over a travel x with abs(x) <= d it supplies f x <= abs(f) d <= W. So supplied
+is never above E_0 + the largest count that has arrived, late, in any order, held or interpolated,
+and that is at most what is taken at the other end by now, for a count that only grows. The sum over
+both
+ends: what the computers supply to the bodies, less what they take from them, is at most 2 E_0.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from ._theorem import Theorem
 
 @under(reserve=NOT_NEGATIVE, travel=POSITIVE)
 def energy_tank(*, reserve: Any, travel: Any) -> Claim:
-    """What do two ends with energy tanks (`energy_tanks`) give out at most?
+    """What do two ends with energy tanks (`energy_tanks`) release at most?
 
     reserve: E_0, J, in each;  travel: d, m or rad, largest of any sample
     returns: proved, for exact positions, forces that act as commanded and at their sample, and

@@ -4,7 +4,7 @@
     g = F_C + (F_S - F_C) e^-(v/v_S)^2
 
 s2 >= s1 (F_S/F_C - 1) is sufficient by V = y^2/(2 sigma_0). It is necessary: slow motion loads the
-bristle to F_S, and a jump to high speed then lets it recoil, against the motion's own damping.
+bristle to F_S, and a jump to high speed then lets it recoil, against the motion's damping.
 Barabanov and Ortega, IEEE TAC 45 (2000) 830.
 """
 
@@ -61,11 +61,11 @@ class Jumps:
 
     @property
     def energy(self) -> float:
-        """Energy given out in the last round, J."""
+        """Energy released in the last round, J."""
         return self.replay()
 
     def replay(self) -> float:
-        """Energy given out in the last round, J: each leg has an exact solution."""
+        """Energy released in the last round, J: each leg has an exact solution."""
         y, out = 0.0, 0.0
         s1, s2 = self.dampings
         for _ in range(self.rounds):
@@ -165,7 +165,7 @@ def beside_bristle_damping(
 def _recoil(
     levels: tuple[float, float], stiffness: float, dampings: tuple[float, float], v_s: float
 ) -> Jumps | None:
-    """Of a grid of jumps, the slowest fast leg that gives out energy."""
+    """Of a grid of jumps, the slowest fast leg that releases energy."""
     length = levels[1] / stiffness
     for fast in v_s * np.geomspace(1.0, 1e9, 91):
         best: Jumps | None = None

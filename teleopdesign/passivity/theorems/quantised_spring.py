@@ -7,7 +7,7 @@ sample of travel d the energy put in, less the change of K x^2/2, is at least
     (b/T - K/2) d^2 + (f_C - f_D - K h) abs(d)
 
 so K <= min(2 b/T, 2 (f_C - f_D)/Delta) is passive. Beyond it two positions in turn, close to the
-edge of a step or far apart, give out energy. Without compensation these are the limits of Abbott
+edge of a step or far apart, release energy. Without compensation these are the limits of Abbott
 and Okamura, IEEE Trans. Robotics 21 (2005) 952.
 """
 
@@ -44,11 +44,11 @@ class Flip:
 
     @property
     def energy(self) -> float:
-        """Energy given out in each two samples, J."""
+        """Energy released in each two samples, J."""
         return self.replay()
 
     def replay(self) -> float:
-        """Energy given out in two samples, J, each at constant speed."""
+        """Energy released in two samples, J, each at constant speed."""
         edge, a = self.step / 2, self.distance
         high, low = (self._held(edge + side * a) for side in (1, -1))
         lost = 2 * (self.damping / self.sample_time * (2 * a) ** 2 + self.friction * 2 * a)

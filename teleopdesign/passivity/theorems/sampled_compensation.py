@@ -1,4 +1,4 @@
-"""A Dahl compensator in a computer, beside friction that gives before it slides.
+"""A Dahl compensator in a computer, beside friction that deflects before it slides.
 
 In continuous time the pair has a wedge of passive parameters (`dahl_compensation`). In a computer
 it has none. Dahl friction relaxes under a motion to and fro: over n small strokes of length L about
@@ -6,10 +6,10 @@ one place its force falls by e^(-n L/lambda), and that costs next to no work. A 
 once a sample and drifts by a share r of its path meets the mean force r f_C, whatever the level;
 the compensator sees the drift alone, and helps with f_D. So
 
-    energy given out per sample  ->  r L (f_D - r f_C) - B L^2/T,    r < f_D/f_C, L small,
+    energy released per sample  ->  r L (f_D - r f_C) - B L^2/T,    r < f_D/f_C, L small,
 
 is positive for every f_D, sigma_D, damping B and sample period T. It is little: no law within f_D
-gives out more power than f_D^2/(4 B), and trembling in step with the clock is no likely motion. A
+releases more power than f_D^2/(4 B), and trembling in step with the clock is no likely motion. A
 contact whose small loops close on themselves, as those of many real ones do, does not relax so.
 """
 
@@ -54,12 +54,12 @@ class Trembling:
 
     @property
     def energy(self) -> float:
-        """Energy given out, J, from rest without preload to the same place."""
+        """Energy released, J, from rest without preload to the same place."""
         return self.replay()
 
     @property
     def power(self) -> float:
-        """Power given out while it drifts on, W."""
+        """Power released while it drifts on, W."""
         return self._steady_sample()[0] / self.sample_time
 
     @property
@@ -68,7 +68,7 @@ class Trembling:
         return self.forth + self.back
 
     def replay(self) -> float:
-        """Energy given out, J, each stroke exactly, summed over all samples."""
+        """Energy released, J, each stroke exactly, summed over all samples."""
         force, read, out = 0.0, [0.0] * (self.late + 1), 0.0
         for _ in range(2):  # the way back is the way there with all signs turned
             steady, forgets, by_force = self._steady_sample()[1:]
@@ -145,7 +145,7 @@ def sampled_compensation(
     late: whole samples by which the compensator's force is late
     returns: for ideal friction proved iff f_D <= f_C; beside Dahl friction refuted by a motion
         that trembles once a sample, whatever the numbers; unknown where that motion would take more
-        than `LONGEST` samples to give out what its start takes
+        than `LONGEST` samples to release what its start takes
     """
     if presliding_stiffness is None:
         return bounded_compensation(coulomb_level=coulomb_level, bound=compensator_level)
@@ -171,7 +171,7 @@ def sampled_compensation(
 
 
 def _best(helps: Dahl, against: Dahl, damping: float, period: float, late: int) -> Trembling | None:
-    """The trembling that gives out most power, of a length that can be written down."""
+    """The trembling that releases most power, of a length that can be written down."""
     bristle = against.level / against.stiffness
     longest = bristle
     if damping:
@@ -193,7 +193,7 @@ def _best(helps: Dahl, against: Dahl, damping: float, period: float, late: int) 
 
 
 def _applies(question: Question) -> bool:
-    """To a Dahl bristle in a computer beside friction that gives before it slides."""
+    """To a Dahl bristle in a computer beside friction that deflects before it slides."""
     sampled = question.computer is not None and question.device.presliding is not None
     return sampled and question.bristle is not None and question.late is not None
 

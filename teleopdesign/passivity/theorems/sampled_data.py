@@ -2,7 +2,7 @@
 
 The position is sampled with period T; the force -H(z) times it is held until the next sample. Over
 a sample of travel d the held force takes f d, and the damping b at least b d^2/T (least at constant
-speed); a spring K_0 of the body gives K_0 (x d + d^2/2). So the body is passive iff the operator
+speed); a spring K_0 of the body adds K_0 (x d + d^2/2). So the body is passive iff the operator
 
     G(z) = (H(z) + K_0)/(z - 1) + K_0/2 + b/T      from travel to force
 
@@ -167,13 +167,13 @@ class SampledWave(ByValue):
 
     @property
     def energy(self) -> float:
-        """Energy given out by the whole motion, J."""
+        """Energy released by the whole motion, J."""
         return self.replay()
 
     def replay(self) -> float:
-        """Energy given out, J, simulated from rest by the controller's own difference equation."""
+        """Energy released, J, simulated from rest by the controller's difference equation."""
         system = self.law, self.damping, self.sample_time, self.stiffness
-        return float(_given_out(self.travel, *system))
+        return float(_released(self.travel, *system))
 
     def as_dict(self) -> dict[str, object]:
         """Plain data, to be written as JSON."""
@@ -197,7 +197,7 @@ def sampled_wave(
     rate: Fraction,
     frequency: Fraction,
 ) -> SampledWave:
-    """The growing travel at s = rate + j frequency, with the phase that gives out most.
+    """The growing travel at s = rate + j frequency, with the phase that releases most.
 
     Where the controller itself grows faster than that travel: a step, and a second one along the
     force that it has led to.
@@ -219,17 +219,17 @@ def sampled_wave(
 def _largest(
     one: np.ndarray, other: np.ndarray, system: tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr]
 ) -> tuple[float, np.ndarray]:
-    """Of all mixtures of two travels (n,), the one that gives out most: its energy, J, and travel.
+    """Of all mixtures of two travels (n,), the one that releases most: its energy, J, and travel.
 
     Energy is quadratic in the travel, so that its largest eigenvector is the best mixture.
     """
-    out = _given_out(np.array([one, other, one + other]), *system)
+    out = _released(np.array([one, other, one + other]), *system)
     if not np.isfinite(out).all():
         return -np.inf, one  # a controller that leaves double precision on the way
     mixed = (out[2] - out[0] - out[1]) / 2
     share = np.linalg.eigh(np.array([[out[0], mixed], [mixed, out[1]]]))[1][:, -1]
     travel = share[0] * one + share[1] * other
-    return float(_given_out(travel, *system)), travel
+    return float(_released(travel, *system)), travel
 
 
 def _factor(rate: Fraction, frequency: Fraction) -> complex:
@@ -237,10 +237,10 @@ def _factor(rate: Fraction, frequency: Fraction) -> complex:
     return (1 + s) / (1 - s) if s != 1 else complex(1e12)  # a single travel
 
 
-def _given_out(
+def _released(
     travel: np.ndarray, law: sp.Expr, damping: sp.Expr, sample_time: sp.Expr, stiffness: sp.Expr
 ) -> np.ndarray:
-    """Energy given out, J, by each of the motions (..., n).
+    """Energy released, J, by each of the motions (..., n).
 
     0 where it is no more than rounding; not finite where the controller leaves double precision
     """

@@ -1,4 +1,4 @@
-"""Friction cancelled by velocity: how much may be added before the pair can give out energy.
+"""Friction cancelled by velocity: how much may be added before the pair can release energy.
 
     c(v) = f_D v/(a + abs(v)),    a = 0: f_D sgn(v)
 
@@ -6,7 +6,7 @@ beside viscous damping B, the pair is passive if and only if
 
     sqrt(f_D) <= sqrt(f_0) + sqrt(a B)
 
-with f_0 = f_C for ideal Coulomb friction, whose contact does not give, and f_0 = 0 where it gives
+with f_0 = f_C for ideal Coulomb friction, whose contact is rigid, and f_0 = 0 where it deflects
 before it slides: there small motion meets a spring, which loses less than any negative damper adds,
 whatever the levels. The condition says abs(c(w)) <= f_0 + B abs(w) at every speed w, so it also
 covers a computer: over a sample of travel d, with the command of an earlier travel e,
@@ -51,7 +51,7 @@ _COMMAND = _law()
 
 @dataclass(frozen=True)
 class SteadyStrokes:
-    """To and fro at one speed, from rest: a motion over which a law of velocity gives out energy.
+    """To and fro at one speed, from rest: a motion over which a law of velocity releases energy.
 
     level, smoothing: of the law, N and m/s (0: f_D sgn v);  damping: B, N s/m
     friction: what resists beside it;  speed: m/s;  travel: of each stroke, m
@@ -70,11 +70,11 @@ class SteadyStrokes:
 
     @property
     def energy(self) -> float:
-        """Energy given out, J, from rest without preload."""
+        """Energy released, J, from rest without preload."""
         return self.replay()
 
     def replay(self) -> float:
-        """Energy given out, J, each stroke exactly.
+        """Energy released, J, each stroke exactly.
 
         In a computer the first samples of a stroke are still driven by the velocity before it.
         """
@@ -122,8 +122,8 @@ def velocity_compensation(
 
     coulomb_level: f_C, N, the lowest that can occur;  compensator_level: f_D, N
     smoothing_velocity: a of `smoothed_coulomb`, m/s; 0: the law `coulomb`
-    viscous_damping: B, N s/m;  presliding_stiffness: N/m, of a contact that gives before it slides
-        (Dahl friction); None: ideal Coulomb friction
+    viscous_damping: B, N s/m;  presliding_stiffness: N/m, of a contact that deflects before it
+        slides (Dahl friction); None: ideal Coulomb friction
     sample_time: s, of a computer that takes differences of readings; None: continuous time
     late: whole samples by which its force is late
     returns: proved iff sqrt(f_D) <= sqrt(f_0) + sqrt(a B), f_0 = f_C or, with presliding, 0; else
@@ -176,7 +176,7 @@ def _proof(
 def _strokes(
     law: tuple[float, float], friction: Coulomb | Dahl, b: float, period: float, late: int
 ) -> SteadyStrokes | None:
-    """Strokes that give out energy; slower and slower ones where the contact gives."""
+    """Strokes that release energy; slower and slower ones where the contact deflects."""
     f_d, a = law
     least = friction.level if isinstance(friction, Coulomb) else 0.0
     speed = _fastest_gain(f_d, a, least, b)

@@ -36,7 +36,7 @@ from ._theorem import Theorem
 
 @under(wave_impedance=POSITIVE, scale=NOT_NEGATIVE, delay_growth=NOT_NEGATIVE)
 def wave_channel(*, wave_impedance: Any, scale: Any = 1, delay_growth: Any = 0) -> Claim:
-    """Does a channel of waves give out no more than came in, at both ends together?
+    """Does a channel of waves release no more than came in, at both ends together?
 
     wave_impedance: b, N s/m;  scale: f, of waves as they arrive
     delay_growth: d, most that a delay grows in a second, s/s; delays are continuous, of any length

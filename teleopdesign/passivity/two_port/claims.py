@@ -58,7 +58,7 @@ def passive(system: TwoPort) -> Claim:
     if margin < 0 or hidden or not system.has_delay:
         rates: list[float] = []
         if not system.has_delay:
-            further, rates = _where_it_gives_out(system)
+            further, rates = _active_points(system)
             frequencies += further
         wave = _wave_between(system, frequencies, rates)
         wave = wave or _best(_wave_at(system.z, f) for f in frequencies)
@@ -75,7 +75,7 @@ def absolutely_stable(system: TwoPort) -> Claim:
 
     What is claimed, and why it follows, stands in `checker/absolute_stability.py`. A refutation is
     a motion that grows by itself between the two passive terminations that the method names; with
-    dead times it is a wave with which port 1 gives out energy, port 2 held as the method says.
+    dead times it is a wave with which port 1 releases energy, port 2 held as the method says.
     """
     statement = f"the two-port {_text(system)} is absolutely stable"
     return Claim(
@@ -162,11 +162,11 @@ def _lowest(system: TwoPort, margin: Any) -> tuple[list[float], float]:
     return [lowest[0], *chosen], lowest[1]
 
 
-def _where_it_gives_out(system: TwoPort) -> tuple[list[float], list[float]]:
+def _active_points(system: TwoPort) -> tuple[list[float], list[float]]:
     """Where Z + Z* is not positive: frequencies (Hz) of the axis, and rates (1/s), wherever.
 
-    From exact polynomials in w^2 and in s: a residue that is not Hermitian, or not positive, gives
-    out energy only next to its pole, below or above every frequency of a grid.
+    From exact polynomials in w^2 and in s: a residue that is not Hermitian, or not positive, leads
+    to out energy only next to its pole, below or above every frequency of a grid.
     """
     entries = [[system.entry(i, j) for j in (1, 2)] for i in (1, 2)]
     below = reduce(sp.lcm, [e.q for row in entries for e in row])
@@ -265,7 +265,7 @@ def _terminated_elsewhere(system: TwoPort) -> Iterator[tuple[str, GrowingWave]]:
 
 
 def _terminated(system: TwoPort, frequency: float) -> Iterator[tuple[str, GrowingWave]]:
-    """Passive terminations of port 2 with which port 1 gives out energy, and the wave."""
+    """Passive terminations of port 2 with which port 1 releases energy, and the wave."""
     z = system.z
     value = system.over(np.array([frequency]))[0]
     choices: list[tuple[str, sp.Expr]] = [("clamped", z[0, 0])]

@@ -76,7 +76,7 @@ def late_terms(entry: sp.Expr) -> tuple[Late, ...] | None:
 
 
 def obstacles(system: TwoPort, criterion: Criterion) -> tuple[str, ...]:
-    """Why margins on the axis say nothing of this two-port; empty where no reason was found."""
+    """Why margins on the axis say nothing of this two-port; empty where there is no reason."""
     entries = [late_terms(e) for e in system.z]
     lost = [n for n, e in zip(_NAMES, entries, strict=True) if e is None]
     if lost:

@@ -82,7 +82,7 @@ class GrowingMode:
 
     @property
     def energy(self) -> float:
-        """Energy that both terminations together were given up to t = 0, J, in closed form."""
+        """Energy that both terminations together took in up to t = 0, J, in closed form."""
         total = 0.0
         for held, v in zip(self.terminations, self.velocity, strict=True):
             z = 0.0 if held.clamped else held.at(self.s)
@@ -154,22 +154,22 @@ def rising(p: sp.Poly) -> Polynomial:
 
 
 def growing_mode(impedance: sp.ImmutableMatrix) -> GrowingMode | None:
-    """Passive terminations between which the two-port grows, confirmed exactly; None: none found.
+    """Passive terminations between which the two-port grows, confirmed exactly; None: no such one.
 
     impedance: rational in s
     """
     z = entries_of(impedance)
     points = points_of_growth(z)
     values = [over(one, points) for one in z]
-    for s, second, turned in candidates(values, points)[:_TRIED]:
+    for s, second, turned in candidates(values, points)[:_MOST_CANDIDATES]:
         mode = _mode_at(impedance, z, rounded(s), far_termination(s, second), turned)
         if mode is not None:
             return mode
     return _passed_on(impedance, z) or _narrow(impedance, z) or _at_a_pole(impedance, z)
 
 
-#: candidates that are tried exactly, a millisecond each
-_TRIED = 40
+#: candidates that are tested exactly, a millisecond each
+_MOST_CANDIDATES = 40
 
 
 def _turned(z: Entries) -> Entries:

@@ -1,6 +1,6 @@
 """Where a two-port may grow between passive terminations: points s to try, the best ones first.
 
-Numerical: what is found here is confirmed in exact arithmetic by `growing_mode`.
+Numerical: each point is confirmed in exact arithmetic by `growing_mode`.
 """
 
 from __future__ import annotations

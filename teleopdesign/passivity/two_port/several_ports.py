@@ -21,7 +21,7 @@ from .growing_mode import rising
 from .growth_points import over, points_near_poles, roots_of
 
 #: of points of the right half plane, those whose waves are looked at exactly, the best first
-_TRIED = 30
+_MOST_CANDIDATES = 30
 
 
 def passive_together(z: sp.Matrix) -> Claim:
@@ -63,7 +63,7 @@ def _wave_out_of(z: sp.ImmutableMatrix) -> GrowingWave | None:
     points, values = points[finite], values[finite]
     lowest = np.linalg.eigvalsh((values + values.conj().transpose(0, 2, 1)) / 2)[:, 0]
     share = lowest / np.abs(values).max(axis=(1, 2)) * points.real / np.abs(points)
-    for k in np.argsort(share)[:_TRIED]:
+    for k in np.argsort(share)[:_MOST_CANDIDATES]:
         if share[k] >= 0:
             return None
         at = rounded(complex(points[k]))

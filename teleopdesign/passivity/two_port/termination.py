@@ -87,7 +87,7 @@ def with_resonance(held: Termination, at: Gaussian) -> Termination:
 def velocities_in_phase(
     near: Termination, far: Termination, ratio: complex, s: complex
 ) -> tuple[complex, complex]:
-    """Velocities, the larger one 1 m/s, in the phase that gives the terminations most."""
+    """Velocities, the larger one 1 m/s, in the phase in which the terminations take most."""
     size = max(1.0, abs(ratio))
     v = [1 / size, ratio / size]
     if s.imag == 0:

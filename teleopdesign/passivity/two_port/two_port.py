@@ -136,7 +136,12 @@ class FrequencyMargins(ByValue):
 
 
 def over_frequency(system: TwoPort, frequency: np.ndarray | None = None) -> FrequencyMargins:
-    """Both margins over frequency (Hz), default 1e-4 to 1e4, 4001 points."""
+    """Both margins over frequency (Hz), default 1e-4 to 1e4, 4001 points.
+
+    frequency: (n,), Hz;  returns: passive margin (n,), N s/m, >= 0 where passive, and Llewellyn's
+        parameter minus 1 (n,), >= 0 where absolutely stable; NaN at a pole of the two-port
+    Numerical: says nothing between its points, nor of poles off the axis.
+    """
     f = np.geomspace(1e-4, 1e4, 4001) if frequency is None else np.asarray(frequency, dtype=float)
     z = system.over(f)
     return FrequencyMargins(f, passive_margin(z), stable_margin(z))

@@ -20,12 +20,12 @@ from .sheet import sheet
 
 __all__ = ["Drawing", "draw_diagram"]
 
-#: placements tried, each a few hundredths of a second, and fewer of large diagrams
+#: placements drawn up, each a few hundredths of a second, and fewer of large diagrams
 MOST_TRIALS, MOST_NODES = 12, 150
 
 
 def draw_diagram(diagram: Diagram) -> Drawing:
-    """The block diagram of a wiring; the same diagram gives the same drawing.
+    """The block diagram of a wiring; the same diagram has the same drawing.
 
     Blocks are boxes with their name and the laws in them, junctions circles with a sign at
     every term. Z_M^-1 stands for a body that forces move, -Z_H for one that resists the motion it
@@ -44,7 +44,7 @@ def draw_diagram(diagram: Diagram) -> Drawing:
 
 
 def _arrow_out(parts: Network, spine: Path) -> list[Path]:
-    """The end of an arrow that shows what the spine gives, unless it ends with one already."""
+    """The end of an arrow that shows the output of the spine, unless it ends with one already."""
     last = spine.nodes[-1]
     net = parts.net_of(last)
     if net is None or any(parts.nodes[t].kind == "sink" for t, _ in net.targets):

@@ -2,7 +2,7 @@
 
 Every column and every row of cells has a line through its middle, and a few lines run between them.
 Where nets meet they cross at right angles; no two share a piece of a line, and none runs through a
-cell in which a node stands. What is cheapest is found net by net (A*).
+cell in which a node stands. The cheapest routes, net by net (A*).
 """
 
 from __future__ import annotations
@@ -116,7 +116,7 @@ def route(network: Network, cells: Cells) -> tuple[RoutingGrid, list[Route], flo
 def _routes(
     network: Network, grid: RoutingGrid, jobs: Sequence[tuple[Net, str, float]]
 ) -> tuple[list[Route], float, int | None]:
-    """Routes in the order of the jobs, their cost, and the number of the job that found no way."""
+    """Routes in the order of the jobs, their cost, and the number of the job without a way."""
     routes: list[Route] = []
     total = 0.0
     for i, (net, target, weight) in enumerate(jobs):
@@ -189,7 +189,7 @@ def _cheapest(
         if not nets_here:
             door, inwards = grid.doors.get(after, ("", -1))
             turns = [e for e in ((d + 3) % 4, (d + 1) % 4) if not door or e == inwards]
-            if vertex in grid.blocked:  # just out of its own door
+            if vertex in grid.blocked:  # just out of its door
                 turns = [(d + 3) % 4, (d + 1) % 4]
             for e in (d, *turns):
                 offer(cost + (0.0 if e == d else BEND), after, e, (vertex, d))
@@ -201,15 +201,15 @@ def _cheapest(
 
 
 def _starts(network: Network, grid: RoutingGrid, net: Net) -> Iterator[tuple[Vertex, int, float]]:
-    """Where a wire of a net may begin, with what that costs: its source, or a wire of its own."""
+    """Where a wire of a net may begin, with what that costs: its source, or one of its wires."""
     if net.name not in grid.begun:
         source = grid.vertex(net.source)
         for d, cost in _out(network, grid, net.source).items():
             yield source, d, cost
     for vertex, nets in grid.used.items():
         _, inwards = grid.doors.get(vertex, ("", -1))
-        own_door = inwards == -1 or inwards in nets.get(net.name, ())
-        if set(nets) == {net.name} and vertex not in grid.blocked and own_door:
+        may_end = inwards == -1 or inwards in nets.get(net.name, ())
+        if set(nets) == {net.name} and vertex not in grid.blocked and may_end:
             for d in {0, 1, 2, 3} - nets[net.name]:
                 yield vertex, d, TAKE_OFF if len(nets[net.name]) == 2 else AGAIN
 

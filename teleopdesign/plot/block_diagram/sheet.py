@@ -184,7 +184,7 @@ def _weight(weight: float) -> str:
 
 
 def _sign(wire: Wire, weight: float, heading: int) -> Text:
-    """Sign or weight of a term beside the arrow that brings it, each in a corner of its own.
+    """Sign or weight of a term beside the arrow that brings it, each in another corner.
 
     Seen along the heading: from behind, below; from above, behind; from below, ahead. The corner
     above and ahead is that of the name of the sum.

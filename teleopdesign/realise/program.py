@@ -1,0 +1,185 @@
+"""The loop for one structure of a diagram: equations -> generated source -> numba, compiled once.
+
+Values are arguments: only another structure (other blocks, effects or laws) compiles anew. What has
+the same structure under other names shares the loop (`private_names`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
+from typing import Any
+
+from ..blocks import Body, MatrixImpedance
+from ..controllers import ControlLaw, Controller
+from ..diagrams import Attached, Control, Diagram, Kinematics, Moving
+from ..effects import Effect
+from ._codegen import Generator, Layout
+from ._loop import module_source
+from .compiled import compiled_module
+from .equations import Equations, equations
+from .private_names import PrivateNames, private_names
+
+
+@dataclass(frozen=True)
+class CompiledLoop:
+    """Entries of `integrator.py` on the laws of one structure, compiled or plain Python."""
+
+    lanes: int
+    run: Callable[..., None]
+    differentiate_at_rest: Callable[..., None]
+
+
+@dataclass(frozen=True)
+class Program:
+    """The simulation loop for one structure of a diagram, for any values.
+
+    laws: their source;  loop: the loop around them, for one simulation
+    functions: names of the plain module: its laws, its constants
+    equations: on private symbols (`private_names`), their parameters by the user's names
+    has_code: whether a block is known as code only, so that the loop is plain Python
+    """
+
+    equations: Equations
+    layout: Layout
+    laws: str
+    loop: CompiledLoop
+    functions: Mapping[str, Any]
+    has_code: bool = False
+
+
+_programs: dict[Any, Program] = {}
+#: the same by structure under the user's names, each with the diagram that it was made for
+_named: dict[Any, tuple[Diagram, Program]] = {}
+_MOST_NAMED = 256
+
+
+def program(
+    diagram: Diagram,
+    *,
+    prescribed: tuple[str, ...] = (),
+    sampled: bool = True,
+    observer: int = 0,
+    jit: bool = True,
+) -> Program:
+    """The loop for this diagram's structure, built and compiled where it is not yet.
+
+    observer: its order, where the computer observes velocities in place of filtering differences
+    jit: False runs the same generated source in plain Python, some hundred times slower
+    """
+    named = (_named_structure(diagram), prescribed, sampled, observer, jit)
+    if named not in _named:
+        made = _program(diagram, prescribed, sampled, observer, jit)
+        if len(_named) >= _MOST_NAMED:
+            _named.clear()
+        _named[named] = diagram, made
+    return _named[named][1]
+
+
+def _program(
+    diagram: Diagram, prescribed: tuple[str, ...], sampled: bool, observer: int, jit: bool
+) -> Program:
+    names = private_names(diagram)
+    motions = tuple(names.private.get(motion, motion) for motion in prescribed)
+    key = (_structure(names.diagram), motions, sampled, observer, jit)
+    if key not in _programs:
+        with names.in_errors():
+            private = equations(names.diagram, prescribed=motions, sampled=sampled)
+        generator = Generator(private, observer=observer)
+        laws = generator.source()
+        calls = generator.calls()
+        plain = _executed(module_source(laws, jit=False))
+        plain.update(calls)
+        loop = loop_of(laws, 1) if jit and not calls else _entries(plain, 1)
+        _programs[key] = Program(
+            generator.equations, generator.layout(), laws, loop, plain, bool(calls)
+        )
+    return _in_public(_programs[key], names)
+
+
+def loop_of(laws: str, lanes: int) -> CompiledLoop:
+    """The compiled loop on laws for that many simulations side by side."""
+    return _entries(compiled_module(module_source(laws, lanes=lanes), "run"), lanes)
+
+
+def _entries(module: Mapping[str, Any], lanes: int) -> CompiledLoop:
+    return CompiledLoop(lanes, module["run"], module["differentiate_at_rest"])
+
+
+def _in_public(private: Program, names: PrivateNames) -> Program:
+    """The program with the user's names of signals, states and parameters."""
+    layout = private.layout
+    named = (*layout.columns, *layout.states, *layout.computer_states, *layout.inputs)
+    names.public_names(*named, *layout.sampled_inputs)
+    public = {
+        field.name: tuple(map(names.public_name, getattr(layout, field.name)))
+        for field in fields(layout)
+    }
+    parameters = private.equations.parameters
+    public_parameters = {symbol: names.public_name(name) for symbol, name in parameters.items()}
+    equations = replace(private.equations, parameters=public_parameters)
+    return replace(private, equations=equations, layout=Layout(**public))
+
+
+@lru_cache(maxsize=64)
+def _executed(source: str) -> dict[str, Any]:
+    module: dict[str, Any] = {"__name__": "teleopdesign_plain_kernel"}
+    exec(compile(source, "<generated>", "exec"), module)
+    return module
+
+
+def _named_structure(diagram: Diagram) -> tuple[Any, ...]:
+    """As `_structure`, names included, of what diagrams with other values share.
+
+    Wiring and laws count by identity: the diagram that is kept beside the program keeps them alive.
+    """
+    out: list[Any] = [tuple(diagram.outside.items()), diagram.measured]
+    out.append((diagram.name, *map(id, diagram.junctions), *map(id, diagram.kinematics)))
+    out += diagram.pose.items()
+    for part in diagram.blocks:
+        if isinstance(part, Control):
+            block: Any = part.controller
+            wires: tuple[Any, ...] = (part.input, part.output, part.motion, part.analog)
+        elif isinstance(part, Moving):
+            block = part.body
+            wires = (part.motion, part.command, part.driver, *part.loads.items())
+        elif isinstance(part, Attached):
+            block, wires = part.body, (part.motion, part.force, part.sign)
+        else:
+            block, wires = part.body, (part.motions, part.forces, part.sign)
+        laws: tuple[Any, ...]
+        if isinstance(block, Controller):
+            laws = tuple((stage.name, id(stage.law)) for stage in block.stages)
+        elif isinstance(block, Body):
+            laws = tuple(map(id, block.effects))
+        else:
+            laws = tuple(block.parameters)
+        out.append((type(part), part.name, wires, laws))
+    return tuple(out)
+
+
+def _structure(diagram: Diagram) -> tuple[Any, ...]:
+    """What the equations depend on apart from values; laws compare by identity."""
+    out: list[Any] = [tuple(diagram.outside.items()), diagram.measured]
+    for part in diagram.parts:
+        wires = (part.name, part.inputs, part.outputs)
+        terms = tuple(getattr(part, "terms", getattr(part, "loads", {})).items())
+        block = getattr(part, "controller", getattr(part, "body", None))
+        laws: tuple[Any, ...] = ()
+        if isinstance(block, Controller):
+            laws = tuple((g.name, g.law.law, _states(g.law)) for g in block.stages)
+        elif isinstance(block, Body):
+            laws = tuple((e.name, e.role, e.law, _states(e)) for e in block.effects)
+        elif isinstance(block, MatrixImpedance):
+            laws = tuple(block.parameters)
+        elif isinstance(part, Kinematics):
+            laws = (part.expression,)
+        sign = getattr(part, "sign", 1)
+        motion = (part.motion, part.analog) if isinstance(part, Control) else ()
+        out.append((type(part).__name__, wires, terms, sign, motion, laws))
+    return tuple(out)
+
+
+def _states(law: Effect | ControlLaw) -> tuple[Any, ...]:
+    return tuple(law.states.items())

@@ -1,0 +1,216 @@
+"""Bounds of the friction of a shape along a measured motion: its hidden states, row by row.
+
+A shape has one state whose rate is affine in it, or several that each follow the motion up to a
+stop. Where the motion is not sure, friction lies between two bounds; tangents go with both.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+import sympy as sp
+
+from ..effects import SIGNALS, Effect
+from ..errors import ModelError
+from ..measurement.motion import Motion
+from .compiled import compiled
+from .laws import Names, assignments, indented
+from .scan import (
+    HEAD,
+    STATE,
+    affine_rate,
+    columns_of,
+    names_in_source,
+    signals_in,
+    slope_lines,
+    slope_of_column,
+    slopes_by,
+)
+from .traced import Along, Traced
+
+
+def _used_by_shape(effect: Effect) -> list[str]:
+    """Signals of a shape's laws besides those that its scan has in any case."""
+    return [n for n in signals_in(effect) if n not in ("velocity", "level")]
+
+
+def _shape_module(
+    effect: Effect,
+    names: Names,
+    *,
+    start: list[str],
+    advance: list[str],
+    slope: sp.Expr,
+    weights: list[str],
+    tangents: list[str],
+    moved: str,
+) -> str:
+    """Source of the bounds of a shape's friction, and of their tangents, at each sample.
+
+    start: its states at rest;  advance: how a sample moves them on;  slope: force by position
+    weights: slopes of the force by the states, once for all columns
+    tangents: how column j of the states' tangents moves on;  moved: what they change of the force
+    """
+    law, used = effect.expression(), _used_by_shape(effect)
+    by = slopes_by(effect, "level")
+    arguments = [*(names[s] for s in effect.symbols().values()), *(f"{n}_" for n in used)]
+    return f"""{HEAD}
+
+@jitted
+def shape(h, half_step, columns, position, velocity, direction, {", ".join(arguments)},
+          forward, dforward, backward, dbackward, low, dlow, high, dhigh):
+    p, n = dforward.shape
+{indented(start, 4)}
+    for k in range(n):
+        u_velocity = (position[k] - position[max(k - 1, 0)]) / h
+        ahead = u_velocity >= 0.0
+        u_level = max(forward[k] if ahead else backward[k], 1e-12)
+{indented([f"u_{n} = {n}_[k]" for n in used], 8)}
+{indented(advance, 8)}
+        u_velocity = velocity[k]
+{indented(assignments({"force": law, "slope": slope}, names), 8)}
+{indented(weights, 8)}
+{indented(slope_lines("f", law, by, names) + slope_lines("g", slope, by, names), 8)}
+        # where the reading cannot tell a motion, the position is open by half a step
+        free = half_step if direction[k] == 0 else 0.0
+        below = force - free * abs(slope)
+        above = force + free * abs(slope)
+        low[k] = below if direction[k] != 0 else max(below, -backward[k])
+        high[k] = above if direction[k] != 0 else min(above, forward[k])
+        for j in range(p):
+            dlevel = dforward[j, k] if ahead else dbackward[j, k]
+{indented(tangents, 12)}
+            df = {moved} + f_level * dlevel + {slope_of_column(effect, "f")}
+            dg = free * copysign(1.0, slope) * (g_level * dlevel + {slope_of_column(effect, "g")})
+            dlow[j, k] = df - dg if low[k] == below else -dbackward[j, k]
+            dhigh[j, k] = df + dg if high[k] == above else dforward[j, k]
+"""
+
+
+@lru_cache(maxsize=64)
+def _shape_source(effect: Effect) -> str:
+    """Of a shape with one state, whose rate is affine in it: exact over each sample."""
+    state, a, b = affine_rate(effect)
+    names, by = names_in_source(effect), slopes_by(effect, "level")
+    return _shape_module(
+        effect,
+        names,
+        start=["dz = np.zeros(p)", "z = 0.0"],
+        advance=[
+            *assignments({"a": a, "b": b}, names),
+            *slope_lines("a", a, by, names),
+            *slope_lines("b", b, by, names),
+            "e, p1, p2, p3 = phi(a * h)",
+            "s1 = p1 - p2",
+            "before = z",
+            "z = before * e + b * h * p1",
+            f"{STATE} = z",
+        ],
+        slope=sp.diff(effect.expression(), state),
+        weights=[],
+        tangents=[
+            f"da = a_level * dlevel + {slope_of_column(effect, 'a')}",
+            f"db = b_level * dlevel + {slope_of_column(effect, 'b')}",
+            "dz[j] = dz[j] * e + before * e * h * da + h * p1 * db + b * h * s1 * h * da",
+        ],
+        moved="slope * dz[j]",
+    )
+
+
+def _stop_lines(count: int) -> list[str]:
+    """Code that moves each state on by its rate, up to its stop."""
+    lines: list[str] = []
+    for i in range(count):
+        lines += [
+            f"stop_{i} = max(s{i}, 0.0)",
+            f"z_{i} += h * r{i}",
+            f"held_{i} = abs(z_{i}) > stop_{i}",
+            f"z_{i} = copysign(stop_{i}, z_{i}) if held_{i} else z_{i}",
+        ]
+    return lines
+
+
+def _stop_tangents(effect: Effect) -> list[str]:
+    """Code of column j of each state's tangents: those of its stop where it is held there."""
+    lines: list[str] = []
+    for i in range(len(effect.states)):
+        by_stop = f"s{i}_level * dlevel + {slope_of_column(effect, f's{i}')}"
+        by_rate = f"r{i}_level * dlevel + {slope_of_column(effect, f'r{i}')}"
+        lines += [
+            f"if held_{i}:",
+            f"    dz[{i}, j] = copysign(1.0, z_{i}) * ({by_stop})",
+            "else:",
+            f"    dz[{i}, j] += h * ({by_rate})",
+        ]
+    return lines
+
+
+@lru_cache(maxsize=64)
+def _stopped_source(effect: Effect) -> str:
+    """Of a shape whose states follow the motion alone, each up to its stop: exact in each step."""
+    stops, states = effect.stops(), list(effect.state_symbols().values())
+    if len(stops) < len(states) or any(r.has(*states) or s.has(*states) for r, s in stops.values()):
+        raise ModelError(f"{effect.name}: states with a stop beside others, or that need others")
+    law, m = effect.expression(), len(states)
+    names = {**names_in_source(effect), **{z: f"z_{i}" for i, z in enumerate(states)}}
+    by = slopes_by(effect, "level")
+    laws = {f"r{i}": rate for i, (rate, _) in enumerate(stops.values())}
+    laws |= {f"s{i}": stop for i, (_, stop) in enumerate(stops.values())}
+    velocity = SIGNALS["velocity"]
+    slopes = [line for name, one in laws.items() for line in slope_lines(name, one, by, names)]
+    return _shape_module(
+        effect,
+        names,
+        start=[f"dz = np.zeros(({m}, p))", *(f"z_{i} = 0.0" for i in range(m))],
+        advance=[*assignments(laws, names), *slopes, *_stop_lines(m)],
+        slope=sp.Add(
+            *(sp.diff(law, z) * sp.diff(laws[f"r{i}"], velocity) for i, z in enumerate(states))
+        ),
+        weights=assignments({f"w{i}": sp.diff(law, z) for i, z in enumerate(states)}, names),
+        tangents=_stop_tangents(effect),
+        moved=" + ".join(f"w{i} * dz[{i}, j]" for i in range(m)),
+    )
+
+
+@lru_cache(maxsize=64)
+def _shape_of(effect: Effect) -> tuple[str, tuple[str, ...]]:
+    """Source of a shape's bounds, and the signals besides that it is called with."""
+    source = _stopped_source(effect) if effect.stops() else _shape_source(effect)
+    return source, tuple(_used_by_shape(effect))
+
+
+def shape_bounds(
+    effect: Effect, motion: Motion, along: Along, *, forward: Traced, backward: Traced
+) -> tuple[Traced, Traced]:
+    """Bounds of the friction of a shape, driven by the measured motion.
+
+    It has one hidden state, or several that each follow the motion up to a separate stop.
+
+    forward, backward: friction level that way
+    They coincide where the motion is sure; where it is not, they lie apart by what half a step of
+    the position means to the bristle, and no further than the level.
+    """
+    source, used = _shape_of(effect)
+    scan = compiled(source, "shape")
+    low, high = np.empty_like(forward.value), np.empty_like(forward.value)
+    dlow, dhigh = np.empty(forward.tangent.shape), np.empty(forward.tangent.shape)
+    scan(
+        along.step,
+        0.5 * motion.step,
+        columns_of(effect, along.columns),
+        motion.position,
+        motion.velocity,
+        motion.direction,
+        *[along.values[s] for s in effect.symbols().values()],
+        *[along.signals[SIGNALS[n]].value for n in used],
+        forward.value,
+        np.ascontiguousarray(forward.tangent),
+        backward.value,
+        np.ascontiguousarray(backward.tangent),
+        low,
+        dlow,
+        high,
+        dhigh,
+    )
+    return Traced(low, dlow), Traced(high, dhigh)
