@@ -65,6 +65,12 @@ class Finding(ByValue):
         place = f"{self.where}: " if self.where else ""
         return f"{self.concern:<8}{place}{self.sentence}"
 
+    def _repr_html_(self) -> str:
+        rows = [(name, f"{number:.6g}") for name, number in self.numbers.items()]
+        place = f", {self.where}" if self.where else ""
+        title = f"{self.concern}: {self.topic}{place}"
+        return html_table(title, ("number (SI)", "") if rows else (), rows, note=self.sentence)
+
 
 class Findings(tuple[Finding, ...]):
     """Findings in the order in which they were made; printed and in a notebook, a line for each."""

@@ -10,11 +10,10 @@ from dataclasses import dataclass, field, replace
 
 from .arguments import checked, described, instance
 from .blocks import CONTACT, Body, Value
-from .blocks.described import body_of, effects_of, value_of
+from .blocks.described import free_body_of, joint_with_links, with_environment
 from .effects import CONTACT_ROLES, EFFECTS, Effect, Parameter, find_effect
 from .errors import ExperimentError, ModelError, did_you_mean
 from .frozen import Frozen
-from .measurement.description import BodyDescription, EnvironmentDescription, ModelValue
 from .measurement.experiment import Experiment
 from .notebook import html_table
 from .quantity import after_number
@@ -61,8 +60,8 @@ class Model:
         """
         described = experiment.bodies
         if experiment.arm is not None:
-            described = {n: _of_joint(b) for n, b in described.items()}
-        bodies = {n: _body(b, known) for n, b in described.items()}
+            described = {n: joint_with_links(b) for n, b in described.items()}
+        bodies = {n: free_body_of(b, known) for n, b in described.items()}
         for place, body in bodies.items():
             for effect in body.effects:
                 wanted = sorted(effect.channels())
@@ -74,7 +73,7 @@ class Model:
         touching = list(bodies)[-1]
         measured = f"{touching}.interaction_force" in experiment.channels
         if experiment.environment is not None and not measured:
-            bodies[touching] = _touching(bodies[touching], experiment.environment, known)
+            bodies[touching] = with_environment(bodies[touching], experiment.environment, known)
         return cls(Frozen(bodies), known)
 
     @checked
@@ -153,11 +152,14 @@ class Model:
     @property
     def parameters(self) -> dict[str, Value]:
         """Every parameter by its full name, "device.coulomb.level" -> Value (SI)."""
-        return {
-            f"{self._place_of(place, name)}{name}": body.parameters[name]
-            for place, body in self.bodies.items()
-            for name, _ in body.declared()
-        }
+        named = {}
+        for place, body in self.bodies.items():
+            # by effect, not by parameter: a fit asks thousands of times
+            places = {e.name: self._place_of(place, f"{e.name}.any") for e in body.effects}
+            for name, _ in body.declared():
+                at = places.get(name.partition(".")[0], f"{place}.")
+                named[f"{at}{name}"] = body.parameters[name]
+        return named
 
     def locate(self, name: str) -> tuple[str, str]:
         """Body, and name within it, of the parameter of that full name.
@@ -299,39 +301,3 @@ class Model:
             rows.append((name, f"{v.value:.5g}", error, self.unit(name), "yes" if v.fixed else ""))
         head = ("parameter", "value", "standard error", "unit", "fixed")
         return html_table("Model", head, rows)
-
-
-def _touching(body: Body, description: EnvironmentDescription, known: Mapping[str, Effect]) -> Body:
-    """The body with the environment that it runs into; without a stated damping it has none."""
-    if "stiffness" not in description.values:
-        raise ExperimentError(f"{description.where}: no stiffness given")
-    values = {
-        f"{CONTACT.name}.damping": Value(0.0, fixed=True),
-        f"{CONTACT.name}.contact_position": Value(0.0, fixed=True),
-    }
-    for name, value in description.values.items():
-        values[f"{CONTACT.name}.{name}"] = value_of(value, CONTACT.parameters[name], body.axis)
-    body = body.with_effect(CONTACT).with_values(values)
-    where = f"{description.where}.effects"
-    effects, parameters = effects_of(description.effects, where, body.axis, known)
-    for effect in effects:
-        if effect.role not in CONTACT_ROLES:
-            raise ExperimentError(f'{where}: "{effect.name}" acts at a body, not at an environment')
-        body = body.with_effect(effect)
-    return body.with_values(parameters)
-
-
-def _of_joint(description: BodyDescription) -> BodyDescription:
-    """A joint of an arm as a body: its links have the inertia that its motor does not state."""
-    motor = description.inertia or ModelValue(0.0, None, True, description.where)
-    return replace(description, inertia=replace(motor, fixed=True))
-
-
-def _body(description: BodyDescription, known: Mapping[str, Effect]) -> Body:
-    for name in description.effects:
-        if name in known and known[name].role in CONTACT_ROLES:
-            raise ExperimentError(
-                f'{description.where}.effects: "{name}" acts at an environment: '
-                "see [model.environment.effects]"
-            )
-    return body_of(description, known)

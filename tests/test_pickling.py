@@ -13,6 +13,7 @@ from example_objects import BODY, LAW, QUICK, SLOW
 
 import teleopdesign as td
 from teleopdesign.by_value import same
+from teleopdesign.finding import Finding
 from teleopdesign.frozen import Catalogue, Frozen
 
 EVERY = [
@@ -173,6 +174,28 @@ def test_these_have_a_table_in_notebooks(name):
     make = {**QUICK, "model": QUICK["model from an experiment"]}.get(name)
     kinds = {"comparison": td.Comparison, "ranking": td.Ranking, "diagnosis": td.Diagnosis}
     assert hasattr(kinds[name] if name in kinds else make(), "_repr_html_")
+
+
+@pytest.mark.parametrize(
+    ("thing", "shown"),
+    [
+        (td.Value(0.25, stderr=0.013), ["0.25", "0.013", "free"]),
+        (td.Value(0.25, fixed=True), ["0.25", "-", "fixed"]),
+        (
+            Finding("sample <clock>", "note", "Stamps are late.", {"jitter": 0.002}, "fit.csv"),
+            ["note: sample &lt;clock&gt;, fit.csv", "jitter", "0.002", "Stamps are late."],
+        ),
+        (Finding("hum", "fine", "There is none."), ["fine: hum", "There is none."]),
+        (
+            td.load_experiment(td.example("rod")).records[0],
+            ["Record fit.csv.gz (fit)", "device.position", "device.actuator_force"],
+        ),
+    ],
+)
+def test_what_lies_inside_of_results_has_a_table_in_notebooks_too(thing, shown):
+    text = thing._repr_html_()
+    assert all(part in text for part in shown)
+    assert text.startswith("<div>") and "<clock>" not in text
 
 
 @pytest.mark.parametrize("name", ["transfer functions", "all transfers", "two-port functions"])

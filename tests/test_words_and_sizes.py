@@ -14,6 +14,8 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 #: participles and the like: they name grammar, where a name should say what it holds
 BANNED = frozenset("asked found give given own referred seen settled taken told tried".split())
+#: such words say no more as a part of a name: `own_body`, `told_rows`
+BANNED_PARTS = frozenset("found own settled told tried".split())
 #: keywords of public functions, kept under the names that users type
 PUBLIC_KEYWORDS = {
     # m or rad by which ideal friction gives before it slides: `simulate(..., give=...)`
@@ -81,7 +83,8 @@ def misnamed(module: str, tree: ast.AST) -> list[str]:
     return [
         f"{module}:{line}: {name}"
         for line, name in names(tree)
-        if name.strip("_") in BANNED and not under(module, PUBLIC_KEYWORDS.get(name, ()))
+        if BANNED_PARTS.intersection(name.lower().split("_"))
+        or (name.strip("_") in BANNED and not under(module, PUBLIC_KEYWORDS.get(name, ())))
     ]
 
 
@@ -115,6 +118,8 @@ def test_no_name_says_grammar_instead_of_a_thing():
         "with x as asked: pass",
         "import x as referred",
         "try: pass\nexcept ValueError as seen: pass",
+        "own_body = 1",
+        "class A:\n    told_rows: int",
     ],
 )
 def test_a_misnamed_thing_is_seen_wherever_it_is_named(code):

@@ -1,11 +1,14 @@
-"""What the page offers: report, answer, figure, and a script that repeats what was clicked."""
+"""What the page gives out: report, answer, figure, the compensation as a diagram, a script."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from ..diagnose.answer import write_answer
+from ..errors import TeleopDesignError
 from ..plain_data import replacing, write_text
+from .pages import propose_design
 from .workbench import Workbench
 
 #: name of the folder with what is written, below the page's folder
@@ -34,13 +37,19 @@ def script(bench: Workbench, folder: str | None = None) -> str:
     return "\n".join(lines)
 
 
-def write_all(bench: Workbench, folder: Path) -> str:
-    """Write everything below `folder`/results; one line with what was written."""
+def write_all(
+    bench: Workbench, folder: Path, say: Callable[[str], None] = lambda text: None
+) -> str:
+    """Write everything below `folder`/results; one line with what was written.
+
+    say: gets what is being made
+    """
     from ..report import write_report
     from ..unexplained import where_it_fails
 
     target = folder / RESULTS / bench.experiment.folder.name
     target.mkdir(parents=True, exist_ok=True)
+    say("report, answer and figure")
     diagnosis = bench.diagnosis()
     left = where_it_fails(diagnosis.after, diagnosis.prepared, diagnosis.floor)
     write_report(diagnosis, target / "report.html", unexplained=left)
@@ -48,6 +57,15 @@ def write_all(bench: Workbench, folder: Path) -> str:
     with replacing(target / "figure.svg") as part:
         diagnosis.plot().savefig(part, format="svg")
     write_text(target / "script.py", script(bench, str(bench.experiment.folder)) + "\n")
-    return (
-        f"written to {target.relative_to(folder)}: report.html, answer.json, figure.svg, script.py"
-    )
+    names = ["report.html", "answer.json", "figure.svg", "script.py"]
+    missing = []
+    for body in bench.model.bodies:
+        say(f"compensation for {body}")
+        try:
+            text = propose_design(bench, body).to_toml()
+        except TeleopDesignError as error:
+            missing.append(f"; no compensation for {body}: {error}")
+        else:
+            names.append(f"{body}_interface.toml")
+            write_text(target / names[-1], text)
+    return f"written to {target.relative_to(folder)}: {', '.join(names)}{''.join(missing)}"

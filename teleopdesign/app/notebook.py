@@ -147,26 +147,29 @@ def _(
 
 
 @app.cell
-def _(choice, folder, log_view, mo, names, open_button, views):
+def _(choice, folder, mo, names, open_button, views):
     mo.vstack(
         [
             mo.md(f"# teleopdesign\n\nWhat does the model lack? Folder: `{folder.name}`"),
             views.beside(choice, open_button)
             if names
             else mo.md("No experiment here yet. Bring a log of your own:"),
-            mo.accordion({"Bring a log of your own": log_view})
-            if names
-            else log_view,  # nothing else to begin with: not hidden
         ]
     )
     return
 
 
 @app.cell
-def _(get_task, mo, set_bench, set_note, set_task):
+def _(get_task, mo, set_note, set_task):
+    def stop(_):
+        # the work ends at its next line of progress; the page need not wait for that
+        task.cancel()
+        set_note(f"{task.name}: cancelled")
+        set_task(None)
+
     task = get_task()
     pulse = mo.ui.refresh(default_interval="0.5s", options=["0.5s"]) if task is not None else None
-    cancel = mo.ui.button(label="Cancel", on_click=lambda _: task.cancel(), kind="warn")
+    cancel = mo.ui.button(label="Cancel", on_click=stop, kind="warn")
     return cancel, pulse, task
 
 
@@ -177,6 +180,8 @@ def _(cancel, get_note, mo, pulse, set_bench, set_note, set_task, task, views):
     elif task.done:
         if task.error:
             set_note(task.error)
+        elif isinstance(task.result, str):
+            set_note(task.result)
         else:
             set_bench(task.result)
         set_task(None)
@@ -189,9 +194,22 @@ def _(cancel, get_note, mo, pulse, set_bench, set_note, set_task, task, views):
 
 
 @app.cell
+def _(log_view, mo, names):
+    # nothing else to begin with: not hidden
+    mo.accordion({"Bring a log of your own": log_view}) if names else log_view
+    return
+
+
+@app.cell
+def _(get_bench, mo, names):
+    mo.md("Open an experiment to begin." if names and get_bench() is None else "")
+    return
+
+
+@app.cell
 def _(get_bench, mo, pages):
     bench = get_bench()
-    mo.stop(bench is None, mo.md("Open an experiment to begin."))
+    mo.stop(bench is None)
     bodies = tuple(bench.model.bodies)
     body = mo.ui.dropdown(options=bodies, value=bodies[0], label="Body")
     uses = [u for u in ("check", "fit") if bench.search.whole.of(u)]
@@ -282,28 +300,31 @@ def _(mo):
 
 
 @app.cell
-def _(bench, factor, views, which):
-    slider_view = views.slider_view(bench, which, factor)
+def _(bench, body, factor, use, views, which):
+    slider_view = views.slider_view(bench, which, factor, body, use)
     return (slider_view,)
 
 
 @app.cell
 def _(bench, mo, pages):
     left_view = mo.lazy(lambda: pages.what_is_left(bench), show_loading_indicator=True)
-    next_view = mo.lazy(lambda: pages.next_experiment(bench), show_loading_indicator=True)
+    next_view = mo.lazy(
+        lambda: mo.plain_text(pages.next_experiment(bench)), show_loading_indicator=True
+    )
     return left_view, next_view
 
 
 @app.cell
-def _(bench, body, mo, pages):
-    design_view = mo.lazy(lambda: pages.design(bench, body.value), show_loading_indicator=True)
+def _(bench, body, mo, views):
+    design_view = mo.lazy(lambda: views.design_view(bench, body.value), show_loading_indicator=True)
     return (design_view,)
 
 
 @app.cell
-def _(bench, export, folder, mo, set_note, views):
+def _(BackgroundTask, bench, export, folder, mo, set_note, set_task, views):
     def write(_):
-        set_note(export.write_all(bench, folder))
+        set_note("")
+        set_task(BackgroundTask("writing", lambda say: export.write_all(bench, folder, say)))
 
     write_button = mo.ui.button(
         label="Write report, answer, model and script", on_click=write, kind="success"

@@ -15,8 +15,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import Dataset
 
+    from ..design import Design
     from ..diagnose.rung import Rung
     from ..model import Model
+    from ..plot import Drawing
+    from ..simulate import Simulation
 
 
 def residuals(bench: Workbench, rung: int = -1) -> Dataset:
@@ -115,6 +118,15 @@ def moved(bench: Workbench, parameter: str, factor: float) -> str:
     )
 
 
+def moved_residuals(bench: Workbench, parameter: str, factor: float) -> Dataset | None:
+    """Forces of the last model with one parameter moved; None where the value is out of bounds."""
+    value = factor * bench.model.parameters[parameter].value
+    try:
+        return residual_data(bench.model.with_values({parameter: value}), bench.search.whole)
+    except TeleopDesignError:
+        return None
+
+
 def what_is_left(bench: Workbench) -> Figure:
     """Views of the residual of the last model, with a sentence for each dependence."""
     from ..plot.unexplained import plot_unexplained
@@ -128,17 +140,48 @@ def next_experiment(bench: Workbench) -> str:
     """What to measure next to tell apart what the records leave open."""
     from ..next_experiment import propose
 
-    return f"```\n{propose(bench.diagnosis())!r}\n```"
+    return repr(propose(bench.diagnosis()))
 
 
-def design(bench: Workbench, body: str) -> Figure | str:
-    """A compensation for the body as the last model describes it: figure with its claims."""
-    from ..design import design as propose_design
+def design_parts(bench: Workbench, body: str) -> list[tuple[str, Figure | Drawing | str]]:
+    """A compensation for the body as the last model describes it, one part a tab of the page.
+
+    returns: (title, what it shows); one part with the reason where there is no design
+    """
+    from ..plot import draw_diagram
 
     try:
-        return propose_design(bench.diagnosis(), place=body).plot()
+        design = propose_design(bench, body)
+        parts: list[tuple[str, Figure | Drawing | str]] = [
+            ("Before and after", design.plot()),
+            ("Numbers, reasons and claims", repr(design)),
+            ("Diagram", draw_diagram(design.diagram)),
+            ("Bode", design.transparency.plot(columns=2)),
+        ]
+        felt = design.impedance
+        if felt.simulated is not None:
+            impedance = felt.simulated.plot("frequency", model=felt.predicted, columns=2)
+            parts.append(("Impedance", impedance))
     except TeleopDesignError as error:
-        return str(error)
+        return [("No design", str(error))]
+    try:
+        parts.append(("Simulation", _pushed(design).plot()))
+    except TeleopDesignError as error:
+        parts.append(("Simulation", str(error)))
+    return parts
+
+
+def propose_design(bench: Workbench, body: str) -> Design:
+    """The compensation that `teleopdesign design` would propose for the last model."""
+    return _designs(_Key(bench, bench.model), body)
+
+
+def _pushed(design: Design) -> Simulation:
+    """The designed device, pushed for a second with half of the largest recorded command."""
+    from ..simulate import simulate
+
+    push = 0.5 * design.reach.command
+    return simulate(design.diagram, duration=1.0, inputs={"R_D": push}, computer=design.sampling)
 
 
 class _Key:
@@ -152,6 +195,13 @@ class _Key:
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Key) and other.model is self.model
+
+
+@lru_cache(maxsize=4)
+def _designs(key: _Key, body: str) -> Design:
+    from ..design import design
+
+    return design(key.bench.diagnosis(), place=body)
 
 
 @lru_cache(maxsize=8)

@@ -28,6 +28,9 @@ def beside(*elements: PageElement) -> PageElement:
 
 def span_sliders(duration: float, proposed: Spans) -> tuple[PageElement, PageElement]:
     """Two sliders: what is fitted, and what is checked, s from the first row."""
+    # nine digits: what the sliders show beside them is no rounding error
+    duration = float(f"{duration:.9g}")
+    proposed = [(float(f"{begin:.9g}"), float(f"{end:.9g}")) for begin, end in proposed]
     fit, check = (
         mo.ui.range_slider(
             start=0.0,
@@ -139,15 +142,38 @@ def ladder_view(
     )
 
 
-def slider_view(bench: Workbench, which: PageElement, factor: PageElement) -> PageElement:
-    """One parameter moved, and the errors that the model then has."""
+def slider_view(
+    bench: Workbench,
+    which: PageElement,
+    factor: PageElement,
+    body: PageElement,
+    use: PageElement,
+) -> PageElement:
+    """One parameter moved: the errors that the model then has, and its force beside the record."""
     if not which.value:
         return mo.md("This model has no free parameter.")
-    return mo.vstack([beside(which, factor), mo.md(pages.moved(bench, which.value, factor.value))])
+    parts = [beside(which, factor), mo.md(pages.moved(bench, which.value, factor.value))]
+    data = pages.moved_residuals(bench, which.value, factor.value)
+    if data is not None:
+        parts.append(charts.residual_chart(data, body.value, use.value))
+    return mo.vstack(parts)
+
+
+def design_view(bench: Workbench, body: str) -> PageElement:
+    """The compensation for a body: what it does, its claims, diagram, Bode plot, simulation."""
+    return mo.ui.tabs(
+        {
+            title: mo.plain_text(part) if isinstance(part, str) else part
+            for title, part in pages.design_parts(bench, body)
+        }
+    )
 
 
 def export_view(bench: Workbench, write: PageElement) -> PageElement:
     """The button that writes, and the script that repeats what was clicked."""
-    said = "Report (html), answer (json), figure (svg), and a script that repeats these steps."
+    said = (
+        "Report (html), answer (json), figure (svg), for each body the compensation as a diagram "
+        "(toml), and a script that repeats these steps."
+    )
     script = mo.md(f"```python\n{export.script(bench)}\n```")
     return mo.vstack([mo.md(said), write, mo.accordion({"The script": script})])

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import sympy as sp
 
@@ -57,21 +58,7 @@ class Body:
             _refuse_axis(self.axis)
         instance(self.parameters, Mapping, "Body: parameters", expected='such as {"inertia": 0.15}')
         object.__setattr__(self, "effects", _effects(self.effects))
-        names = [e.name for e in self.effects]
-        if doubled := {n for n in names if names.count(n) > 1}:
-            raise ModelError(f'body: effect "{min(doubled)}" is there twice')
-        for role, words in ONE_ONLY.items():
-            same = [e.name for e in self.effects if e.role == role]
-            if len(same) > 1:
-                raise ModelError(f"body: two {words}, {' and '.join(same)}: one is possible")
-        for effect in self.effects:
-            if missing := self.lacks(effect):
-                raise ModelError(f'body: "{effect.name}" needs "{missing[0]}" beside it')
-            if self.axis in effect.elsewhere:
-                raise ModelError(
-                    f'body: "{effect.name}" holds on no {self.axis} axis: there it is '
-                    f'"{effect.elsewhere[self.axis]}"'
-                )
+        _check_effects(self.effects, self.axis)
         expected = [name for name, _ in self.declared()]
         for name in self.parameters:
             if name not in expected:
@@ -118,14 +105,7 @@ class Body:
         Of a role that one effect of a body can have, another one of that role will do; so will an
         effect that counts as the one needed, where the law holds no parameter of that one.
         """
-        roles = {e.role for e in self.effects} & set(ONE_ONLY)
-        known = {n: EFFECTS[n].role for n in effect.needs if n in EFFECTS}
-        counted = {n for e in self.effects for n in e.counts_as} - effect.parameters_of_others()
-        return tuple(
-            n
-            for n in sorted(effect.needs)
-            if not (self.has(n) or n in counted or known.get(n) in roles)
-        )
+        return _missing(self.effects, effect)
 
     @checked
     def effect(self, name: str) -> Effect:
@@ -260,6 +240,41 @@ def _no_parameter(name: object, known: Iterable[str]) -> ModelError:
     near = did_you_mean(name, known) if isinstance(name, str) else ""
     said = quoted(name) if isinstance(name, str) else repr(name)
     return ModelError(f"body: no parameter {said}, has {', '.join(known)}{near}")
+
+
+@lru_cache(maxsize=4096)
+def _missing(effects: tuple[Effect, ...], effect: Effect) -> tuple[str, ...]:
+    """What `Body.lacks` says of a body with these effects."""
+    roles = {e.role for e in effects} & set(ONE_ONLY)
+    known = {n: EFFECTS[n].role for n in effect.needs if n in EFFECTS}
+    counted = {n for e in effects for n in e.counts_as} - effect.parameters_of_others()
+    names = {e.name for e in effects}
+    return tuple(
+        n for n in sorted(effect.needs) if not (n in names or n in counted or known.get(n) in roles)
+    )
+
+
+@lru_cache(maxsize=256)
+def _check_effects(effects: tuple[Effect, ...], axis: str) -> None:
+    """Refuse effects that no body can have together; once for each set, for a fit makes thousands.
+
+    raises ModelError: what is wrong
+    """
+    names = [e.name for e in effects]
+    if doubled := {n for n in names if names.count(n) > 1}:
+        raise ModelError(f'body: effect "{min(doubled)}" is there twice')
+    for role, words in ONE_ONLY.items():
+        same = [e.name for e in effects if e.role == role]
+        if len(same) > 1:
+            raise ModelError(f"body: two {words}, {' and '.join(same)}: one is possible")
+    for effect in effects:
+        if missing := _missing(effects, effect):
+            raise ModelError(f'body: "{effect.name}" needs "{missing[0]}" beside it')
+        if axis in effect.elsewhere:
+            raise ModelError(
+                f'body: "{effect.name}" holds on no {axis} axis: there it is '
+                f'"{effect.elsewhere[axis]}"'
+            )
 
 
 def _refuse_axis(axis: object) -> None:

@@ -7,12 +7,14 @@ unit is converted and its unit checked; a plain number is in SI.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
-from ..effects import Effect, Parameter, find_effect
+from ..effects import CONTACT_ROLES, Effect, Parameter, find_effect
 from ..errors import ExperimentError, ModelError, did_you_mean
-from ..measurement.description import BodyDescription, Effects, ModelValue
+from ..measurement.description import BodyDescription, Effects, EnvironmentDescription, ModelValue
 from ..quantity import after_number, unit_of
 from .body import INERTIA, Body
+from .environment import CONTACT
 from .value import Value
 
 
@@ -82,3 +84,45 @@ def value_of(written: ModelValue, parameter: Parameter, axis: str) -> Value:
             f"{parameter.lower:g} .. {parameter.upper:g}"
         )
     return Value(number, written.fixed) if error is None else Value(number, written.fixed, error)
+
+
+def with_environment(
+    body: Body, description: EnvironmentDescription, known: Mapping[str, Effect]
+) -> Body:
+    """The body with the environment that it touches; without a stated damping it has none."""
+    if "stiffness" not in description.values:
+        raise ExperimentError(f"{description.where}: no stiffness given")
+    values = {
+        f"{CONTACT.name}.damping": Value(0.0, fixed=True),
+        f"{CONTACT.name}.contact_position": Value(0.0, fixed=True),
+    }
+    for name, value in description.values.items():
+        values[f"{CONTACT.name}.{name}"] = value_of(value, CONTACT.parameters[name], body.axis)
+    body = body.with_effect(CONTACT).with_values(values)
+    where = f"{description.where}.effects"
+    effects, parameters = effects_of(description.effects, where, body.axis, known)
+    for effect in effects:
+        if effect.role not in CONTACT_ROLES:
+            raise ExperimentError(f'{where}: "{effect.name}" acts at a body, not at an environment')
+        body = body.with_effect(effect)
+    return body.with_values(parameters)
+
+
+def joint_with_links(description: BodyDescription) -> BodyDescription:
+    """A joint of an arm as a body: its links have the inertia that its motor does not state."""
+    motor = description.inertia or ModelValue(0.0, None, True, description.where)
+    return replace(description, inertia=replace(motor, fixed=True))
+
+
+def free_body_of(description: BodyDescription, known: Mapping[str, Effect]) -> Body:
+    """As `body_of`; raises ExperimentError also where an effect acts at an environment.
+
+    What the body touches is described beside it: see `with_environment`.
+    """
+    for name in description.effects:
+        if name in known and known[name].role in CONTACT_ROLES:
+            raise ExperimentError(
+                f'{description.where}.effects: "{name}" acts at an environment: '
+                "see [model.environment.effects]"
+            )
+    return body_of(description, known)

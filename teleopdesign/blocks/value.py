@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ..arguments import instance, number
 from ..by_value import ByValue
+from ..notebook import html_table
 
 #: standard errors to either side of a value that hold it 95 times in 100 (normal)
 NINETY_FIVE = 1.96
@@ -27,3 +28,9 @@ class Value(ByValue):
 
     def __hash__(self) -> int:
         return hash((self.value, self.fixed))
+
+    def _repr_html_(self) -> str:
+        unknown = self.stderr != self.stderr
+        known = "fixed" if self.fixed else "free"
+        row = (f"{self.value:.6g}", "-" if unknown else f"{self.stderr:.2g}", known)
+        return html_table("Value (SI)", ("value", "standard error", "in a fit"), [row])

@@ -15,7 +15,7 @@ from ..finding import Finding
 
 #: share of the rows in motion, over that two octaves lower, below which a bandwidth is doubted. A
 #: half: of what could be tested, most is lost
-SEEN = 0.5
+LEAST_SHARE = 0.5
 #: part of that share at which a lower bandwidth is proposed
 ENOUGH = 0.9
 #: Hz: none below is proposed
@@ -25,7 +25,7 @@ LOWEST = 1.0
 def check_bandwidth(prepared: Prepared) -> Iterator[Finding]:
     """A bandwidth at which far fewer rows tell a motion than at a lower one."""
     for body in prepared.experiment.bodies:
-        share = share_in_motion(prepared, body)
+        moving = share_in_motion(prepared, body)
         octaves = [prepared.bandwidth / 2**k for k in (1, 2)]
         if octaves[-1] < LOWEST:
             return
@@ -33,18 +33,18 @@ def check_bandwidth(prepared: Prepared) -> Iterator[Finding]:
             b: share_in_motion(prepare(prepared.experiment, bandwidth=b), body) for b in octaves
         }
         could = lower[octaves[-1]]
-        if share >= SEEN * could:
+        if moving >= LEAST_SHARE * could:
             continue
         proposed = max(b for b in octaves if lower[b] >= ENOUGH * could)
         yield Finding(
             "bandwidth",
             "warning",
             f"below {prepared.bandwidth:.3g} Hz, the bandwidth of the comparison, the position "
-            f"tells a motion in {100 * share:.0f} % of the rows, below {proposed:.2g} Hz in "
+            f"tells a motion in {100 * moving:.0f} % of the rows, below {proposed:.2g} Hz in "
             f"{100 * lower[proposed]:.0f} %. In the others friction at rest takes up any force, "
             f"and no model is tested: write bandwidth = {{ value = {proposed:.2g}, "
             'unit = "Hz" } at comparison.',
-            {"bandwidth": prepared.bandwidth, "proposed": proposed, "share": share, "could": could},
+            {"bandwidth": prepared.bandwidth, "proposed": proposed, "seen": moving, "could": could},
             body,
         )
 

@@ -26,9 +26,10 @@ from ._controller import (
 )
 from ._declarations import broken_declarations
 from ._exact import as_written, in_exact_numbers, resolvent
-from ._from_control import from_control, inverted
+from ._from_control import from_control, inverted, matrices_of, unit_state
 from ._from_file import load_controller
-from ._opaque import calls_in, is_call
+from ._measured import measured_frequencies, measured_plant
+from ._opaque import calls_in, is_call, opaque_laws
 
 __all__ = [
     "CONTROLLERS",
@@ -49,9 +50,14 @@ __all__ = [
     "is_call",
     "laws_that_declare",
     "load_controller",
+    "matrices_of",
+    "measured_frequencies",
+    "measured_plant",
+    "opaque_laws",
     "parameter_symbol",
     "resolvent",
     "scheduled_force_feedback",
+    "unit_state",
 ]
 
 

@@ -105,11 +105,17 @@ class Controller:
         return Controller(tuple(stages))
 
     def equation(
-        self, prefix: str, signals: Mapping[str, sp.Expr], *, code: bool = False
+        self,
+        prefix: str,
+        signals: Mapping[str, sp.Expr],
+        *,
+        others: tuple[sp.Expr, ...] = (),
+        code: bool = False,
     ) -> ControllerEquation:
         """The laws composed in series; prefix: name of the block, in its symbols.
 
         signals: those of `SIGNALS`; a `period` of 0 is continuous time
+        others: further signals that a law known as code reads
         code: whether systems that are known as code take part, as calls of their functions
         raises ModelError: continuous time, and a state that exists in a computer only; a system
             that is known as code only
@@ -131,6 +137,7 @@ class Controller:
                     "only: it takes part in `simulate` and `to_iosystem`, and nowhere else"
                 )
             now, p = _placed(stage, prefix, {**signals, "input": value})
+            now.others = others
             probe = SimpleNamespace(**{**vars(now), "travel_rate": SIGNALS["travel_rate"]})
             for name, state in law.states.items():
                 symbol, in_computer = getattr(now, name), signals["period"] != 0

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import ModelError
 from ..names import check_name
+from ..recipes import remember
 from . import _state_space
-from ._controller import Controller
+from ._controller import ControlLaw, Controller, ControllerState, Stage, only_sampled
 from ._measured import measured
+from ._memory import last
 from ._opaque import opaque
+from ._state_space import Array
 
 if TYPE_CHECKING:
     import control
@@ -63,6 +67,36 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
         return Controller((_state_space.rational_stage(name, above, below, period),))
     matrices = system.A, system.B[:, 0], system.C[0], float(system.D[0, 0])
     return Controller((_state_space.stage(name, matrices, period),))
+
+
+def unit_state(*, discrete: bool) -> Controller:
+    """An integrator, or a delay of one sample: one state, as it is."""
+    return Controller((Stage(_state_law(discrete), {}),))
+
+
+@lru_cache(maxsize=2)  # laws compare by identity
+def _state_law(discrete: bool) -> ControlLaw:
+    rate, step = (only_sampled, last) if discrete else (last, None)
+    law = ControlLaw(
+        law=lambda now, p: now.x,
+        parameters={},
+        states={"x": ControllerState("dimensionless", rate, step)},
+        linear=not discrete,
+        source="python-control",
+    )
+    return remember(law.named("state", "A state of a system."), _state_law, discrete)
+
+
+def matrices_of(law: object) -> tuple[Array, Array, Array, float, float | None] | None:
+    """A (n, n), B (n,), C (n,), D and period (s; None: continuous) of a state space as they came.
+
+    None of what is no single system of matrices
+    """
+    stages = law.stages if isinstance(law, Controller) else ()
+    values = stages[0].values if len(stages) == 1 else {}
+    if not (len(stages) == 1 and stages[0].law.source == "python-control" and "d" in values):
+        return None
+    return (*_state_space.as_they_came(values), values.get("period"))
 
 
 def inverted(system: control.LTI, *, bandwidth: float, name: str = "inverse") -> Controller:

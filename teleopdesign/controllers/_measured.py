@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import sympy as sp
+from sympy.core.function import AppliedUndef
 from sympy.utilities.lambdify import implemented_function
 
 from ..effects import Parameter
@@ -18,10 +19,38 @@ if TYPE_CHECKING:
 
 #: relative; a point of the axis may be off it by the rounding of its computation
 _ROUNDING = 1e-9
+#: one part in so many of the frequencies, the highest, shows the mass: few of them for one outlier
+#: not to count, high enough for springs and dampers not to
+_OF_MASS = 10
 
 
 def measured(name: str, system: control.FrequencyResponseData) -> Controller:
     """The response as a controller that frequency responses take, and nothing else."""
+    return _controller(name, *_points(name, system))
+
+
+def measured_plant(name: str, system: control.FrequencyResponseData) -> tuple[float, Controller]:
+    """A response from force (N) to position (m) as a mass (kg), and the force of the rest.
+
+    1/P = m s^2 + R: m is what the highest frequencies show, median of the last tenth of them, and R
+    exact at each frequency whatever m.
+    raises ModelError: no motion, or no mass at the highest frequencies
+    """
+    w, values = _points(name, system)
+    if not values.all():
+        raise ModelError(f"{name}: the plant stands still at a frequency, found a response of 0")
+    last = slice(-max(len(w) // _OF_MASS, 1), None)
+    mass = float(np.median(-(1 / values[last]).real / w[last] ** 2))
+    if mass <= 0:
+        raise ModelError(
+            f"{name}: the highest frequencies show a mass of {mass:g} kg: measure beyond the "
+            "resonances, from force (N) to position (m)"
+        )
+    return mass, _controller(name, w, 1 / values + mass * w**2)
+
+
+def _points(name: str, system: control.FrequencyResponseData) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies (rad/s) in their order, and values."""
     w = np.asarray(system.frequency, dtype=float)
     values = np.asarray(system.frdata, dtype=complex).reshape(-1)
     order = np.argsort(w)
@@ -30,6 +59,11 @@ def measured(name: str, system: control.FrequencyResponseData) -> Controller:
         raise ModelError(
             f"{name}: a frequency response needs two or more frequencies > 0 and finite values"
         )
+    return w, values
+
+
+def _controller(name: str, w: np.ndarray, values: np.ndarray) -> Controller:
+    """What was measured at these frequencies, on the line between two of them."""
 
     def at(s: Any) -> np.ndarray:
         """On the line between its neighbours over the logarithm of frequency, part by part."""
@@ -48,6 +82,7 @@ def measured(name: str, system: control.FrequencyResponseData) -> Controller:
         real, imaginary = parts
         return np.asarray(real + 1j * np.sign(s.imag) * imaginary)
 
+    at.points = w  # type: ignore[attr-defined]
     mark = hashlib.sha256(w.tobytes() + values.tobytes()).hexdigest()[:16]
     law = ControlLaw(
         law=_unknown,
@@ -57,6 +92,12 @@ def measured(name: str, system: control.FrequencyResponseData) -> Controller:
     )
     text = f"A measured frequency response at {len(w)} frequencies."
     return Controller((Stage(law.named(name, text), {"scale": 1.0}),))
+
+
+def measured_frequencies(expression: sp.Expr) -> tuple[np.ndarray, ...]:
+    """Frequencies (rad/s, in their order) of each response that an expression holds."""
+    calls = (f.func._imp_ for f in expression.atoms(AppliedUndef))
+    return tuple(call.points for call in calls if hasattr(call, "points"))
 
 
 def _unknown(now: Any, p: Any) -> Any:

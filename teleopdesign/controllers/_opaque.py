@@ -26,9 +26,15 @@ if TYPE_CHECKING:
 #: relative, and in the states' units; of a system carried over a sample: far below what the
 #: simulation around it resolves, at some hundred calls a sample
 _RELATIVE, _ABSOLUTE = 1e-10, 1e-13
+#: at which a plant's output is looked at with forces and without
+_STATES = 5
 #: begins the names of functions that generated source may call
 _CALLED = "code_"
 _numbers = count()
+_Numbers = tuple[float, ...]
+#: inputs and states that a law reads
+_Read = tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]
+_Reading = Callable[[Any], _Read]
 
 
 def opaque(name: str, system: control.InputOutputSystem) -> Controller:
@@ -36,44 +42,116 @@ def opaque(name: str, system: control.InputOutputSystem) -> Controller:
 
     raises ModelError: the system has dynamics, and does not say how many states
     """
+    made, n = _Laws(name, system), _order(name, system)
+
+    def read(now: Any) -> _Read:
+        return (now.input,), tuple(getattr(now, f"x_{i}") for i in range(n))
+
+    states = {f"x_{i}": made.state(i, read) for i in range(n)}
+    return made.controller(made.output(0, read), states)
+
+
+def opaque_laws(
+    name: str, system: control.InputOutputSystem, *, is_plant: bool = False
+) -> tuple[list[Controller], list[Controller]]:
+    """A system of several inputs as controllers: one for each state, one for each output.
+
+    Each reads the first input, and as `others` the rest of the inputs, then all states.
+    is_plant: inputs are forces and outputs positions, which no force moves at once: outputs are
+        taken at no force
+    raises ModelError: as of `opaque`, the system has no input; a plant's output follows a force at
+        once, at one of some states
+    """
+    made, n, m = _Laws(name, system), _order(name, system), int(system.ninputs or 0)
+    if m < 1:
+        raise ModelError(f"{name}: a system without inputs drives nothing: give it one")
+
+    def read(now: Any) -> _Read:
+        return (now.input, *now.others[: m - 1]), tuple(now.others[m - 1 :])
+
+    def at_no_force(now: Any) -> _Read:
+        return (sp.S.Zero,) * m, tuple(now.others[m - 1 :])
+
+    if is_plant:
+        _check_plant(name, made.calls, m, n)
+    states = [made.controller(lambda now, p: now.x, {"x": made.state(i, read)}) for i in range(n)]
+    shown = at_no_force if is_plant else read
+    outputs = [made.controller(made.output(i, shown), {}) for i in range(int(system.noutputs))]
+    return states, outputs
+
+
+def _check_plant(name: str, calls: _Calls, m: int, n: int) -> None:
+    for state in (0.0, *np.random.default_rng(1).uniform(-1, 1, (_STATES, n))):
+        x = tuple(map(float, np.broadcast_to(state, n)))
+        at = [calls.output(0.0, (u,) * m, x) for u in (0.0, 1.0, -1e3)]
+        if any((a != at[0]).any() for a in at):
+            raise ModelError(
+                f"{name}: a position follows a force at once: a plant from force (N) to position "
+                "(m) has a mass between them"
+            )
+
+
+def _order(name: str, system: control.InputOutputSystem) -> int:
     if system.nstates is None:
         raise ModelError(f"{name}: a nonlinear system with dynamics needs its number of states")
-    discrete = bool(system.isdtime(strict=True))
-    calls, n = _Calls(system), int(system.nstates)
-    output = _function("output", lambda t, u, *x: calls.output(t, u, x))
+    return int(system.nstates)
 
-    def law(now: Any, p: Any) -> sp.Expr:
-        return output(EFFECT_SIGNALS["time"], now.input, *_states(now, n))
 
-    def state(i: int) -> ControllerState:
-        change = _function(f"change_{i}", lambda t, u, *x: calls.change(t, u, x)[i])
-        held = _function(f"held_{i}", lambda t, u, period, *x: calls.held(t, u, period, x)[i])
+class _Laws:
+    """Laws that call a system's functions on what they read of it."""
+
+    def __init__(self, name: str, system: control.InputOutputSystem) -> None:
+        self.name, self.system, self.calls = name, system, _Calls(system)
+        self.discrete = bool(system.isdtime(strict=True))
+        self.m = int(system.ninputs or 0)
+
+    def output(self, i: int, read: _Reading) -> Callable[[Any, Any], sp.Expr]:
+        calls, m = self.calls, self.m
+        called = _function(f"output_{i}", lambda t, *z: calls.output(t, z[:m], z[m:])[i])
+
+        def law(now: Any, p: Any) -> sp.Expr:
+            inputs, states = read(now)
+            return called(EFFECT_SIGNALS["time"], *inputs, *states)
+
+        return law
+
+    def state(self, i: int, read: _Reading) -> ControllerState:
+        calls, m = self.calls, self.m
+        change = _function(f"change_{i}", lambda t, *z: calls.change(t, z[:m], z[m:])[i])
+        held = _function(f"held_{i}", lambda t, h, *z: calls.held(t, z[:m], h, z[m:])[i])
 
         def changed(now: Any, p: Any) -> sp.Expr:
-            return change(EFFECT_SIGNALS["time"], now.input, *_states(now, n))
+            inputs, states = read(now)
+            return change(EFFECT_SIGNALS["time"], *inputs, *states)
 
         def carried(now: Any, p: Any) -> sp.Expr:
-            return held(EFFECT_SIGNALS["time"], now.input, now.period, *_states(now, n))
+            inputs, states = read(now)
+            return held(EFFECT_SIGNALS["time"], now.period, *inputs, *states)
 
-        if discrete:
+        if self.discrete:
             return ControllerState("dimensionless", only_sampled, changed)
         return ControllerState("dimensionless", changed, carried)
 
-    def sampled(values: Mapping[str, float], period: float) -> Stage:
-        check_period(name, values["period"], period)
-        return Stage(made, values)
+    def controller(
+        self, law: Callable[[Any, Any], sp.Expr], states: Mapping[str, ControllerState]
+    ) -> Controller:
+        name, discrete = self.name, self.discrete
 
-    stated = float(system.dt) if discrete and system.dt is not True else 0.0
-    made = ControlLaw(
-        law=law,
-        parameters={"period": Parameter("time", "of a sample; 0: any")} if discrete else {},
-        states={f"x_{i}": state(i) for i in range(n)},
-        sampled=sampled if discrete else None,
-        system=system,
-        source="python-control",
-    )
-    made = made.named(name, "A nonlinear python-control system.")
-    return Controller((Stage(made, {"period": stated} if discrete else {}),))
+        def sampled(values: Mapping[str, float], period: float) -> Stage:
+            check_period(name, values["period"], period)
+            return Stage(made, values)
+
+        stated = float(self.system.dt) if discrete and self.system.dt is not True else 0.0
+        made = ControlLaw(
+            law=law,
+            parameters={"period": Parameter("time", "of a sample; 0: any")} if discrete else {},
+            states=states,
+            sampled=sampled if discrete else None,
+            system=self.system,
+            source="python-control",
+        )
+        made = made.named(name, "A nonlinear python-control system.")
+        return Controller((Stage(made, {"period": stated} if discrete else {}),))
 
 
 def calls_in(expressions: list[sp.Expr]) -> dict[str, Callable[..., float]]:
@@ -94,10 +172,6 @@ def _function(what: str, called: Callable[..., float]) -> Callable[..., sp.Expr]
     return made
 
 
-def _states(now: Any, n: int) -> list[sp.Symbol]:
-    return [getattr(now, f"x_{i}") for i in range(n)]
-
-
 class _Calls:
     """The system's functions on plain numbers; equations ask for one state after the other."""
 
@@ -105,16 +179,15 @@ class _Calls:
         self.system = system
         self.last: dict[str, tuple[Any, np.ndarray]] = {}
 
-    def output(self, t: float, u: float, x: tuple[float, ...]) -> float:
-        answer = self.system.output(t, np.array(x, dtype=float), np.array([u], dtype=float))
-        return float(np.asarray(answer).reshape(-1)[0])
+    def output(self, t: float, u: _Numbers, x: _Numbers) -> np.ndarray:
+        return self._kept("output", (t, u, x), lambda: self._output(t, x, u))
 
-    def change(self, t: float, u: float, x: tuple[float, ...]) -> np.ndarray:
+    def change(self, t: float, u: _Numbers, x: _Numbers) -> np.ndarray:
         """Rates, or states at the next sample of a system in discrete time."""
-        return self._kept("change", (t, u, x), lambda: self._dynamics(t, np.array(x), u))
+        return self._kept("change", (t, u, x), lambda: self._dynamics(t, x, u))
 
-    def held(self, t: float, u: float, period: float, x: tuple[float, ...]) -> np.ndarray:
-        """States a period later, the input held."""
+    def held(self, t: float, u: _Numbers, period: float, x: _Numbers) -> np.ndarray:
+        """States a period later, the inputs held."""
         return self._kept("held", (t, u, period, x), lambda: self._carried(t, u, period, x))
 
     def _kept(self, what: str, at: Any, call: Callable[[], np.ndarray]) -> np.ndarray:
@@ -123,11 +196,15 @@ class _Calls:
             known = self.last[what] = (at, call())
         return known[1]
 
-    def _dynamics(self, t: float, x: np.ndarray, u: float) -> np.ndarray:
-        inputs = np.array([u], dtype=float)
-        return np.asarray(self.system.dynamics(t, x, inputs), dtype=float).reshape(-1)
+    def _output(self, t: float, x: _Numbers, u: _Numbers) -> np.ndarray:
+        answer = self.system.output(t, np.array(x, dtype=float), np.array(u, dtype=float))
+        return np.asarray(answer, dtype=float).reshape(-1)
 
-    def _carried(self, t: float, u: float, period: float, x: tuple[float, ...]) -> np.ndarray:
+    def _dynamics(self, t: float, x: Any, u: _Numbers) -> np.ndarray:
+        rates = self.system.dynamics(t, np.array(x, dtype=float), np.array(u, dtype=float))
+        return np.asarray(rates, dtype=float).reshape(-1)
+
+    def _carried(self, t: float, u: _Numbers, period: float, x: _Numbers) -> np.ndarray:
         from scipy.integrate import solve_ivp
 
         answer = solve_ivp(

@@ -101,10 +101,16 @@ def matrices(values: Mapping[str, float], n: int) -> tuple[Array, Array, Array, 
         b = np.eye(n)[:, -1] if n else np.zeros(0)
         c = above[:n] - d * np.array(below[:0:-1]) / below[0]
     else:
-        a = np.array([[values[f"a_{i}_{j}"] for j in range(n)] for i in range(n)]).reshape(n, n)
-        b, c = (np.array([values[f"{x}_{i}"] for i in range(n)]) for x in "bc")
-        d = values["d"]
+        a, b, c, d = as_they_came(values)
     return a * scale / scale[:, None], b / scale, c * scale, d
+
+
+def as_they_came(values: Mapping[str, float]) -> tuple[Array, Array, Array, float]:
+    """A (n, n), B (n,), C (n,), D of a state space, its states in the units that they came in."""
+    n = _order(values)
+    a = np.array([[values[f"a_{i}_{j}"] for j in range(n)] for i in range(n)]).reshape(n, n)
+    b, c = (np.array([values[f"{x}_{i}"] for i in range(n)]) for x in "bc")
+    return a, b, c, values["d"]
 
 
 def _order(values: Mapping[str, float]) -> int:

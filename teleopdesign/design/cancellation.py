@@ -8,6 +8,7 @@ P43 and P44 where friction is a spring before it slides.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 from ..blocks import Body
 from ..controllers import controller, laws_that_declare
@@ -140,6 +141,15 @@ def smoothed_cancellation(
     made = controller(law.name, {law.bound: level.value, law.smoothing: value})
     reason = Reason(f"{law.name}.{law.smoothing}", value, unit, why)
     return ProposedController(made, (_named(law.name, level), reason))
+
+
+def smoothing_name(names: Iterable[str], *, block: str = "") -> str | None:
+    """The name among these by which a law says how wide its step at rest is smoothed; None if none.
+
+    names: such as "law.parameter", after `block` where that is stated
+    """
+    declared = {f"{block}{law.name}.{law.smoothing}" for law in laws_that_declare("smoothing")}
+    return next((name for name in names if name in declared), None)
 
 
 def _named(law: str, level: Reason) -> Reason:

@@ -24,7 +24,10 @@ class Reason:
 
 @dataclass(frozen=True)
 class ProposedController:
-    """A controller and the reasons for its numbers."""
+    """A controller and the reasons for its numbers.
+
+    controller: stages in series, parameters in SI;  reasons: one for each parameter that was chosen
+    """
 
     controller: Controller
     reasons: tuple[Reason, ...]

@@ -17,7 +17,11 @@ from ..model import Model
 
 @dataclass(frozen=True, eq=False)
 class DiagnosedModel(ByValue):
-    """A model, and how well it stands: verdict and what is left, in noise floors."""
+    """A model, and how well it stands: verdict and what is left, in noise floors.
+
+    verdict: of a diagnosis, such as "model_adequate";  left: its check error over the noise floor,
+        about 1 where only sensor noise is left
+    """
 
     experiment: Experiment
     model: Model

@@ -15,7 +15,13 @@ from ..realise.damping_interval import small_motion_damping
 from ..realise.friction_interval import FrictionInterval, friction_interval
 from ..realise.reach import Reach
 from .assumptions import Assumptions
-from .cancellation import acting_gain, cancelled_level, dahl_cancellation, smoothed_cancellation
+from .cancellation import (
+    acting_gain,
+    cancelled_level,
+    dahl_cancellation,
+    smoothed_cancellation,
+    smoothing_name,
+)
 from .chosen import ProposedController
 from .energy import energy_claim
 from .felt_impedance import felt_impedance
@@ -168,6 +174,7 @@ def _trial(
         and assumptions.delay is not None
     )
     names = option.controller.names() if option else {}
+    smoothing = smoothing_name(names)
     h, loop = force_feedback(
         body,
         reach,
@@ -175,7 +182,7 @@ def _trial(
         load=assumptions.load,
         # the command is held for a sample, and so is the error that the low-pass takes in
         delay=_late(body, assumptions) + assumptions.sample_period,
-        smoothing_velocity=names.get("smoothed_coulomb.smoothing_velocity", 0.0),
+        smoothing_velocity=0.0 if smoothing is None else names[smoothing],
     )
     diagram = haptic_interface(
         body,

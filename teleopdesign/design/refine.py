@@ -17,6 +17,7 @@ import numpy as np
 from ..by_value import ByValue
 from ..controllers import Controller
 from ..errors import ModelError
+from .cancellation import smoothing_name
 from .outcome import Design
 from .prediction import simulated_error
 
@@ -124,20 +125,22 @@ def _range(design: Design) -> tuple[dict[str, float], dict[str, tuple[float, flo
     }
     if design.cancellation is not None:
         c = design.cancellation.controller.names()
-        if "smoothed_coulomb.smoothing_velocity" in c:
-            a = c["smoothed_coulomb.smoothing_velocity"]
-            start["C.smoothed_coulomb.smoothing_velocity"] = a
-            bounds["C.smoothed_coulomb.smoothing_velocity"] = (a, a * FARTHEST)
+        if (smoothing := smoothing_name(c)) is not None:
+            a = c[smoothing]
+            start[f"C.{smoothing}"] = a
+            bounds[f"C.{smoothing}"] = (a, a * FARTHEST)
         else:
-            stiffness = c["dahl.stiffness"]
-            start["C.dahl.stiffness"] = stiffness
-            bounds["C.dahl.stiffness"] = (stiffness / FARTHEST, stiffness)
+            law = design.cancellation.controller.stages[0].law
+            stiffness = c[f"{law.name}.{law.bristle_stiffness}"]
+            start[f"C.{law.name}.{law.bristle_stiffness}"] = stiffness
+            bounds[f"C.{law.name}.{law.bristle_stiffness}"] = (stiffness / FARTHEST, stiffness)
     return start, bounds
 
 
 def _falling(values: dict[str, float]) -> dict[str, float]:
     """The values with b no smaller than P13 asks for: b (1 + k) >= a k."""
-    a = values.get("C.smoothed_coulomb.smoothing_velocity", 0.0)
+    smoothing = smoothing_name(values, block="C.")
+    a = 0.0 if smoothing is None else values[smoothing]
     k = values["H.velocity_schedule.gain"]
     b = max(values["H.velocity_schedule.scheduling_velocity"], a * k / (1 + k))
     return {**values, "H.velocity_schedule.scheduling_velocity": b}

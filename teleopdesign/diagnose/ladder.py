@@ -11,7 +11,7 @@ from .conclusion import conclude, with_last_corrected, without_doubtful
 from .decision import is_a_tone
 from .diagnosis import Diagnosis
 from .exchange import exchange
-from .ladder_state import LadderSearch, LadderState, begin, look, search_for, trying
+from .ladder_state import LadderSearch, LadderState, begin, look, restrict_candidates, search_for
 from .moves import add, remove
 from .pairs import add_pair, replace_by_pair
 from .rung import Rung
@@ -40,7 +40,7 @@ def find_missing(
     raises ExperimentError: the experiment lacks what the comparison needs
     """
     if among is not None:
-        model = trying(among, model or Model.from_experiment(experiment))
+        model = restrict_candidates(among, model or Model.from_experiment(experiment))
     search = search_for(experiment, model, progress=progress, seed=seed, plan=plan)
     state, rungs = climb(search, begin(search), with_last_corrected)
     return with_candidates_named(among, conclude(search, state, rungs))

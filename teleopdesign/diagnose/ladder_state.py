@@ -146,7 +146,7 @@ def search_for(
     )
 
 
-def trying(among: Collection[str], model: Model) -> Model:
+def restrict_candidates(among: Collection[str], model: Model) -> Model:
     """The model to which only these effects may be added; raises ModelError: an unknown name."""
     return replace(model, known={n: find_effect(n, model.known, "among") for n in among})
 

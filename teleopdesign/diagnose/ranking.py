@@ -69,7 +69,10 @@ class Ranked(ByValue):
 
 @dataclass(frozen=True, eq=False)
 class Ranking(ByValue):
-    """Candidates, best first, and the fit that they are compared with."""
+    """Candidates, best first, and the fit that they are compared with.
+
+    base: the model without any of them;  ranked: by `decision.rank_key`, those that count first
+    """
 
     base: Fit
     ranked: tuple[Ranked, ...]

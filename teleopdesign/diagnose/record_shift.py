@@ -2,8 +2,7 @@
 
 A controller may write a command with the position that it answers, or with the next: a shift of up
 to one row, either way, belongs to the record. It is no physics, but what is not explained by it
-looks
-like some: a delay, a lag, the lead of a compliant transmission. So it is estimated with every
+looks like some: a delay, a lag, the lead of a compliant transmission. So it is estimated with every
 model, one shift for each body, common to all its records.
 
 A shift that raises the error on the check records is held at none (`clock.py`): beside a model that

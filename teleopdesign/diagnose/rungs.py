@@ -87,8 +87,11 @@ def refitted(rungs: Sequence[Rung], last: Fit, prepared: Prepared) -> tuple[Rung
     """The rungs in an order in which the check error falls, each fitted without what comes later.
 
     last: the fit with all of them, from whose values the others begin
-    returns: None where no order falls, or where an earlier effect needs a later one
+    returns: None where no order falls, or where an earlier effect needs a later one; the user's
+        model alone stays as it is
     """
+    if len(rungs) == 1:
+        return tuple(rungs)
     backwards = [replace(rungs[-1], fit=last)]
     model = last.model
     for later, rung in zip(rungs[:0:-1], rungs[-2:0:-1], strict=False):

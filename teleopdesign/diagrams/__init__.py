@@ -24,6 +24,7 @@ from .parts import (
     Part,
     position_symbol,
 )
+from .shared_states import with_shared_states
 from .shipped import SHIPPED, shipped
 from .teleoperator import teleoperator
 from .toml_reading import read_diagram
@@ -69,6 +70,7 @@ __all__ = [
     "teleoperator",
     "teleoperator_of_arms",
     "wave_variables",
+    "with_shared_states",
     "world_haptics_2005",
     "write_diagram",
 ]

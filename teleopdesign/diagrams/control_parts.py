@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from ..blocks import Body, Value
-from ..controllers import from_control
+from ..controllers import Controller, from_control, measured_plant, opaque_laws
 from ..effects import EFFECTS
 from ..errors import ModelError
-from .parts import Control, Junction, Moving
+from .parts import Control, Entry, Junction, Moving
 
 if TYPE_CHECKING:
     import control
@@ -29,35 +29,71 @@ def controller_parts(
     motion: str,
     analog: bool = False,
 ) -> tuple[tuple[Control, ...], tuple[Junction, ...]]:
-    """A linear system of several inputs and outputs as controllers, one for each entry, and sums.
+    """A system of several inputs and outputs as controllers, one for each entry, and sums.
 
     system: transfer function or state space, continuous or discrete, or a measured response, as
         `from_control` takes them
     inputs, outputs: signals, in the order of the system's;  motion, analog: as of `Control`
     Entries that are zero are left out. Blocks are called "name_1_2", row first; signals between
-    them "name_1_2_out". Each entry has separate states: modes that entries of a state space
-    share are there once for each.
+    them "name_1_2_out". Entries of a state space share its states: a simulation has each state
+    once, "name_state_1", as `with_shared_states` shows. Entries of transfer functions have states
+    of their own, as they are written: `control.ss` of a matrix whose modes are common to entries.
+    A nonlinear system (`control.nlsys`) is a block for each state, "name_state_1", and one for each
+    output, "name_1": it takes part in simulations alone.
     raises ModelError: numbers of signals do not fit, an entry that `from_control` refuses
     """
+    import control
+
     if (system.noutputs, system.ninputs) != (len(outputs), len(inputs)):
         raise ModelError(
             f"{name}: the system has {system.ninputs} inputs and {system.noutputs} outputs, found "
             f"{len(inputs)} and {len(outputs)} signals"
         )
+    linear = control.StateSpace | control.TransferFunction | control.FrequencyResponseData
+    if isinstance(system, control.InputOutputSystem) and not isinstance(system, linear):
+        return by_code(system, name, inputs, outputs, motion=motion, analog=analog), ()
+    places = [(i, j) for i in range(len(outputs)) for j in range(len(inputs))]
+    every = {(i, j): from_control(entry_of(system, i, j, name), name="entry") for i, j in places}
+    forms = {p: c.linear_form(name, sp.Symbol("s"), sp.S(0), held=True) for p, c in every.items()}
+    shared = isinstance(system, control.StateSpace) and system.nstates > 0 and len(places) > 1
+    there = [p for p in places if forms[p] != 0]
+    if shared:  # what drives a state that no output shows, and what shows one that none drives
+        rows, columns = ({p[axis] for p in there} for axis in (0, 1))
+        there = [p for p in places if p in there or p[0] not in rows or p[1] not in columns]
     controls: list[Control] = []
-    sums: list[Junction] = []
-    for i, output in enumerate(outputs):
-        terms: dict[str, float] = {}
-        for j, source in enumerate(inputs):
-            entry_name = f"{name}_{i + 1}_{j + 1}"
-            made = from_control(entry_of(system, i, j, name), name="entry")
-            form = made.linear_form(entry_name, sp.Symbol("s"), sp.S(0), held=True)
-            if form == 0:
-                continue
-            controls.append(Control(entry_name, made, source, f"{entry_name}_out", motion, analog))
-            terms[f"{entry_name}_out"] = 1.0
-        sums.append(Junction(output, terms))
+    terms: dict[int, dict[str, float]] = {i: {} for i in range(len(outputs))}
+    for i, j in there:
+        entry_name = f"{name}_{i + 1}_{j + 1}"
+        signal, place = f"{entry_name}_out", Entry(name, i, j, tuple(there)) if shared else None
+        controls.append(Control(entry_name, every[i, j], inputs[j], signal, motion, analog, place))
+        terms[i][signal] = 1.0
+    sums = (Junction(output, terms[i]) for i, output in enumerate(outputs))
     return tuple(controls), tuple(sums)
+
+
+def by_code(
+    system: control.InputOutputSystem,
+    name: str,
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    *,
+    motion: str = "",
+    analog: bool = True,
+    is_plant: bool = False,
+) -> tuple[Control, ...]:
+    """Blocks of a system that is known as code only, each of which reads all inputs and states."""
+    states, laws = opaque_laws(name, system, is_plant=is_plant)
+    made = [f"{name}_state_{i + 1}" for i in range(len(states))]
+    signals = [f"{state}_out" for state in made]
+    others = (*inputs[1:], *signals)
+    blocks = [
+        *zip(made, states, signals, strict=True),
+        *((f"{name}_{i + 1}", law, outputs[i]) for i, law in enumerate(laws)),
+    ]
+    return tuple(
+        Control(block, law, inputs[0], output, motion, analog, others=others)
+        for block, law, output in blocks
+    )
 
 
 def entry_of(system: control.InputOutputSystem, row: int, column: int, name: str) -> control.LTI:
@@ -77,7 +113,7 @@ def entry_of(system: control.InputOutputSystem, row: int, column: int, name: str
 
 
 def plant_parts(
-    system: control.LTI,
+    system: control.InputOutputSystem,
     *,
     name: str,
     motion: str,
@@ -90,13 +126,24 @@ def plant_parts(
     1/P(s) = m s^2 + b s + k + R(s): the body has inertia m and damping b; k + R, proper, is an
     analog block "name_rest" beside the command, their sum "name_command". Exact in the numbers as
     they came, with the states of P.
+    A measured response (`control.frd`) gives m as the mass of its highest frequencies, and the rest
+    as what was measured less m s^2: responses and margins, within its frequencies; no proof.
+    A nonlinear system (`control.nlsys`) is code, and no body: its motion is a signal that
+    simulations compute and sensors read. No hand holds it, and no law takes its velocity.
     driver: outside force on it, as of `Moving`;  loads: other forces on it, signal -> sign
-    raises ModelError: discrete time, several axes, a measured response, not two more poles than
-        zeros, m <= 0 or b < 0
+    raises ModelError: discrete time, several axes, not two more poles than zeros, m <= 0 or b < 0
     """
     import control
 
+    forces = {driver: 1.0, **(loads or {})}
     _check_plant(system, name)
+    if isinstance(system, control.FrequencyResponseData):
+        inertia, beside = measured_plant(f"{name}_rest", system)
+        return _with_rest(name, inertia, None, beside, (motion, command, driver), forces)
+    if not isinstance(system, control.StateSpace | control.TransferFunction):
+        force = f"{name}_force"
+        parts = by_code(system, name, (force,), (motion,), is_plant=True)
+        return parts, (Junction(force, {command: 1.0, **forces}),)
     s = sp.Symbol("s")
     # exact: python-control's conversion of matrices leaves zeros far out
     form = from_control(system, name="plant").linear_form(name, s, sp.S(0))
@@ -113,39 +160,40 @@ def plant_parts(
             f"{name}: 1/P = m s^2 + b s + .. has m = {inertia:g} kg, b = {damping:g} N s/m: a body "
             "has inertia > 0 and damping >= 0"
         )
-    body = Body("prismatic", {"inertia": Value(inertia)})
-    if damping:
-        body = body.with_effect(EFFECTS["viscous"], {"damping": damping})
-    forces = {driver: 1.0, **(loads or {})}
     proper = rest + above.mul_ground(quotient.coeff_monomial(1))
-    if proper.is_zero:
+    law: Controller | None = None
+    if not proper.is_zero:
+        sides = ([float(c) for c in part.all_coeffs()] for part in (proper, above))
+        law = from_control(control.tf(*sides), name="rest")
+    return _with_rest(name, inertia, damping or None, law, (motion, command, driver), forces)
+
+
+def _with_rest(
+    name: str,
+    inertia: float,
+    damping: float | None,
+    beside: Controller | None,
+    signals: tuple[str, str, str],
+    forces: Mapping[str, float],
+) -> tuple[tuple[Moving | Control, ...], tuple[Junction, ...]]:
+    """A body, and what resists its motion beside it;  signals: motion, command and driver."""
+    motion, command, driver = signals
+    body = Body("prismatic", {"inertia": Value(inertia)})
+    if damping is not None:
+        body = body.with_effect(EFFECTS["viscous"], {"damping": damping})
+    if beside is None:
         return (Moving(name, body, motion, command, forces, driver),), ()
-    sides = ([float(c) for c in part.all_coeffs()] for part in (proper, above))
-    rest_name = f"{name}_rest"
-    block = Control(
-        rest_name,
-        from_control(control.tf(*sides), name="rest"),
-        motion,
-        rest_name + "_force",
-        motion,
-        True,
-    )
-    whole_command = Junction(f"{name}_command", {command: 1.0, rest_name + "_force": -1.0})
-    return (Moving(name, body, motion, whole_command.output, forces, driver), block), (
-        whole_command,
-    )
+    rest, made = f"{name}_rest", f"{name}_rest_force"
+    block = Control(rest, beside, motion, made, motion, True)
+    whole_command = Junction(f"{name}_command", {command: 1.0, made: -1.0})
+    moving = Moving(name, body, motion, whole_command.output, forces, driver)
+    return (moving, block), (whole_command,)
 
 
-def _check_plant(system: control.LTI, name: str) -> None:
-    """ModelError unless it is a rational system of one axis in continuous time."""
-    import control
-
+def _check_plant(system: control.InputOutputSystem, name: str) -> None:
+    """ModelError unless it is a system of one axis in continuous time."""
     if (system.ninputs, system.noutputs) != (1, 1) or system.isdtime(strict=True):
         raise ModelError(
             f"{name}: expected a plant of one input and output in continuous time: see "
             "`coupled_plant_parts` for others"
-        )
-    if not isinstance(system, control.TransferFunction | control.StateSpace):
-        raise ModelError(
-            f"{name}: expected a transfer function or a state space: fit one to what was measured"
         )

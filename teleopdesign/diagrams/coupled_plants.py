@@ -18,7 +18,7 @@ from sympy.polys.matrices import DomainMatrix
 from ..blocks import Body, MatrixImpedance, Value
 from ..controllers import from_control
 from ..errors import ModelError
-from .control_parts import entry_of
+from .control_parts import by_code, entry_of
 from .parts import Control, Junction, Linked, Moving
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ _ROUNDING = 1e-9
 
 
 def coupled_plant_parts(
-    system: control.LTI,
+    system: control.InputOutputSystem,
     *,
     name: str,
     motions: Sequence[str],
@@ -41,20 +41,45 @@ def coupled_plant_parts(
 
     system: transfer functions or state space, as many inputs as outputs. Continuous, exact in the
         numbers as they came; or in discrete time, a plant of 2 n states behind a zero-order hold,
-        whose matrices in continuous time follow from a logarithm
+        whose matrices in continuous time follow from a logarithm. Or nonlinear
+        (`control.nlsys`), in continuous time: code, for simulations alone, see `plant_parts`
     commands, drivers: signals of each axis, as of `Moving`
     Bodies are called "name_1", "name_2" ..., the impedance "name_link", blocks "name_rest_1_2".
     raises ModelError: numbers of signals do not fit, no regular matrix, a mass that is not positive
         definite, zeros of the plant that do not decay: their states would be doubled
     """
+    import control
+
     size = len(motions)
     if not (system.ninputs, system.noutputs) == (size, size) == (len(commands), len(drivers)):
         raise ModelError(
             f"{name}: the plant has {system.ninputs} inputs and {system.noutputs} outputs, found "
             f"{len(commands)} commands, {len(drivers)} drivers and {size} motions"
         )
+    if not isinstance(system, control.LTI):
+        whole = tuple(f"{name}_force_{i + 1}" for i in range(size))
+        pairs = zip(whole, commands, drivers, strict=True)
+        sums = (Junction(force, {command: 1.0, driver: 1.0}) for force, command, driver in pairs)
+        return by_code(system, name, whole, motions, is_plant=True), tuple(sums)
+    if isinstance(system, control.FrequencyResponseData):
+        raise ModelError(
+            f"{name}: a measured response of several axes has no form as bodies: fit transfer "
+            "functions to it, or take one axis alone (`plant_parts`)"
+        )
     if system.isdtime(strict=True):
         system = _before_the_hold(system, name)
+    return _bodies(system, name, motions, commands, drivers)
+
+
+def _bodies(
+    system: control.LTI,
+    name: str,
+    motions: Sequence[str],
+    commands: Sequence[str],
+    drivers: Sequence[str],
+) -> tuple[tuple[Moving | Linked | Control, ...], tuple[Junction, ...]]:
+    """Bodies, what joins them, and the rest beside their commands; continuous time."""
+    size = len(motions)
     m, b, k, rest = _split(system, name)
     apart = np.diag(np.diag(m))
     link = MatrixImpedance(_rows(m - apart), _rows(b), _rows(k))

@@ -92,7 +92,11 @@ class Moving:
 @checked
 @dataclass(frozen=True)
 class Attached:
-    """A body on a motion, which the body resists:  force = sign Z motion."""
+    """A body on a motion, which the body resists:  force = sign Z motion.
+
+    motion: name of the motion that it follows;  force: name of the force that it makes, N or N m
+    sign: -1: the force is counted along the motion, so that it opposes it;  1: against the motion
+    """
 
     name: str
     body: Body | AnyBlock
@@ -116,7 +120,11 @@ class Attached:
 @checked
 @dataclass(frozen=True)
 class Linked:
-    """Bodies joined by a linear impedance:  forces = sign Z motions, Z a matrix."""
+    """Bodies joined by a linear impedance:  forces = sign Z motions, Z a matrix.
+
+    motions, forces: names of signals, one of each for a row of Z;  sign: as of `Attached`
+    raises ModelError: another number of rows than of motions or forces
+    """
 
     name: str
     body: MatrixImpedance
@@ -152,6 +160,19 @@ class Linked:
         return self.motions
 
 
+@dataclass(frozen=True)
+class Entry:
+    """Place of a controller in a state space whose entries share their states.
+
+    of: name of the system;  row, column: from 0;  entries: places of all that are blocks
+    """
+
+    of: str
+    row: int
+    column: int
+    entries: tuple[tuple[int, int], ...]
+
+
 @checked
 @dataclass(frozen=True)
 class Control:
@@ -159,6 +180,8 @@ class Control:
 
     motion: of a body, or a junction or kinematics of motions; blank: its law sees no velocity
     analog: realised by electronics that no computer samples
+    entry: its place in a system of several inputs and outputs whose states it shares
+    others: further signals that a law known as code alone reads
     """
 
     name: str
@@ -167,9 +190,14 @@ class Control:
     output: str
     motion: str = ""
     analog: bool = False
+    entry: Entry | None = None
+    others: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         check_name(self.name, where="block")
+        _check_names(f"block {self.name}: others", *self.others)
+        if self.others and not self.is_code:
+            raise ModelError(f"{self.name}: others are for a law that is known as code alone")
         _check_names(f"block {self.name}", self.input, self.output)
         if self.motion:  # blank: none
             check_name(self.motion, where=f"block {self.name}: motion")
@@ -180,7 +208,7 @@ class Control:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        return (self.input, self.motion) if self.motion else (self.input,)
+        return (self.input, *((self.motion,) if self.motion else ()), *self.others)
 
     @property
     def dead_time(self) -> float | None:
@@ -192,6 +220,12 @@ class Control:
         """Whether a stage of it is a nonlinear python-control system, known as code only."""
         stages = self.controller.stages if isinstance(self.controller, Controller) else ()
         return any(stage.law.system is not None for stage in stages)
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether a stage of it is a measured frequency response, known at its frequencies only."""
+        stages = self.controller.stages if isinstance(self.controller, Controller) else ()
+        return any(stage.law.response is not None for stage in stages)
 
 
 @checked

@@ -21,7 +21,10 @@ from .wiring import Diagram
 
 @dataclass(frozen=True)
 class Reading:
-    """A number (SI) that a paper leaves open: the value used, other readings, and the reason."""
+    """A number (SI) that a paper leaves open: the value used, other readings, and the reason.
+
+    readings: values that the print allows;  confidence: 0 to 1, that the value is the authors'
+    """
 
     value: float
     unit: str

@@ -8,8 +8,8 @@ d tells an actuator that drives (d > 0: more friction) from one that is driven b
 at rest of contacts that slide better as speed grows. Distinguished from `coulomb` by commands that
 vary at equal speed, d by loads both with and against the motion. From mu = 1 on no acting force
 moves the body. mu d takes u as an `actuator_gain` does, and e is distinguished from `stribeck` by
-loads
-alone: so d, e and v_S are estimated where a model states them, and a search leaves them at zero.
+loads alone: so d, e and v_S are estimated where a model states them, and a search leaves them at
+zero.
 """
 
 from sympy import exp, sign

@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
 from ..controllers import Controller
 from ..derive import symbol_values
 from ..derive.elimination import round_trip
 from ..diagrams import Control, Diagram
 from ..errors import ModelError, UnstableLoop
-from ..realise.lti import as_transfer_function, linear_blocks, numerical
+from ..realise.lti import S, as_transfer_function, linear_blocks, numerical
 from ..realise.tips import linear_tips
+from .measured_loop import measured_crossings
 
 if TYPE_CHECKING:
     import control
@@ -33,6 +35,7 @@ class LoopGain:
     left_out: what has no linear form, and takes no part: "block.effect", a controller as "block"
     held: controllers in discrete time, taken as H(e^(j w T)) and the hold of a sample
     fastest: rad/s, half the sampling rate of what is held; inf where nothing is
+    growing: poles of the controller itself in the right half plane
     """
 
     expression: sp.Expr
@@ -40,6 +43,7 @@ class LoopGain:
     left_out: tuple[str, ...]
     held: tuple[str, ...]
     fastest: float
+    growing: int = 0
 
     def __call__(self, s: Any) -> Any:
         """Value at complex s (1/s), a number or an array of any shape."""
@@ -85,14 +89,25 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
     kept = {c.name: c for c in diagram.controls if c.name in linear.held}
     periods = [g.values["period"] for c in kept.values() for g in _stages(c) if g.law.shift]
     fastest = np.pi / max(periods) if periods else float("inf")
-    return LoopGain(gain, controller, linear.left_out, linear.held, fastest)
+    growing = _growing(linear.blocks[controller])
+    return LoopGain(gain, controller, linear.left_out, linear.held, fastest, growing)
+
+
+def _growing(form: sp.Expr) -> int:
+    """Poles in the right half plane of a rational form; of others, 0."""
+    if form.atoms(AppliedUndef) or form.has(sp.exp):
+        return 0
+    below = sp.Poly(sp.fraction(sp.cancel(sp.together(form)))[1], S)
+    return int(sum(root.real > 0 for root in np.roots([float(c) for c in below.all_coeffs()])))
 
 
 def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
     """Dead time (s) in the loop at which it begins to oscillate; inf where its gain stays below 1.
 
+    A loop with a measured response is judged between its frequencies, see `measured_crossings`.
     raises ModelError: the loop is unstable without any delay (`UnstableLoop`); a controller was
-        left out of it; its gain is above 1 where its samples no longer tell a frequency from others
+        left out of it; its gain is above 1 where its samples no longer tell a frequency from
+        others, or at the highest frequency that was measured
     """
     import control
 
@@ -102,6 +117,8 @@ def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
                 f"delay margin: {', '.join(gone)} has no linear form and is not in the gain: "
                 f'judge the rest with `diagram.without("{gone[0]}")`, or simulate'
             )
+        if loop.expression.atoms(AppliedUndef):
+            return _least_delay(*measured_crossings(loop.expression, growing=loop.growing))
         whole = loop.transfer_function(delay_order=_PADE)
     else:
         whole = loop
@@ -111,6 +128,10 @@ def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
         phase, crossing = _crossings(loop)
     else:
         _, phase, _, _, crossing, _ = control.stability_margins(whole, returnall=True)
+    return _least_delay(phase, crossing)
+
+
+def _least_delay(phase: np.ndarray, crossing: np.ndarray) -> float:
     # a crossing is reached by turning back as far as its phase lies ahead of -180 degrees
     delays = np.radians(np.asarray(phase) % 360) / np.asarray(crossing)
     return float(delays.min()) if len(delays) else float("inf")

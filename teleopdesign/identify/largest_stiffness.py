@@ -67,8 +67,7 @@ def largest_stiffness_without_oscillation(
     """Raise the stiffness of the block C, a `dahl` cancellation, until the loop oscillates.
 
     diagram: a haptic interface with a hand and a Dahl cancellation C
-    smallest, largest: stiffness simulated, N/m;  kick: initial speed, m/s;  duration: of each run,
-        s
+    smallest, largest: stiffness simulated, N/m;  kick: initial speed, m/s;  duration: s
     precision: relative, of the result;  step, give: of the simulation, see `simulate`
     raises ModelError: the diagram has no Dahl cancellation, or the range is empty
     """

@@ -27,6 +27,8 @@ _BRACKETS = re.compile(r"[(\[{](?=\s*[^\s()\[\]{}])([^()\[\]{}]++)[)\]}]\s*+$")
 _OF_TWO = re.compile(
     r"(?:^|_|\s)(?:(?P<length>rad|deg|mm|um|m)_(?:per_)?(?:s|sec)|(?P<force>m?N)_(?P<arm>c?m))$"
 )
+#: an object of a field bus: "0x6077:00"
+_ADDRESS = re.compile(r"\b0[xX][0-9A-Fa-f]{2,8}\b")
 _TAIL = re.compile(r"(?:_|\s|/)([A-Za-zµ°%][A-Za-z0-9µ°%^*/·]*)$")
 
 #: quantity -> words that a name of it may hold, the surest first
@@ -128,7 +130,8 @@ def _suits(unit: str, quantity: str, axis: str) -> bool:
 
 def words_of(name: str) -> list[str]:
     """The words of a name, lower case, without accents: "Actual_Pos2 (deg)" -> actual, pos."""
-    bare = re.sub(r"([a-z])([A-Z])", r"\1 \2", bare_name(name))
+    bare = _ADDRESS.sub(" ", bare_name(name))
+    bare = re.sub(r"([a-z])([A-Z])", r"\1 \2", bare)
     letters = unicodedata.normalize("NFD", bare.lower())
     plain = "".join(c for c in letters if not "\u0300" <= c <= "\u036f")
     return [w for w in re.split(r"[\W\d_]+", unicodedata.normalize("NFC", plain)) if w]

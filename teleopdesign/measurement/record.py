@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..by_value import ByValue
+from ..notebook import html_table
 from .channel import Channel, conversion_to_si, factor_of
 from .description import BodyDescription
 from .log_clock import clock_of_log
@@ -57,6 +58,15 @@ class Record(ByValue):
             f"Record {self.file} ({self.use}): {len(self.time)} samples, {self.duration:.6g} s "
             f"at {1 / self.sample_time:.6g} Hz{segments}"
         )
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (name, f"{values.min():.4g} to {values.max():.4g}", f"{np.std(values):.4g}")
+            for name, values in self.signals.items()
+        ]
+        head = ("signal (SI)", "range", "standard deviation")
+        steps = "; ".join(f"{step.observed}: {step.rule}" for step in self.reading)
+        return html_table(repr(self), head, rows, note=steps)
 
 
 def read_record(

@@ -38,6 +38,9 @@ DOORS: Mapping[str, Callable[[Path, str], Log]] = {
     ".txt": open_text,
     ".tsv": open_text,
     ".dat": open_text,
+    ".log": open_text,
+    ".lvm": open_text,
+    ".asc": open_text,
     ".parquet": open_parquet,
     ".xlsx": open_workbook,
     ".mat": open_matlab,
@@ -143,7 +146,7 @@ def columns_of(log: Log, file: str, wanted: Wanted) -> LogColumns:
     except MemoryError:
         raise ExperimentError(f"{file}: too large for this machine's memory") from None
     stamps = {n: values[clock] for n, clock in clocks.items()}
-    columns = LogColumns({n: values[n] for n in names}, stamps, log.notes)
+    columns = LogColumns({n: values[n] for n in names}, stamps, log.notes + log.left_out())
     _refuse_different_lengths(columns, file, wanted)
     return columns
 

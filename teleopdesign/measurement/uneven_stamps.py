@@ -180,6 +180,9 @@ def _places(pieces: Sequence[Array], period: float) -> tuple[float, list[RowNumb
         turns = np.exp(2j * np.pi * (stamps - stamps[0]) / period)
         phase = float(np.angle(turns.mean()) / (2 * np.pi))
         place = np.rint((stamps - stamps[0]) / period - phase)
+        # a row that came late by half a row or more stands before the next one all the same
+        count = np.arange(len(place))
+        place = np.minimum.accumulate((place - count)[::-1])[::-1] + count
         off = (stamps - stamps[0]) / period - phase - place
         if np.sqrt(np.mean(off**2)) > NO_CLOCK or np.any(np.diff(place) < 1) or steps.max() > 1e6:
             return None

@@ -2,8 +2,7 @@
 
 The motion is prescribed; the force that the model needs along it, and the command that brings that
 force through the model's actuator, follow. Ideal friction gets a short bristle, so that it has a
-value
-at rest too: the one that the last motion left.
+value at rest too: the one that the last motion left.
 """
 
 from __future__ import annotations

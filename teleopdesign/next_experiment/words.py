@@ -118,11 +118,17 @@ def _what_stays_open(proposal: Proposal, pair: tuple[int, int]) -> str:
     return f"{said} {_remedies_said(remedies)}"
 
 
+#: remedies in a sentence: more of them are no sentence to read
+MOST_SAID = 3
+
+
 def _remedies_said(remedies: Sequence[Remedy]) -> str:
     helping = [r for r in remedies if r.separation >= DECIDES]
     if helping:
-        listed = "; or ".join(f"{r.change} ({r.separation:.1f})" for r in helping)
-        return f"Tried in simulation, it would be told if {listed}."
+        listed = "; or ".join(f"{r.change} ({r.separation:.1f})" for r in helping[:MOST_SAID])
+        more = len(helping) - MOST_SAID
+        others = f"; or in {more} other ways (`Proposal.remedies`)" if more > 0 else ""
+        return f"Tried in simulation, it would be told if {listed}{others}."
     changes = "; ".join(f"{r.change} ({r.separation:.2f})" for r in remedies)
     if all(r.separation < SAME for r in remedies):
         return (

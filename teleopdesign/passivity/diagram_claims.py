@@ -170,6 +170,12 @@ def _searched(whole: Diagram, port: Port, rng: np.random.Generator, search: Sear
     if code := [c.name for c in free.controls if c.is_code]:
         why = f"{', '.join(code)} is known as code only, which a search would call a million times"
         return TopicClaim(topic, Claim(statement, Unknown(why)))
+    if measured := [c.name for c in free.controls if c.is_measured]:
+        why = (
+            f"{', '.join(measured)} is a measured frequency response, known at some frequencies of "
+            "the axis: a proof asks for all of them and for the right half plane, a search for time"
+        )
+        return TopicClaim(topic, Claim(statement, Unknown(why)))
     lengths = [x for pair in friction_pairs(free) for x in pair.lengths]
     shortest = min([search.stroke / 1000, *lengths])
     try:

@@ -28,7 +28,7 @@ def plot_pareto(front: ParetoFront) -> matplotlib.figure.Figure:
     with plt.style.context(house_style()):
         figure, axes = plt.subplots(figsize=(ONE_COLUMN, 0.8 * ONE_COLUMN), layout="constrained")
         axes.plot(*front.evaluated.T, ".", color=GREY, markersize=2.5, label="keeps the limits")
-        axes.step(*front.tried_best.T, where="post", color=BEST, label="best found")
+        axes.step(*front.evaluated_best.T, where="post", color=BEST, label="best found")
         axes.plot(x, y, "o", color=BEST, markersize=4, zorder=3, label="limits checked again")
         if np.isfinite(front.before).all():
             axes.plot(*front.before, "x", color=BEFORE, zorder=4, label="before")

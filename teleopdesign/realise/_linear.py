@@ -78,17 +78,34 @@ def _gathered(row: sp.Expr, unknown: set[sp.Symbol]) -> sp.Expr:
 
 
 class _Named:
-    """Expressions under names, each used once computed."""
+    """Expressions under names, each used once computed.
+
+    bare: name -> value where all that the expressions depend on is zero, such as a gain that is
+    """
 
     def __init__(self) -> None:
         self.steps: Steps = {}
+        self.bare: dict[sp.Symbol, sp.Expr] = {}
 
     def __call__(self, expression: sp.Expr) -> sp.Expr:
         if not expression.args or expression.is_number:
             return expression
         symbol = sp.Symbol(f"joined_{len(self.steps)}", real=True)
         self.steps[symbol] = expression
+        self.bare[symbol] = self.at_zero(expression)
         return symbol
+
+    def at_zero(self, expression: sp.Expr) -> sp.Expr:
+        """Value of an expression where all that it depends on is zero, or 1 where it divides."""
+        powers = (p for p in expression.atoms(sp.Pow) if p.exp.is_negative)
+        below = set[sp.Symbol]().union(*(p.base.free_symbols for p in powers))
+        free = {s: sp.Integer(s in below) for s in expression.free_symbols}
+        return expression.subs({s: self.bare.get(s, value) for s, value in free.items()})
+
+    def is_there_at_zero(self, entry: sp.Expr) -> bool:
+        """Whether a number or name is other than zero where all that it depends on is zero."""
+        value = entry if entry.is_Number else self.bare.get(entry, sp.S(0))
+        return bool(value.is_finite and value != 0)
 
 
 def _joined(
@@ -121,15 +138,18 @@ def _group(rows: list[sp.Expr], first: sp.Symbol, left: set[sp.Symbol]) -> set[s
 def _eliminated(
     rows: list[sp.Expr], unknown: list[sp.Symbol], named: _Named, name: str
 ) -> dict[sp.Symbol, sp.Expr]:
-    zero = dict.fromkeys(unknown, sp.S(0))
+    zero, unknown = dict.fromkeys(unknown, sp.S(0)), list(unknown)
     a = [[named(_factor(r, x, set(unknown), name)) for x in unknown] for r in rows]
     b = [named(-r.xreplace(zero)) for r in rows]
     n = len(unknown)
     for i in range(n):
-        at = next((r for r in range(i, len(a)) if a[r][i] != 0), None)
+        at, column = _pivot(a, i, named)
         if at is None:
             raise _undetermined({unknown[i]}, name)
         a[i], a[at], b[i], b[at] = a[at], a[i], b[at], b[i]
+        unknown[i], unknown[column] = unknown[column], unknown[i]
+        for row in a:
+            row[i], row[column] = row[column], row[i]
         inverse = named(1 / a[i][i])
         a[i] = [named(inverse * x) if j > i else x for j, x in enumerate(a[i])]
         b[i] = named(inverse * b[i])
@@ -143,3 +163,14 @@ def _eliminated(
         rest = sp.Add(*(a[i][j] * solution[unknown[j]] for j in range(i + 1, n)))
         solution[unknown[i]] = named(b[i] - rest)
     return solution
+
+
+def _pivot(a: list[list[sp.Expr]], i: int, named: _Named) -> tuple[int | None, int]:
+    """Row and column of the next pivot; (None, i): column i has nothing left.
+
+    One that stays where parameters are zero, if there is one: a gain that is zero is no pivot.
+    """
+    left = range(i, len(a))
+    places = ((row, column) for column in range(i, len(a[i])) for row in left)
+    there = next(((r, c) for r, c in places if named.is_there_at_zero(a[r][c])), None)
+    return there or (next((r for r in left if a[r][i] != 0), None), i)

@@ -34,6 +34,7 @@ def cache_folder() -> Path | None:
 
     The folder has mode 0700. Where it cannot be written, or belongs to or can be written by
     somebody else, a folder for this process alone; None where there is no place at all.
+    A home that does not exist is not made: whoever names none wants nothing to be kept there.
     """
     if path := os.environ.get("TELEOPDESIGN_CACHE"):
         folder = Path(path)
@@ -41,6 +42,9 @@ def cache_folder() -> Path | None:
         import pooch
 
         folder = Path(pooch.os_cache("teleopdesign"))
+        home = Path(os.path.expanduser("~"))
+        if folder.is_relative_to(home) and not home.is_dir():
+            return _temporary_folder()
     folder = folder / "machine_code"
     return folder if _is_private(folder) else _temporary_folder()
 

@@ -79,13 +79,19 @@ def held_signals(
 
 
 def _command_signals(diagram: Diagram) -> list[str]:
-    return [part.command for part in diagram.blocks if isinstance(part, Moving)]
+    plants = (c for c in diagram.controls if c.is_code and c.output in sensor_signals(diagram))
+    commands = [part.command for part in diagram.blocks if isinstance(part, Moving)]
+    return [*commands, *(s for c in plants for s in (c.input, *c.others))]
 
 
 def _electronic_signals(diagram: Diagram) -> set[str]:
-    """Outputs of analog controllers and of the junctions before and behind them."""
+    """Outputs of analog controllers and of the junctions before and behind them.
+
+    What a sensor reads of them the computer has from the sensor.
+    """
     made = {j.output: j for j in diagram.junctions}
-    electronic = {c.output for c in diagram.controls if c.analog}
+    sensors = sensor_signals(diagram)
+    electronic = {c.output for c in diagram.controls if c.analog} - sensors
     electronic |= {c.input for c in diagram.controls if c.analog and c.input in made}
     grown = True
     while grown:

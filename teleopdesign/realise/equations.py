@@ -182,7 +182,8 @@ class _Builder:
                 v = motion_of(self.diagram, part.motion)[1] if part.motion else _NO_VELOCITY
                 known = self.diagram.is_position(part.input)
                 source = self.diagram.position(part.input) if known else signal(part.input)
-                equation = _placed(part, source, v, v, late=self.late)
+                others = tuple(map(signal, part.others))
+                equation = _placed(part, source, v, v, others=others, late=self.late)
                 rows.append(signal(part.output) - equation.output)
                 unknown.append(signal(part.output))
                 self.rates |= equation.rates
@@ -266,7 +267,10 @@ class _Builder:
                     moved = self.diagram.position(part.motion)
                     readings = {x: of(x.name) for x in moved.free_symbols}
                     travel, known = (rate_of(moved, f).xreplace(readings) for f in (rate, speed))
-                equation = _placed(part, of(part.input), travel, known, period, late=late)
+                others = tuple(map(of, part.others))
+                equation = _placed(
+                    part, of(part.input), travel, known, period, others=others, late=late
+                )
                 rows.append(signal(part.output) - equation.output)
                 rates |= equation.rates
                 steps |= equation.steps
@@ -319,13 +323,14 @@ def _placed(
     speed: sp.Expr,
     period: sp.Expr = sp.S.Zero,
     *,
+    others: tuple[sp.Expr, ...],
     late: LateSignals,
 ) -> ControllerEquation:
     """The equation of a controller on signals; what it delays is put into `late`."""
     assert isinstance(part.controller, Controller)
     signals = {"input": input, "velocity": speed, "speed": sp.Abs(speed), "travel_rate": rate}
     signals["period"] = period
-    made = part.controller.equation(part.name, signals, code=True)
+    made = part.controller.equation(part.name, signals, others=others, code=True)
 
     equation = without_delays(made, part.name, late)
     kept = [*equation.rates.values(), *equation.steps.values(), *(e for e, _ in late.values())]

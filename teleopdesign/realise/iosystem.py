@@ -18,7 +18,7 @@ import sympy as sp
 
 from ..arguments import checked
 from ..controllers import Controller, Stage, from_control
-from ..diagrams import Control, Diagram, Junction, Kinematics
+from ..diagrams import Control, Diagram, Junction, Kinematics, with_shared_states
 from ..errors import ModelError
 from ._codegen import needed_steps
 from .equations import Equations, equations, summed
@@ -73,7 +73,7 @@ def to_iosystem(
     diagram = simulated(diagram, give, prescribed)
     if dt is not None:
         return _sampled(diagram, prescribed, delay_order, dt, step)
-    diagram = _approximated(diagram, delay_order)
+    diagram = with_shared_states(_approximated(diagram, delay_order))
     blocks = tuple(
         replace(b, analog=False) if isinstance(b, Control) else b for b in diagram.blocks
     )
@@ -193,7 +193,7 @@ def _code(part: Control) -> Any:
     """The system in continuous time that the controller consists of; None where it is a law."""
     assert isinstance(part.controller, Controller)
     stages = part.controller.stages
-    system = stages[0].law.system if len(stages) == 1 else None
+    system = stages[0].law.system if len(stages) == 1 and not part.others else None
     return None if system is None or system.isdtime(strict=True) else system
 
 
@@ -204,7 +204,8 @@ def _controller(part: Control, numbers: SymbolValues, names: PrivateNames) -> An
     v = motion_of(names.diagram, part.motion)[1] if part.motion else sp.S(0)
     signals = {"input": signal(part.input), "velocity": v, "speed": sp.Abs(v), "travel_rate": v}
     signals["period"] = sp.S(0)
-    equation = part.controller.equation(part.name, signals, code=True)
+    others = tuple(map(signal, part.others))
+    equation = part.controller.equation(part.name, signals, others=others, code=True)
     states = sorted(equation.rates, key=str)
     rates = [equation.rates[s] for s in states]
     used = set().union(*(e.free_symbols for e in (equation.output, *rates)))

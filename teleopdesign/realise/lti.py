@@ -67,6 +67,11 @@ def linear_blocks(
     times = {c.name: as_written(c.dead_time) for c in diagram.controls if c.dead_time is not None}
     for part in diagram.blocks if not only else (diagram.block(only),):
         if isinstance(part, Control):
+            if part.is_code and part.analog and part.output in diagram.measured:
+                raise ModelError(
+                    f"{diagram.name}: {part.name} is a plant known as code only, and without it "
+                    "nothing is left to derive: simulate, or give it linear (`control.linearize`)"
+                )
             forms = _of_controller(diagram, part, speed, held)
             blocks[part.name] = forms[0] if forms else sp.S(0)
             if len(forms) == 2:

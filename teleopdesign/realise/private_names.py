@@ -128,4 +128,5 @@ def _renamed(block: Block, name: str, signals: Mapping[str, str]) -> Block:
         return replace(block, name=name, motions=motions, forces=forces)
     assert isinstance(block, Control)
     source, made, along = signals[block.input], signals[block.output], signals.get(block.motion, "")
-    return replace(block, name=name, input=source, output=made, motion=along)
+    others = tuple(signals[s] for s in block.others)
+    return replace(block, name=name, input=source, output=made, motion=along, others=others)

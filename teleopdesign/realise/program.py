@@ -140,7 +140,7 @@ def _named_structure(diagram: Diagram) -> tuple[Any, ...]:
     for part in diagram.blocks:
         if isinstance(part, Control):
             block: Any = part.controller
-            wires: tuple[Any, ...] = (part.input, part.output, part.motion, part.analog)
+            wires: tuple[Any, ...] = (*part.inputs, part.output, part.motion, part.analog)
         elif isinstance(part, Moving):
             block = part.body
             wires = (part.motion, part.command, part.driver, *part.loads.items())

@@ -54,6 +54,7 @@ def slope_lines(
 
 
 def signals_in(effect: Effect) -> list[str]:
+    """Names of the signals that the effect's law and the rates of its states hold."""
     laws = (effect.expression(), *effect.rates().values())
     return [n for n, s in SIGNALS.items() if any(law.has(s) for law in laws)]
 

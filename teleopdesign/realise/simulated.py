@@ -13,7 +13,7 @@ import sympy as sp
 
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
-from ..diagrams import Attached, Block, Control, Diagram, Moving
+from ..diagrams import Attached, Block, Control, Diagram, Moving, with_shared_states
 from ..effects import EFFECTS, SIGNALS, Effect
 from ..errors import ModelError
 from .tips import with_tips
@@ -126,13 +126,16 @@ def least_levels(body: Body, value: Callable[[sp.Symbol], Any]) -> dict[str, Any
 
 
 def in_computer(diagram: Diagram, period: float) -> Diagram:
-    """The diagram with controllers as a computer of that period (s) realises them."""
+    """The diagram with controllers as a computer of that period (s) realises them.
+
+    States that several controllers share are there once.
+    """
     realised = {
         part.name: part.controller.sampled(period)
         for part in diagram.controls
         if isinstance(part.controller, Controller) and not part.analog
     }
-    return _with_blocks(diagram, realised)
+    return with_shared_states(_with_blocks(diagram, realised))
 
 
 def without_no_delay(controller: Controller) -> Controller:

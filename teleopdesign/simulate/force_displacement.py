@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Loop:
-    """The loop of a force over a displacement: slope (N/m), and width between both ways (N)."""
+    """The loop of a force over a displacement: slope (N/m), and width between both ways (N).
+
+    N m/rad and N m on a revolute axis. Coulomb friction makes the loop twice its level wide.
+    """
 
     stiffness: float
     width: float

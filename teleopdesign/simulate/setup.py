@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..diagrams import Diagram
+from ..diagrams import Diagram, with_shared_states
 from ..errors import GrowsWithoutBound, ModelError, did_you_mean
 from ..realise.delays import is_whole, late_samples
 from ..realise.simulated import in_computer, simulated
@@ -106,12 +106,17 @@ def simulated_form(
 ) -> Diagram:
     """The diagram as it is simulated; arguments as in `simulate`."""
     body = simulated(diagram, give, motion)
-    return body if isinstance(computer, str) else in_computer(body, computer.period)
+    if isinstance(computer, str):
+        return with_shared_states(body)
+    return in_computer(body, computer.period)
 
 
 @dataclass(frozen=True)
 class Setup:
-    """A simulation that is ready to run, with its step or a shorter one."""
+    """A simulation that is ready to run, with its step or a shorter one.
+
+    duration, step: s;  inputs: signal -> values;  motion: prescribed motions;  initial: SI
+    """
 
     diagram: Diagram
     program: Program

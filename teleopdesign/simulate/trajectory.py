@@ -21,7 +21,10 @@ TimeFunction = Callable[[np.ndarray], np.ndarray]
 @checked
 @dataclass(frozen=True)
 class Trajectory:
-    """A motion as functions of time (s): position (m or rad) and its two derivatives."""
+    """A motion as functions of time (s): position (m or rad) and its two derivatives.
+
+    Each function takes and returns arrays (n,). `sine` and `sampled_motion` make one.
+    """
 
     position: TimeFunction
     velocity: TimeFunction

@@ -15,6 +15,7 @@ from ..by_value import ByValue
 from ..errors import ExperimentError, ModelError, did_you_mean
 from ..notebook import html_table
 from ..plain_data import replacing
+from .hdf5_trial import read_on_trial
 from .outcomes import PointOutcome
 from .points import SAMPLE, Points
 
@@ -127,6 +128,7 @@ def read_study(path: str | Path) -> Study:
 
     check_netcdf()
     try:
+        read_on_trial(path, largest=LARGEST)
         _check_size(path)
         data = xarray.load_dataset(path, engine="h5netcdf")
     except ExperimentError:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path, PurePath
@@ -125,11 +126,13 @@ def _with_file(
     key, part = str(attributes["study"]), None
     if target is not None:
         check_netcdf()
+        part = target.with_name(f"{target.name}.part")
         if target.exists():
-            return _stored(target, key)
+            stored = _stored(target, key)
+            _remove_finished(part, key, len(task.points))
+            return stored
         if not target.parent.is_dir():
             raise ExperimentError(f"{target}: there is no folder {str(target.parent)!r}")
-        part = target.with_name(f"{target.name}.part")
     journal = Journal(part, key, len(task.points))
     try:
         run(journal)
@@ -180,6 +183,16 @@ def _stored(target: Path, key: str) -> Study:
             "another file, or remove it"
         )
     return stored
+
+
+def _remove_finished(part: Path, key: str, points: int) -> None:
+    """Remove the journal of a study that stands whole in its file: a kill came between the two.
+
+    One of another study, or that another process writes, stays.
+    """
+    if part.exists():
+        with suppress(ExperimentError):
+            Journal(part, key, points).remove()
 
 
 def _units(task: StudyTask, units: Mapping[str, str]) -> dict[str, str]:

@@ -37,8 +37,8 @@ class ParetoFront(ByValue):
 
     points: each with its limits checked once more, by increasing first objective
     objectives: (k, 2) of the points;  before: (2,), with the diagram's values, NaN where none
-    evaluated: (m, 2), of all points that were evaluated and keep the limits;  tried_best: (j, 2),
-        of those that no other one beats in both: `points` are spread along them
+    evaluated: (m, 2), of all points that keep the limits;  evaluated_best: (j, 2), of those that
+        no other one beats in both: `points` are spread along them
     number: of points that were evaluated;  dropped: those whose limits failed in the last check
     """
 
@@ -47,7 +47,7 @@ class ParetoFront(ByValue):
     points: tuple[Tuned, ...]
     objectives: np.ndarray
     evaluated: np.ndarray
-    tried_best: np.ndarray
+    evaluated_best: np.ndarray
     before: np.ndarray
     number: int
     dropped: int

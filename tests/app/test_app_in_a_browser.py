@@ -36,6 +36,7 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
         log = shutil.copy(example("rod") / "fit.csv.gz", tmp_path / "swing.csv.gz")
         page.locator("input[type=file]").set_input_files(log)
         page.get_by_role("cell", name="actuator_force").wait_for()
+        assert page.get_by_text("Open an experiment to begin.").count() == 0  # there is none yet
         page.get_by_label("hand force").select_option("f_h")
         page.get_by_role("cell", name="interaction_force").wait_for()
         # the end of the check span, by keyboard: a few steps of a 500th of the log
@@ -48,6 +49,9 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
         picture(page, folder, "log", full_page=True)
         press(page, "Make the experiment")
         page.get_by_text("swing_experiment is made").wait_for()
+        press(page, "Open")
+        press(page, "Cancel")
+        page.get_by_text("cancelled").wait_for()
         press(page, "Open")
         page.get_by_text("noise floor").first.wait_for()
         page.locator("canvas, svg.marks").first.wait_for()  # the charts are drawn
@@ -66,6 +70,11 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
         picture(page, folder, "compare")
         page.get_by_role("tab", name="Parameters").click()
         page.get_by_role("columnheader", name="as estimated").wait_for()
+        page.get_by_role("tab", name="Design").click()
+        page.get_by_role("tab", name="Numbers, reasons and claims").click()
+        page.get_by_text("proved: Coulomb friction", exact=False).first.wait_for()
+        page.get_by_role("tab", name="Diagram").click()
+        picture(page, folder, "design", full_page=True)
         page.get_by_role("tab", name="Export").click()
         press(page, "Write report, answer, model and script")
         page.get_by_text("written to results/swing_experiment").first.wait_for()
@@ -77,6 +86,7 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
     assert {p.name for p in results.iterdir()} == {
         "report.html",
         "answer.json",
+        "device_interface.toml",
         "figure.svg",
         "script.py",
     }

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from teleopdesign import example, load_experiment
-from teleopdesign.app import Workbench, charts, export, pages
+from teleopdesign.app import Workbench, charts, export, pages, views
+from teleopdesign.diagrams import read_diagram
 from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ModelError
 
@@ -86,3 +87,33 @@ def test_the_ladder_lists_each_rung_with_its_errors(bench):
     text = pages.ladder(bench.add("stribeck", "device"))
     assert "your model, re-estimated" in text and "+ stribeck at device" in text
     assert list(pages.rung_options(bench.add("stribeck", "device")).values()) == [0, 1]
+
+
+@pytest.mark.slow  # about 8 s: a compensation is designed and simulated
+def test_the_design_is_shown_from_its_claims_to_its_simulation_and_written_as_a_diagram(
+    bench, tmp_path
+):
+    added = bench.add("stribeck", "device")
+    parts = dict(pages.design_parts(added, "device"))
+    titles = ["Before and after", "Numbers, reasons and claims", "Diagram", "Bode", "Impedance"]
+    assert list(parts) == [*titles, "Simulation"]
+    assert "proved" in parts["Numbers, reasons and claims"]
+    assert parts["Diagram"].svg().startswith("<svg")
+    position = parts["Simulation"].axes[0].lines[0].get_ydata()
+    assert np.ptp(position) > 0
+    assert "device_interface.toml" in export.write_all(added, tmp_path)
+    file = tmp_path / "results" / added.experiment.folder.name / "device_interface.toml"
+    assert [b.name for b in read_diagram(file).blocks] == ["Z_M", "H", "C"]
+
+
+def test_a_moved_parameter_is_shown_beside_the_record_or_not_at_all(bench):
+    name = "device.inertia"
+    there, heavier = (pages.moved_residuals(bench, name, factor) for factor in (1.0, 1.5))
+    left = [float(np.nanstd(data["residual"])) for data in (there, heavier)]
+    assert left[1] > 1.05 * left[0]
+    assert pages.moved_residuals(bench, name, -1.0) is None  # an inertia is not negative
+
+
+def test_sliders_show_no_rounding_error():
+    fit, check = views.span_sliders(11.998000000000001, ((0.0, 7.199), (7.199, 11.998000000000001)))
+    assert check.value == [7.199, 11.998] and fit.stop == 11.998

@@ -60,7 +60,7 @@ def test_what_it_cannot_be_is_said_in_one_line():
         (lambda: to_iosystem(found), "takes part in frequency responses alone"),
         (lambda: bode(found, frequency=np.array([500.0])), "measured from 1 to 1000 rad/s"),
         (lambda: loop_gain(found)(1.0 + 5.0j), "and off it"),
-        (lambda: delay_margin(loop_gain(found)), "is no rational function"),
+        (lambda: loop_gain(found).transfer_function(), "is no rational function"),
         (lambda: pickle.dumps(MEASURED), "not sent to another process"),
     ):
         with pytest.raises(ModelError) as caught:
@@ -68,11 +68,22 @@ def test_what_it_cannot_be_is_said_in_one_line():
         assert words in str(caught.value) and "\n" not in str(caught.value)
 
 
-def test_a_matrix_of_responses_is_a_block_for_each_entry_and_a_plant_is_none():
+def test_a_delay_margin_is_that_of_the_system_that_was_measured():
+    """1 %: lines between 20 frequencies a decade. A gain below 1 throughout bears any delay."""
+    for gain in (0.5, 9.0):
+        law = controller("gain", {"gain": gain})
+        found, known = (
+            delay_margin(loop_gain(interface(block.then(law))))
+            for block in (MEASURED, from_control(FILTER))
+        )
+        assert found == pytest.approx(known, rel=0.01)
+
+
+def test_a_matrix_of_responses_is_a_block_for_each_entry_and_a_plant_needs_a_mass():
     both = control.append(FILTER, 2 * FILTER)
     parts, _ = controller_parts(
         control.frd(both, W), name="K", inputs=("a", "b"), outputs=("c", "d"), motion="x"
     )
     assert [part.name for part in parts][0] == "K_1_1"
-    with pytest.raises(ModelError, match="fit one to what was measured"):
+    with pytest.raises(ModelError, match="show a mass of"):
         plant_parts(control.frd(FILTER, W), name="P", motion="x", command="u", driver="f")

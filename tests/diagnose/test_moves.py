@@ -142,3 +142,15 @@ def test_what_the_stated_errors_do_not_tell_from_absence_is_set_aside_once(ladde
     assert "bias" not in {r.candidate.key[0] for r in again.supported}
     back = replace(full, set_aside=moved.set_aside)
     assert without_doubtful(search, back, stated) is None
+
+
+def test_where_the_only_effect_is_set_aside_the_model_alone_stands(ladder):
+    search, state = ladder
+    full = with_effects(search, state, "bias")
+    last, name = full.rungs[-1], "device.bias.force"
+    value = last.fit.model.parameters[name]
+    wide = last.fit.model.with_values({name: replace(value, stderr=2.0 * abs(value.value))})
+    stated = (*full.rungs[:-1], replace(last, fit=replace(last.fit, model=wide)))
+    moved = without_doubtful(search, full, stated)
+    assert moved.rungs == (state.rungs[0],)
+    assert [one.candidate.key[0] for one in moved.set_aside] == ["bias"]

@@ -166,6 +166,7 @@ def test_a_model_has_one_error_in_the_ladder_and_among_the_candidates(diagnosis)
         assert candidates[key] == row["check_error"]
 
 
+@pytest.mark.slow  # a whole diagnosis again; golden/ holds its figures too
 def test_the_same_records_give_the_same_answer(experiment, diagnosis):
     again = find_missing(experiment, Model.from_experiment(experiment, FEW))
     assert answer(again) == answer(diagnosis)

@@ -29,44 +29,36 @@ def integrate(
     switches: functions of (t, y) at whose zeros the law changes;  mode: their signs at the start
     sizes: of the states, for the absolute tolerance
     longest: step, s; where two crossings fall into one, all is done again with shorter ones
+    A step ends at each of the times: between its ends a fast bristle is known to 1e-6 only.
     """
     out = np.empty((len(times), len(start)))
     out[0], y, t, signs = start, np.asarray(start, dtype=float), float(times[0]), list(mode)
-    end, at = float(times[-1]), 1
+    at, step = 1, longest
     while at < len(times):
-        events = [_falling(switch, sign) for switch, sign in zip(switches, signs, strict=True)]
         solved = solve_ivp(
             lambda t, y, now=tuple(signs): rate(t, y, now),
-            (t, end),
+            (t, float(times[at])),
             y,
             "DOP853",
-            t_eval=times[at:],
-            events=events,
+            events=[_falling(switch, sign) for switch, sign in zip(switches, signs, strict=True)],
             rtol=RELATIVE,
             atol=ABSOLUTE * np.asarray(sizes),
             max_step=longest,
+            first_step=min(step, float(times[at]) - t),
         )
-        count = len(solved.t)
-        if count:  # none where a mode ends before the next of the times
-            out[at : at + count] = solved.y.T
-            sides = [
-                n * g(t, y)
-                for n, g in zip(signs, switches, strict=True)
-                for t, y in zip(solved.t, solved.y.T, strict=True)
-            ]
+        step = max(float(np.diff(solved.t).max()), 1e-6)  # an event may end a step where it begins
+        hits = [(found[0], i) for i, found in enumerate(solved.t_events) if len(found)]
+        if hits:
+            t, which = min(hits)
+            y = solved.y_events[which][0]
+            signs[which] = -signs[which]
+        if not hits or t >= times[at]:
+            t, y = float(times[at]), y if hits else solved.y[:, -1]
+            out[at], at = y, at + 1
+            sides = [n * g(t, y) for n, g in zip(signs, switches, strict=True)]
             if min(sides) < -BESIDE:
                 options = {"start": start, "mode": mode, "times": times, "sizes": sizes}
                 return integrate(rate, switches, **options, longest=longest / 8)
-        at += count
-        hits = [(found[0], i) for i, found in enumerate(solved.t_events) if len(found)]
-        if not hits:
-            break
-        t, which = min(hits)
-        y = solved.y_events[which][0]
-        signs[which] = -signs[which]
-        if t >= end:
-            break
-    assert at == len(times), "the integration stopped early"
     return out
 
 

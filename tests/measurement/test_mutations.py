@@ -40,7 +40,7 @@ def mutations(draw, text):
 
 
 @given(data=st.data())
-@settings(max_examples=300)
+@settings(max_examples=200)
 def test_any_change_of_the_toml_is_read_or_refused_in_one_line(template, data):
     original = (template / "experiment.toml").read_text()
     text = data.draw(mutations(original))

@@ -100,6 +100,17 @@ def test_a_lone_position_sample_of_ten_sigma_is_found_where_it_is(rod):
     found = the_only(spoiled, "outliers")
     assert found.numbers["row"] == 5001
     assert found.numbers["size"] == pytest.approx(off, rel=0.7)  # rounding: 1.3 steps at most
+    assert "one sample lies" in found.sentence
+
+
+def test_several_lone_samples_are_counted_in_the_sentence(rod):
+    def two(x):
+        x = x.copy()
+        x[[3000, 5000]] += 10 * 7.2e-6
+        return x
+
+    found = the_only(spoilt(rod, "position", two), "outliers")
+    assert found.numbers["count"] == 2 and "2 samples lie" in found.sentence
 
 
 def test_steps_and_kinks_are_no_outliers():

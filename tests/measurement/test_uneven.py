@@ -88,6 +88,21 @@ def test_stamps_that_are_only_late_leave_the_readings():
     assert np.array_equal(record.signals["device.actuator_force"], command(t))
 
 
+@given(seed=st.integers(0, 2**32 - 1), worst=st.floats(0.5, 1.4))
+@settings(max_examples=20)
+def test_a_few_rows_that_came_very_late_do_not_take_the_even_clock_away(seed, worst):
+    """Rows of a network: written down in order, one of a hundred by half a row late or more."""
+    generator = np.random.default_rng(seed)
+    t = np.arange(2000) / RATE
+    late = 0.1 * generator.random(2000)
+    late[generator.choice(np.arange(10, 1990, 4), 20, replace=False)] += worst
+    stamps = np.maximum.accumulate(t + late / RATE + 1e-9 * np.arange(2000))
+    stamps += 1e-7 * np.arange(2000)  # no two alike where one overtook another
+    record = record_of(stamps, motion(t), command(t))
+    assert len(record.time) == 2000 and record.sample_time == pytest.approx(1 / RATE, rel=1e-3)
+    assert np.array_equal(record.signals["device.position"], motion(t))
+
+
 def test_a_command_that_changes_between_rows_is_read_by_its_own_clock():
     generator = np.random.default_rng(5)
     t = np.arange(4000) / RATE

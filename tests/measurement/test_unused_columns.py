@@ -138,3 +138,34 @@ def test_a_log_is_used_whole_however_much_of_it_is_looked_at():
     assert (begin, after) == (0.0, cut) and end >= survey.duration
     del whole["t"]
     assert look(whole, sample_rate=1000.0).duration == pytest.approx(survey.duration)
+
+
+def currents(feedback, noise=0.02):
+    """A log with the current that a model asks for, and the one that a drive measured.
+
+    feedback: N, friction that the model lacks and that feedback adds
+    """
+    asked = COLUMNS["u"] + HAND
+    lacking = feedback * np.sign(VELOCITY) * np.exp(-((VELOCITY / 0.1) ** 2))
+    made = np.r_[np.zeros(2), (asked + lacking)[:-2]] + noise * RNG.standard_normal(ROWS)
+    return {"t": T, "x": COLUMNS["x"], "target_current": asked / 5, "actual_current": made / 5}
+
+
+def test_a_wanted_current_that_did_not_act_leaves_its_place_to_the_measured_one():
+    survey = look(currents(feedback=1.0))
+    assert survey.channels["actuator_force"]["column"] == "actual_current"
+    assert survey.channels["actuator_force"]["measured"] is True  # no lag or limit is sought in it
+    assert "'target_current', which was wanted" in survey.guesses["channels.actuator_force.column"]
+    assert survey.unused["target_current"] == "what was wanted, not what was measured"
+
+
+@pytest.mark.parametrize("noise", [0.02, 0.3])
+def test_a_wanted_current_that_the_drive_made_stays(noise):
+    survey = look(currents(feedback=0.0, noise=noise))
+    assert survey.channels["actuator_force"]["column"] == "target_current"
+
+
+def test_a_torque_behind_the_gear_is_no_current_that_acted():
+    table = currents(feedback=1.0)
+    table["joint_torque"] = table.pop("actual_current")
+    assert look(table).channels["actuator_force"]["column"] == "target_current"

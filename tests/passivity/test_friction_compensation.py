@@ -51,6 +51,14 @@ def test_coulomb_friction_covers_any_compensator_up_to_its_level(level):
     assert bounded_compensation(coulomb_level=1, bound=level).status == "proved"
 
 
+def test_at_the_least_level_the_highest_one_still_refutes():
+    """f_D = f_C: short motion gives out energy where the level is the highest, not the least."""
+    alone = compensated(1, stiffness=900, presliding_stiffness=1000)
+    assert alone.status == "proved"
+    changing = compensated(1, stiffness=900, presliding_stiffness=1000, highest_level=2)
+    assert changing.status == "refuted"
+
+
 @pytest.mark.parametrize("level", [1.000001, 1.05, 3])
 def test_the_bound_is_tight(level, tmp_path):
     """However little above f_C, a long enough stroke gives out energy, and again."""

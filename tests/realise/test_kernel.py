@@ -1,5 +1,7 @@
 """The compiled kernel: accuracy, the guard of its step, sampling, and what it refuses."""
 
+import os
+
 import numpy as np
 import pytest
 from devices import CANCELLATION, FEEDBACK, LUGRE, body
@@ -8,6 +10,7 @@ from scipy.integrate import solve_ivp
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface, world_haptics_2005
 from teleopdesign.errors import ModelError
+from teleopdesign.realise.compiled import cache_folder
 from teleopdesign.simulate import Sampling, prepare, simulate, sine
 
 REFERENCE = sine(amplitude=0.01, frequency=1.5)
@@ -286,3 +289,15 @@ def test_a_saturated_actuator_acts_behind_the_command():
 def test_a_simulation_that_would_fill_the_memory_is_refused():
     with pytest.raises(ModelError, match=r"1e\+09 steps of 0.0001 s need .* GB: use a longer"):
         simulate(haptic_interface(body(0.1)), duration=1e5, inputs={"R_D": 0.0}, jit=False)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="homes of POSIX")
+def test_a_home_that_does_not_exist_is_not_made(tmp_path, monkeypatch):
+    for name in ("TELEOPDESIGN_CACHE", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    home = tmp_path / "nobody"
+    monkeypatch.setenv("HOME", str(home))
+    folder = cache_folder()
+    assert folder is not None and folder.is_dir() and not home.exists()
+    home.mkdir()
+    assert cache_folder().is_relative_to(home)

@@ -12,6 +12,7 @@ import teleopdesign as td
 from teleopdesign.errors import ExperimentError, ModelError
 from teleopdesign.passivity import dahl_compensation, observe_simulation
 from teleopdesign.studies import SimulatedCase, read_study
+from teleopdesign.studies.journal import Journal
 
 
 @pytest.fixture(scope="module")
@@ -94,6 +95,23 @@ def test_a_file_gives_the_same_study_again(made, tmp_path):
     )
     assert again.failures == made.failures
     assert pickle.loads(pickle.dumps(made)) == made
+
+
+def test_a_journal_that_a_kill_left_beside_the_whole_study_goes(tmp_path):
+    def double(a):
+        return 2.0 * a
+
+    def ask(**axes):
+        return td.study(double, axes, measures={"x2": float}, workers=1, out=tmp_path / "s.nc")
+
+    first, part = ask(a=[1.0, 2.0]), tmp_path / "s.nc.part"
+    assert not part.exists()
+    Journal(part, first.data.attrs["study"], 2).close()
+    ask(a=[1.0, 2.0])
+    assert not part.exists()
+    Journal(part, "another", 2).close()
+    ask(a=[1.0, 2.0])
+    assert part.exists(), "another study's points stay"
 
 
 def test_a_model_may_be_a_function_of_the_parameters():

@@ -85,6 +85,11 @@ class WritingCommand:
 
 COMMANDS = {
     "check": WritingCommand(("check", "rod", "--json=OUT/a.json"), ("a.json",)),
+    "demo": WritingCommand(
+        ("demo", "--output=OUT"),
+        ("answer.json", "predictions.csv.gz", "ladder.png", "report.html"),
+        progress="^step ",
+    ),
     "derive": WritingCommand(
         ("derive", "haptic-interface", "--json=OUT/a.json", "--figure=OUT/a.svg"),
         ("a.json", "a.svg"),
@@ -164,8 +169,11 @@ def prepare(command, out):
         (out / name).write_bytes(OLD)
 
 
-def run(command, sources, out, *, at=0, after=None, number=signal.SIGINT):
-    """Run it, and stop it at its `at`-th look, or `after` s; then no process of it is left."""
+def run(command, sources, out, *, at=0, after=None, number=signal.SIGINT, room=None):
+    """Run it, and stop it at its `at`-th look, or `after` s; then no process of it is left.
+
+    room: bytes that a file may have, as if the disk were full then
+    """
     arguments = [a.replace("OUT", str(out)) for a in command.arguments]
     reading, writing = os.pipe()
     began = time.monotonic()
@@ -178,6 +186,7 @@ def run(command, sources, out, *, at=0, after=None, number=signal.SIGINT):
         text=True,
         pass_fds=[writing],
         start_new_session=True,
+        preexec_fn=None if room is None else lambda: _limit_files(room),
     ) as process:
         os.close(writing)
         with os.fdopen(reading, "rb", buffering=0) as pipe:
@@ -193,6 +202,12 @@ def run(command, sources, out, *, at=0, after=None, number=signal.SIGINT):
             count = int(pipe.read() or 0)
     _wait_for_the_group(process.pid)
     return Ended(process.returncode, said, count, seconds)
+
+
+def _limit_files(room):
+    import resource  # not on Windows
+
+    resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
 
 
 def _signal(process, number):

@@ -17,7 +17,7 @@ from ..decision import is_better
 from ..diagnosis import Diagnosis, SetAside
 from ..fit import Fit, estimate, fit_squares
 from ..ladder import climb, with_candidates_named
-from ..ladder_state import LadderSearch, LadderState, look, trying
+from ..ladder_state import LadderSearch, LadderState, look, restrict_candidates
 from ..prepare import Prepared
 from ..rung import Rung
 from ..search_plan import PLAN, SearchPlan
@@ -67,7 +67,7 @@ def find_missing_in_arm(
     said = progress or (lambda _: None)
     stated = model or Model.from_experiment(experiment)
     if among is not None:
-        stated = trying(among, stated)
+        stated = restrict_candidates(among, stated)
     said("forces of the links along the measured motion")
     prepared = prepare_arm(experiment, seed=seed)
     models = {

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import csv
 import gzip
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, cast
+
+import numpy as np
 
 from ...errors import ExperimentError, quoted
 from ...quantity import is_unit
@@ -19,6 +22,8 @@ COMMENTS = ("#", "%", "//")
 SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
 #: bytes from which the dialect is read
 LOOKED_AT = 65_536
+#: rows of numbers that follow each other in a table: a header of blocks has two ("X0", "Delta_X")
+IN_A_ROW = 3
 
 
 @dataclass(frozen=True)
@@ -50,24 +55,39 @@ def dialect_of(path: Path, file: str) -> Dialect:
         )
     body = [line for line in lines if line.strip() and not line.lstrip().startswith(COMMENTS)]
     separator, comma = _separator(body[1:] or body)
-    first = next(
-        (
-            k
-            for k, line in enumerate(lines)
-            if line.strip()
-            and not line.lstrip().startswith(COMMENTS)
-            and _is_data(cells_of(line, separator), comma)
-        ),
-        len(lines),
-    )
+    first, width = _first_row(lines, separator, comma)
     if first >= len(lines):
         _refuse_without_rows(lines, separator, file)
-    width = len(cells_of(lines[first], separator))
-    header, units = _header(lines[:first], separator, width, lines[first])
+    header, units = _header(lines[:first], separator, width, comma)
     named = bool(header)
     if not named:
         header = tuple(f"column {k + 1}" for k in range(width))
     return Dialect(encoding, separator, comma, number_names(header), units, first, named)
+
+
+def _first_row(lines: Sequence[str], separator: str, comma: bool) -> tuple[int, int]:
+    """Line of the first row of numbers, and how many cells most of such rows have.
+
+    Numbers above a table (a rate, a count of samples) are rows of another number of cells, or
+    fewer than `IN_A_ROW` of them follow each other.
+    """
+    widths = {
+        k: len(cells)
+        for k, line in enumerate(lines)
+        if line.strip() and not line.lstrip().startswith(COMMENTS)
+        if _is_data(cells := cells_of(line, separator), comma)
+    }
+    if not widths:
+        return len(lines), 0
+    counts = Counter(widths.values())
+    width = max(counts, key=lambda w: (counts[w], w))
+    rows = [k for k, w in widths.items() if w == width]
+    filled = [k for k, line in enumerate(lines) if line.strip()]
+    place = {k: n for n, k in enumerate(filled)}
+    begins = [n for n, k in enumerate(rows) if n == 0 or place[k] != place[rows[n - 1]] + 1]
+    lengths = np.diff([*begins, len(rows)])
+    whole = np.flatnonzero(lengths >= min(IN_A_ROW, lengths.max()))
+    return rows[begins[int(whole[0])]], width
 
 
 def _refuse_without_rows(lines: Sequence[str], separator: str, file: str) -> None:
@@ -92,7 +112,7 @@ def _separator(lines: Sequence[str]) -> tuple[str, bool]:
             widths = [len(row) for row in rows]
             width = max(set(widths), key=widths.count) if widths else 0
             cells = [c for row in rows for c in row if c]
-            good = sum(_is_value(c, comma) for c in cells) / max(len(cells), 1)
+            good = sum(is_value(c, comma) for c in cells) / max(len(cells), 1)
             even = widths.count(width) / max(len(widths), 1)
             score = (round(good * even, 3), width)
             # one column of numbers is no better than several texts: a table has two
@@ -114,22 +134,23 @@ def cells_of(line: str, separator: str) -> list[str]:
     return cells
 
 
-def _is_value(cell: str, comma: bool) -> bool:
+def is_value(cell: str, comma: bool) -> bool:
     return is_number(cell, comma) or seconds_of(cell) is not None
 
 
 def _is_data(cells: Sequence[str], comma: bool) -> bool:
     """A row of numbers and dates; a broken cell among many does not make it a header."""
     filled = [c for c in cells if c]
-    return bool(filled) and sum(_is_value(c, comma) for c in filled) > 0.5 * len(filled)
+    return bool(filled) and sum(is_value(c, comma) for c in filled) > 0.5 * len(filled)
 
 
 def _header(
-    before: Sequence[str], separator: str, width: int, row: str
+    before: Sequence[str], separator: str, width: int, comma: bool
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names and units from the lines before the first row of numbers."""
     plain = [line for line in before if line.strip()]
     rows = []
+    cells: list[str] = []
     for line in plain:
         text = line.lstrip()
         for mark in COMMENTS:
@@ -137,13 +158,19 @@ def _header(
         cells = cells_of(text.strip() if separator == " " else text.strip("\n"), separator)
         while len(cells) > width and not cells[-1]:
             cells = cells[:-1]
-        if len(cells) == width:
+        if len(cells) == width and not _is_data(cells, comma):
             rows.append(tuple(cells))
+    if len(cells) > width > 1 and not any(is_number(c, True) or not c for c in cells):
+        rows.append(tuple(cells[:width]))  # names of columns that are never filled: "Comment"
     if not rows:
         last = plain[-1] if plain and not plain[-1].lstrip().startswith(COMMENTS) else ""
-        return (tuple(cells_of(last, separator)) if last else ()), ()
+        names = cells_of(last, separator) if last else []
+        return (() if _is_data(names, comma) else tuple(names)), ()
     if len(rows) > 1 and all(is_unit_cell(c) for c in rows[-1]) and any(rows[-1]):
         return rows[-2], tuple(c.strip("[]() ") for c in rows[-1])
+    for label, *units in rows[:-1]:  # a row of units that says so itself: "Y_Unit_Label"
+        if "unit" in label.lower() and any(units) and all(map(is_unit_cell, units)):
+            return rows[-1], ("", *(c.strip("[]() ") for c in units))
     return rows[-1], ()
 
 

@@ -55,7 +55,11 @@ def open_folder(
     clocks = {w: f"{n}.{time_of[n]}" for w, (n, c) in columns.items() if c != time_of[n]}
     notes = [f"{n}: {note}" for n, log in logs.items() for note in log.notes]
     notes.append(f"{len(logs)} tables, each with its own clock: {listed(names)}")
-    return Log(tuple(columns), read, units, tuple(notes), clocks)
+
+    def left_out() -> tuple[str, ...]:
+        return tuple(f"{n}: {note}" for n, log in logs.items() for note in log.left_out())
+
+    return Log(tuple(columns), read, units, tuple(notes), clocks, left_out)
 
 
 def _refuse_same_columns(logs: Mapping[str, Log], folder: Path, files: Sequence[str]) -> None:

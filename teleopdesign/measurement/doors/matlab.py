@@ -43,9 +43,10 @@ def open_matlab(path: Path, file: str) -> Log:
             return open_hdf5(path, file)
     columns: dict[str, tuple[str, int | None]] = {}
     arrays: dict[str, Any] = {}
+    units: dict[str, str] = {}
     for name, shape, kind in listed:
         if kind == "struct":
-            fields = _fields(name, content[name], 0)
+            fields = _fields(name, content[name], 0, units)
             arrays |= fields
             for field, values in fields.items():
                 columns |= parts_of(field, np.shape(values))
@@ -69,7 +70,7 @@ def open_matlab(path: Path, file: str) -> Log:
         return out
 
     notes = tuple(f"{how_to_save(name)}; it is left out" for name in objects)
-    return Log(tuple(n for n in columns), read, notes=notes)
+    return Log(tuple(n for n in columns), read, units, notes)
 
 
 def _is_hdf5(path: Path) -> bool:
@@ -79,14 +80,50 @@ def _is_hdf5(path: Path) -> bool:
     return head.startswith(_HDF5) or head[_HEAD:] == _HDF5
 
 
-def _fields(name: str, value: Any, depth: int) -> dict[str, Any]:
-    """Numeric fields of a struct, "log.q"; of structs within as well."""
+def _fields(name: str, value: Any, depth: int, units: dict[str, str]) -> dict[str, Any]:
+    """Numeric fields of a struct, "log.q"; of structs within as well.
+
+    units: gets the unit of a field that the struct says
+    """
     array = np.asarray(value)
+    if array.dtype.names and (signals := _signals(name, array, units)):
+        return signals
     if array.dtype.names and array.size == 1 and depth < _DEPTH:
         contents: dict[str, Any] = {}
         for field in array.dtype.names:
-            contents |= _fields(f"{name}.{field}", array.reshape(-1)[0][field], depth + 1)
+            contents |= _fields(f"{name}.{field}", array.reshape(-1)[0][field], depth + 1, units)
         return contents
     if array.dtype.kind in "fiub" and array.size > 1:
         return {name: array}
     return {}
+
+
+def _signals(name: str, array: Any, units: dict[str, str]) -> dict[str, Any]:
+    """Signals of an array of structs that say their names, "rec.Y.Torque cmd"; {} where none do.
+
+    A real-time system writes one struct a signal: `Name` or `label`, `Data` or `values`, `Unit`.
+    """
+    lower = {field.lower(): field for field in array.dtype.names}
+    label = lower.get("name") or (lower.get("label") if array.size > 1 else None)
+    data = lower.get("data") or lower.get("values")
+    if label is None or data is None:
+        return {}
+    elements = list(array.reshape(-1))
+    whole = [_text(e[label]).replace('"', "") for e in elements]
+    short = [text.rpartition("/")[2] for text in whole]
+    names = short if len(set(short)) == len(short) else whole
+    signals: dict[str, Any] = {}
+    for text, element in zip(names, elements, strict=True):
+        values = np.asarray(element[data])
+        if not text or values.dtype.kind not in "fiub" or values.size < 2:
+            continue
+        signals[f"{name}.{text}"] = values
+        if "unit" in lower and (unit := _text(element[lower["unit"]])):
+            units[f"{name}.{text}"] = unit
+    return signals
+
+
+def _text(value: Any) -> str:
+    """A text of a struct; "" for what is none."""
+    array = np.asarray(value)
+    return str(array.reshape(-1)[0]).strip() if array.size == 1 and array.dtype.kind == "U" else ""

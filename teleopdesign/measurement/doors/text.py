@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import ExperimentError, quoted
-from ._cells import CellColumns
+from ._cells import CellColumns, is_empty
 from ._dialect import (
     COMMENTS,
     LOOKED_AT,
@@ -22,20 +22,36 @@ from ._dialect import (
     Dialect,
     cells_of,
     dialect_of,
+    is_value,
     open_bytes,
 )
 from ._log import MOST_BYTES, Array, Log, refuse_size
 
 #: rows that are read at once: 20 MB of text
 _ROWS = 200_000
+#: lines that are no rows (messages of a logger that starts anew, a row that was garbled), and their
+#: part of the rows, up to which they are left out; more of them are a table of another form
+FEW_STRAYS, MOST_STRAYS = 10, 0.01
+_BEGINS_A_NUMBER = (*'0123456789+-.,;|\t"',)
 
 
 def open_text(path: Path, file: str) -> Log:
     """A csv file, packed or not; raises ExperimentError: no text, no rows."""
     dialect = dialect_of(path, file)
 
+    strays: list[int] = []
+
     def read(wanted: Mapping[str, str]) -> Mapping[str, Array]:
-        return _read(path, file, dialect, wanted)
+        strays.clear()
+        return _read(path, file, dialect, wanted, strays)
+
+    def left_out() -> tuple[str, ...]:
+        if not strays:
+            return ()
+        lines = (
+            f"{len(strays)} lines that are no rows" if len(strays) > 1 else "a line that is no row"
+        )
+        return (f"{lines}, the first one before row {strays[0]}: left out",)
 
     notes = []
     if dialect.separator != "," or dialect.comma:
@@ -48,7 +64,7 @@ def open_text(path: Path, file: str) -> Log:
     if not dialect.named:
         notes.append("no header: columns are named by their number")
     units = {n: u for n, u in zip(dialect.header, dialect.units, strict=False) if u}
-    return Log(dialect.header, read, units, tuple(notes))
+    return Log(dialect.header, read, units, tuple(notes), left_out=left_out)
 
 
 def _is_cut_off(path: Path, dialect: Dialect) -> bool:
@@ -64,11 +80,13 @@ def _is_cut_off(path: Path, dialect: Dialect) -> bool:
     return 0 < len(cells) < len(dialect.header)
 
 
-def _read(path: Path, file: str, dialect: Dialect, wanted: Mapping[str, str]) -> dict[str, Array]:
+def _read(
+    path: Path, file: str, dialect: Dialect, wanted: Mapping[str, str], strays: list[int]
+) -> dict[str, Array]:
     places = [_place(dialect.header, name, file) for name in wanted]
     try:
         with open_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
-            parts = [*_parts(_lines(stream, dialect, file), dialect.separator, places)]
+            parts = [*_parts(_lines(stream, dialect, file, strays), dialect.separator, places)]
         columns: dict[str, Array] = {}
         for name in wanted:  # a column at a time: its parts go when it is whole
             columns[name] = np.concatenate([part.pop(0) for part in parts])
@@ -78,7 +96,8 @@ def _read(path: Path, file: str, dialect: Dialect, wanted: Mapping[str, str]) ->
             f"{file}: not {dialect.encoding.upper()} text (byte {problem.start})"
         ) from None
     except ValueError:
-        return _read_cell_by_cell(path, file, dialect, wanted, places)
+        strays.clear()
+        return _read_cell_by_cell(path, file, dialect, wanted, places, strays)
 
 
 def _parts(lines: Iterator[str], separator: str, places: Sequence[int]) -> Iterator[list[Array]]:
@@ -104,41 +123,50 @@ def _place(header: Sequence[str], name: str, file: str) -> int:
     return header.index(name)
 
 
-def _lines(stream: Iterable[str], dialect: Dialect, file: str) -> Iterator[str]:
-    """The rows of numbers with points as decimal signs; a row with more or fewer cells stops it."""
+def _lines(stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]) -> Iterator[str]:
+    """The rows of numbers with points as decimal signs.
+
+    strays: gets the row before which a line was left out that is no row: too few cells, or no
+        number in any
+    raises ExperimentError: a row with too many cells; too many lines that are no rows
+    """
     width, separator = len(dialect.header), dialect.separator
     count = bytes_read = 0
-    held = ""
+    cut = False  # the line before was left out: the last one of a file may just be cut off
     for k, line in enumerate(stream):
         if k < dialect.first or not line.strip():
             continue
         if line.lstrip().startswith(COMMENTS):
             continue
-        if held:
-            yield held
         bytes_read += len(line)
         count += 1
         if count % 100_000 == 0:
             refuse_size(count, file)
             if bytes_read > MOST_BYTES:
                 raise ExperimentError(f"{file}: found over {MOST_BYTES:.2g} bytes of text")
-        cells = width if separator == " " else line.count(separator) + 1
-        if cells != width and '"' not in line:
-            if cells < width:
-                held = line
-                break
-            if cells == width + 1 and line.rstrip("\r\n").endswith(separator):
-                line = line.rstrip("\r\n")[:-1] + "\n"
-            else:
+        cells = len(line.split()) if separator == " " else line.count(separator) + 1
+        quoted_cells = '"' in line and separator != " "
+        if cut := cells < width and not quoted_cells or _is_text(line, dialect):
+            strays.append(count)
+            count -= 1
+            if len(strays) > max(FEW_STRAYS, MOST_STRAYS * count):
+                raise _ragged(file, strays[0], cells, width)
+            continue
+        if cells > width and not quoted_cells and separator != " ":
+            if cells > width + 1 or not line.rstrip("\r\n").endswith(separator):
                 raise _ragged(file, count, cells, width)
-        held = line.replace(",", ".") if dialect.comma else line
-    else:
-        if held:
-            yield held
-        return
-    # a last row that was cut off is left out; one in the middle is a mistake
-    if any(line.strip() for line in stream):
-        raise _ragged(file, count, cells, width)
+            line = line.rstrip("\r\n")[:-1] + "\n"
+        yield line.replace(",", ".") if dialect.comma else line
+    if cut:
+        strays.pop()  # said as a row that was cut off
+
+
+def _is_text(line: str, dialect: Dialect) -> bool:
+    """Whether a line holds no number at all: a header once more, a message of the logger."""
+    if line.lstrip()[:1] in _BEGINS_A_NUMBER:
+        return False
+    cells = [c for c in cells_of(line, dialect.separator) if c]
+    return not any(is_value(c, dialect.comma) or is_empty(c) for c in cells)
 
 
 def _ragged(file: str, row: int, cells: int, width: int) -> ExperimentError:
@@ -148,7 +176,12 @@ def _ragged(file: str, row: int, cells: int, width: int) -> ExperimentError:
 
 
 def _read_cell_by_cell(
-    path: Path, file: str, dialect: Dialect, wanted: Mapping[str, str], places: Sequence[int]
+    path: Path,
+    file: str,
+    dialect: Dialect,
+    wanted: Mapping[str, str],
+    places: Sequence[int],
+    strays: list[int],
 ) -> dict[str, Array]:
     """The slow way: empty cells are NaN, dates become seconds, other texts are named."""
     where = [
@@ -157,7 +190,7 @@ def _read_cell_by_cell(
     ]
     columns = CellColumns(where)
     with open_bytes(path) as raw, io.TextIOWrapper(raw, dialect.encoding) as stream:
-        lines = _lines(stream, dialect, file)
+        lines = _lines(stream, dialect, file, strays)
         while rows := [cells_of(line, dialect.separator) for line in islice(lines, _ROWS)]:
             columns.add([[r[k] if k < len(r) else "" for r in rows] for k in places])
     return dict(zip(wanted, columns.values(), strict=True))

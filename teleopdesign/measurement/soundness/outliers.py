@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ...finding import Finding
 from ..filtering import Array
-from .signal import Signal, limit, local_scale
+from .signal import Signal, largest_by_chance, local_scale
 
 #: deviation left at the neighbours, in local standard deviations or relative to the outlier, up to
 #: which it counts as explained: 3 is five of the deviation's errors
@@ -56,7 +56,7 @@ def _explained(
     """Places where one event of the shape `left` (distance -> part of its size) explains all."""
     reach = max(left)
     scale = local_scale(off, floor)
-    at = np.flatnonzero(np.abs(off) > limit(len(off)) * scale)
+    at = np.flatnonzero(np.abs(off) > largest_by_chance(len(off)) * scale)
     at = at[(at >= 2 * reach) & (at < len(off) - 2 * reach)]
     size = off[at]
     tolerance = np.maximum(EXPLAINED * scale[at], RELATIVE * np.abs(size))

@@ -126,6 +126,6 @@ def local_scale(e: Array, floor: float) -> Array:
     return scale
 
 
-def limit(count: int) -> float:
+def largest_by_chance(count: int) -> float:
     """Standard deviations that one of `count` normal values exceeds by chance `FALSE_ALARM`."""
     return float(norm.isf(0.5 * FALSE_ALARM / max(count, 1)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,6 +12,7 @@ from ...quantity import is_unit, measures, si_factor, unit_of
 from ..column_names import is_wanted, likeness, unit_in_name
 from ..doors._log import listed
 from ..first_guess import FirstGuess, explain_force
+from .acting import current_that_acted
 from .content import (
     NONE,
     SURE_NAME,
@@ -28,6 +30,8 @@ from .content import (
 )
 from .position import unwrapped, wrap_of
 
+#: names of forces in parts of what a drive is rated for: "[0.1%]", "(%)", "permille"
+PER_CENT = re.compile(r"[%‰]|per ?mill?e", re.I)
 #: part of the force that motion explains, from which physics says that a column is the force
 DRIVES = 0.3
 #: what a force gains that is a field of the position's struct or joint: more than names that are
@@ -68,25 +72,10 @@ def describe_forces(
         n: _force_score(c, physics[n]) + BESIDE * _stand_together(n, position)
         for n, c in free.items()
     }
-    if choices.actuator_force is not None:
-        force = choices.actuator_force
-    elif scores:
-        force = max(scores, key=lambda n: scores[n])
-    else:
-        raise ExperimentError(
-            f"{file}: found no column that could be a force beside {position!r}, "
-            f"found {listed(survey.columns)}{reasons(survey.unread)}"
-        )
-    if choices.actuator_force is None and likeness(force, "actuator_force") < SURE_NAME:
-        share = physics[force].explained
-        survey.guesses["channels.actuator_force.column"] = (
-            f"{force!r} is taken for the actuator's force: the motion explains {share:.0%} of it"
-        )
-    elif choices.actuator_force is None and (others := as_likely(scores, force)):
-        survey.guesses["channels.actuator_force.column"] = alike(
-            force, others, "the actuator's force"
-        )
+    force, measured = _force_that_drives(survey, free, physics, scores, choices, file)
     survey.channels["actuator_force"] = _force_entry(survey, force, "actuator_force", choices)
+    if measured:
+        survey.channels["actuator_force"]["measured"] = True
     if entry.get("gear_ratio") is not None:
         survey.channels["actuator_force"]["gear_ratio"] = entry["gear_ratio"]
     motion = x * _position_to_si(survey), h
@@ -99,6 +88,44 @@ def describe_forces(
         )
     _signs(survey, motion, force, hand)
     survey.explained.update({n: guess.explained for n, guess in physics.items()})
+
+
+def _force_that_drives(
+    survey: Survey,
+    free: Mapping[str, SurveyedColumn],
+    physics: Mapping[str, FirstGuess],
+    scores: Mapping[str, float],
+    choices: Choices,
+    file: str,
+) -> tuple[str, bool]:
+    """The column of the actuator's force, and whether it was measured in place of a wanted one.
+
+    Where names do not say it alone, a guess is noted.
+    """
+    if choices.actuator_force is not None:
+        return choices.actuator_force, False
+    if not scores:
+        raise ExperimentError(
+            f"{file}: found no column that could be a force beside "
+            f"{survey.channels['position']['column']!r}, "
+            f"found {listed(survey.columns)}{reasons(survey.unread)}"
+        )
+    force = max(scores, key=lambda n: scores[n])
+    why = None
+    if (acted := current_that_acted(force, free, scores)) is not None:
+        wanted, (force, apart) = force, acted
+        why = (
+            f"{force!r} is taken for the actuator's force: {wanted!r}, which was wanted, leaves "
+            f"{apart:.0%} of it open, and more than noise"
+        )
+    elif likeness(force, "actuator_force") < SURE_NAME:
+        share = physics[force].explained
+        why = f"{force!r} is taken for the actuator's force: the motion explains {share:.0%} of it"
+    elif others := as_likely(scores, force):
+        why = alike(force, others, "the actuator's force")
+    if why is not None:
+        survey.guesses["channels.actuator_force.column"] = why
+    return force, acted is not None
 
 
 def _stand_together(one: str, other: str) -> bool:
@@ -145,7 +172,10 @@ def _force_entry(survey: Survey, name: str, key: str, choices: Choices) -> dict[
         return entry
     if unit is None or not measures(unit, "force", axis):
         unit = unit_of("force", axis)
-        survey.guesses[f"channels.{key}.unit"] = f"{unit}: the name {name!r} says no unit"
+        why = f"the name {name!r} says no unit"
+        if PER_CENT.search(name):
+            why = f"{name!r} counts parts of a rated force: `scale` is one part in {unit}"
+        survey.guesses[f"channels.{key}.unit"] = f"{unit}: {why}"
     return {**entry, "unit": unit}
 
 

@@ -29,6 +29,11 @@ from .content import (
 
 #: correlation from which one column is the derivative of another
 DERIVATIVE = 0.9
+#: words of a counter; and the range, in its steps, from which whole numbers are no rounded angle
+COUNTERS = frozenset(("enc", "encoder", "count", "counts", "counter", "ticks", "tick", "inc"))
+MOST_ANGLE = 50
+#: part by which a velocity may differ from the position's derivative: filters, and its own rounding
+SAME_TIME = 0.1
 
 
 def unwrapped(x: Array, jump: float | None) -> Array:
@@ -131,6 +136,8 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
         for axis in ("prismatic", "revolute"):
             if measures(unit, "position", axis):
                 return axis
+    if choices.torque_constant is not None:
+        return "revolute" if choices.torque_constant[1].startswith("N*m") else "prismatic"
     units = [c.unit for c in survey.columns.values() if c.unit]
     if "N" in units or any(measures(u, "position") for u in units if u != "counts"):
         why, axis = "forces are in N", "prismatic"
@@ -150,8 +157,13 @@ def describe_position(
     column, axis = survey.columns[position], survey.axis
     entry: dict[str, Any] = {"column": position}
     unit = choices.units.get(position) or column.unit
-    if unit == "counts" or unit is None and choices.counts_per_turn is not None:
+    if unit is None and choices.counts_per_turn is not None:
         unit = "counts"
+    if unit is None and axis == "revolute" and _counts(column):
+        unit = "counts"
+        survey.guesses["channels.position.unit"] = (
+            f"counts: {position!r} holds whole numbers, as the counter of an encoder does"
+        )
     if unit is None or unit != "counts" and not measures(unit, "position", axis):
         unit, why = _position_unit(survey, column, velocity, axis)
         survey.guesses["channels.position.unit"] = why
@@ -185,6 +197,35 @@ def describe_position(
         if said is not None and measures(said, "velocity", axis):
             more = {} if choices.gear_ratio is None else {"gear_ratio": choices.gear_ratio}
             survey.channels["velocity"] = {"column": velocity, "unit": said, **more}
+            _hold_time_against(survey, column, velocity)
+
+
+def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) -> None:
+    """Where the unit of the time is a guess: what a position and its velocity in units say."""
+    why = survey.guesses.get("channels.time.unit")
+    unit, said = (survey.channels[key]["unit"] for key in ("position", "velocity"))
+    if why is None or unit == "counts" or "channels.position.unit" in survey.guesses:
+        return
+    h = sample_time_of(survey)
+    whole = unwrapped(column.values, wrap_of(column.values))
+    factor, agree = derivative_factor(whole, survey.columns[velocity].values, h)
+    slower = factor * si_factor(said, quantity="velocity", axis=survey.axis)
+    slower /= si_factor(unit, quantity="position", axis=survey.axis)
+    if agree < DERIVATIVE or slower <= 0 or abs(slower - 1.0) < SAME_TIME:
+        return
+    survey.guesses["channels.time.unit"] = (
+        f"{why}; but {velocity!r} in {said} asks for steps of {h / slower:.3g} s: "
+        f"--sample-rate {float(f'{slower / h:.3g}'):g}"
+    )
+
+
+def _counts(column: SurveyedColumn) -> bool:
+    """Whether a column is the counter of an encoder, by its name and its whole numbers."""
+    values = column.readings[np.isfinite(column.readings)]
+    named = COUNTERS & set(words_of(column.name))
+    if not named or not np.all(values == np.round(values)):
+        return False
+    return float(np.ptp(values)) > MOST_ANGLE
 
 
 def _seen_step(values: Array) -> float:

@@ -9,11 +9,13 @@ it is judged over its values. Any other friction is judged at vertices and in th
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from ...blocks import Body
+from ...controllers import laws_that_declare
 from ...diagrams import Diagram
 from ..claims.claim import Claim
 from ..diagram_claims import composed_claim
@@ -24,13 +26,8 @@ from .conditions import Conditions, one_port_is_passive, two_port_is_passive
 from .family import family_of
 from .linear import hides_no_growth
 
-#: effects and laws of which the conditions above are all that is asked, with their values
+#: effects of which the conditions above are all that is asked, with their values
 _FRICTION: dict[str, tuple[str, ...]] = {"coulomb": ("level",), "presliding": ("stiffness",)}
-_LAWS: dict[str, tuple[str, ...]] = {
-    "dahl": ("level", "stiffness"),
-    "coulomb": ("level",),
-    "smoothed_coulomb": ("level",),
-}
 
 
 def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> dict[str, Any]:
@@ -82,16 +79,20 @@ def _vertices_decide(middle: Diagram, box: ValueBox) -> bool:
         effects = {e.name for e in body.effects if e.role.startswith("friction")}
         if not effects <= set(_FRICTION) or body.parameters.get("presliding.bristle_damping"):
             return False
-        if law is not None and (pair.stage is None or pair.stage.law.name not in _LAWS):
+        if law is None:
+            continue
+        # a law of one's own keeps its bound at the values that were looked at, no more is known
+        if pair.stage is None or pair.stage.law not in laws_that_declare("bound"):
             return False
+        known = {pair.stage.name: (pair.stage.law.bound, pair.stage.law.bristle_stiffness)}
         for name in box.names:
             block, _, rest = name.partition(".")
-            if law is not None and block == law.name and not _is_of(rest, _LAWS):
+            if block == law.name and not _is_of(rest, known):
                 return False
     return bool(len(box.vertices()) == 2 ** len(box.names))
 
 
-def _is_of(name: str, known: dict[str, tuple[str, ...]]) -> bool:
+def _is_of(name: str, known: Mapping[str, tuple[str, ...]]) -> bool:
     part, _, value = name.rpartition(".")
     return value in known.get(part, ())
 

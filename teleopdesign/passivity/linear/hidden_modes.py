@@ -27,7 +27,7 @@ from sympy.polys.matrices import DomainMatrix
 from ...controllers import Controller, controller
 from ...derive import symbol_values
 from ...derive.elimination import rows
-from ...diagrams import Block, Control, Diagram, Moving
+from ...diagrams import Block, Control, Diagram, Moving, with_shared_states
 from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.tips import with_tips
 from ..checker.polynomials import is_free_of_growth, polynomial
@@ -58,7 +58,7 @@ def growth_within(diagram: Diagram) -> float | None:
     diagram: with values, linear and without dead times (of others nothing is known here: None)
     raises ModelError: no force from outside drives a body
     """
-    at, diagram = ports(diagram), with_tips(diagram)
+    at, diagram = ports(diagram), with_shared_states(with_tips(diagram))
     linear = linear_blocks(diagram)
     values = symbol_values(linear)
     forms = [{n: e.xreplace(values) for n, e in row.items()} for row in rows(diagram)]
@@ -223,7 +223,7 @@ def controllers_grow(diagram: Diagram) -> bool:
     Such a mode is a pole of the impedance in the right half plane, or no port shows it. False too
     where a dead time lies within a loop of laws: nothing is known here of those
     """
-    diagram = with_tips(diagram)
+    diagram = with_shared_states(with_tips(diagram))
     made = [_standing_still(diagram, factor) for factor in (1.0, 2.0, 0.0)]
     wholes = [whole for whole, _ in made]
     if any(whole.is_zero or whole != wholes[0] for whole in wholes):

@@ -4,8 +4,7 @@ Before a sample a tank holds W = E_0 + arrived - supplied, and the held force f 
 or f = 0 where W < 0. Over a travel x with abs(x) <= d it supplies f x <= abs(f) d <= W. So supplied
 is never above E_0 + the largest count that has arrived, late, in any order, held or interpolated,
 and that is at most what is taken at the other end by now, for a count that only grows. The sum over
-both
-ends: what the computers supply to the bodies, less what they take from them, is at most 2 E_0.
+both ends: what the computers supply to the bodies, less what they take from them, is at most 2 E_0.
 """
 
 from __future__ import annotations

@@ -161,7 +161,7 @@ def _wave_impedance(diagram: Diagram) -> float:
     """b of a diagram without hand and environment that is wired as `wave_variables` does it."""
     bodies = {b.name: b.body for b in diagram.blocks if isinstance(b, Moving)}
     controls = {c.name: replace(c, analog=False) for c in diagram.controls}
-    impedance = diagram.values.get("b_m.spring_damper.damping", 0.0)
+    impedance = _damping_of(diagram, "b_m") if "b_m" in controls else 0.0
     if {"Z_m", "Z_s"} <= set(bodies) and "P" in controls and impedance > 0:
         made = wave_variables(
             bodies["Z_m"],
@@ -176,6 +176,13 @@ def _wave_impedance(diagram: Diagram) -> float:
     raise ModelError(
         f"{diagram.name}: not wired as `wave_variables` does it, with one b on both sides"
     )
+
+
+def _damping_of(diagram: Diagram, name: str) -> float:
+    """b of a controller whose linear form is b s; 0 of any other one."""
+    linear = linear_blocks(diagram, only=name)
+    damping = sp.cancel(linear.blocks[name] / S)
+    return 0.0 if name in linear.left_out or damping.free_symbols else float(damping)
 
 
 THEOREM = Theorem(mathematics=(wave_channel, wave_teleoperator), order=71)

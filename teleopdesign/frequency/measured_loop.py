@@ -1,0 +1,75 @@
+"""A loop gain that holds a measured response: stable or not, and where its gain is 1.
+
+Nyquist's criterion, from the lowest frequency that was measured to the highest. What lies outside
+was not measured, and is taken for this: above, the gain stays below 1; below, the phase goes on to
+0 at rest from between -270 and +90 degrees there, for plants lag and controllers lead by less than
+a quarter turn. With the loop opened at the controller's output the rest is taken as stable, as it
+was when it was measured.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from ..controllers import measured_frequencies
+from ..errors import ModelError, UnstableLoop
+from ..realise.lti import numerical
+
+#: frequencies between two neighbours that were measured: between them the response is a line, and
+#: what the rest of the loop does there is smooth; trades a turn that is not seen against time
+_BETWEEN = 8
+#: rad; a step of the phase that is larger may be a turn the other way round
+_SURE = np.pi / 2
+
+
+def measured_crossings(expression: sp.Expr, *, growing: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Phase ahead of -180 degrees, and frequency (rad/s), where the gain is 1.
+
+    expression: gain once round the loop, stable feedback > 0
+    growing: poles of the controller itself in the right half plane
+    raises ModelError: the loop is unstable (`UnstableLoop`), or what was measured does not tell
+    """
+    from scipy.optimize import brentq
+
+    call = numerical(expression)
+    w = _frequencies(expression)
+    gain = call(1j * w)
+    size = np.abs(gain)
+    if size[-1] >= 1:
+        raise ModelError(
+            f"delay margin: the loop's gain is still {size[-1]:.3g} at {w[-1]:.4g} rad/s, the "
+            "highest frequency that was measured: measure further"
+        )
+    angle = np.angle(1 + gain)
+    if angle[0] > _SURE:  # of a plant that lags by more than half a turn
+        angle[0] -= 2 * np.pi
+    steps = (np.diff(angle) + np.pi) % (2 * np.pi) - np.pi
+    if np.abs(steps).max() > _SURE:
+        at = w[int(np.argmax(np.abs(steps)))]
+        raise ModelError(
+            f"delay margin: too few frequencies were measured beside {at:.4g} rad/s to follow the "
+            "phase there"
+        )
+    turns = round((angle[0] + steps.sum() - angle[-1]) / (2 * np.pi))
+    if 2 * turns != growing:
+        raise UnstableLoop("delay margin: the loop is unstable without delay")
+
+    def above(x: float) -> float:
+        return float(np.log(np.abs(call(np.array([1j * x]))[0])))
+
+    passed = np.flatnonzero((size[:-1] > 1) != (size[1:] > 1))
+    crossing = np.array([brentq(above, w[k], w[k + 1], rtol=1e-12) for k in passed])
+    return np.degrees(np.angle(call(1j * crossing))) + 180, crossing
+
+
+def _frequencies(expression: sp.Expr) -> np.ndarray:
+    """Those that all responses have been measured over, and some between neighbours."""
+    every = measured_frequencies(expression)
+    low, high = max(w[0] for w in every), min(w[-1] for w in every)
+    if low >= high:
+        raise ModelError("delay margin: measured responses have no frequencies in common")
+    w = np.unique(np.concatenate([w[(w >= low) & (w <= high)] for w in every] + [[low, high]]))
+    parts = np.arange(_BETWEEN) / _BETWEEN
+    between = np.exp(np.log(w[:-1, None]) + np.diff(np.log(w))[:, None] * parts)
+    return np.append(between.ravel(), high)

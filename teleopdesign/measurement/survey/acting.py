@@ -1,0 +1,74 @@
+"""Which of two logged forces acted: the one that was wanted, or the current that a drive measured.
+
+A controller that follows a model logs the force that its model asks for. Friction that the model
+lacks is in the measured current alone: the wanted force would say that nothing is missing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..column_names import is_wanted, likeness, words_of
+from .content import SURE_NAME, Array, SurveyedColumn
+
+#: part of a measured current's squares, without the noise of single rows, up to which it is what
+#: was wanted: a drive's current loop and its sensor leave less than a tenth of the force. With
+#: more, something else than the wanted force acted: feedback, or a limit
+FOLLOWED = 0.01
+#: rows by which a drive may come after what was wanted: with all of them it may also smooth
+LATE = 4
+#: words of a current, in the languages that `column_names` reads
+CURRENT = (
+    "current", "curr", "strom", "courant", "corriente", "corrente", "i", "iq", "amps",
+    "電流", "电流", "전류", "ток",
+)  # fmt: skip
+
+
+def current_that_acted(
+    force: str, columns: Mapping[str, SurveyedColumn], scores: Mapping[str, float]
+) -> tuple[str, float] | None:
+    """A measured current that acted in place of the wanted `force`, and how far the two differ.
+
+    returns: its column, and the rms of what the wanted force does not say of it, of its own rms;
+        None: the force was not a wanted one, or the drive made it
+    """
+    if not is_wanted(force):
+        return None
+    measured = [
+        name
+        for name, column in columns.items()
+        if name != force and _is_current(column) and not is_wanted(name)
+    ]
+    if not measured:
+        return None
+    best = max(measured, key=lambda name: scores[name])
+    share = _not_followed(columns[force].values, columns[best].values)
+    return (best, share**0.5) if share > FOLLOWED else None
+
+
+def _is_current(column: SurveyedColumn) -> bool:
+    """Whether a column is the current of a motor, by its unit or by its name."""
+    if likeness(column.name, "actuator_force") < SURE_NAME:
+        return False
+    named = any(word in CURRENT for word in words_of(column.name))
+    return column.unit in ("A", "mA") or column.unit is None and named
+
+
+def _not_followed(wanted: Array, measured: Array) -> float:
+    """Part of the squares of what was measured that what was wanted does not lead to.
+
+    What is left in one row is multiplied with what is left in the next: noise of single rows, and
+    steps of a converter, drop out.
+    """
+    rows = len(measured) - LATE
+    if rows <= LATE:
+        return 0.0
+    late = [wanted[LATE - k : LATE - k + rows] for k in range(LATE + 1)]
+    columns = np.column_stack([*late, np.ones(rows)])
+    target = measured[LATE:]
+    whole = float(np.mean((target - target.mean()) ** 2))
+    solution, *_ = np.linalg.lstsq(columns, target, rcond=1e-8)
+    left = target - columns @ solution
+    return float(np.mean(left[1:] * left[:-1])) / whole if whole > 0 else 0.0

@@ -1,0 +1,146 @@
+"""Nonlinear python-control systems of several signals, and as plants: simulated, not derived."""
+
+import control
+import numpy as np
+import pytest
+from devices import body
+
+from teleopdesign.controllers import from_control
+from teleopdesign.derive import transfer_function
+from teleopdesign.diagrams import (
+    Control,
+    Diagram,
+    Junction,
+    Moving,
+    controller_parts,
+    coupled_plant_parts,
+    plant_parts,
+)
+from teleopdesign.errors import ModelError
+from teleopdesign.frequency import bode, loop_gain
+from teleopdesign.passivity import diagram_claims
+from teleopdesign.realise.iosystem import to_iosystem
+from teleopdesign.simulate import Sampling, simulate
+
+PENDULUM = control.nlsys(
+    lambda t, x, u, p: np.array([x[1], (u[0] - 0.3 * x[1] - 4 * np.sin(x[0])) / 0.2]),
+    lambda t, x, u, p: x[0],
+    inputs=1,
+    outputs=1,
+    states=2,
+)
+#: two links that pull at one another
+LINKS = control.nlsys(
+    lambda t, x, u, p: np.array(
+        [
+            x[2],
+            x[3],
+            5 * (u[0] - 0.4 * x[2] - 3 * np.sin(x[0] - x[1])),
+            9 * (u[1] - 0.3 * x[3] + 3 * np.sin(x[0] - x[1]) - 20 * x[1] ** 3),
+        ]
+    ),
+    lambda t, x, u, p: x[:2],
+    inputs=2,
+    outputs=2,
+    states=4,
+)
+LAW = control.tf([-3.0, -8.0], [0.01, 1.0])
+TIGHT = {"solve_ivp_kwargs": {"rtol": 1e-10, "atol": 1e-14, "max_step": 1e-3}}
+PUSH = {"f": 0.5, "r": 0.2, "f1": 0.5, "f2": -0.2}
+
+
+def held(analog):
+    parts, sums = plant_parts(PENDULUM, name="P", motion="x", command="u", driver="f")
+    law = Control("K", from_control(LAW), "e", "u", "", analog)
+    outside = {"f": "force", "r": "position"}
+    error = Junction("e", {"x": 1.0, "r": -1.0})
+    return Diagram("pendulum", (*parts, law), (*sums, error), outside, ("x",))
+
+
+def linked(analog):
+    parts, sums = coupled_plant_parts(
+        LINKS, name="P", motions=("x1", "x2"), commands=("u1", "u2"), drivers=("f1", "f2")
+    )
+    law = control.ss([[-50.0]], [[1.0, 0.5]], [[-90.0], [-40.0]], [[-1.0, 0.2], [0.0, -2.0]])
+    controls, more = controller_parts(
+        law, name="K", inputs=("x1", "x2"), outputs=("u1", "u2"), motion="", analog=analog
+    )
+    outside = {"f1": "force", "f2": "force"}
+    return Diagram("links", (*parts, *controls), (*sums, *more), outside, ("x1", "x2"))
+
+
+def with_code(analog):
+    """Two rods, and a law of two inputs and outputs that is code, with states that it shares."""
+    law = control.nlsys(
+        lambda t, x, u, p: np.array([30 * (u[0] - x[0]), 20 * (u[1] - x[1]) - 5 * x[0] ** 3]),
+        lambda t, x, u, p: np.array([-80 * x[0] - 9 * x[1] ** 3, -60 * x[1] - u[1] - 2 * x[0]]),
+        inputs=2,
+        outputs=2,
+        states=2,
+    )
+    rods = tuple(
+        Moving(
+            f"Z{i}", body(0.1 * i, viscous__damping=3.0), f"x{i}", f"u{i}", {f"f{i}": 1}, f"f{i}"
+        )
+        for i in (1, 2)
+    )
+    controls, sums = controller_parts(
+        law, name="K", inputs=("x1", "x2"), outputs=("u1", "u2"), motion="x1", analog=analog
+    )
+    outside = {"f1": "force", "f2": "force"}
+    return Diagram("rods", (*rods, *controls), sums, outside, ("x1", "x2"))
+
+
+@pytest.mark.parametrize("analog", [True, False])
+@pytest.mark.parametrize("made", [held, linked, with_code])
+def test_the_kernel_and_python_control_agree(made, analog):
+    """1e-6 of the range: two integrators at tight tolerances on one set of functions."""
+    diagram, time = made(analog), np.linspace(0.0, 0.1, 101)
+    forces = {n: PUSH[n] for n in diagram.outside}
+    found = simulate(
+        diagram, duration=0.1, inputs=forces, computer="continuous", step=5e-4, jit=False
+    )
+    system = to_iosystem(diagram)
+    given = [np.full(len(time), forces[n]) for n in system.input_labels]
+    answer = control.input_output_response(system, time, given, **TIGHT)
+    at = np.rint(found["time"].values / time[1]).astype(int)
+    for name in diagram.measured:
+        theirs = answer.outputs[system.output_labels.index(name)][at]
+        assert np.abs(found[name].values - theirs).max() < 1e-6 * np.ptp(theirs)
+
+
+@pytest.mark.parametrize("made", [held, linked, with_code])
+def test_in_a_computer_they_agree_sample_by_sample(made):
+    diagram, time = made(False), 1e-3 * np.arange(21)
+    forces = {n: PUSH[n] for n in diagram.outside}
+    computer = Sampling(period=1e-3)
+    found = simulate(diagram, duration=0.02, inputs=forces, computer=computer, jit=False)
+    system = to_iosystem(diagram, dt=1e-3)
+    given = [np.full(21, forces[n]) for n in system.input_labels]
+    answer = control.input_output_response(system, time, given)
+    for name in diagram.measured:
+        theirs = answer.outputs[system.output_labels.index(name)]
+        assert np.abs(found[name].values - theirs).max() < 1e-9 * np.ptp(theirs)
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda d: transfer_function(d, output="x", input="f"),
+        lambda d: bode(d, frequency=np.array([1.0])),
+        lambda d: loop_gain(d, controller="K"),
+        lambda d: diagram_claims(d, rng=np.random.default_rng(1)),
+    ],
+)
+def test_nothing_is_derived_of_a_plant_that_is_code(use):
+    with pytest.raises(ModelError, match="is a plant known as code only") as caught:
+        use(held(False))
+    assert "\n" not in str(caught.value)
+
+
+def test_what_is_no_plant_is_refused():
+    at_once = control.nlsys(None, lambda t, x, u, p: 2 * u, inputs=1, outputs=1)
+    with pytest.raises(ModelError, match="a position follows a force at once"):
+        plant_parts(at_once, name="P", motion="x", command="u", driver="f")
+    with pytest.raises(ModelError, match="others are for a law that is known as code alone"):
+        Control("K", from_control(LAW), "e", "u", others=("x",))

@@ -1,0 +1,46 @@
+"""What an effect holds its parameters against: records of one body, and elements that slip."""
+
+import numpy as np
+import pytest
+
+from teleopdesign.effects import RecordFacts
+from teleopdesign.effects._elements import softest_first
+from teleopdesign.effects._facts import follows_gravity, speeds_vary_by_place
+
+TIME = np.linspace(0.0, 3.0, 3000)
+
+
+def facts(**changed):
+    """One sine about zero, as a link under gravity makes it."""
+    places, speeds = 0.5 * np.sin(2 * np.pi * TIME), np.pi * np.cos(2 * np.pi * TIME)
+    known = {"travel": 1.0, "step": 1e-4, "stroke": 0.5, "force": 3.0, "speed": np.pi, "film": 0.1}
+    body = {"inertia": 0.1, "coulomb.level": 0.5, "gravity.phase": 0.3}
+    given = {"axis": "revolute", "body": body, "places": places, "speeds": speeds, **known}
+    return RecordFacts(**given | changed)
+
+
+def test_one_sine_tells_no_force_of_the_place_from_one_of_the_speed_two_sines_do():
+    one = speeds_vary_by_place(np.cos, facts())
+    assert one is not None and "one speed only" in one
+    # the same places at half the speed too
+    both = {"places": np.tile(facts().places, 2)}
+    both["speeds"] = np.r_[facts().speeds, 0.5 * facts().speeds]
+    assert speeds_vary_by_place(np.cos, facts(**both)) is None
+
+
+def test_friction_that_is_largest_where_gravity_is_may_be_friction_by_the_load():
+    said = follows_gravity(lambda place: 1.0 + np.abs(np.sin(place + 0.3)), facts())
+    assert said is not None and "load_dependent_friction" in said
+    assert follows_gravity(lambda place: 2.0 - np.abs(np.sin(place + 0.3)), facts()) is None
+    assert follows_gravity(lambda place: np.ones_like(place), facts()) is None, "nothing varies"
+    assert follows_gravity(np.abs, facts(body={"inertia": 0.1})) is None, "there is no gravity"
+
+
+def test_elements_are_ordered_by_stiffness_and_the_first_carries_the_rest():
+    given = {"stiffness_1": 9.0, "stiffness_2": 3.0, "stiffness_3": 27.0, "stiffness_4": 1.0}
+    given |= {"level_2": 0.2, "level_3": 0.3, "level_4": 1e-4}
+    values = softest_first(given, {"coulomb.level": 1.0})
+    # the first carries 1 - 0.2 - 0.3; the fourth carries next to nothing and comes last
+    assert [values[f"stiffness_{i}"] for i in (1, 2, 3, 4)] == [3.0, 9.0, 27.0, 1.0]
+    levels = [values[f"level_{i}"] for i in (2, 3, 4)]
+    assert levels == pytest.approx([0.4999, 0.3, 1e-4])
