@@ -28,6 +28,10 @@ class Criteria:
     #: its friction is known no better. Lower: the method's errors count; higher: weak effects
     #: are missed
     of_floor: float = 0.5
+    #: part of the noise floor of a clock that jitters below which an effect leaves too little to be
+    #: one: it weakens what the jitter makes. The jitter is known to a fifth. Higher: true effects
+    #: are refused; lower: a tip that moves less at high frequencies is named
+    weakened: float = 0.8
     #: part of the squares before from which a gain counts: less is no answer to where a model fails
     relevant: float = 0.03
     #: standard deviations of a difference below which two fits explain the records equally well.

@@ -49,9 +49,12 @@ def bounded_by_what_is_left(drawn: NoiseFloor, here: Fit, ranking: Ranking) -> N
     """The noise floor, at most the error of the model or of any identifiable candidate.
 
     Without what is missing a parameter may be led where sensor noise would ask for any force: what
-    the records themselves leave shows that it does not.
+    the records themselves leave shows that it does not. Moments of reading that jitter are seen in
+    the readings, though: a candidate that leaves less than they make weakens what they make.
     """
-    left = [here.check_error, *(r.fit.check_error for r in ranking.ranked if r.counts)]
+    left = [here.check_error]
+    if not drawn.jitters:
+        left += [r.fit.check_error for r in ranking.ranked if r.counts]
     return replace(drawn, value=min(drawn.value, *left))
 
 
@@ -182,6 +185,10 @@ def objection(
     """
     if ranked.refused or ranked.implausible:
         return REFUSALS.get(ranked.refused, ranked.implausible)
+    if floor.jitters and ranked.fit.check_error < criteria.weakened * floor.value:
+        return (
+            "leaves less than the jitter of the clock makes without it: it weakens what that makes"
+        )
     if gone := displaced(base, ranked.fit, least=criteria.close):
         return f"drives {', '.join(gone)} to a bound, which the model needs without it"
     driven = sorted(set(ranked.fit.at_bound) - set(base.at_bound))

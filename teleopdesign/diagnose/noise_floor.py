@@ -1,8 +1,9 @@
 """What sensors alone would leave in the force error of a model that is right.
 
 The readings are made anew: the smoothed motion is read off by an encoder of the stated step with a
-random zero, and the stated noise is drawn. By how much that changes the residual is the floor; the
-directions of motion stay those that the record's readings showed.
+random zero, and the stated noise is drawn. Where the record's readings scatter the more the faster
+they move, its clock jitters, and so do the moments of those drawn anew. By how much that changes
+the residual is the floor; the directions of motion stay those that the record's readings showed.
 Where no resolution is stated, steps and noise of all channels are estimated from the readings, from
 their content near the Nyquist frequency, and the answer says so.
 """
@@ -14,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..by_value import ByValue
+from ..measurement.encoder import reading_step, sampling_jitter
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motion_of
 from ..model import Model
@@ -35,6 +37,7 @@ class NoiseFloor(ByValue):
     at_command: what sensors leave seen at the command (`error_at_command.at_command`), over what
         they leave of the force: 1 where nothing stands between
     held: kept below what this model makes of sensor errors, or what it leaves would hide in them
+    jitters: whether the readings themselves show that their moments jitter
     """
 
     value: float
@@ -42,6 +45,7 @@ class NoiseFloor(ByValue):
     drawn: float
     held: bool = False
     at_command: float = 1.0
+    jitters: bool = False
 
     @property
     def value_at_command(self) -> float:
@@ -80,7 +84,8 @@ def noise_floor(
     back = float(np.sqrt(np.mean(np.square(command_errors)))) / left if left else 1.0
     # a law that weakens what it passes makes more of sensor noise, one that amplifies it less; what
     # counts as noise is never less than what sensors leave of the force
-    return NoiseFloor(left, source, drawn=left, at_command=max(back, 1.0))
+    jitters = any(_jitter(s, prepared) > 0.0 for s in stretches)
+    return NoiseFloor(left, source, drawn=left, at_command=max(back, 1.0), jitters=jitters)
 
 
 def _drawn(
@@ -98,6 +103,10 @@ def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Genera
     motion, channels = stretch.motion, prepared.experiment.channels
     side = _side(motion.position)
     signals = next(r for r in prepared.experiment.records if r.file == motion.file).signals
+    # a command is held between rows, and read the same a little early or late
+    jitter = _jitter(stretch, prepared)
+    late = jitter * generator.standard_normal(len(motion.time)) if jitter > 0.0 else 0.0
+    rate = np.gradient(motion.interaction, motion.sample_time)
 
     def read(quantity: str, signal: Array) -> Array:
         name = f"{motion.body}.{quantity}"
@@ -110,15 +119,26 @@ def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Genera
         body=motion.body,
         file=motion.file,
         time=motion.time,
-        position=read("position", motion.position),
+        position=read("position", motion.position + late * motion.velocity),
         command=read("actuator_force", motion.command),
-        interaction=read("interaction_force", motion.interaction),
+        interaction=read("interaction_force", motion.interaction + late * rate),
         sample_time=motion.sample_time,
         rows=motion.rows,
         bandwidth=prepared.bandwidth,
         resolution=channels[f"{motion.body}.position"].resolution,
     )
     return replace(drawn, further=motion.further)
+
+
+def _jitter(stretch: Stretch, prepared: Prepared) -> float:
+    """By how much (s, rms) the readings of a stretch are early or late, as they themselves show."""
+    motion = stretch.motion
+    record = next(r for r in prepared.experiment.records if r.file == motion.file)
+    longest = max(record.segments, key=lambda rows: rows.stop - rows.start)
+    name = f"{motion.body}.position"
+    readings = record.signals[name][longest]
+    step = prepared.experiment.channels[name].resolution or reading_step(readings)
+    return sampling_jitter(readings, step, record.sample_time)
 
 
 def _side(position: Array) -> float:

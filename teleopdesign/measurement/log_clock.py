@@ -13,6 +13,7 @@ from ..errors import ExperimentError, quoted
 from .channel import Channel
 from .reading import ReadingStep, count_of
 from .record_clock import RecordClock, counted_time, segments_of
+from .repeated_rows import repeated_rows
 from .tables import LogColumns
 from .time_grid import DATE, EVEN, clock_of, stamps_are_true
 
@@ -58,7 +59,8 @@ def clock_of_log(
         stamps = columns.values[channels["time"].column] * (to_seconds or 1.0)
         where = f"{name}: channels.time"
     labels = _labels(columns, channels, name)
-    rows = np.flatnonzero(filled)
+    again = _repeated(columns, channels, on_this_clock) & filled & _later(stamps)
+    rows = np.flatnonzero(filled & ~again)
     stamps = stamps[rows]
     steps: list[ReadingStep] = []
     if len(stamps) and abs(stamps[0]) > DATE:
@@ -67,7 +69,7 @@ def clock_of_log(
             ReadingStep(file, "stamps that count from long ago", "time from the first row", "none")
         )
     segments = segments_of(None if labels is None else labels[rows], len(rows))
-    if sample_rate is not None and empty == 0:
+    if sample_rate is not None and len(rows) == len(filled):
         clock = RecordClock(rows, time, rows, time, sample_time, segments, segments)
     else:
         clock = clock_of(stamps, segments, _same(columns, channels, rows, on_this_clock), where)
@@ -80,6 +82,15 @@ def clock_of_log(
                 f"{count_of(empty, 'row')} with a cell that holds no number",
                 "read as lost",
                 f"{100 * empty / len(filled):.2g} % of the rows",
+            )
+        )
+    if again.any():
+        steps.append(
+            ReadingStep(
+                file,
+                f"{count_of(int(again.sum()), 'row')} that say the same as the one before",
+                "read as lost",
+                f"{100 * float(again.mean()):.2g} % of the rows",
             )
         )
     return LogClock(clock, stamped), steps + _order(clock, file, len(filled)) + more
@@ -106,6 +117,27 @@ def _filled_rows(
                 )
             filled &= ~bad
     return filled
+
+
+def _later(stamps: Array) -> NDArray[np.bool_]:
+    """Rows whose stamp is not that of the row before, nor next to it: such are one row twice."""
+    steps = np.diff(stamps, prepend=stamps[:1])
+    forward = steps[steps > 0]
+    return np.asarray(steps > 0.5 * np.median(forward)) if len(forward) else steps > 0
+
+
+def _repeated(
+    columns: LogColumns, channels: Mapping[str, Channel], on_this_clock: set[str]
+) -> NDArray[np.bool_]:
+    """Rows for which the logger had no new reading."""
+    signals = [ch for k, ch in channels.items() if k not in ("time", "segment")]
+
+    def of(*quantities: str) -> list[Array]:
+        wanted = {c for ch in signals if ch.quantity in quantities for c in ch.columns}
+        return [columns.values[c] for c in sorted(wanted & on_this_clock)]
+
+    every = of(*(ch.quantity for ch in signals))
+    return repeated_rows(every, of("position"), of("interaction_force"))
 
 
 def _labels(columns: LogColumns, channels: Mapping[str, Channel], name: str) -> Array | None:

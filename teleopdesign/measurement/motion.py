@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..by_value import ByValue
 from .encoder import reading_noise, reading_step
 from .filtering import Array, Spectrum, spectrum
+from .hum import hum_of, without_hum
 from .record import Record
 
 #: smoothing edge over comparison bandwidth: the band below is untouched (|H| > 0.998 there)
@@ -216,6 +217,20 @@ def motion_of(
     )
 
 
+def without_mains(record: Record, name: str) -> Array:
+    """A force of a record (n,), less a hum of the mains that no position shows."""
+    force = record.signals[name]
+    longest = max(record.segments, key=lambda rows: rows.stop - rows.start)
+    positions = [x[longest] for key, x in record.signals.items() if key.endswith(".position")]
+    hum = hum_of(force[longest], positions, record.sample_time)
+    if hum is None:
+        return force
+    clean = force.copy()
+    for rows in record.segments:
+        clean[rows] = without_hum(force[rows], hum, record.sample_time)
+    return clean
+
+
 #: channels of a body that a law may use besides those of its motion
 FURTHER = ("temperature", "other_position")
 
@@ -227,7 +242,9 @@ def motions(
 
     bandwidth: Hz, of the comparison;  resolution: encoder step (SI), None where not stated
     """
-    interaction = record.signals.get(f"{body}.interaction_force")
+    command = without_mains(record, f"{body}.actuator_force")
+    measured = f"{body}.interaction_force"
+    interaction = without_mains(record, measured) if measured in record.signals else None
     names = {n: f"{body}.{n}" for n in FURTHER if f"{body}.{n}" in record.signals}
     return tuple(
         motion_of(
@@ -235,7 +252,7 @@ def motions(
             file=record.file,
             time=record.time[rows],
             position=record.signals[f"{body}.position"][rows],
-            command=record.signals[f"{body}.actuator_force"][rows],
+            command=command[rows],
             interaction=None if interaction is None else interaction[rows],
             sample_time=record.sample_time,
             rows=rows,

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
+from teleopdesign.measurement.motion import without_mains
 from teleopdesign.measurement.soundness import check_signals
 
 
@@ -47,3 +48,14 @@ def test_a_motion_of_fifty_hertz_is_no_hum(rod):
     moved = x + 0.02 * x.std() * np.sin(2 * np.pi * 50 * record.time)
     record = replace(record, signals={**record.signals, "device.position": moved})
     assert hums(replace(one, records=(record,))) == []
+
+
+@pytest.mark.parametrize("frequency", [50.0, 60.0, 49.93])
+@pytest.mark.parametrize("key", ["device.interaction_force", "device.actuator_force"])
+def test_a_hum_is_taken_off_the_force_and_nothing_else_is(rod, key, frequency):
+    first = rod.fit_records[0]
+    clean, spoilt = first.signals[key], humming(rod, key, frequency, 0.1).records[0]
+    left = without_mains(spoilt, key) - clean
+    # ends are off by what the force itself has at that frequency
+    assert np.sqrt(np.mean(left**2)) < 0.02 * 0.1 * clean.std()
+    assert without_mains(first, key) is clean

@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from shared_data import shared_folder
 
 from teleopdesign import example, load_experiment
+from teleopdesign.measurement.encoder import sampling_jitter
 from teleopdesign.measurement.reading import ReadingStep
+from teleopdesign.measurement.repeated_rows import repeats, stuck_stretches
 from teleopdesign.measurement.soundness import check_signals
 from teleopdesign.measurement.soundness.clipping import visits
-from teleopdesign.measurement.soundness.held_samples import repeats, stuck_stretches
 from teleopdesign.measurement.soundness.log_reading import check_reading
-from teleopdesign.measurement.soundness.noise import sampling_jitter
 from teleopdesign.measurement.soundness.outliers import jumps, lone_samples
 from teleopdesign.measurement.soundness.segments import check_segments
 from teleopdesign.measurement.soundness.signal import signals
@@ -397,7 +397,7 @@ def test_an_hour_at_a_kilohertz_is_checked_in_bounded_time(rod):
 
 
 def test_the_known_oddities_of_real_recordings_are_found_and_no_others():
-    """What their READMEs say: held samples and jitter of psm and mtm, a finer second emps file."""
+    """What their READMEs say: jitter of psm and mtm, rows twice in mtm, a finer emps file."""
     data = shared_folder("data")
     found = {
         name: {(f.topic, f.where) for f in warnings(load_experiment(data / name))}
@@ -405,11 +405,15 @@ def test_the_known_oddities_of_real_recordings_are_found_and_no_others():
     }
     assert found["emps"] == {("encoder steps", "emps_pulses.csv.gz")}
     assert found["hsm150"] == set()
-    assert found["mtm_wrist"] == {("held samples", "mtm_joint4_sweep.csv.gz")}
+    topics = ("gaps", "held samples", "lost rows", "reading")
+    assert found["mtm_wrist"] == {(topic, "mtm_joint4_sweep.csv.gz") for topic in topics}
+    (repeated, *_) = load_experiment(data / "mtm_wrist").reading
+    assert "rows that say the same as the one before" in repeated.observed
     runs = [f"psm1_fourier{k}.csv.gz" for k in (1, 2, 3)]
-    assert found["psm_insertion"] == {
-        (topic, run) for topic in ("held samples", "sample clock") for run in runs
-    }
+    sparse = {(topic, run) for topic in ("lost rows", "reading", "sample clock") for run in runs}
+    assert sparse <= found["psm_insertion"]
+    more = {topic for topic, _ in found["psm_insertion"] - sparse}
+    assert more <= {"held samples", "outliers"}
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ import numpy as np
 from ...finding import Finding
 from ..encoder import reading_noise
 from ..filtering import Array
-from .held_samples import STEPS, runs_of
+from ..repeated_rows import STEPS, runs_of
 from .signal import Signal
 
 #: arrivals with speed at the same value from which it counts as a limit

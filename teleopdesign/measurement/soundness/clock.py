@@ -11,11 +11,11 @@ import numpy as np
 from ...errors import ExperimentError
 from ...finding import Finding, Graph, Series
 from ..channel import factor_of
+from ..encoder import sampling_jitter
 from ..experiment import Experiment
 from ..filtering import Array
 from ..record import Record
 from ..tables import read_columns
-from .noise import sampling_jitter
 from .signal import Signal
 
 #: part of a sample time that stamps may be off and still count as uniform

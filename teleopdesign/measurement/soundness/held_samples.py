@@ -9,22 +9,10 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...finding import Finding
-from ..filtering import Array
-from .signal import FALSE_ALARM, Signal
-
-#: changes from sample to sample that count as motion, in steps between values
-STEPS = 3.0
-#: samples to either side over which a usual change is taken
-NEAR = 10
-#: chance of a zero among normal changes: density at zero times the step, over the median change
-_ZERO = 0.3989 * 0.6745
-#: changes on leaving a hold, in usual changes before it, that reveal it
-LEAP = 5.0
-#: samples that a hold must last to be called stuck: shorter ones are counted as repeats
-LASTING = 10
+from ..repeated_rows import repeats, stuck_stretches
+from .signal import Signal
 
 
 def check_constant(signal: Signal) -> list[Finding]:
@@ -48,32 +36,6 @@ def check_constant(signal: Signal) -> list[Finding]:
             signal.record.file,
         )
     ]
-
-
-def runs_of(mask: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """First place of each run of True, and one past its last."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
-    return edges[::2], edges[1::2]
-
-
-def repeats(x: Array, step: float) -> NDArray[np.intp]:
-    """Samples of a position that repeat the one before although the body goes on.
-
-    Into the hold and out of it the reading changes by half of the usual change there or more, the
-    same way: no body stops and starts within a sample.
-    """
-    change = np.diff(x)
-    first, past = runs_of(change == 0)
-    inside = (first > 0) & (past < len(change)) & (past - first < LASTING)
-    first, past = first[inside], past[inside]
-    low, high = np.maximum(first - NEAR, 0), np.minimum(past + NEAR, len(x) - 1)
-    usual = (x[high] - x[low]) / (high - low)
-    way, size = np.sign(usual), np.abs(usual)
-    into, out = way * change[first - 1], way * change[past]
-    is_held = (size >= STEPS * step) & (into >= 0.5 * size) & (out >= 0.5 * size)
-    pairs = zip(first[is_held].tolist(), past[is_held].tolist(), strict=True)
-    rows = [np.arange(a, b) + 1 for a, b in pairs]
-    return np.concatenate(rows) if rows else np.zeros(0, dtype=np.intp)
 
 
 def check_repeats(signal: Signal) -> list[Finding]:
@@ -120,39 +82,6 @@ def check_update(signal: Signal) -> list[Finding]:
             signal.record.file,
         )
     ]
-
-
-def stuck_stretches(x: Array, step: float, quantity: str) -> list[tuple[int, int]]:
-    """(first, one past the last) sample of holds that only a stuck channel explains.
-
-    quantity: a position stops dead and leaps afterwards, or never moves again; noise of any other
-    measured quantity cannot vanish; a command may be held at will
-    """
-    if quantity == "actuator_force":
-        return []
-    change = np.diff(x)
-    first, past = runs_of(change == 0)
-    lasting = (past - first >= LASTING) & (first >= 5)
-    stretches = []
-    for a, b in zip(first[lasting].tolist(), past[lasting].tolist(), strict=True):
-        before = np.abs(change[a - 5 : a])
-        usual = float(np.median(before))
-        if usual < STEPS * step:
-            continue
-        ends = b == len(change)
-        leaps = not ends and abs(change[b]) > LEAP * max(usual, step)
-        # a reading that was stuck leaps once; a body that rested at a reversal goes on as it began
-        leaps = leaps and (b + 1 >= len(change) or abs(change[b + 1]) < 0.5 * abs(change[b]))
-        if quantity == "position":
-            slowing = abs(change[a - 1] - change[a - 3]) / 2
-            dead = abs(change[a - 1]) > max(STEPS * step, LEAP * slowing)
-            is_stuck = dead and (leaps or ends)
-        else:
-            chance = (b - a) * np.log(_ZERO * step / usual)
-            is_stuck = bool(chance < np.log(FALSE_ALARM / len(x)))
-        if is_stuck:
-            stretches.append((a, b + 1))
-    return stretches
 
 
 def check_stuck(signal: Signal) -> list[Finding]:

@@ -12,7 +12,6 @@ import numpy as np
 
 from ...finding import Finding
 from ..encoder import reading_noise
-from ..filtering import Array
 from .signal import Signal
 
 #: ratio of seen to stated noise that is worth a warning; noise of a quarter of a second of record
@@ -60,26 +59,3 @@ def check_noise(signal: Signal, others: Sequence[Signal]) -> list[Finding]:
             signal.record.file,
         )
     ]
-
-
-def sampling_jitter(x: Array, step: float, sample_time: float) -> float:
-    """Rms error of the sampling times (s), from a position that scatters the more the faster it is.
-
-    Scatter squared is that of rest and rounding, plus that of the times, times speed squared: from
-    the slowest and the fastest quarter of the pieces. 0 where the scatter does not grow with speed.
-    """
-    count = len(x) // 64
-    if count < 8:
-        return 0.0
-    pieces = x[: count * 64].reshape(count, 64)
-    speed = np.sqrt(np.mean(np.diff(pieces, axis=1) ** 2, axis=1)) / sample_time
-    scatter = np.sqrt(np.mean(np.diff(pieces, 4, axis=1) ** 2, axis=1) / 70.0)
-    fast = speed >= np.quantile(speed, 0.75)
-    slow = speed <= np.quantile(speed, 0.25)
-    rest = max(0.29 * step, float(np.median(scatter[slow])))
-    # twice the scatter of rest: less may be rounding alone
-    if np.median(scatter[fast]) < 2.0 * rest:
-        return 0.0
-    squares = np.median(speed[fast] ** 2) - np.median(speed[slow] ** 2)
-    more = np.median(scatter[fast] ** 2) - rest**2
-    return float(np.sqrt(max(float(more / squares), 0.0)))

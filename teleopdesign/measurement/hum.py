@@ -1,0 +1,99 @@
+"""Hum of the mains in the log of a force: a tone of 50 or 60 Hz that no position shows.
+
+A force that acted at that frequency would have moved the body. What moves nothing stands in the log
+alone, and is taken off before forces are compared: an effect that rings there would stand in for
+it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+from ..quantity import MAINS
+from .filtering import Array
+
+#: Hz to either side that tell what is usual there, and those within which the tone itself lies
+AROUND, WITHIN = 10.0, 1.5
+#: power of the tone over the median around: noise has 2^-300 of a chance, and a force that follows
+#: a motion without that tone stays below some ten
+TONE = 300.0
+#: the same of a position: above, the body moves with that frequency, and the force may well
+MOVES = 30.0
+#: rms of the tone over that of the channel from which it is reported: a hundredth changed no answer
+SHARE = 0.02
+#: s: shorter records do not part the tone from what is beside it
+SHORTEST = 2.0
+
+
+@dataclass(frozen=True)
+class Hum:
+    """A tone of the mains.
+
+    mains: nominal frequency, Hz;  frequency: as found, Hz;  rms: in the unit of the channel
+    """
+
+    mains: float
+    frequency: float
+    rms: float
+
+
+def tone_at(y: Array, sample_time: float, frequency: float) -> tuple[float, float]:
+    """Power of a tone over what is usual around it, and its rms, in the unit of y."""
+    window = np.hanning(len(y))
+    power = np.abs(np.fft.rfft((y - y.mean()) * window)) ** 2
+    off = np.abs(np.fft.rfftfreq(len(y), sample_time) - frequency)
+    usual = float(np.median(power[(off < AROUND) & (off > WITHIN)]))
+    most = float(power[off <= WITHIN].max())
+    if usual <= 0:
+        return 0.0, 0.0
+    return most / usual, float(np.sqrt(2 * most) / window.sum())
+
+
+def hum_of(force: Array, positions: Sequence[Array], sample_time: float) -> Hum | None:
+    """The hum of one stretch of a force (n,), whose positions (n,) do not show it; None."""
+    if len(force) * sample_time < SHORTEST:
+        return None
+    for mains in MAINS:
+        if mains + AROUND > 0.5 / sample_time:
+            continue
+        over, rms = tone_at(force, sample_time, mains)
+        if over < TONE or rms < SHARE * float(force.std()):
+            continue
+        if any(tone_at(x, sample_time, mains)[0] > MOVES for x in positions):
+            continue
+        return Hum(mains, _peak(force - force.mean(), sample_time, mains), rms)
+    return None
+
+
+def without_hum(force: Array, hum: Hum, sample_time: float) -> Array:
+    """A stretch of a force (n,) less the tone, of the amplitude and phase that it has there."""
+    wave = _wave(len(force), sample_time, hum.frequency)
+    window = np.hanning(len(force))
+    size = 2.0 * np.sum(window * (force - force.mean()) * wave.conj()) / window.sum()
+    return np.asarray(force - (size * wave).real)
+
+
+def _wave(count: int, sample_time: float, frequency: float) -> NDArray[np.complex128]:
+    turns = frequency * sample_time * np.arange(count)
+    return np.asarray(np.exp(2j * np.pi * turns), dtype=np.complex128)
+
+
+def _peak(y: Array, sample_time: float, near: float) -> float:
+    """Frequency (Hz) of the tone in `y`, within `WITHIN` of this one."""
+    window = np.hanning(len(y))
+    power = np.abs(np.fft.rfft(y * window))
+    grid = np.fft.rfftfreq(len(y), sample_time)
+    power[np.abs(grid - near) > WITHIN] = 0.0
+    line, highest = float(grid[1]), float(grid[int(np.argmax(power))])
+
+    def lost(frequency: float) -> float:
+        wave = _wave(len(y), sample_time, frequency)
+        return -float(np.abs(np.sum(window * y * wave.conj())))
+
+    bounds = (highest - line, highest + line)
+    return float(minimize_scalar(lost, bounds=bounds, method="bounded").x)

@@ -1,0 +1,183 @@
+"""Rows that say in every channel what the row before says: the logger had no new reading.
+
+A body at rest repeats its position, and a command may stay or follow it; a force that is measured
+with noise repeats only together with all the rest. Where what is read seldom repeats by itself and
+does so together, and where a position stops and goes on within a row, such rows are lost ones. Many
+in a row may be a rest: they are lost where a reading leaps afterwards by what it went on meanwhile.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .encoder import reading_step
+from .record_clock import Array
+
+#: chance that all that is read repeats together in a row, up to which the row is lost: one in so
+#: many rows that are not is filled
+ALONE = 0.001
+#: rows to either side over which each channel tells how often it repeats by itself
+BESIDE = 25
+#: share of the rows above which a log is one of a slower source, which is another matter
+MOST = 0.2
+#: changes to either side of a hold that show noise, and the part of them that must turn back after
+#: the one before: two thirds do in white noise, next to none in a motion
+SHOWN, TURNS = 20, 0.4
+#: changes from sample to sample that count as motion, in steps between values
+STEPS = 3.0
+#: samples to either side over which a usual change is taken
+NEAR = 10
+#: changes on leaving a hold, in usual changes before it, that reveal it
+LEAP = 5.0
+#: samples that a hold must last to be called stuck, and may be a rest: shorter ones are repeats
+LASTING = 10
+
+#: chance of a zero among normal changes: density at zero times the step, over the median change
+_ZERO = 0.3989 * 0.6745
+#: chance that a sound channel is called stuck
+STUCK_BY_CHANCE = 1e-3
+
+
+def runs_of(mask: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """First place of each run of True, and one past its last."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
+    return edges[::2], edges[1::2]
+
+
+def repeated_rows(
+    channels: Sequence[Array], positions: Sequence[Array] = (), forces: Sequence[Array] = ()
+) -> NDArray[np.bool_]:
+    """Rows that repeat the one before because no new reading was there.
+
+    channels: (n,) each, of the same rows, without the time
+    positions, forces: those of them that are read, not commanded
+    returns: (n,)
+    """
+    count = len(channels[0]) if channels else 0
+    out = np.zeros(count, dtype=bool)
+    if len(channels) < 2 or count < 2:
+        return out
+    same = np.logical_and.reduce([np.diff(y) == 0 for y in channels])
+    if not same.any() or same.mean() > MOST:  # where all is still, all is the same
+        return out
+    first, past = runs_of(same)
+    steps = [reading_step(x) for x in positions]
+    stopped = np.zeros(count, dtype=bool)
+    for x, step in zip(positions, steps, strict=True):
+        stopped[repeats(x, step)] = True
+    short = (past - first < LASTING) & (first > 0) & (past < len(same))
+    noisy = [f for f in forces if np.mean(np.diff(f)[~same] == 0) <= ALONE]
+    unlikely = (_by_chance([*positions, *forces], same, first, past) <= ALONE) | bool(noisy)
+    inside = short & (unlikely | stopped[past])
+    lasting, stuck = np.flatnonzero(past - first >= LASTING), np.zeros(count, dtype=bool)
+    for x, step in zip(positions if len(lasting) else (), steps, strict=False):
+        for a, b in stuck_stretches(x, step, "position"):
+            stuck[a + 1 : b] = True
+    for k in lasting:
+        a, b = int(first[k]), int(past[k])
+        inside[k] = bool(stuck[a + 1 : b + 1].all())
+        inside[k] |= any(_leaps(x, a, b, s) for x, s in zip(positions, steps, strict=True))
+        # a force on a body at rest may be held and go on in a step, but not in the middle
+        inside[k] |= any(_leaps(f, a, b, 0.0) and _goes_on(f, a, b) for f in forces)
+        inside[k] |= any(_noise_vanishes(f, a, b) for f in noisy)
+    for a, b in zip(first[inside].tolist(), past[inside].tolist(), strict=True):
+        out[a + 1 : b + 1] = True
+    return out
+
+
+def repeats(x: Array, step: float) -> NDArray[np.intp]:
+    """Samples of a position that repeat the one before although the body goes on.
+
+    Into the hold and out of it the reading changes by half of the usual change there or more, the
+    same way: no body stops and starts within a sample.
+    """
+    change = np.diff(x)
+    first, past = runs_of(change == 0)
+    inside = (first > 0) & (past < len(change)) & (past - first < LASTING)
+    first, past = first[inside], past[inside]
+    low, high = np.maximum(first - NEAR, 0), np.minimum(past + NEAR, len(x) - 1)
+    usual = (x[high] - x[low]) / (high - low)
+    way, size = np.sign(usual), np.abs(usual)
+    into, out = way * change[first - 1], way * change[past]
+    is_held = (size >= STEPS * step) & (into >= 0.5 * size) & (out >= 0.5 * size)
+    pairs = zip(first[is_held].tolist(), past[is_held].tolist(), strict=True)
+    rows = [np.arange(a, b) + 1 for a, b in pairs]
+    return np.concatenate(rows) if rows else np.zeros(0, dtype=np.intp)
+
+
+def stuck_stretches(x: Array, step: float, quantity: str) -> list[tuple[int, int]]:
+    """(first, one past the last) sample of holds that only a stuck channel explains.
+
+    quantity: a position stops dead and leaps afterwards, or never moves again; noise of any other
+    measured quantity cannot vanish; a command may be held at will
+    """
+    if quantity == "actuator_force":
+        return []
+    change = np.diff(x)
+    first, past = runs_of(change == 0)
+    lasting = (past - first >= LASTING) & (first >= 5)
+    stretches = []
+    for a, b in zip(first[lasting].tolist(), past[lasting].tolist(), strict=True):
+        before = np.abs(change[a - 5 : a])
+        usual = float(np.median(before))
+        if usual < STEPS * step:
+            continue
+        ends = b == len(change)
+        leaps = not ends and abs(change[b]) > LEAP * max(usual, step)
+        # a reading that was stuck leaps once; a body that rested at a reversal goes on as it began
+        leaps = leaps and (b + 1 >= len(change) or abs(change[b + 1]) < 0.5 * abs(change[b]))
+        if quantity == "position":
+            slowing = abs(change[a - 1] - change[a - 3]) / 2
+            dead = abs(change[a - 1]) > max(STEPS * step, LEAP * slowing)
+            is_stuck = dead and (leaps or ends)
+        else:
+            chance = (b - a) * np.log(_ZERO * step / usual)
+            is_stuck = bool(chance < np.log(STUCK_BY_CHANCE / len(x)))
+        if is_stuck:
+            stretches.append((a, b + 1))
+    return stretches
+
+
+def _by_chance(
+    read: Sequence[Array], same: NDArray[np.bool_], first: NDArray[np.intp], past: NDArray[np.intp]
+) -> Array:
+    """Chance that what is read repeats together in a row, at each run, as it repeats beside it.
+
+    A command is not counted: where a position repeats, what follows it does too.
+    """
+    low, high = np.maximum(first - BESIDE, 0), np.minimum(past + BESIDE, len(same))
+
+    def beside(rows: NDArray[np.bool_]) -> Array:
+        counted = np.r_[0, np.cumsum(rows)]
+        return np.asarray(counted[high] - counted[low], dtype=float)
+
+    whole, chance = beside(~same), np.ones(len(first))
+    for y in read:
+        chance = chance * (beside((np.diff(y) == 0) & ~same) + 0.5) / (whole + 1.0)
+    return chance
+
+
+def _leaps(x: Array, first: int, past: int, step: float) -> bool:
+    """Whether a reading stands from row `first` to `past` and leaps once after it."""
+    near = int(LEAP)
+    if first < near or past + 1 + near > len(x) - 1:
+        return False
+    change = np.abs(np.diff(x[first - near : past + 2 + near]))
+    before, leap, after = change[:near], change[-near - 1], change[-near:]
+    return bool(leap > LEAP * max(np.median(before), np.median(after), step))
+
+
+def _goes_on(y: Array, first: int, past: int) -> bool:
+    """Whether a reading changes in every row to either side of a hold."""
+    near = int(LEAP)
+    sides = y[first - near : first + 1], y[past + 1 : past + 2 + near]
+    return all(bool(np.all(np.diff(side) != 0)) for side in sides)
+
+
+def _noise_vanishes(y: Array, first: int, past: int) -> bool:
+    """Whether a reading that never repeats by itself has noise before and after a hold."""
+    sides = np.diff(y[max(first - SHOWN, 0) : first + 1]), np.diff(y[past : past + SHOWN + 1])
+    return all(len(side) == SHOWN and np.mean(side[1:] * side[:-1] < 0) >= TURNS for side in sides)

@@ -1,0 +1,71 @@
+"""A clock that jitters is noise: the floor holds it, and nothing that weakens it is an effect."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnose.own_cases import write_own
+
+from teleopdesign import load_experiment
+from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.decision import objection
+from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.diagnose.ranking import Ranked
+from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.effects import find_effect
+from teleopdesign.measurement.encoder import sampling_jitter
+from teleopdesign.model import Model
+
+
+@pytest.fixture(scope="module")
+def adequate(tmp_path_factory):
+    return load_experiment(write_own(tmp_path_factory.mktemp("jitter") / "case", None, seed=1))
+
+
+def jittered(experiment, rows, seed=0):
+    """Each row read at a moment of its own, that many rows (rms) off its place."""
+    rng = np.random.default_rng(seed)
+
+    def one(record):
+        t = record.time
+        at = t + rows * record.sample_time * rng.standard_normal(len(t))
+        signals = {
+            name: y if name.endswith("actuator_force") else np.interp(at, t, y)
+            for name, y in record.signals.items()
+        }
+        return replace(record, signals=signals)
+
+    return replace(experiment, records=tuple(map(one, experiment.records)))
+
+
+@pytest.mark.parametrize("rows", [0.1, 0.3])
+def test_a_right_model_lies_at_its_floor_though_the_clock_jitters(adequate, rows):
+    prepared = prepare(jittered(adequate, rows))
+    model = Model.from_experiment(adequate)
+    found = estimate_from_starts(model, prepared)
+    floor = noise_floor(found.model, prepared, np.random.default_rng(0))
+    still = noise_floor(found.model, prepare(adequate), np.random.default_rng(0))
+    assert floor.jitters and not still.jitters
+    assert floor.value > 2.0 * still.value
+    # the jitter is known to a fifth; noise in the acceleration makes the inertia look smaller
+    assert 0.7 < found.check_error / floor.value < 1.4
+
+
+def test_what_leaves_less_than_the_jitter_makes_is_refused(adequate):
+    prepared = prepare(jittered(adequate, 0.3))
+    base = estimate_from_starts(Model.from_experiment(adequate), prepared)
+    floor = noise_floor(base.model, prepared, np.random.default_rng(0))
+    half = replace(base, check_error=0.5 * floor.value)
+    tip = Candidate(find_effect("transmission_compliance"), "device")
+    ranked = Ranked(tip, half, score=10.0, behind=0.0, is_identifiable=True)
+    assert "jitter" in objection(base, ranked, floor)
+    assert not objection(base, ranked, replace(floor, jitters=False))
+
+
+@pytest.mark.parametrize("share", [0.02, 0.05, 0.1])
+def test_a_fast_motion_without_jitter_shows_none(share):
+    """A tenth of the sample rate: few rows a period, and slow and fast stretches in turn."""
+    t = np.arange(8000.0)
+    x = np.sin(2 * np.pi * 0.0008 * t) * np.sin(2 * np.pi * share * t)
+    assert sampling_jitter(x, 1e-6, 1.0) < 0.01

@@ -1,0 +1,100 @@
+"""Rows that say what the row before says are lost ones, where a channel tells; a rest is none."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import teleopdesign as td
+from teleopdesign.measurement.repeated_rows import LASTING, repeated_rows, runs_of
+
+ROWS = 2000
+
+
+def moved(seed=0, noise=0.01):
+    """Position by an encoder with rests, a command in steps, a force with noise."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(ROWS) / 500
+    x = np.round(np.clip(np.sin(5 * t), -0.8, 0.8) / 1e-3) * 1e-3
+    return t, x, np.round(np.sin(3 * t), 1), np.cos(5 * t) + noise * rng.standard_normal(ROWS)
+
+
+def spoilt(columns, again):
+    """Each of these rows is the one before it, under its own time."""
+    t, *rest = (y.copy() for y in columns)
+    for row in np.flatnonzero(again):
+        for y in rest:
+            y[row] = y[row - 1]
+    return t, *rest
+
+
+@given(st.lists(st.integers(10, ROWS - 20), min_size=1, max_size=60), st.integers(0, 5))
+def test_exactly_the_rows_that_repeat_are_lost(rows, seed):
+    again = np.zeros(ROWS, dtype=bool)
+    again[rows] = True
+    _, *columns = spoilt(moved(seed), again)
+    first, past = runs_of(again)
+    if (past - first).max() < LASTING:
+        np.testing.assert_array_equal(repeated_rows(columns, columns[:1], columns[2:]), again)
+
+
+def test_a_rest_is_no_repeat():
+    t, x, u, f = moved()
+    assert not repeated_rows([x, u, f], [x], [f]).any()
+    x, u, f = (np.where((t > 1) & (t < 2), y[500], y) for y in (x, u, f))  # a still simulation
+    assert not repeated_rows([x, u, f], [x], [f]).any()
+
+
+@pytest.mark.parametrize("with_force", [True, False])
+def test_a_span_in_which_all_channels_stand_is_lost_but_where_they_rest(with_force):
+    t, x, u, f = moved()
+    x = np.round(np.sin(5 * t), 3)
+    dead = [(120, 160), (900, 925)]
+    columns = (x, np.sin(3 * t), f) if with_force else (x, np.sin(3 * t))
+    for a, b in dead:
+        columns = tuple(np.r_[y[: a + 1], np.full(b - a, y[a]), y[b + 1 :]] for y in columns)
+    lost = np.zeros(ROWS, dtype=bool)
+    for a, b in dead:
+        lost[a + 1 : b + 1] = True
+    forces = columns[2:]
+    np.testing.assert_array_equal(repeated_rows(columns, columns[:1], forces), lost)
+
+
+def test_a_motion_without_noise_that_stops_for_a_while_has_lost_nothing():
+    t = np.arange(ROWS) / 500
+    way = np.clip(t, 0, 1) + np.clip(t - 2, 0, 1)  # goes, rests for a second, goes on
+    smooth = way - np.sin(2 * np.pi * way) / (2 * np.pi)
+    force = np.where(way % 1 > 0, np.sin(2 * np.pi * way), 0.0)
+    assert not repeated_rows([smooth, force, 3 * force], [smooth], [force]).any()
+
+
+def test_nothing_is_said_where_no_channel_tells():
+    _, x, u, _ = moved()
+    again = np.zeros(ROWS, dtype=bool)
+    again[300:1700:50] = True
+    _, x, u = spoilt((x, x, u), again)
+    assert not repeated_rows([x, u], [x]).any()
+    assert not repeated_rows([]).any() and not repeated_rows([x], [x]).any()
+
+
+@pytest.mark.parametrize("with_time", [True, False])
+def test_a_record_with_repeated_rows_is_that_of_lost_rows(with_time):
+    again = np.zeros(ROWS, dtype=bool)
+    again[300:1700:50] = True
+    clean, columns = moved(), spoilt(moved(), again)
+
+    data = dict(zip(("t", "x", "u", "f"), columns, strict=True))
+    units = {"t": "s", "x": "m", "u": "N", "f": "N"}
+    if with_time:
+        more = {"time": "t"}
+    else:
+        more = {"sample_rate": 500.0}
+        del data["t"], units["t"]
+    experiment = td.experiment(
+        data, axis="prismatic", position="x", actuator_force="u", interaction_force="f",
+        units=units, inertia=0.2, **more,
+    )  # fmt: skip
+    one = experiment.fit_records[0]
+    off = one.signals["device.position"] - clean[1][: len(one.time)]
+    assert np.abs(off).max() < 2.5e-3  # two steps
+    assert any("the same as the one before" in step.observed for step in one.reading)
