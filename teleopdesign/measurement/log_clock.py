@@ -59,7 +59,7 @@ def clock_of_log(
         stamps = columns.values[channels["time"].column] * (to_seconds or 1.0)
         where = f"{name}: channels.time"
     labels = _labels(columns, channels, name)
-    again = _repeated(columns, channels, on_this_clock) & filled & _later(stamps)
+    again = _repeated(columns, channels, on_this_clock, filled) & _later(stamps)
     rows = np.flatnonzero(filled & ~again)
     stamps = stamps[rows]
     steps: list[ReadingStep] = []
@@ -127,17 +127,23 @@ def _later(stamps: Array) -> NDArray[np.bool_]:
 
 
 def _repeated(
-    columns: LogColumns, channels: Mapping[str, Channel], on_this_clock: set[str]
+    columns: LogColumns,
+    channels: Mapping[str, Channel],
+    on_this_clock: set[str],
+    filled: NDArray[np.bool_],
 ) -> NDArray[np.bool_]:
-    """Rows for which the logger had no new reading."""
+    """Rows for which the logger had no new reading, among those that are filled."""
     signals = [ch for k, ch in channels.items() if k not in ("time", "segment")]
 
     def of(*quantities: str) -> list[Array]:
         wanted = {c for ch in signals if ch.quantity in quantities for c in ch.columns}
-        return [columns.values[c] for c in sorted(wanted & on_this_clock)]
+        return [columns.values[c][filled] for c in sorted(wanted & on_this_clock)]
 
     every = of(*(ch.quantity for ch in signals))
-    return repeated_rows(every, of("position"), of("interaction_force"))
+    repeated = np.zeros(len(filled), dtype=bool)
+    if every and filled.any():
+        repeated[filled] = repeated_rows(every, of("position"), of("interaction_force"))
+    return repeated
 
 
 def _labels(columns: LogColumns, channels: Mapping[str, Channel], name: str) -> Array | None:

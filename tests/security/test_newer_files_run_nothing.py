@@ -3,6 +3,8 @@
 import argparse
 import re
 import resource
+import subprocess
+import sys
 import xml.etree.ElementTree as ET
 
 import h5py
@@ -149,6 +151,23 @@ def test_a_study_of_a_hundred_kilobytes_is_read_or_refused_at_once(guard, tmp_pa
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss < before + 1e6
 
 
+@pytest.fixture
+def guard_of_results(guard, monkeypatch):
+    """The guard; the process that reads a file first is not started, and what it would run is ours.
+
+    Nothing of a file but its path goes to that process.
+    """
+
+    def run(command, **options):
+        program, flag, code, _ = command
+        assert (program, flag) == (sys.executable, "-c") and not options.get("shell")
+        assert code.startswith("\nimport sys\n") and MARK not in code
+        return subprocess.CompletedProcess(command, 0)
+
+    monkeypatch.setattr(subprocess, "run", run)
+    return guard
+
+
 def result_file(path, size=3, **attributes):
     h5netcdf = pytest.importorskip("h5netcdf")
     with h5netcdf.File(path, "w") as file:
@@ -162,7 +181,7 @@ def result_file(path, size=3, **attributes):
 
 @pytest.mark.parametrize("key", ["axes", "study", "model", "units", "coordinates", "calendar"])
 @pytest.mark.parametrize("text", [t for t in CODE if "\x07" not in t][:14], ids=range(14))
-def test_an_attribute_of_a_result_is_a_text(guard, tmp_path, key, text):
+def test_an_attribute_of_a_result_is_a_text(guard_of_results, tmp_path, key, text):
     path = result_file(tmp_path / "s.nc", **{key: text})
     with in_time():
         try:
@@ -185,7 +204,7 @@ CONTENTS = (b"", b"\x89HDF\r\n\x1a\n", b"CDF\x01" + b"\xff" * 90_000, b"x")
 
 
 @pytest.mark.parametrize("content", CONTENTS)
-def test_what_is_no_result_is_one_line(guard, tmp_path, content):
+def test_what_is_no_result_is_one_line(guard_of_results, tmp_path, content):
     pytest.importorskip("h5netcdf")
     path = tmp_path / "s.nc"
     path.write_bytes(content)
@@ -193,7 +212,7 @@ def test_what_is_no_result_is_one_line(guard, tmp_path, content):
         read_study(path)
 
 
-def test_objects_in_a_result_are_never_unpickled(guard, tmp_path):
+def test_objects_in_a_result_are_never_unpickled(guard_of_results, tmp_path):
     path = result_file(tmp_path / "s.nc")
     with h5py.File(path, "a") as file:
         file.attrs["axes"] = "cos\nsystem\n(S'touch x'\ntR."
