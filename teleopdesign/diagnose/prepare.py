@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from ..by_value import ByValue
 from ..errors import ExperimentError
+from ..measurement.bandwidth import default_bandwidth
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array, spectrum
 from ..measurement.motion import SMOOTHING, Motion, motions
-from .bandwidth import default_bandwidth
 from .scales import scales
 from .shared_links import Shared, share_again
 

@@ -11,10 +11,10 @@ from ...arms import BaseParameters, Chain, base_parameters
 from ...arms.base_parameters import columns_with_motors
 from ...by_value import ByValue
 from ...errors import ExperimentError
+from ...measurement.bandwidth import default_bandwidth
 from ...measurement.experiment import Experiment
 from ...measurement.filtering import Array
 from ...measurement.motion import LinkForces, Motion
-from ..bandwidth import default_bandwidth
 from ..noise_floor import DRAWS, read_again
 from ..prepare import Prepared, Stretch, prepare
 

@@ -1,0 +1,53 @@
+"""The bandwidth that records propose: how far up they tell an acceleration, and a motion."""
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.measurement.bandwidth import (
+    LEAST_SHARE,
+    default_bandwidth,
+    hides_motion,
+    share_in_motion,
+)
+
+RATE = 200.0
+STEP = 1e-4
+
+
+def recorded(amplitude, noise=0.0):
+    """A slow sine as an encoder reads it; amplitude and noise (rms) in steps."""
+    t = np.arange(6000) / RATE
+    scatter = noise * np.random.default_rng(0).standard_normal(len(t))
+    x = STEP * np.round(amplitude * np.sin(2 * np.pi * 0.3 * t) + scatter)
+    force = np.sign(np.cos(2 * np.pi * 0.3 * t))
+    return td.experiment(
+        {"t": t, "x": x, "F": force},
+        axis="prismatic",
+        time="t",
+        position={"column": "x", "resolution": STEP},
+        actuator_force="F",
+        inertia=0.1,
+    )
+
+
+@pytest.mark.parametrize("amplitude", [40.0, 100.0, 1000.0])
+def test_the_steps_of_an_encoder_do_not_hide_the_motion_at_the_bandwidth_that_is_chosen(amplitude):
+    experiment = recorded(amplitude)
+    chosen = default_bandwidth(experiment)
+    moving = share_in_motion(experiment, "device", chosen)
+    assert moving >= LEAST_SHARE * share_in_motion(experiment, "device", chosen / 4)
+    assert not hides_motion(experiment, "device", chosen)
+
+
+def test_a_coarser_reading_is_compared_below_a_lower_frequency():
+    fine, coarse = (default_bandwidth(recorded(a)) for a in (1000.0, 40.0))
+    # at the frequency that the fine reading bears, the coarse one hides what it is compared for
+    assert coarse < fine
+    assert hides_motion(recorded(40.0), "device", fine)
+    assert share_in_motion(recorded(40.0), "device", fine) < 0.5
+    assert share_in_motion(recorded(40.0), "device", coarse) > 0.5
+
+
+def test_a_bandwidth_too_high_for_the_samples_shows_no_motion():
+    assert share_in_motion(recorded(1000.0), "device", 0.5 * RATE) == 0.0
