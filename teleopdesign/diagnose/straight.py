@@ -60,8 +60,11 @@ def _with_line(
     straight = (e for e in state.fit.model.known.values() if is_straight(e))
     gone = {one.candidate.key for one in state.set_aside}
     line = [Candidate(e, at) for e in straight if not (body.has(e.name) or body.lacks(e))]
-    line = [c for c in line if c.key not in gone]
-    saved = sum(_required(r.added.effect) for r in bent if r.added is not None) - len(line)
+    # what the bends took the place of is back when they are taken away
+    back = [r.instead_of for r in bent if r.instead_of is not None]
+    line = [c for c in line if c.key not in gone | {one.key for one in back}]
+    saved = sum(_required(r.added.effect) for r in bent if r.added is not None)
+    saved -= len(line) + sum(_required(one.effect) for one in back)
     if not line or saved < 0:
         return None
     fit = _exchanged(state.fit.model, bent, line, search)

@@ -16,8 +16,8 @@ def swings(amplitude, slow, fast):
     return lambda t: amplitude * (np.sin(2 * np.pi * slow * t) + 0.1 * np.sin(2 * np.pi * fast * t))
 
 
-def diagnosed(folder, place_force):
-    """What is missing where this force of the place acts beside friction."""
+def diagnosed(folder, place_force, user=USER):
+    """What the user's model lacks where this force of the place acts beside friction."""
     records = {
         "fit": [(20.0, swings(0.7, 0.21, 0.9)), (20.0, swings(0.35, 0.13, 0.7))],
         "check": [(20.0, swings(0.6, 0.17, 0.8))],
@@ -26,7 +26,7 @@ def diagnosed(folder, place_force):
     def force(t, x, v):
         return place_force(x) + 0.1 * np.tanh(v / 1e-3) + 0.02 * v
 
-    write_made(folder, records, force, effects=USER, step=1e-5, noise=0.004)
+    write_made(folder, records, force, effects=user, step=1e-5, noise=0.004)
     return td.find_missing(td.load_experiment(folder), among=AMONG)
 
 
@@ -50,3 +50,28 @@ def test_a_spring_about_its_own_place_is_a_spring_and_a_constant(tmp_path, stiff
 def test_a_pendulum_whose_bend_is_seen_stays_one(tmp_path):
     diagnosis = diagnosed(tmp_path / "pendulum", lambda x: 0.8 * np.sin(x + 0.4))
     assert [c.effect.name for c in diagnosis.missing] == ["gravity"]
+
+
+def test_a_users_spring_that_a_pendulum_takes_the_place_of_is_not_added_again(tmp_path):
+    user = f"{USER}\nspring = {{}}"
+    pendulum = diagnosed(tmp_path / "pendulum", lambda x: 0.8 * np.sin(x + 0.4), user)
+    assert "gravity" in {c.effect.name for c in pendulum.missing}
+    line = diagnosed(tmp_path / "line", lambda x: 0.6 * (x - 0.35), user)
+    assert [c.effect.name for c in line.missing] == ["bias"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "there", [("bias",), ("gravity",), ("hardening_spring",), ("spring", "bias")]
+)
+@pytest.mark.parametrize(
+    "place_force",
+    [lambda x: 0.8 * np.sin(x + 0.4), lambda x: 0.6 * (x - 0.35)],
+    ids=["pendulum", "line"],
+)
+def test_whatever_force_of_the_place_a_user_has_the_ladder_goes_down(tmp_path, there, place_force):
+    user = "\n".join([USER, *(f"{name} = {{}}" for name in there)])
+    diagnosis = diagnosed(tmp_path, place_force, user)
+    errors = [r.fit.check_error for r in diagnosis.rungs]
+    assert errors == sorted(errors, reverse=True)
+    assert errors[-1] < 0.02
