@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from .decision import alternatives_of, is_adequate, is_better, others_that_help, preferred
+from .decision import alternatives_of, is_adequate, is_better, is_noise, others_that_help, preferred
+from .fit import Fit
 from .ladder_state import LadderSearch, LadderState
+from .noise_floor import noise_floor
 from .ranking import Ranked
 from .rung import Rung, replaced_by
 from .rungs import estimate_without, refitted
@@ -72,9 +74,23 @@ def remove(search: LadderSearch, state: LadderState) -> LadderState | None:
     last = state.fit
     for rung in state.rungs[1:-1]:
         without = estimate_without(last.model, rung, search.prepared)
-        if without is None or is_better(without, last, state.floor, criteria=search.criteria):
+        if without is None or not _is_enough(search, without, state):
             continue
         fewer = [r for r in state.rungs if r is not rung]
         order = refitted(fewer, without, search.prepared)
         return state.with_rungs(order) if order is not None else None
     return None
+
+
+def _is_enough(search: LadderSearch, without: Fit, state: LadderState) -> bool:
+    """Whether a fit with an effect less does as well as the last, or leaves what sensors make.
+
+    A clock that jitters asks for force that never acted: what weakens it leaves less, and is no
+    effect where the model without it leaves no more than the jitter makes of that model.
+    """
+    if not is_better(without, state.fit, state.floor, criteria=search.criteria):
+        return True
+    if not state.floor.jitters:
+        return False
+    floor = noise_floor(without.model, search.prepared, search.generator())
+    return is_noise(without.check_error, floor, criteria=search.criteria)

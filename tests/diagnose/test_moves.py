@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 from diagnose.own_cases import write_own
+from diagnose.test_jitter import jittered
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.candidates import Candidate
@@ -154,3 +155,14 @@ def test_where_the_only_effect_is_set_aside_the_model_alone_stands(ladder):
     moved = without_doubtful(search, full, stated)
     assert moved.rungs == (state.rungs[0],)
     assert [one.candidate.key[0] for one in moved.set_aside] == ["bias"]
+
+
+@pytest.mark.slow
+def test_what_only_weakens_the_jitter_of_a_clock_goes_when_the_missing_effect_is_there(tmp_path):
+    experiment = jittered(load_experiment(write_own(tmp_path / "case", "quadratic_drag")), 0.3)
+    known = {name: EFFECTS[name] for name in (*KNOWN, "transmission_compliance")}
+    search = search_for(experiment, Model.from_experiment(experiment, known))
+    state = begin(search)
+    assert state.floor.jitters
+    state = with_effects(search, state, "transmission_compliance", "quadratic_drag")
+    assert added(remove(search, state)) == ["quadratic_drag"]
