@@ -88,7 +88,7 @@ def clock_of_log(
         steps.append(
             ReadingStep(
                 file,
-                f"{count_of(int(again.sum()), 'row')} that say the same as the one before",
+                f"{count_of(int(again.sum()), 'row')} the same as the one before",
                 "read as lost",
                 f"{100 * float(again.mean()):.2g} % of the rows",
             )
@@ -165,7 +165,7 @@ def _same(
     rows: NDArray[np.intp],
     on_this_clock: set[str],
 ) -> NDArray[np.bool_]:
-    """Rows that say the same as the one before in every channel but the time."""
+    """Rows the same as the one before in every channel but the time."""
     same = np.ones(len(rows), dtype=bool)
     same[:1] = False
     for key, channel in channels.items():

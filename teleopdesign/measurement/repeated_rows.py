@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from .encoder import reading_step
 from .record_clock import Array
 
-#: chance that all that is read repeats together in a row, up to which the row is lost: one in so
-#: many rows that are not is filled
+#: chance that all that is read repeats together in a row, up to which the row may be lost. One in
+#: so many rows does so by chance: only where more of them do are they lost
 ALONE = 0.001
 #: rows to either side over which each channel tells how often it repeats by itself
 BESIDE = 25
@@ -70,8 +70,9 @@ def repeated_rows(
         stopped[repeats(x, step)] = True
     short = (past - first < LASTING) & (first > 0) & (past < len(same))
     noisy = [f for f in forces if np.mean(np.diff(f)[~same] == 0) <= ALONE]
-    unlikely = (_by_chance([*positions, *forces], same, first, past) <= ALONE) | bool(noisy)
-    inside = short & (unlikely | stopped[past])
+    unlikely = _by_chance([*positions, *forces], same, first, past) <= ALONE
+    unlikely &= np.count_nonzero(unlikely & short) > ALONE * len(same)
+    inside = short & (unlikely | bool(noisy) | stopped[past])
     lasting, stuck = np.flatnonzero(past - first >= LASTING), np.zeros(count, dtype=bool)
     for x, step in zip(positions if len(lasting) else (), steps, strict=False):
         for a, b in stuck_stretches(x, step, "position"):

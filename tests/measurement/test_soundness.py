@@ -408,7 +408,7 @@ def test_the_known_oddities_of_real_recordings_are_found_and_no_others():
     topics = ("gaps", "held samples", "lost rows", "reading")
     assert found["mtm_wrist"] == {(topic, "mtm_joint4_sweep.csv.gz") for topic in topics}
     (repeated, *_) = load_experiment(data / "mtm_wrist").reading
-    assert "rows that say the same as the one before" in repeated.observed
+    assert "rows the same as the one before" in repeated.observed
     runs = [f"psm1_fourier{k}.csv.gz" for k in (1, 2, 3)]
     sparse = {(topic, run) for topic in ("lost rows", "reading", "sample clock") for run in runs}
     assert sparse <= found["psm_insertion"]
