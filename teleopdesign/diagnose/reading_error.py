@@ -122,7 +122,7 @@ def _simulated(
             )
         except ModelError:
             return None
-        if not np.isfinite(course.position).all():
+        if not course.stays_near(motion):
             return None
         made.append(replace(stretch, motion=as_led(motion, course)))
     return made

@@ -35,6 +35,14 @@ class Course:
     velocity: Array
     command: Array
 
+    def stays_near(self, motion: Motion, *, travels: float = 100.0) -> bool:
+        """Whether its travel is below so many of the record's; not where it is no number.
+
+        What leads a body along a record does not hold every model. A hundred: one that is held
+        stays within a part of the travel, one that is not soon leaves any bound.
+        """
+        return bool(np.ptp(self.position) < travels * np.ptp(motion.position))
+
 
 @dataclass(frozen=True)
 class LedBody:

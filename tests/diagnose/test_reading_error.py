@@ -15,7 +15,13 @@ from teleopdesign.diagnose.reading_error import (
     reading_error,
     with_reading_error,
 )
-from teleopdesign.diagnose.simulated_course import as_led, dead_times, grid, simulated_course
+from teleopdesign.diagnose.simulated_course import (
+    Course,
+    as_led,
+    dead_times,
+    grid,
+    simulated_course,
+)
 from teleopdesign.effects import EFFECTS
 from teleopdesign.errors import ModelError
 from teleopdesign.realise.along_motion import residual_along
@@ -201,6 +207,17 @@ def test_what_cannot_be_simulated_is_left_as_it_is(rod, monkeypatch):
     monkeypatch.setattr("teleopdesign.diagnose.reading_error.simulated_course", refused)
     same = with_reading_error(found, prepared, np.random.default_rng(1), adequate=always)
     assert same is found
+
+
+@pytest.mark.parametrize("times", [1e3, 1e200, np.nan])
+def test_a_course_that_runs_away_says_nothing_of_readings(rod, monkeypatch, times):
+    found, prepared = rod
+
+    def runs_away(body, motion, **_):
+        return Course(times * motion.position, times * motion.velocity, motion.command)
+
+    monkeypatch.setattr("teleopdesign.diagnose.reading_error.simulated_course", runs_away)
+    assert with_reading_error(found, prepared, np.random.default_rng(1), adequate=always) is found
 
 
 def test_a_right_model_leaves_only_its_sensors_errors_at_turns(rod):
