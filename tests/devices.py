@@ -4,7 +4,7 @@ import numpy as np
 
 from teleopdesign.blocks import Body, Value
 from teleopdesign.controllers import controller, scheduled_force_feedback
-from teleopdesign.diagrams import teleoperator
+from teleopdesign.diagrams import Diagram, Moving, controller_parts, teleoperator
 from teleopdesign.effects import EFFECTS
 
 
@@ -39,3 +39,18 @@ def coupled(**friction):
     master, slave = (body(0.15, **rubbing, viscous__damping=0.4) for _ in range(2))
     hand = body(0.1, viscous__damping=2.0)
     return teleoperator(master, slave, coupling=LINK, hand=hand, master_cancellation=DAHL)
+
+
+def two_rods(system, analog=True):
+    """Two rods on one axis, and a law of two inputs and outputs."""
+    rods = tuple(
+        Moving(
+            f"Z{i}", body(0.1 * i, viscous__damping=3.0), f"x{i}", f"u{i}", {f"f{i}": 1.0}, f"f{i}"
+        )
+        for i in (1, 2)
+    )
+    controls, sums = controller_parts(
+        system, name="C", inputs=("x1", "x2"), outputs=("u1", "u2"), motion="x1", analog=analog
+    )
+    outside = {"f1": "force", "f2": "force"}
+    return Diagram("two rods", (*rods, *controls), sums, outside, ("x1", "x2"))

@@ -3,7 +3,7 @@
 import control
 import numpy as np
 import pytest
-from devices import body
+from devices import two_rods
 
 from teleopdesign.controllers import from_control
 from teleopdesign.derive import transfer_function
@@ -11,7 +11,6 @@ from teleopdesign.diagrams import (
     Control,
     Diagram,
     Junction,
-    Moving,
     controller_parts,
     coupled_plant_parts,
     plant_parts,
@@ -78,17 +77,7 @@ def with_code(analog):
         outputs=2,
         states=2,
     )
-    rods = tuple(
-        Moving(
-            f"Z{i}", body(0.1 * i, viscous__damping=3.0), f"x{i}", f"u{i}", {f"f{i}": 1}, f"f{i}"
-        )
-        for i in (1, 2)
-    )
-    controls, sums = controller_parts(
-        law, name="K", inputs=("x1", "x2"), outputs=("u1", "u2"), motion="x1", analog=analog
-    )
-    outside = {"f1": "force", "f2": "force"}
-    return Diagram("rods", (*rods, *controls), sums, outside, ("x1", "x2"))
+    return two_rods(law, analog)
 
 
 @pytest.mark.parametrize("analog", [True, False])

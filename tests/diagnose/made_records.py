@@ -4,6 +4,8 @@ The force is m a + friction + others along a motion that is given as a function 
 are rounded to an encoder's step, forces get noise. Slow motions need nothing more.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 EXPERIMENT = """title = "Made"
@@ -73,3 +75,19 @@ def write_made(
         text += f'[[records]]\nfile = "{use}.csv"\nuse = "{use}"\n'
     (folder / "experiment.toml").write_text(text)
     return folder
+
+
+def jittered(experiment, rows, seed=0):
+    """Each row read at a moment of its own, that many rows (rms) off its place."""
+    rng = np.random.default_rng(seed)
+
+    def one(record):
+        t = record.time
+        at = t + rows * record.sample_time * rng.standard_normal(len(t))
+        signals = {
+            name: y if name.endswith("actuator_force") else np.interp(at, t, y)
+            for name, y in record.signals.items()
+        }
+        return replace(record, signals=signals)
+
+    return replace(experiment, records=tuple(map(one, experiment.records)))

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from diagnose.made_records import jittered
 from diagnose.own_cases import write_own
 
 from teleopdesign import load_experiment
@@ -21,22 +22,6 @@ from teleopdesign.model import Model
 @pytest.fixture(scope="module")
 def adequate(tmp_path_factory):
     return load_experiment(write_own(tmp_path_factory.mktemp("jitter") / "case", None, seed=1))
-
-
-def jittered(experiment, rows, seed=0):
-    """Each row read at a moment of its own, that many rows (rms) off its place."""
-    rng = np.random.default_rng(seed)
-
-    def one(record):
-        t = record.time
-        at = t + rows * record.sample_time * rng.standard_normal(len(t))
-        signals = {
-            name: y if name.endswith("actuator_force") else np.interp(at, t, y)
-            for name, y in record.signals.items()
-        }
-        return replace(record, signals=signals)
-
-    return replace(experiment, records=tuple(map(one, experiment.records)))
 
 
 @pytest.mark.parametrize("rows", [0.1, 0.3])

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import pytest
+from diagnose.made_records import jittered
 from diagnose.own_cases import write_own
-from diagnose.test_jitter import jittered
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.candidates import Candidate

@@ -8,14 +8,13 @@ from dataclasses import replace
 import control
 import numpy as np
 import pytest
-from devices import body
+from devices import body, two_rods
 
 from teleopdesign.controllers import CONTROLLERS, Controller, Stage, controller, from_control
 from teleopdesign.derive import transfer_function
 from teleopdesign.diagrams import (
     Control,
     Diagram,
-    Moving,
     controller_parts,
     coupled_plant_parts,
     haptic_interface,
@@ -68,20 +67,6 @@ def pull(t):
 def one_rod(system):
     device = body(0.15, viscous__damping=2.0)
     return haptic_interface(device, cancellation=from_control(system), analog=("C",))
-
-
-def two_rods(system, analog=True):
-    rods = tuple(
-        Moving(
-            f"Z{i}", body(0.1 * i, viscous__damping=3.0), f"x{i}", f"u{i}", {f"f{i}": 1.0}, f"f{i}"
-        )
-        for i in (1, 2)
-    )
-    controls, sums = controller_parts(
-        system, name="C", inputs=("x1", "x2"), outputs=("u1", "u2"), motion="x1", analog=analog
-    )
-    outside = {"f1": "force", "f2": "force"}
-    return Diagram("two rods", (*rods, *controls), sums, outside, ("x1", "x2"))
 
 
 def with_plant(plant):
