@@ -48,3 +48,10 @@ def test_every_file_that_the_page_on_the_design_names_is_there():
     places = (ROOT, ROOT / "teleopdesign", *(ROOT / "teleopdesign").iterdir())
     assert len(paths) > 40
     assert [p for p in paths if not any((place / p).exists() for place in places)] == []
+
+
+def test_every_button_that_the_page_on_the_app_names_is_there():
+    shown = "".join(p.read_text(encoding="utf-8") for p in (ROOT / "teleopdesign/app").glob("*.py"))
+    page = (DOCS / "app.md").read_text(encoding="utf-8")
+    labels = set(re.findall(r"(?<!\*)\*([A-Z][^*\n]+)\*(?!\*)", page))
+    assert labels and [label for label in labels if label not in shown] == []

@@ -144,9 +144,8 @@ def tells_place_from_time(
         here = np.mod(position, turn) if turn is not None else position
         spread = _spread_of_time(here, time, way)
         among, whole = among + spread[0], whole + spread[1]
-    return (
-        among > RETURNING_SHARE * whole or whole == 0.0
-    )  # 0: no motion is sure, nor its direction
+    # 0: no motion is sure, nor its direction
+    return among > RETURNING_SHARE * whole or whole == 0.0
 
 
 def tells_speed_from_time(motions: Sequence[Motion]) -> bool:

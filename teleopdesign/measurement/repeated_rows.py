@@ -73,10 +73,12 @@ def repeated_rows(
     unlikely = _by_chance([*positions, *forces], same, first, past) <= ALONE
     unlikely &= np.count_nonzero(unlikely & short) > ALONE * len(same)
     inside = short & (unlikely | bool(noisy) | stopped[past])
-    lasting, stuck = np.flatnonzero(past - first >= LASTING), np.zeros(count, dtype=bool)
-    for x, step in zip(positions if len(lasting) else (), steps, strict=False):
-        for a, b in stuck_stretches(x, step, "position"):
-            stuck[a + 1 : b] = True
+    lasting = np.flatnonzero(past - first >= LASTING)
+    stuck = np.zeros(count, dtype=bool)
+    if len(lasting):
+        for x, step in zip(positions, steps, strict=True):
+            for a, b in stuck_stretches(x, step, "position"):
+                stuck[a + 1 : b] = True
     for k in lasting:
         a, b = int(first[k]), int(past[k])
         inside[k] = bool(stuck[a + 1 : b + 1].all())

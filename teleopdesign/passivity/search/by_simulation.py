@@ -141,7 +141,7 @@ def confirmed_motion(
     """These strokes, repeated as needed, if they release more energy than the numerical error.
 
     From rest, with hidden states at zero, to rest: so what comes out was never put in. It must come
-    out with half the step, and with a tenth of the bristle too, and be thrice what these change.
+    out with half the step, and with a tenth of `give` too, and be thrice what these change.
     """
 
     def run(strokes: Strokes, *, finer: int = 1, give: float = give) -> Given:
@@ -182,7 +182,7 @@ def search_counterexample(
     stroke: largest position, m or rad;  speed: largest speed, SI;  tries: how many motions
     give: m or rad, of ideal Coulomb friction; the shortest motions simulated are a thousandth of
         `stroke`, so keep it far below that and below any bristle length
-    returns: refuted by a motion that was confirmed with half the step and a tenth of the bristle;
+    returns: refuted by a motion that was confirmed with half the step and a tenth of `give`;
         else evidence, which is no proof, and says what came out on the way and went in again: what
         it held from the start, such as a spring, supplies that to a motion that does not return.
         Unknown where simulations leave the finite numbers
