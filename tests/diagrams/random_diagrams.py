@@ -1,5 +1,7 @@
 """Random wirings: any blocks and junctions on any signals, sensible or not."""
 
+import math
+
 import sympy as sp
 from hypothesis import assume
 from hypothesis import strategies as st
@@ -71,6 +73,7 @@ def expressions(draw, signals):
     assume(all(isinstance(n, allowed) and not n.has(sp.zoo, sp.nan, sp.oo, sp.I) for n in nodes))
     assume(not any(n.is_number and n.is_real is False for n in nodes))
     assume(all(sp.Float(float(n)) == n for n in nodes if n.is_Float))  # 1e-442 is none of Python
+    assume(all(math.isfinite(n) for n in nodes if n.is_number))  # 9e307 pi is none either
     return found
 
 
