@@ -7,11 +7,11 @@ are converted. Currents and voltages become forces by a constant (`converting_fa
 """
 
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .errors import ExperimentError, did_you_mean, quoted
+from .unit_text import SYMBOLS, NotAUnit, multiply, parse_unit
 
 AXES = ("prismatic", "revolute")
 #: Hz, of the mains: what hums, hums at these
@@ -72,57 +72,6 @@ QUANTITIES: Mapping[str, tuple[_Kind, _Kind]] = {
 }
 
 
-@dataclass(frozen=True)
-class _Unit:
-    """`scale` times kg^a m^b s^c A^d K^e rad^f; `powers` is (a, b, c, d, e, f)."""
-
-    scale: float
-    powers: tuple[int, ...]
-
-
-_PREFIXES = {"n": 1e-9, "u": 1e-6, "µ": 1e-6, "μ": 1e-6, "m": 1e-3, "c": 1e-2, "d": 1e-1}
-_PREFIXES |= {"k": 1e3, "M": 1e6, "G": 1e9}
-_PREFIXED = {
-    "m": _Unit(1.0, (0, 1, 0, 0, 0, 0)),
-    "g": _Unit(1e-3, (1, 0, 0, 0, 0, 0)),
-    "s": _Unit(1.0, (0, 0, 1, 0, 0, 0)),
-    "N": _Unit(1.0, (1, 1, -2, 0, 0, 0)),
-    "J": _Unit(1.0, (1, 2, -2, 0, 0, 0)),
-    "Nm": _Unit(1.0, (1, 2, -2, 0, 0, 0)),
-    "Nms": _Unit(1.0, (1, 2, -1, 0, 0, 0)),
-    "Hz": _Unit(1.0, (0, 0, -1, 0, 0, 0)),
-    "A": _Unit(1.0, (0, 0, 0, 1, 0, 0)),
-    "V": _Unit(1.0, (1, 2, -3, -1, 0, 0)),
-    "K": _Unit(1.0, (0, 0, 0, 0, 1, 0)),
-    "rad": _Unit(1.0, (0, 0, 0, 0, 0, 1)),
-}
-_SYMBOLS = {
-    "1": _Unit(1.0, (0, 0, 0, 0, 0, 0)),
-    "%": _Unit(1e-2, (0, 0, 0, 0, 0, 0)),
-    "Nmm": _Unit(1e-3, (1, 2, -2, 0, 0, 0)),
-    "min": _Unit(60.0, (0, 0, 1, 0, 0, 0)),
-    "deg": _Unit(math.pi / 180, (0, 0, 0, 0, 0, 1)),
-    "°": _Unit(math.pi / 180, (0, 0, 0, 0, 0, 1)),
-    "rev": _Unit(2 * math.pi, (0, 0, 0, 0, 0, 1)),
-    "turn": _Unit(2 * math.pi, (0, 0, 0, 0, 0, 1)),
-    "turns": _Unit(2 * math.pi, (0, 0, 0, 0, 0, 1)),
-    "rpm": _Unit(2 * math.pi / 60, (0, 0, -1, 0, 0, 1)),
-    **_PREFIXED,
-}
-_SYMBOLS |= {
-    prefix + name: _Unit(factor * unit.scale, unit.powers)
-    for name, unit in _PREFIXED.items()
-    for prefix, factor in _PREFIXES.items()
-    if prefix + name not in _SYMBOLS  # "min" and the like are no prefixed unit
-}
-
-_TOKEN = re.compile(r"\s*(\*\*|[*·/^()²³]|[A-Za-zµμ°%]+|[-+]?\d+)")
-_LONGEST_UNIT = 60  # characters; also bounds the nesting of brackets
-_LARGEST_POWER = 4
-_ANGLE_POWER = 5  # place of the radian's power: radians have no dimension
-_SCALES = (1e-40, 1e40)
-
-
 def unit_of(quantity: str, axis: str) -> str:
     """SI unit in which `quantity` is stored and shown: "N*m" for a force on a revolute axis.
 
@@ -163,14 +112,14 @@ def si_factor(
             return 1.0
         raise ExperimentError(f"{_begin(where)}no unit, {expected}")
     try:
-        parsed = _parse(unit)
-    except _NotAUnit as problem:
-        hint = did_you_mean(unit, kind.units) or did_you_mean(problem.part, _SYMBOLS)
+        parsed = parse_unit(unit)
+    except NotAUnit as problem:
+        hint = did_you_mean(unit, kind.units) or did_you_mean(problem.part, SYMBOLS)
         raise ExperimentError(f"{_begin(where)}found {quoted(unit)}, {expected}{hint}") from None
-    wanted = _parse(kind.units[0])
-    if parsed.powers[:_ANGLE_POWER] != wanted.powers[:_ANGLE_POWER]:
+    wanted = parse_unit(kind.units[0])
+    if parsed.dimension != wanted.dimension:
         raise ExperimentError(f"{_begin(where)}found {quoted(unit)}, {expected}")
-    if quantity == "frequency" and parsed.powers[_ANGLE_POWER] == 1:
+    if quantity == "frequency" and parsed.powers[-1] == 1:
         return parsed.scale / (2 * math.pi)  # an angular frequency in rad/s or rpm; Hz counts turns
     return parsed.scale
 
@@ -189,15 +138,15 @@ def converting_factor(
     parts = []
     for text in (unit, constant or "1"):
         try:
-            parts.append(_parse(text))
-        except _NotAUnit as problem:
-            hint = did_you_mean(problem.part, _SYMBOLS)
+            parts.append(parse_unit(text))
+        except NotAUnit as problem:
+            hint = did_you_mean(problem.part, SYMBOLS)
             raise ExperimentError(
                 f"{_begin(where)}found {quoted(text)}, expected a unit such as "
                 f"{quoted('A')} or {quoted(kind.units[0])}{hint}"
             ) from None
-    product, wanted = _times(parts[0], parts[1], 1, unit), _parse(kind.units[0])
-    if product.powers[:_ANGLE_POWER] != wanted.powers[:_ANGLE_POWER]:
+    product, wanted = multiply(parts[0], parts[1], 1, unit), parse_unit(kind.units[0])
+    if product.dimension != wanted.dimension:
         raise ExperimentError(
             f"{_begin(where)}found {quoted(unit)} times {quoted(constant or '1')}, "
             f"expected {kind.noun} such as {quoted(kind.units[0])}"
@@ -208,8 +157,8 @@ def converting_factor(
 def is_unit(text: str) -> bool:
     """Whether a text can be read as a unit: "N*m/A" is one, "Pos" is none."""
     try:
-        _parse(text)
-    except _NotAUnit:
+        parse_unit(text)
+    except NotAUnit:
         return False
     return True
 
@@ -217,10 +166,10 @@ def is_unit(text: str) -> bool:
 def measures(unit: str, quantity: str, axis: str = "prismatic") -> bool:
     """Whether a unit is one of that quantity on that axis."""
     try:
-        powers = _parse(unit).powers
-    except _NotAUnit:
+        parsed = parse_unit(unit)
+    except NotAUnit:
         return False
-    return powers[:_ANGLE_POWER] == _parse(_kind(quantity, axis, "").units[0]).powers[:_ANGLE_POWER]
+    return parsed.dimension == parse_unit(_kind(quantity, axis, "").units[0]).dimension
 
 
 def _kind(quantity: str, axis: str, where: str) -> _Kind:
@@ -239,73 +188,3 @@ def _kind(quantity: str, axis: str, where: str) -> _Kind:
 
 def _begin(where: str) -> str:
     return f"{where}: " if where else ""
-
-
-class _NotAUnit(Exception):
-    """`part` of a text is no unit; stays inside this file."""
-
-    def __init__(self, part: str) -> None:
-        super().__init__(part)
-        self.part = part
-
-
-def _parse(text: str) -> _Unit:
-    if not 0 < len(text) <= _LONGEST_UNIT:
-        raise _NotAUnit(text)
-    tokens, position = [], 0
-    stripped = text.rstrip()
-    while position < len(stripped):
-        match = _TOKEN.match(stripped, position)
-        if match is None:
-            raise _NotAUnit(text)
-        tokens.append(match.group(1))
-        position = match.end()
-    unit, rest = _product(tokens, text)
-    if rest:
-        raise _NotAUnit(text)
-    return unit
-
-
-def _product(tokens: list[str], text: str) -> tuple[_Unit, list[str]]:
-    """Product and quotient from left to right, up to the end or a closing bracket."""
-    unit, tokens = _factor(tokens, text)
-    while tokens and tokens[0] != ")":
-        sign = -1 if tokens[0] == "/" else 1
-        if tokens[0] in ("*", "·", "/"):
-            tokens = tokens[1:]
-        factor, tokens = _factor(tokens, text)
-        unit = _times(unit, factor, sign, text)
-    return unit, tokens
-
-
-def _factor(tokens: list[str], text: str) -> tuple[_Unit, list[str]]:
-    """A symbol with its power, or a bracket."""
-    if not tokens:
-        raise _NotAUnit(text)
-    name, tokens = tokens[0], tokens[1:]
-    if name == "(":
-        unit, tokens = _product(tokens, text)
-        if not tokens:
-            raise _NotAUnit(text)
-        return unit, tokens[1:]
-    if name not in _SYMBOLS:
-        raise _NotAUnit(name)
-    power = 1
-    if tokens and tokens[0] in "²³":
-        power, tokens = "²³".index(tokens[0]) + 2, tokens[1:]
-    elif tokens and tokens[0] in ("^", "**"):
-        if len(tokens) < 2 or not re.fullmatch(r"[-+]?\d", tokens[1]):
-            raise _NotAUnit(text)
-        power, tokens = int(tokens[1]), tokens[2:]
-    if abs(power) > _LARGEST_POWER:
-        raise _NotAUnit(text)
-    return _times(_SYMBOLS["1"], _SYMBOLS[name], power, text), tokens
-
-
-def _times(unit: _Unit, factor: _Unit, power: int, text: str) -> _Unit:
-    """unit * factor^power"""
-    scale = unit.scale * factor.scale**power
-    if not _SCALES[0] < scale < _SCALES[1]:
-        raise _NotAUnit(text)
-    powers = (u + power * f for u, f in zip(unit.powers, factor.powers, strict=True))
-    return _Unit(scale, tuple(powers))

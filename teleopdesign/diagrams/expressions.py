@@ -23,7 +23,6 @@ from typing import NamedTuple
 
 import sympy as sp
 from sympy.core.cache import clear_cache
-from sympy.printing.str import StrPrinter
 
 from ..errors import ExperimentError, ModelError, did_you_mean, quoted
 from ..names import check_name
@@ -330,32 +329,3 @@ def _multiplied_out(terms: int, power: int) -> int:
 
 def _parts(number: sp.Expr) -> tuple[int, int]:
     return int(number.p), int(number.q)
-
-
-class _Printer(StrPrinter):
-    """As sympy prints, but floats with all their digits."""
-
-    def _print_Float(self, expr: sp.Float) -> str:
-        return repr(float(expr))
-
-    def _print_Abs(self, expr: sp.Abs) -> str:
-        return f"abs({self._print(expr.args[0])})"
-
-    def _print_Exp1(self, expr: sp.Expr) -> str:
-        return "exp(1)"
-
-
-def expression_text(expression: sp.Expr, *, name: str) -> str:
-    """Text that `read_expression` reads as the same expression.
-
-    name: of what it belongs to, for the message
-    raises ModelError: it has no such text, for it holds other functions or odd names
-    """
-    text = str(_Printer().doprint(expression))
-    try:
-        same = read_expression(text, where=name) == expression
-    except ExperimentError as error:
-        raise ModelError(f"{error}: it has no form in a file") from None
-    if not same:
-        raise ModelError(f"{name}: {quoted(text)} has no form in a file: it reads as another")
-    return text
