@@ -29,7 +29,11 @@ LONGEST = 1800.0
 
 @dataclass(frozen=True)
 class Planned:
-    """How one case is drawn; effect: the one it hides (None: the maker draws)."""
+    """How one case is drawn.
+
+    effect: the one it hides (None: the maker draws)
+    logger: rows by which its command is logged late, with a jitter and lost rows; None: a clean log
+    """
 
     index: int
     seed: int
@@ -38,6 +42,7 @@ class Planned:
     kind: str
     excitation: str
     rate: float
+    logger: float | None = None
 
     @property
     def name(self) -> str:
@@ -66,10 +71,12 @@ def plan(
     kinds: Sequence[str] = KINDS,
     excitations: Sequence[str] = EXCITATIONS,
     rates: Sequence[float] = RATES,
+    loggers: bool = False,
 ) -> list[Planned]:
     """The first `number` cases of a campaign; a longer one begins with the same.
 
     Effects come in turn, in an order drawn anew each round, for each level and kind of machine.
+    loggers: every second pair of cases is logged up to one row late or early, see `Planned`
     """
     pools = _pools()
     turns: Counter[tuple[str, str]] = Counter()
@@ -91,9 +98,16 @@ def plan(
                 kind=kind,
                 excitation=excitations[index % len(excitations)],
                 rate=rates[index % len(rates)],
+                logger=_shift(seed, index) if loggers and index // 2 % 2 else None,
             )
         )
     return cases
+
+
+def _shift(seed: int, index: int) -> float:
+    """Rows, from one early to one late; a third of the loggers is late by exactly one."""
+    rng = np.random.default_rng([seed, index, 1])
+    return 1.0 if index % 3 == 0 else round(float(rng.uniform(-1, 1)), 3)
 
 
 def write_plan(folder: Path, cases: Sequence[Planned]) -> None:

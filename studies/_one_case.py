@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from _defects import log_as_loggers_do, rewrite_records
 
 from teleopdesign.cli import main as teleopdesign
 
@@ -59,6 +60,9 @@ def make(folder: Path, name: str, planned: dict[str, Any]) -> None:
     case.name = name
     part = truth.with_suffix(f".part{os.getpid()}")
     write_files(case, folder / "cases" / name, part)
+    if planned["logger"] is not None:
+        shift = planned["logger"]
+        rewrite_records(folder / "cases" / name, lambda t: log_as_loggers_do(t, generator, shift))
     part.replace(truth)  # last: a case is there when its truth is
 
 

@@ -18,7 +18,6 @@ What is finished stays in DIR, a file for each case and strength: the same comma
 from __future__ import annotations
 
 import argparse
-import gzip
 import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
@@ -29,7 +28,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from _defects import DEFECTS, RATE
+from _defects import DEFECTS, RATE, rewrite_records
 
 import teleopdesign as td
 
@@ -98,14 +97,7 @@ def _write_spoilt(folder: Path, case: int, defect: int, strength: int) -> None:
         return
     one = DEFECTS[defect]
     rng = np.random.default_rng([SEED, case, defect, strength])
-    for path in sorted(folder.glob("*.csv.gz")):
-        head, *lines = gzip.decompress(path.read_bytes()).decode().splitlines()
-        values = np.array([line.split(",") for line in lines], dtype=float)
-        table = dict(zip(head.split(","), values.T, strict=True))
-        spoilt = one.spoil(table, rng, one.sizes[strength - 1])
-        rows = np.column_stack(list(spoilt.values())).tolist()
-        text = "\n".join([head, *(",".join(f"{x:.9g}" for x in row) for row in rows), ""])
-        path.write_bytes(gzip.compress(text.encode(), 5, mtime=0))
+    rewrite_records(folder, lambda table: one.spoil(table, rng, one.sizes[strength - 1]))
 
 
 def examine(case: float, point: float) -> Examined:

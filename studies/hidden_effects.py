@@ -8,7 +8,8 @@ PySINDy and SysIdentPy (extra `bench`), where they are installed, answer on the 
 
 How it is judged, what the baselines get and what was found is in docs/recovery_study.md.
 
-    python studies/hidden_effects.py [--quick] [--cases N] [--seed S] [--folder DIR] [--output DIR]
+    python studies/hidden_effects.py [--quick] [--cases N] [--seed S] [--loggers]
+                                     [--folder DIR] [--output DIR]
 
 Cases and answers stay in DIR: what is there is not made again.
 """
@@ -95,6 +96,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--baselines", nargs="*", choices=BASELINES, help="default: those that are installed"
     )
+    parser.add_argument(
+        "--loggers",
+        action="store_true",
+        help="half of the cases: commands up to a row late or early, jitter, lost rows",
+    )
     parser.add_argument("--workers", type=int, default=1, help="cases at a time")
     parser.add_argument("--score-only", action="store_true", help="of what is there already")
     parser.add_argument("--output", type=Path, default=Path(__file__).parent / "output")
@@ -110,6 +116,7 @@ def _planned(options: argparse.Namespace) -> list[Planned]:
         levels=options.levels,
         kinds=KINDS if options.kind == "both" else (options.kind,),
         excitations=options.excitation,
+        loggers=options.loggers,
     )
 
 

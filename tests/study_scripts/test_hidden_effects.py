@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import hidden_effects
 import numpy as np
 import pytest
 from _campaign import plan, run_campaign, write_plan
+from _defects import log_as_loggers_do
 from _recovery_tables import Campaign, collect, main_table, row_of
 from _scoring import (
     Answer,
@@ -320,3 +322,25 @@ def test_the_study_writes_tables_rows_and_figures(tmp_path, capsys):
     }  # fmt: skip
     rows = (written / "hidden_effects.csv").read_text()
     assert rows.count("\n") == 2 and "no answer" not in rows
+
+
+@pytest.mark.parametrize("shift", [-1.0, 0.4, 1.0])
+def test_a_logger_writes_the_command_late_and_reads_whole_steps_at_jittering_moments(shift):
+    t, step = np.arange(5000) / 1000, 1e-3
+    table = {"t": t, "u": t.copy(), "x": step * np.round(np.sin(t) / step), "f_h": np.cos(t)}
+    log = log_as_loggers_do(table, np.random.default_rng(0), shift)
+    row = np.round(1000 * log["t"])
+    assert 0.99 < len(log["t"]) / len(t) < 0.9995
+    assert 0.03 < np.std(1000 * log["t"] - row) < 0.06
+    inside = slice(2, -2)
+    assert log["u"][inside] == pytest.approx((row[inside] - shift) / 1000, abs=1e-9)
+    assert np.abs(log["x"] / step - np.round(log["x"] / step)).max() < 1e-9
+    assert np.abs(log["f_h"] - np.cos(log["t"])).max() < 1e-6
+
+
+def test_half_of_a_campaign_with_loggers_is_logged_so():
+    cases = plan(200, seed=3, loggers=True)
+    shifts = [c.logger for c in cases if c.logger is not None]
+    assert len(shifts) == 100 and min(shifts) >= -1 and shifts.count(1.0) >= 30
+    bare = plan(200, seed=3)
+    assert [replace(c, logger=None) for c in cases] == bare
