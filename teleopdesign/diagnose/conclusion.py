@@ -10,9 +10,10 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from ..measurement.motion import Motion
+from .adequacy import moment_above_noise
 from .candidates import Candidate
 from .corrected_fit import corrected
-from .decision import moment_above_noise, others_that_help, verdict
+from .decision import verdict
 from .diagnosis import Diagnosis, SetAside
 from .error import force_error
 from .error_at_command import at_command
@@ -20,6 +21,7 @@ from .fit import Fit
 from .identifiability import doubt
 from .ladder_state import LadderSearch, LadderState
 from .learnable import error_near_reversals, learnable
+from .order import others_that_help
 from .plausibility import implausible_effects
 from .prepare import Prepared
 from .probability import probable

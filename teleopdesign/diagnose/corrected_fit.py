@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from .adequacy import bounded_by_what_is_left, is_adequate
 from .clock import with_paying_shift
-from .decision import bounded_by_what_is_left, is_adequate
 from .fit import Fit
 from .ladder_state import LadderSearch
 from .noise_floor import NoiseFloor, noise_floor

@@ -1,18 +1,14 @@
-"""What a diagnosis decides: what counts, which of several is taken, and the verdict.
+"""What a diagnosis decides: which additions count, and the verdict.
 
-Every threshold is a field of `Criteria`. There is one order of candidates: those that count come
-first, then those that leave fewer squares on the check records (`rank_key`); among those that the
-records do not tell from the best, the simplest is taken (`preferred`).
+Every threshold is a field of `Criteria`. What counts as noise: `adequacy`. Which of several
+candidates is taken: `order`.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
-import numpy as np
-
+from .adequacy import is_adequate
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .evidence import (
@@ -21,84 +17,12 @@ from .evidence import (
     check_squares,
     gain_at_command,
     score_at_command,
-    whole_score,
 )
 from .fit import Fit
 from .noise_floor import NoiseFloor
-from .one_moment import Moment, worst_moment
-from .outside_tone import Tone
-from .prepare import Prepared
-from .ranking import REFUSALS, Ranked, Ranking
+from .one_moment import Moment
+from .ranking import REFUSALS, Ranked
 from .rung import Rung
-
-
-@dataclass(frozen=True)
-class Floors:
-    """The noise floor of a model, twice.
-
-    drawn: what its readings, drawn anew, leave
-    allowed: what counts as noise in decisions: never above what the records themselves leave, nor
-        far above the floor of the user's model
-    """
-
-    drawn: NoiseFloor
-    allowed: NoiseFloor
-
-
-def bounded_by_what_is_left(drawn: NoiseFloor, here: Fit, ranking: Ranking) -> NoiseFloor:
-    """The noise floor, at most the error of the model or of any identifiable candidate.
-
-    Without what is missing a parameter may be led where sensor noise would ask for any force: what
-    the records themselves leave shows that it does not. Moments of reading that jitter are seen in
-    the readings, though: a candidate that leaves less than they make weakens what they make.
-    """
-    left = [here.check_error]
-    if not drawn.jitters:
-        left += [r.fit.check_error for r in ranking.ranked if r.counts]
-    return replace(drawn, value=min(drawn.value, *left))
-
-
-def allowed_floor(
-    bounded: NoiseFloor, first: NoiseFloor, stated: Fit, *, criteria: Criteria = CRITERIA
-) -> NoiseFloor:
-    """A noise floor, limited by the first floor or by the error of the user's fitted model.
-
-    An effect that makes sensors count for much more would hide what it leaves in their noise.
-    """
-    most = max(criteria.louder * first.value, criteria.hidden * stated.check_error)
-    return bounded.at_most(most)
-
-
-def is_noise(check_error: float, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
-    """Whether an error of this size on the check records counts as noise."""
-    return check_error <= criteria.adequate * floor.value
-
-
-def is_a_tone(fit: Fit, tone: Tone, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
-    """Whether a plain tone explains all but noise."""
-    squares = check_squares(fit)
-    left = fit.check_error * float(np.sqrt(tone.squares / squares)) if squares > 0.0 else 0.0
-    return is_noise(left, floor, criteria=criteria)
-
-
-def is_adequate(fit: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
-    """Whether the error on the check records counts as noise, as a force and at the command.
-
-    A model that is blind in much of the motion says too little to be adequate.
-    """
-    command_error = fit.at_command
-    at_command = (
-        command_error.error <= criteria.adequate * floor.value_at_command
-        and command_error.blind <= criteria.blind
-    )
-    return is_noise(fit.check_error, floor, criteria=criteria) and at_command
-
-
-def floors_left(fit: Fit, floor: NoiseFloor) -> float:
-    """Check error in noise floors: of the force or at the command, the larger."""
-    if not (floor.value and math.isfinite(fit.at_command.error)):
-        return float("inf")
-    return max(fit.check_error / floor.value, fit.at_command.error / floor.value_at_command)
 
 
 def explained(before: Fit, after: Fit, floor: NoiseFloor) -> float:
@@ -291,85 +215,6 @@ def worth_pursuing(base: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERI
     least = criteria.of_floor / (1.0 + criteria.of_floor)
     only_noise = criteria.of_floor * floor.value**2 >= least * base.check_error**2
     return least / 3.0 if only_noise else criteria.worth
-
-
-def rank_key(ranked: Ranked) -> tuple[bool, float]:
-    """Sort key of a ranking: candidates that count first, then by squares on the check records."""
-    return not ranked.counts, check_squares(ranked.fit)
-
-
-def alike(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> list[Ranked]:
-    """The supported candidates, in order, that explain the records as well as the best one."""
-    best = supported[:1]
-    return [r for r in supported if r is best[0] or _equal(r, best[0], criteria)]
-
-
-def _equal(one: Ranked, best: Ranked, criteria: Criteria) -> bool:
-    """Whether the records cannot distinguish a candidate from the best one."""
-    near = abs(one.fit.check_error - best.fit.check_error) < criteria.near * best.fit.check_error
-    return near and whole_score(one.fit, best.fit) < criteria.close
-
-
-def preferred(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> Ranked:
-    """Of the supported candidates, in order, the simplest that explains as well as the best.
-
-    What the user's model has is believed: an effect in the place of another only where it is
-    better.
-    """
-    equal = alike(supported, criteria=criteria)
-    return min(equal, key=lambda r: (r.instead_of is not None, *simplicity(r)))
-
-
-def alternatives_of(
-    best: Ranked,
-    ranking: Ranking,
-    base: Fit,
-    floor: NoiseFloor,
-    *,
-    criteria: Criteria = CRITERIA,
-) -> tuple[Candidate, ...]:
-    """Candidates that the records cannot distinguish from this one.
-
-    One that needs more parameters to do as well explains nothing that the simpler does not.
-    """
-    supported = [r for r in ranking.ranked if is_supported(base, r, floor, criteria=criteria)]
-    return tuple(
-        r.candidate
-        for r in alike(supported, criteria=criteria)
-        if r is not best and simplicity(r)[0] == simplicity(best)[0]
-    )
-
-
-def others_that_help(best: Ranked, ranking: Ranking) -> tuple[Candidate, ...]:
-    """What else takes away at least half of what the best does, whether or not by more than chance.
-
-    To be said where the model before left only noise: there a gain is small, and what brings it
-    about may be something else.
-    """
-    whole = check_squares(ranking.base)
-    least = 0.5 * (whole - check_squares(best.fit))
-    others = (r for r in ranking.ranked if r.counts and r.candidate != best.candidate)
-    return tuple(r.candidate for r in others if whole - check_squares(r.fit) >= least)
-
-
-def simplicity(ranked: Ranked) -> tuple[int, int, int]:
-    """Parameters that must be estimated, effects that must be there, and optional parameters.
-
-    Fewer is simpler.
-    """
-    effect = ranked.candidate.effect
-    optional = sum(p.optional for p in effect.parameters.values())
-    return len(effect.parameters) - optional, len(effect.needs), optional
-
-
-def moment_above_noise(
-    fit: Fit, prepared: Prepared, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
-) -> Moment | None:
-    """The one moment that holds all that a model leaves above noise; None where none does."""
-    if is_adequate(fit, floor, criteria=criteria):
-        return None
-    moment = worst_moment(fit, prepared, floor)
-    return moment if moment is not None and moment.without <= criteria.adequate else None
 
 
 def verdict(

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 from ..by_value import ByValue
 from ..measurement.experiment import Experiment
 from ..model import Model
+from .adequacy import floors_left, is_adequate
 from .candidates import Candidate
-from .decision import floors_left, is_adequate, verdict
+from .decision import verdict
 from .fit import Fit
 from .ladder_text import ladder_html, ladder_text, sentence
 from .learnable import Learnable, NearReversals

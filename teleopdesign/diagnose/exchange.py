@@ -10,14 +10,16 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
+from .adequacy import is_adequate
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
-from .decision import alternatives_of, is_adequate, is_better, is_supported
+from .decision import is_better, is_supported
 from .evidence import check_squares
 from .fit import Fit
 from .ladder_state import LadderSearch, LadderState
 from .moves import remove
 from .noise_floor import NoiseFloor
+from .order import alternatives_of
 from .ranking import Ranked, Ranking
 from .rung import Replaced, Rung
 from .rungs import estimate_without, refitted

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from ..measurement.experiment import Experiment
 from ..model import Model
+from .adequacy import is_a_tone
 from .conclusion import conclude, with_last_corrected, without_doubtful
-from .decision import is_a_tone
 from .diagnosis import Diagnosis
 from .exchange import exchange
 from .ladder_state import LadderSearch, LadderState, begin, look, restrict_candidates, search_for

@@ -10,16 +10,11 @@ import numpy as np
 from ..effects import depends_on_time, find_effect
 from ..measurement.experiment import Experiment
 from ..model import Model
+from .adequacy import Floors, allowed_floor, bounded_by_what_is_left
 from .candidates import Candidate
 from .clock import with_late_starts, with_paying_shift
 from .criteria import CRITERIA, Criteria
-from .decision import (
-    Floors,
-    allowed_floor,
-    bounded_by_what_is_left,
-    is_supported,
-    worth_pursuing,
-)
+from .decision import is_supported, worth_pursuing
 from .diagnosis import SetAside
 from .excerpt import on_windows
 from .fit import Fit

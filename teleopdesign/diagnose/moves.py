@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from .decision import alternatives_of, is_adequate, is_better, is_noise, others_that_help, preferred
+from .adequacy import is_adequate, is_noise
+from .decision import is_better
 from .fit import Fit
 from .ladder_state import LadderSearch, LadderState
 from .noise_floor import noise_floor
+from .order import alternatives_of, others_that_help, preferred
 from .ranking import Ranked
 from .rung import Rung, replaced_by
 from .rungs import estimate_without, refitted

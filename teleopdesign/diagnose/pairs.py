@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import replace
 
+from .adequacy import is_adequate
 from .candidates import Candidate
-from .decision import alternatives_of, explained, is_adequate, is_better, is_supported
+from .decision import explained, is_better, is_supported
 from .evidence import check_squares
 from .fit import Fit, fit_squares
 from .ladder_state import LadderSearch, LadderState
 from .noise_floor import NoiseFloor
+from .order import alternatives_of
 from .outside_tone import best_tone
 from .ranking import Ranking
 from .rung import Rung, replaced_by

@@ -10,10 +10,11 @@ from ..errors import ModelError
 from ..model import Model
 from .candidates import Candidate, candidates, measured_at
 from .criteria import CRITERIA, Criteria
-from .decision import rank_key, refusal, superfluous_beside
+from .decision import refusal, superfluous_beside
 from .evidence import check_score, check_squares, whole_score
 from .fit import Fit, estimate, fit_squares, rough_fit
 from .identifiability import is_identifiable
+from .order import rank_key
 from .plausibility import implausible_effects
 from .prepare import Prepared
 from .progress import ProgressLine

@@ -71,7 +71,7 @@ class Ranked(ByValue):
 class Ranking(ByValue):
     """Candidates, best first, and the fit that they are compared with.
 
-    base: the model without any of them;  ranked: by `decision.rank_key`, those that count first
+    base: the model without any of them;  ranked: by `order.rank_key`, those that count first
     """
 
     base: Fit

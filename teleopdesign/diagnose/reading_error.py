@@ -24,11 +24,12 @@ from ..errors import ModelError
 from ..measurement.filtering import Array
 from ..model import Model
 from .effort import EFFORTS
-from .fit import Fit, estimate, over_decades, solve
+from .fit import Fit, estimate
 from .noise_floor import read_again
 from .prepare import Prepared, Stretch, stretch_of
 from .record_offsets import along_with_offsets
 from .simulated_course import as_led, dead_times, simulated_course, with_whole_dead_times
+from .solve import over_decades, solve
 from .threads import in_threads
 
 #: bristle lengths of an ideal friction, in encoder steps, and their damping ratios: none can be

@@ -21,10 +21,11 @@ from .bodies_apart import of_bodies
 from .candidates import started
 from .criteria import CRITERIA
 from .effort import EFFORTS, Effort
-from .fit import Fit, Solution, estimate, fit_of, fit_squares, free_parameters, solve
+from .fit import Fit, estimate, fit_of, fit_squares, free_parameters
 from .linear_start import linear_starts
 from .prepare import Prepared
 from .search_plan import PLAN
+from .solve import Solution, solve
 from .stated import at_stated, has_moved, is_at_stated
 
 

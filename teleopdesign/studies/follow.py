@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..diagnose.fit import BLOCK, standard_errors
+from ..diagnose.fit import standard_errors
+from ..diagnose.solve import BLOCK
 from ..errors import ModelError
 from ..passivity.intervals.box import ValueBox
 from .case import SimulatedCase

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from ..diagnose.fit import BLOCK
+from ..diagnose.solve import BLOCK
 from ..measurement.filtering import Array
 from .rows import Rows
 

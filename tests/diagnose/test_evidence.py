@@ -5,7 +5,8 @@ import pytest
 from scipy.signal import butter, sosfiltfilt
 
 from teleopdesign.diagnose.evidence import chance, gain_score
-from teleopdesign.diagnose.fit import BLOCK, standard_errors
+from teleopdesign.diagnose.fit import standard_errors
+from teleopdesign.diagnose.solve import BLOCK
 
 RATE, N = 300.0, 6000  # a record of 20 s after thinning
 BLOCKS = (np.arange(N) / RATE / BLOCK).astype(int)

@@ -7,10 +7,10 @@ from diagnose.made_records import jittered
 from diagnose.own_cases import write_own
 
 from teleopdesign import Model, load_experiment
+from teleopdesign.diagnose.adequacy import is_adequate
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.conclusion import without_doubtful
 from teleopdesign.diagnose.criteria import CRITERIA
-from teleopdesign.diagnose.decision import is_adequate
 from teleopdesign.diagnose.exchange import exchange
 from teleopdesign.diagnose.ladder_state import begin, look, search_for
 from teleopdesign.diagnose.moves import add, remove

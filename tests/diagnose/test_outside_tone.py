@@ -9,7 +9,7 @@ from diagnose.own_cases import write_own
 
 import teleopdesign as td
 from teleopdesign.diagnose import ladder, ladder_state
-from teleopdesign.diagnose.decision import is_a_tone
+from teleopdesign.diagnose.adequacy import is_a_tone
 from teleopdesign.diagnose.evidence import check_squares
 from teleopdesign.diagnose.fit import estimate, weighted
 from teleopdesign.diagnose.noise_floor import NoiseFloor

@@ -19,22 +19,14 @@ from ...realise.along_motion import residual_along
 from ...realise.traced import LinkParameter
 from ..effort import EFFORTS, Effort
 from ..error import force_error
-from ..fit import (
-    BLOCK,
-    Fit,
-    block_numbers,
-    command_error_of,
-    estimate,
-    free_parameters,
-    solve,
-    standard_errors,
-)
+from ..fit import Fit, block_numbers, command_error_of, estimate, free_parameters, standard_errors
 from ..prepare import Prepared, Stretch
 from ..record_offsets import along_with_offsets
 from ..record_shift import record_shifts
 from ..residual import relative_residuals
 from ..search import estimate_from_starts
 from ..shared_links import Knowledge, share, weighted_columns
+from ..solve import BLOCK, solve
 from .prepared import PreparedArm
 
 #: part of the measured force below which what is left does not make a joint count for more

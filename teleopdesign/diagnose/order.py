@@ -1,0 +1,87 @@
+"""The one order of candidates, and which of several that explain equally well is taken.
+
+Candidates that count come first, then those that leave fewer squares on the check records
+(`rank_key`). Among those that the records do not tell from the best, the simplest is taken
+(`preferred`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from .candidates import Candidate
+from .criteria import CRITERIA, Criteria
+from .decision import is_supported
+from .evidence import check_squares, whole_score
+from .fit import Fit
+from .noise_floor import NoiseFloor
+from .ranking import Ranked, Ranking
+
+
+def rank_key(ranked: Ranked) -> tuple[bool, float]:
+    """Sort key of a ranking: candidates that count first, then by squares on the check records."""
+    return not ranked.counts, check_squares(ranked.fit)
+
+
+def alike(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> list[Ranked]:
+    """The supported candidates, in order, that explain the records as well as the best one."""
+    best = supported[:1]
+    return [r for r in supported if r is best[0] or _equal(r, best[0], criteria)]
+
+
+def _equal(one: Ranked, best: Ranked, criteria: Criteria) -> bool:
+    """Whether the records cannot distinguish a candidate from the best one."""
+    near = abs(one.fit.check_error - best.fit.check_error) < criteria.near * best.fit.check_error
+    return near and whole_score(one.fit, best.fit) < criteria.close
+
+
+def preferred(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> Ranked:
+    """Of the supported candidates, in order, the simplest that explains as well as the best.
+
+    What the user's model has is believed: an effect in the place of another only where it is
+    better.
+    """
+    equal = alike(supported, criteria=criteria)
+    return min(equal, key=lambda r: (r.instead_of is not None, *simplicity(r)))
+
+
+def alternatives_of(
+    best: Ranked,
+    ranking: Ranking,
+    base: Fit,
+    floor: NoiseFloor,
+    *,
+    criteria: Criteria = CRITERIA,
+) -> tuple[Candidate, ...]:
+    """Candidates that the records cannot distinguish from this one.
+
+    One that needs more parameters to do as well explains nothing that the simpler does not.
+    """
+    supported = [r for r in ranking.ranked if is_supported(base, r, floor, criteria=criteria)]
+    return tuple(
+        r.candidate
+        for r in alike(supported, criteria=criteria)
+        if r is not best and simplicity(r)[0] == simplicity(best)[0]
+    )
+
+
+def others_that_help(best: Ranked, ranking: Ranking) -> tuple[Candidate, ...]:
+    """What else takes away at least half of what the best does, whether or not by more than chance.
+
+    To be said where the model before left only noise: there a gain is small, and what brings it
+    about may be something else.
+    """
+    whole = check_squares(ranking.base)
+    least = 0.5 * (whole - check_squares(best.fit))
+    others = (r for r in ranking.ranked if r.counts and r.candidate != best.candidate)
+    return tuple(r.candidate for r in others if whole - check_squares(r.fit) >= least)
+
+
+def simplicity(ranked: Ranked) -> tuple[int, int, int]:
+    """Parameters that must be estimated, effects that must be there, and optional parameters.
+
+    Fewer is simpler.
+    """
+    effect = ranked.candidate.effect
+    optional = sum(p.optional for p in effect.parameters.values())
+    return len(effect.parameters) - optional, len(effect.needs), optional

@@ -1,0 +1,165 @@
+"""The search for parameters: bounded least squares on the low-passed residual force."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..measurement.filtering import Array
+from ..model import Model
+from .bodies_apart import body_by_body
+from .effort import Effort
+from .least_squares import minimise
+from .prepare import Prepared, Stretch
+from .record_shift import CLOCK, RecordShifts, record_shifts
+from .residual import residuals
+from .shared_links import best_links
+
+#: seconds over which residuals count as one observation in standard errors and tests
+BLOCK = 0.25
+#: distance to a bound, in the record's scale of the quantity, that counts as being there
+AT_BOUND = 1e-6
+#: decades to either side of the record's scale in which a logarithmic parameter is searched
+DECADES = 8.0
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Free parameters at the optimum, with weighted residual and jacobian by value / scale.
+
+    model: with these values, and the shifts of the records
+    by_shift: (rows, k) of the residual by `shifts`, in rows of a record;  shift_at_bound: (k,)
+    """
+
+    model: Model
+    values: Array
+    scale: Array
+    at_bound: NDArray[np.bool_]
+    residual: Array
+    jacobian: Array
+    shifts: RecordShifts
+    by_shift: Array
+    shift_at_bound: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class _SearchSpace:
+    """Free parameters as they are searched, x: over their scales, or the logarithm of that.
+
+    scale: (p,) SI value of the record's unit of each;  decades: (p,) whether x is a logarithm
+    lower, upper, start: (p,) bounds of x, and where the search begins
+    """
+
+    scale: Array
+    decades: NDArray[np.bool_]
+    lower: Array
+    upper: Array
+    start: Array
+
+    def values(self, x: Array) -> Array:
+        """Values (p,) of the parameters at x, in SI units."""
+        return self.scale * np.where(self.decades, np.exp(np.where(self.decades, x, 0.0)), x)
+
+    def units(self, x: Array) -> Array:
+        """Derivatives (p,) of the values by x, in SI units."""
+        return np.where(self.decades, self.values(x), self.scale)
+
+
+def _search_space(model: Model, free: tuple[str, ...], prepared: Prepared) -> _SearchSpace:
+    """Where the free parameters of a model are searched, by the scales of the fit records."""
+    unit = prepared.scales
+    declared = [model.declared(n) for n in free]
+    scale = np.array([unit[d.scale] for d in declared])
+    decades = np.array([over_decades(model, n) for n in free], dtype=bool)
+    lower = np.array([d.lower for d in declared]) / scale
+    upper = np.array(
+        [min(d.upper / s, d.search.within) for d, s in zip(declared, scale, strict=True)]
+    )
+    start = np.array([model.parameters[n].value for n in free]) / scale
+    lower[decades] = -DECADES * np.log(10)
+    upper[decades] = np.log(np.minimum(upper[decades], 10.0**DECADES))
+    start[decades] = np.log(np.maximum(start[decades], 1e-300))
+    # a law may divide by a parameter whose bound is zero: stay a trifle inside
+    return _SearchSpace(scale, decades, lower + 0.1 * AT_BOUND, upper - 0.1 * AT_BOUND, start)
+
+
+def solve(
+    model: Model,
+    free: tuple[str, ...],
+    prepared: Prepared,
+    stretches: Sequence[Stretch],
+    effort: Effort,
+) -> Solution:
+    """Bounded least squares on the relative residuals of these stretches, by shifts as well."""
+    space = _search_space(model, free, prepared)
+    p, lasts = len(free), sum(s.weight * len(s.keep) * s.row for s in stretches)
+    shifts = record_shifts(stretches, round(lasts / BLOCK), model)
+    lower = np.append(space.lower, np.full(len(shifts.bodies), -CLOCK.early))
+    upper = np.append(space.upper, shifts.latest)
+    start = np.append(space.start, shifts.start(model))
+    names = (*free, *shifts.names)
+    evaluated = body_by_body(model, names, stretches, tolerance=effort.tolerance)
+
+    def there(x: Array) -> Model:
+        moved = model.with_values(dict(zip(free, space.values(x[:p]).tolist(), strict=True)))
+        return shifts.beside(moved, x[p:])
+
+    def both(x: Array) -> tuple[Array, Array]:
+        return evaluated(there(x), x, np.append(space.units(x[:p]), shifts.row))
+
+    def with_prior(x: Array) -> tuple[Array, Array]:
+        r, j = both(x)
+        j[:, p:][:, shifts.held] = 0.0
+        known, slope = shifts.prior(x[p:], r, j)
+        return np.append(r, known), np.vstack([j, slope])
+
+    if len(start):
+        minimum = minimise(
+            with_prior,
+            start,
+            lower,
+            upper,
+            tolerance=effort.tolerance,
+            evaluations=effort.evaluations,
+        )
+        best, rows = minimum.values, len(minimum.residual) - len(shifts.bodies)
+        residual, jacobian = minimum.residual[:rows], minimum.jacobian[:rows]
+    else:
+        best, (residual, jacobian) = start, both(start)
+    if any(s.shared is not None for s in stretches):
+        model = settle_links(there(best), stretches)
+        residual, jacobian = both(best)
+    at_bound = (best - lower < AT_BOUND) | (upper - best < AT_BOUND)
+    return Solution(
+        model=there(best),
+        values=space.values(best[:p]),
+        scale=space.units(best[:p]),
+        at_bound=at_bound[:p],
+        residual=residual,
+        jacobian=jacobian[:, :p],
+        shifts=shifts,
+        by_shift=jacobian[:, p:],
+        shift_at_bound=at_bound[p:],
+    )
+
+
+def settle_links(model: Model, stretches: Sequence[Stretch]) -> Model:
+    """The model with the best base parameters of its arm beside the rest of it."""
+    left = [r for r, _ in residuals(model, stretches)]
+    return model.with_links(best_links(model.links, stretches, left))
+
+
+def over_decades(model: Model, name: str) -> bool:
+    """Whether a parameter is searched on a logarithmic scale: positive, and zero means nothing.
+
+    A strength that may vanish is searched on a linear one, so that it can reach zero.
+    """
+    declared = model.declared(name)
+    place, local_name = model.locate(name)
+    effect, _, parameter = local_name.partition(".")
+    if not parameter or declared.lower < 0 or np.isfinite(declared.upper):
+        return False
+    return model.body(place).effect(effect).absent.get(parameter) != 0.0
