@@ -158,6 +158,7 @@ def test_an_arm_that_swings_freely_keeps_its_energy_and_angular_momentum():
     assert np.ptp(energy) < 1e-6 * energy[0]
 
 
+@pytest.mark.slow
 def test_arms_on_a_stiff_coupling_move_together():
     """A force at the master's tip moves both tips by as much, spring and damper between them."""
     damped = planar(damping=0.4)

@@ -69,7 +69,7 @@ def assert_same(data, case, found, after=0.0):
         max_size=20,
     )
 )  # fmt: skip
-@settings(max_examples=8, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=4, suppress_health_check=[HealthCheck.too_slow])
 def test_each_case_has_the_numbers_of_its_own_simulation(rows):
     """Friction that is absent, steps that are refined case by case, any number of lanes."""
     level, stiffness, inertia, cancelled = map(np.array, zip(*rows, strict=True))
